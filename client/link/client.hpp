@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
+#include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
+
+namespace kinship::link {
+
+struct ClientOptions {
+  std::uint32_t domain = 0;
+  std::string server = "127.0.0.1";         ///< host of kinshipd
+  std::filesystem::path outbox;             ///< folder; empty: XDG state home /kinship/outbox
+  std::chrono::milliseconds timeout{5000};  ///< of register and admin
+};
+
+/// A fleet member's line to kinshipd: registers a robot, reports attempts, fetches distributions.
+///
+/// A report is on disk before report() returns and is sent in the background until the server's
+/// receipt says that it is durable there; it survives a crash of either side. May be shared
+/// between threads.
+class Client {
+ public:
+  explicit Client(const ClientOptions& options);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// \return the reply, or Unavailable if no server answered within the timeout.
+  Result<RegisterReply> register_robot(const RobotDescription& description);
+
+  /// Puts the attempt into the outbox (durable on return) and wakes the sender.
+  /// \throws Failure(InvalidInput) if the server would refuse it anyway; Failure(Storage) if the
+  ///         outbox cannot be written.
+  void report(const Attempt& attempt);
+
+  struct OutboxState {
+    std::size_t pending = 0;   ///< not yet acknowledged
+    std::size_t accepted = 0;  ///< since this client started: stored, duplicate or recorded
+    std::size_t refused = 0;   ///< since this client started; kept in the rejected folder
+  };
+  OutboxState outbox() const;
+
+  /// Waits until nothing is pending or the deadline has passed.
+  OutboxState flush(std::chrono::milliseconds deadline);
+
+  /// Waits until the reply is final or the request's deadline has passed (then: the last Pending
+  /// or Busy reply, or Unavailable if no server answered).
+  Result<FetchReply> fetch(const FetchRequest& request);
+
+  Result<AdminReply> admin(const AdminRequest& request);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kinship::link

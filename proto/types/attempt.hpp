@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/path.hpp"
+#include "proto/types/uuid.hpp"
+
+namespace kinship {
+
+enum class Outcome { Solved, Timeout, Failed };
+
+/// How the samples of an attempt were chosen: by guidance, uniformly on purpose to compare
+/// (control), or uniformly because there was no guidance.
+enum class Arm { Guided, Control, Uniform };
+
+/// What a planner says about one query. One collision check = one configuration of which any
+/// collision question is asked.
+struct PlanningRecord {
+  Outcome outcome = Outcome::Failed;
+  std::string planner;
+  std::string planner_options;  ///< free text, e.g. "step=0.1 shortcut_checks=300"
+  double planning_time_s = 0;
+  std::uint64_t collision_checks = 0;
+  std::uint64_t projections = 0;
+  double time_limit_s = 0;
+  Arm arm = Arm::Uniform;
+  double share = 0;  ///< of samples drawn from the distribution, 0 to 1
+  std::optional<Digest> distribution_id;
+  std::uint64_t distribution_revision = 0;
+};
+
+/// One planning query of a client: solved (with a path) or not (without).
+struct Attempt {
+  Uuid report_uuid;
+  Digest robot;
+  std::string machine;
+  std::string task;
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, kept as missing
+  PlanningRecord record;
+  std::optional<Path> path;  ///< present exactly if solved
+};
+
+}  // namespace kinship

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+
+/// Limits on everything that comes from outside; proto/README.md lists them for other languages.
+namespace kinship {
+
+inline constexpr std::size_t kMaxDof = 32;
+inline constexpr std::size_t kMaxWaypoints = 16384;
+inline constexpr std::size_t kMaxUrdfBytes = 1'000'000;
+inline constexpr std::size_t kMaxTaskBytes = 128;
+inline constexpr std::size_t kMaxLabelBytes = 64;
+inline constexpr std::size_t kMaxLinkNameBytes = 128;
+inline constexpr std::size_t kMaxMachineBytes = 128;
+inline constexpr std::size_t kMaxPlannerBytes = 128;
+inline constexpr std::size_t kMaxPlannerOptionsBytes = 1024;
+inline constexpr std::size_t kMaxHeldJoints = 64;
+inline constexpr std::size_t kMaxCollisionPairs = 4096;
+inline constexpr std::size_t kMaxAttemptsPerBatch = 256;
+inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 bytes each
+inline constexpr std::size_t kMaxComponents = 1024;
+inline constexpr std::size_t kMaxSources = 1024;
+inline constexpr std::size_t kMaxPageBytes = 512 * 1024;
+inline constexpr std::size_t kMaxMessageBytes = 2048;
+inline constexpr double kMaxPlacement_m = 1000.0;  ///< largest coordinate of a placement or pose
+
+}  // namespace kinship

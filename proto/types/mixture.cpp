@@ -1,0 +1,34 @@
+#include "proto/types/mixture.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace kinship {
+
+Mixture::Mixture(Eigen::VectorXd weights, Eigen::MatrixXd means,
+                 std::vector<Eigen::MatrixXd> covariances)
+    : weights_(std::move(weights)), means_(std::move(means)), covariances_(std::move(covariances)) {
+  const Eigen::Index components = weights_.size();
+  const Eigen::Index dimension = means_.rows();
+  if (components < 1 || dimension < 1 || means_.cols() != components ||
+      static_cast<Eigen::Index>(covariances_.size()) != components)
+    throw std::invalid_argument("Mixture: need K >= 1 weights, d x K means, K covariances");
+  constexpr double kSumTolerance = 1e-6;
+  if (!weights_.allFinite() || !means_.allFinite() || weights_.minCoeff() < 0 ||
+      std::abs(weights_.sum() - 1) > kSumTolerance)
+    throw std::invalid_argument("Mixture: weights must be >= 0 with sum 1, means finite");
+  weights_ /= weights_.sum();
+  constexpr double kSymmetryTolerance = 1e-9;
+  for (Eigen::MatrixXd& covariance : covariances_) {
+    if (covariance.rows() != dimension || covariance.cols() != dimension || !covariance.allFinite())
+      throw std::invalid_argument("Mixture: covariances must be d x d and finite");
+    const Eigen::MatrixXd transposed = covariance.transpose();
+    if ((covariance - transposed).cwiseAbs().maxCoeff() >
+        kSymmetryTolerance * covariance.cwiseAbs().maxCoeff())
+      throw std::invalid_argument("Mixture: covariances must be symmetric");
+    covariance = 0.5 * (covariance + transposed);
+  }
+}
+
+}  // namespace kinship

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/scene.hpp"
+
+namespace kinship {
+
+/// One planning problem for kinship-plan (a line of a problem file).
+struct Problem {
+  std::string name;
+  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  Eigen::VectorXd start;                         ///< dof, joint units
+  Eigen::MatrixXd goal_configurations;           ///< dof x n; empty if a pose is given
+  std::optional<Eigen::Isometry3d> T_task_goal;  ///< of the transfer frame
+  Scene scene;
+  std::vector<AttachedObject> attached;
+  std::vector<std::pair<std::string, std::string>> allowed_collisions;
+  double time_limit_s = 10;
+  std::uint64_t seed = 0;
+};
+
+/// What kinship-plan answers to a problem, in input order.
+struct ProblemResult {
+  std::string name;
+  bool solved = false;
+  std::uint64_t collision_checks = 0;
+  std::uint64_t projections = 0;
+  double planning_time_s = 0;
+  double time_limit_s = 0;
+  std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n
+  std::optional<Digest> distribution_id;     ///< with revision and share: present if guided
+  std::uint64_t distribution_revision = 0;
+  double share = 0;
+  std::string reason;  ///< why not solved
+};
+
+}  // namespace kinship

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kinship {
+
+/// How paths become configurations of the target robot.
+struct TransferParameters {
+  double pose_spacing = 0.3;        ///< joint motion between transferred poses, joint units
+  int max_poses_per_path = 64;      ///< 0: no limit
+  int max_solutions = 5;            ///< L: configurations per pose
+  double min_distance = 0.5;        ///< d: between the solutions of one pose, joint units
+  double dropped_end_share = 0.15;  ///< of a path's length, left out at each end
+
+  bool operator==(const TransferParameters&) const = default;
+};
+
+/// How configurations become a mixture.
+struct DensityParameters {
+  int components = 50;             ///< K, lowered if there are too few configurations
+  double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
+  bool equal_path_weights = true;  ///< every path weighs the same, however long
+
+  bool operator==(const DensityParameters&) const = default;
+};
+
+/// A named set of parameters. Its values, not its name, identify a distribution.
+struct Profile {
+  std::string name = "default";
+  TransferParameters transfer;
+  DensityParameters density;
+  double recommended_share = 0.9;  ///< of guided samples, before attempts have taught better
+  std::uint64_t seed = 0;
+
+  bool operator==(const Profile&) const = default;
+};
+
+/// `default` (the best we know) or `paper` (Lehner et al. 2022 to the letter); empty otherwise.
+std::optional<Profile> find_profile(std::string_view name);
+
+}  // namespace kinship

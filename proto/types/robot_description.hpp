@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/types/task_axes.hpp"
+
+namespace kinship {
+
+/// All that a client says about a robot when it registers it.
+struct RobotDescription {
+  std::string label;  ///< for people; unique in a store
+  std::string urdf;   ///< URDF text, at most kMaxUrdfBytes
+  std::string base_link;
+  std::string tip_link;
+  Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
+  TaskAxes task_axes;
+  std::map<std::string, double> held_joints;  ///< joints off the chain, joint units
+  std::vector<std::pair<std::string, std::string>> never_colliding;  ///< pairs of link names
+};
+
+}  // namespace kinship

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace kinship {
+
+struct BoxShape {
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< full extents, m
+};
+struct CylinderShape {
+  double radius_m = 0;
+  double length_m = 0;  ///< along z
+};
+struct SphereShape {
+  double radius_m = 0;
+};
+struct CapsuleShape {
+  double radius_m = 0;
+  double length_m = 0;  ///< of the cylindrical part, along z
+};
+
+/// A solid, centred in its own frame.
+using Shape = std::variant<BoxShape, CylinderShape, SphereShape, CapsuleShape>;
+
+/// An obstacle of a scene; the pose is that of the shape's centre in the task frame.
+struct SceneObject {
+  std::string name;
+  Shape shape;
+  Eigen::Isometry3d T_task_object = Eigen::Isometry3d::Identity();
+};
+
+/// Something held by the robot.
+struct AttachedObject {
+  std::string name;
+  std::string link;
+  Shape shape;
+  Eigen::Isometry3d T_link_object = Eigen::Isometry3d::Identity();
+  std::vector<std::string> touch_links;  ///< may touch it
+};
+
+/// The obstacles around a robot, in the task frame.
+struct Scene {
+  std::vector<SceneObject> objects;
+};
+
+}  // namespace kinship

@@ -1,0 +1,63 @@
+#include "proto/types/sha256.hpp"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship {
+namespace {
+
+void require(int ok) {
+  if (ok != 1) throw Failure(ErrorCode::Internal, "libcrypto: SHA-256 failed");
+}
+
+}  // namespace
+
+void Sha256::Free::operator()(evp_md_ctx_st* context) const noexcept { EVP_MD_CTX_free(context); }
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+  require(context_ ? EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) : 0);
+}
+
+Sha256& Sha256::add(std::span<const std::uint8_t> bytes) {
+  require(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+  return *this;
+}
+
+Sha256& Sha256::add(std::string_view text) {
+  add(static_cast<std::uint64_t>(text.size()));
+  require(EVP_DigestUpdate(context_.get(), text.data(), text.size()));
+  return *this;
+}
+
+Sha256& Sha256::add(std::uint64_t value) {
+  std::array<std::uint8_t, 8> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  return add(std::span<const std::uint8_t>(bytes));
+}
+
+Sha256& Sha256::add(double value) {
+  return add(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value));
+}
+
+Sha256& Sha256::add(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  add(static_cast<std::uint64_t>(values.rows()));
+  add(static_cast<std::uint64_t>(values.cols()));
+  for (Eigen::Index column = 0; column < values.cols(); ++column)
+    for (Eigen::Index row = 0; row < values.rows(); ++row) add(values(row, column));
+  return *this;
+}
+
+Digest Sha256::finish() {
+  Digest digest;
+  unsigned int size = 0;
+  require(EVP_DigestFinal_ex(context_.get(), digest.bytes.data(), &size));
+  return digest;
+}
+
+}  // namespace kinship

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/task_axes.hpp"
+
+namespace kinship::kinematics {
+
+enum class JointType { Revolute, Continuous, Prismatic };
+
+/// A moving joint of a chain. Fixed joints are folded into `T_previous_joint`.
+struct Joint {
+  std::string name;
+  JointType type = JointType::Revolute;
+  /// Pose of this joint's frame at q = 0 in the moving frame of the joint before it (the base
+  /// link for the first).
+  Eigen::Isometry3d T_previous_joint = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector in this joint's frame
+  double lower = 0;                                 ///< rad or m; -pi for continuous joints
+  double upper = 0;                                 ///< rad or m; +pi for continuous joints
+};
+
+/// A link of the URDF and the joint of the chain that moves it; off-chain joints are held.
+struct ChainLink {
+  std::string name;
+  int joint = -1;  ///< index of the last joint that moves it; -1: fixed to the base link
+  Eigen::Isometry3d T_joint_link = Eigen::Isometry3d::Identity();  ///< in that joint's moving frame
+  int parent = -1;  ///< index of the parent link in Chain::links(); -1: the URDF's root link
+};
+
+/// What a Chain is made of.
+struct ChainParts {
+  std::string base_link, tip_link;
+  std::vector<Joint> joints;  ///< from base to tip
+  Eigen::Isometry3d T_last_tip =
+      Eigen::Isometry3d::Identity();  ///< tip link in the last moving frame
+  Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
+  TaskAxes task_axes;
+  std::vector<ChainLink> links;  ///< every link of the URDF
+};
+
+/// A kinematic chain from a base link to a tip link with a transfer frame: what a robot is to us.
+///
+/// Invariant: 1 to kMaxDof joints, unit axes, finite limits with lower < upper, finite transforms.
+class Chain {
+ public:
+  /// \throws std::invalid_argument if the invariant does not hold.
+  explicit Chain(ChainParts parts);
+
+  Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(parts_.joints.size()); }
+  const std::vector<Joint>& joints() const noexcept { return parts_.joints; }
+  const std::vector<ChainLink>& links() const noexcept { return parts_.links; }
+  const std::string& base_link() const noexcept { return parts_.base_link; }
+  const std::string& tip_link() const noexcept { return parts_.tip_link; }
+  const Eigen::Isometry3d& T_last_tip() const noexcept { return parts_.T_last_tip; }
+  const Eigen::Isometry3d& T_tip_transfer() const noexcept { return parts_.T_tip_transfer; }
+  const TaskAxes& task_axes() const noexcept { return parts_.task_axes; }
+  const Eigen::VectorXd& lower() const noexcept { return lower_; }  ///< dof
+  const Eigen::VectorXd& upper() const noexcept { return upper_; }  ///< dof
+
+  /// Whether every joint lies within its limits; continuous joints always do.
+  bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 0) const;
+
+  /// Index into links(), or -1.
+  int find_link(std::string_view name) const noexcept;
+
+  /// Identity of the robot: SHA-256 of joint types, axes, origins, limits, transfer frame and
+  /// task axes. Names, labels and geometry do not count.
+  Digest digest() const;
+
+ private:
+  ChainParts parts_;
+  Eigen::VectorXd lower_, upper_;
+};
+
+}  // namespace kinship::kinematics

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::kinematics {
+
+/// Pose of the tip link in the base link, m.
+/// \param q  dof, joint units; limits are not checked.
+/// \throws std::invalid_argument if q.size() != chain.dof().
+Eigen::Isometry3d T_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// Pose of the transfer frame in the base link.
+Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// Pose of each joint's moving frame in the base link: dof poses, from base to tip.
+std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
+                                           const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// Pose of every link in the base link, in the order of chain.links().
+std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,
+                                          const Eigen::Ref<const Eigen::VectorXd>& q);
+
+}  // namespace kinship::kinematics

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
+#include "proto/types/distribution.hpp"
+#include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
+#include "proto/types/summaries.hpp"
+
+namespace kinship::store {
+
+/// A robot as stored. Its digest and dof were computed by the caller.
+struct RobotRecord {
+  Digest digest;
+  RobotDescription description;
+  std::uint32_t dof = 0;
+  std::int64_t registered_ms = 0;
+};
+
+/// A path with what a transfer needs to know about it.
+struct StoredPath {
+  std::int64_t id = 0;  ///< grows with arrival
+  Uuid report_uuid;
+  std::optional<Eigen::Isometry3d> T_task_base;
+  Path path;
+};
+
+/// One (robot, task) pair that has paths.
+struct ExperienceSummary {
+  Digest robot;
+  std::uint64_t paths = 0;
+  std::uint64_t generation = 0;
+};
+
+struct StoreStatus {
+  std::string file;
+  Uuid epoch;
+  std::uint32_t schema_version = 0;
+  std::uint64_t robots = 0, tasks = 0, paths = 0, attempts = 0, distributions = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t queued = 0;
+  bool writable = true;
+  std::string message;
+};
+
+/// One page of a listing; `next_cursor` is empty on the last one.
+template <typename Row>
+struct Page {
+  std::vector<Row> rows;
+  std::string next_cursor;
+};
+
+/// Keeps robots, attempts, paths and distributions. Every method may be called from any thread.
+/// Reads see committed data only. Unless said otherwise methods throw Failure(Storage).
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  virtual Uuid epoch() const = 0;
+  virtual StoreStatus status() const = 0;
+
+  /// Durable on return. Known: the digest was there already (its label and text stay as they are).
+  /// \return Conflict if another robot has the label.
+  virtual Result<RegisterStatus> register_robot(const RobotRecord& robot) = 0;
+  virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
+  virtual std::vector<RobotRecord> robots() const = 0;
+
+  using ReportsDone = std::function<void(const std::vector<Receipt>&)>;
+
+  /// Queues checked attempts; `done` is called on the writer thread after the commit is durable
+  /// (or failed: TryAgain), one receipt per attempt in order. What waits together is committed
+  /// together. `done` must not throw or block. Never throws Storage.
+  ///
+  /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content the
+  /// (robot, task) has already is recorded as an attempt and answered Duplicate.
+  virtual void commit_reports(std::vector<Attempt> attempts, ReportsDone done) = 0;
+
+  /// The robots with paths of a task, by digest.
+  virtual std::vector<ExperienceSummary> experience(std::string_view task) const = 0;
+  virtual std::uint64_t generation(const Digest& robot, std::string_view task) const = 0;
+
+  /// The paths of one robot and task with id > after_id, in the order of ids, at most `limit`. A
+  /// path whose blob fails its CRC is set aside (kept, marked damaged, counted in status().message)
+  /// and left out.
+  virtual std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
+                                             std::int64_t after_id, std::size_t limit) const = 0;
+
+  /// Stores a distribution under its id with the next revision, durable on return.
+  /// \return the revision given.
+  virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
+  virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;
+
+  virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
+  virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
+  virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
+  /// Empty robot or task: all.
+  virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
+                                       std::string_view cursor, std::size_t limit) const = 0;
+  /// An attempt with its path, by report UUID; unsolved ones too.
+  virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
+  virtual Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
+                                                       std::string_view task,
+                                                       std::string_view cursor,
+                                                       std::size_t limit) const = 0;
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "proto/types/mixture.hpp"
+#include "proto/types/path.hpp"
+#include "proto/types/profile.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship {
+namespace {
+
+TEST(Path, RefusesOneWaypointAndNan) {
+  EXPECT_THROW(Path(Eigen::MatrixXd::Zero(6, 1)), std::invalid_argument);
+  Eigen::MatrixXd waypoints = Eigen::MatrixXd::Zero(6, 3);
+  EXPECT_NO_THROW(Path{waypoints});
+  waypoints(2, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Path{waypoints}, std::invalid_argument);
+}
+
+TEST(Mixture, RefusesWeightsThatDoNotSumToOne) {
+  const Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, 2);
+  const std::vector<Eigen::MatrixXd> covariances(2, Eigen::MatrixXd::Identity(2, 2));
+  EXPECT_THROW(Mixture(Eigen::Vector2d(0.5, 0.6), means, covariances), std::invalid_argument);
+  EXPECT_EQ(Mixture(Eigen::Vector2d(0.4, 0.6), means, covariances).size(), 2);
+}
+
+TEST(Mixture, RefusesAnAsymmetricCovariance) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(2, 2);
+  covariance(0, 1) = 0.5;
+  EXPECT_THROW(Mixture(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(2, 1), {covariance}),
+               std::invalid_argument);
+}
+
+TEST(Result, HoldsAValueOrAReason) {
+  const Result<int> good(3);
+  const Result<int> bad(Error{ErrorCode::NotFound, "robot 'x': unknown"});
+  EXPECT_EQ(*good, 3);
+  EXPECT_FALSE(bad);
+  EXPECT_EQ(bad.error().message, "robot 'x': unknown");
+  EXPECT_THROW(static_cast<void>(bad.value()), std::logic_error);
+}
+
+TEST(Profile, KnowsDefaultAndPaper) {
+  ASSERT_TRUE(find_profile("default"));
+  ASSERT_TRUE(find_profile("paper"));
+  EXPECT_EQ(find_profile("paper")->transfer.max_solutions, 5);
+  EXPECT_FALSE(find_profile("Default"));
+}
+
+}  // namespace
+}  // namespace kinship
