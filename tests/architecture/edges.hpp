@@ -1,0 +1,80 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+/// Who may use whom. A new edge is decided here first, then in the code.
+namespace kinship::architecture {
+
+/// What one folder's sources may include besides their own headers and the standard library.
+struct AllowedEdges {
+  std::set<std::string> libraries;  ///< folders of this repository
+  std::set<std::string> external;   ///< names of `kExternalLibraries`
+};
+
+/// External libraries by the beginning of their include paths.
+inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
+    {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
+    {"libcrypto", {"openssl/"}},
+    {"Cyclone DDS", {"dds/"}},
+    {"nlohmann-json", {"nlohmann/"}},
+    {"urdfdom",
+     {"urdf_parser/", "urdf_model/", "urdf_world/", "urdf_exception/", "console_bridge/"}},
+    {"toml", {"toml.hpp", "toml/", "toml++/"}},
+    {"FCL", {"fcl/"}},
+    {"OMPL", {"ompl/"}},
+    {"SQLite", {"sqlite3.h"}},
+    {"zstd", {"zstd.h", "zstd_errors.h"}},
+    {"CLI11", {"CLI/"}},
+    {"spdlog", {"spdlog/"}},
+};
+
+inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
+  const std::string types = "proto/types";
+  const std::string idl = "proto/idl";
+  const std::string mixture = "proto/mixture";
+  const std::string codec = "proto/codec";
+  const std::string json = "proto/json";
+  const std::string dds = "proto/dds";
+  const std::string kinematics = "robots/kinematics";
+  const std::string models = "robots/models";
+  const std::string inverse = "robots/inverse";
+  const std::string geometry = "robots/geometry";
+  const std::string collision = "robots/collision";
+  const std::string store = "server/store";
+  const std::string transfer = "server/transfer";
+  const std::string density = "server/density";
+  const std::string service = "server/service";
+  const std::string link = "client/link";
+  const std::string planning = "client/planning";
+  const std::set<std::string> planner_programs = {
+      link, planning, inverse, collision, geometry, kinematics, models, mixture, json, types};
+  return std::map<std::string, AllowedEdges>{
+      {types, {{}, {"Eigen", "libcrypto"}}},
+      {idl, {{}, {"Cyclone DDS"}}},
+      {mixture, {{types}, {"Eigen"}}},
+      {codec, {{types, idl}, {"Eigen"}}},
+      {json, {{types}, {"Eigen", "nlohmann-json"}}},
+      {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
+      {kinematics, {{types}, {"Eigen", "urdfdom"}}},
+      {models, {{types}, {"Eigen", "toml"}}},
+      {inverse, {{kinematics, types}, {"Eigen"}}},
+      {geometry, {{kinematics, types}, {"Eigen", "urdfdom"}}},
+      {collision, {{geometry, kinematics, types}, {"Eigen", "FCL"}}},
+      {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
+      {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
+      {density, {{mixture, types}, {"Eigen"}}},
+      {service,
+       {{store, transfer, density, inverse, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
+      {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
+      {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen", "OMPL"}}},
+      {"client/cli",
+       {{link, inverse, kinematics, models, mixture, json, types}, {"Eigen", "CLI11"}}},
+      {"client/plan", {planner_programs, {"Eigen", "CLI11"}}},
+      {"client/experiments", {planner_programs, {"Eigen", "CLI11"}}},
+  };
+}();
+
+}  // namespace kinship::architecture

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "tests/architecture/edges.hpp"
+
+namespace kinship::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = KINSHIP_SOURCE_DIR;
+const std::vector<std::string> kRoofs = {"proto", "robots", "server", "client"};
+
+struct Include {
+  std::string file;  // relative to the repository root
+  std::string target;
+  bool quoted = false;
+};
+
+bool is_source(const fs::path& file) {
+  return file.extension() == ".hpp" || file.extension() == ".cpp";
+}
+
+std::vector<Include> read_includes(const fs::path& file) {
+  static const std::regex kPattern(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
+  std::vector<Include> includes;
+  std::ifstream stream(file);
+  std::string line;
+  std::smatch match;
+  while (std::getline(stream, line))
+    if (std::regex_search(line, match, kPattern))
+      includes.push_back({fs::relative(file, kRoot).string(), match[2].str(), match[1] == "\""});
+  return includes;
+}
+
+std::vector<Include> all_includes() {
+  std::vector<Include> includes;
+  for (const std::string& roof : kRoofs)
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / roof))
+      if (entry.is_regular_file() && is_source(entry.path()))
+        std::ranges::copy(read_includes(entry.path()), std::back_inserter(includes));
+  return includes;
+}
+
+/// The folder of `kAllowedEdges` that a path lies in; empty if none does.
+std::string library_of(const std::string& path) {
+  for (const auto& [folder, edges] : kAllowedEdges)
+    if (path.starts_with(folder + "/")) return folder;
+  return {};
+}
+
+std::string external_library_of(const std::string& target) {
+  for (const auto& [name, prefixes] : kExternalLibraries)
+    for (const std::string& prefix : prefixes)
+      if (target.starts_with(prefix)) return name;
+  return {};
+}
+
+TEST(Architecture, EverySourceLiesInAKnownLibrary) {
+  for (const Include& include : all_includes())
+    EXPECT_NE(library_of(include.file), "") << include.file << " is in no library of edges.hpp";
+}
+
+TEST(Architecture, LibrariesIncludeOnlyWhatTheirRowAllows) {
+  for (const Include& include : all_includes()) {
+    const std::string from = library_of(include.file);
+    const std::string to = library_of(include.target);
+    if (!include.quoted || from.empty() || from == to) continue;
+    // Messages are generated from proto/idl/x.idl into a header without a folder.
+    const bool generated = to.empty() && include.target.find('/') == std::string::npos;
+    const std::string target = generated ? "proto/idl" : to;
+    EXPECT_TRUE(kAllowedEdges.at(from).libraries.contains(target))
+        << include.file << " includes " << include.target << ": " << from << " may not use '"
+        << target << "'";
+  }
+}
+
+TEST(Architecture, ExternalLibrariesStayInTheirRooms) {
+  for (const Include& include : all_includes()) {
+    const std::string from = library_of(include.file);
+    const std::string external = external_library_of(include.target);
+    if (external.empty() || from.empty()) continue;
+    EXPECT_TRUE(kAllowedEdges.at(from).external.contains(external))
+        << include.file << " includes <" << include.target << ">: " << external << " is not for "
+        << from;
+  }
+}
+
+TEST(Architecture, FilesStayReadable) {
+  constexpr std::ptrdiff_t kMostLines = 500;
+  std::vector<std::string> roofs = kRoofs;
+  roofs.emplace_back("tests");
+  for (const std::string& roof : roofs)
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / roof)) {
+      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      std::ifstream stream(entry.path());
+      const auto lines = std::count(std::istreambuf_iterator<char>(stream), {}, '\n');
+      EXPECT_LE(lines, kMostLines) << entry.path() << ": look for the second noun in it";
+    }
+}
+
+TEST(Architecture, EveryLibraryExplainsItself) {
+  for (const auto& [folder, edges] : kAllowedEdges)
+    EXPECT_TRUE(fs::exists(kRoot / folder / "README.md")) << folder << " has no README.md";
+}
+
+}  // namespace
+}  // namespace kinship::architecture
