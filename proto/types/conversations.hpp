@@ -35,9 +35,17 @@ struct Receipt {
   std::string message;  ///< why Refused or TryAgain
 };
 
+/// A batch of attempts.
+struct ReportRequest {
+  std::vector<Attempt> attempts;
+  /// At the server only: answers to attempts of the batch that broke a rule of the contract and
+  /// are therefore not among `attempts`. They belong into the reply.
+  std::vector<Receipt> refused;
+};
+
 struct ReportReply {
   Uuid store_epoch;
-  std::vector<Receipt> receipts;  ///< one per attempt, in order
+  std::vector<Receipt> receipts;  ///< at most one per attempt, found by UUID; missing: try again
 };
 
 struct FetchRequest {

@@ -21,7 +21,10 @@ inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 
 inline constexpr std::size_t kMaxComponents = 1024;
 inline constexpr std::size_t kMaxSources = 1024;
 inline constexpr std::size_t kMaxPageBytes = 512 * 1024;
+inline constexpr std::size_t kMaxPageRows = 1000;
+inline constexpr std::size_t kMaxCursorBytes = 512;
 inline constexpr std::size_t kMaxMessageBytes = 2048;
+inline constexpr std::size_t kMaxSampleBytes = 1'200'000;  ///< of one DDS sample
 inline constexpr double kMaxPlacement_m = 1000.0;  ///< largest coordinate of a placement or pose
 
 }  // namespace kinship

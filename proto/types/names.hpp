@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -14,5 +15,12 @@ std::optional<Error> check_task(std::string_view task);
 std::optional<Error> check_label(std::string_view label);
 std::optional<Error> check_machine(std::string_view machine);
 std::optional<Error> check_planner(std::string_view planner);
+
+/// Free text called `what` in the message: UTF-8 without control characters other than tab, line
+/// feed and carriage return, at most `limit` bytes, may be empty.
+std::optional<Error> check_text(std::string_view what, std::string_view text, std::size_t limit);
+
+/// Whether the bytes are well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates).
+bool is_utf8(std::string_view text) noexcept;
 
 }  // namespace kinship
