@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "proto/types/conversations.hpp"
+#include "proto/types/failure.hpp"
+#include "proto/types/robot_description.hpp"
+#include "proto/types/uuid.hpp"
+
+/// The four conversations as types: what is asked, what is answered, and how a request that
+/// cannot be served is refused.
+namespace kinship::codec {
+
+/// How a reply finds its request; the first members of every message.
+struct Head {
+  Uuid client_id;
+  std::uint64_t sequence_number = 0;
+
+  auto operator<=>(const Head&) const = default;
+};
+
+struct RegisterConversation {
+  using Request = RobotDescription;
+  using Reply = RegisterReply;
+  static constexpr const char* kName = "register";
+  static Reply refuse(const Error& error);
+};
+
+struct ReportConversation {
+  using Request = ReportRequest;
+  using Reply = ReportReply;
+  static constexpr const char* kName = "report";
+  /// No receipts: the client tries again.
+  static Reply refuse(const Error& error);
+};
+
+struct FetchConversation {
+  using Request = FetchRequest;
+  using Reply = FetchReply;
+  static constexpr const char* kName = "fetch";
+  static Reply refuse(const Error& error);
+};
+
+struct AdminConversation {
+  using Request = AdminRequest;
+  using Reply = AdminReply;
+  static constexpr const char* kName = "admin";
+  static Reply refuse(const Error& error);
+};
+
+}  // namespace kinship::codec

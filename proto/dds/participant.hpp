@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "proto/dds/entity.hpp"
+
+namespace kinship::dds {
+
+enum class Role {
+  Server,  ///< takes the first discovery port of the domain; knows no peers
+  Client   ///< announces itself to the server, never to other clients
+};
+
+struct ParticipantOptions {
+  std::uint32_t domain = 0;  ///< 0 to kMaxDomain
+  Role role = Role::Client;
+  std::string server = "127.0.0.1";  ///< client: host of kinshipd
+  /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
+  /// what Cyclone DDS finds best.
+  std::string network_interface;
+};
+
+inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536
+
+/// UDP port at which the server of a domain is found: 7400 + 250 domain + 10.
+std::uint16_t discovery_port(std::uint32_t domain);
+
+/// The configuration of Cyclone DDS that a participant is given, as XML: a star over unicast.
+/// \throws Failure(InvalidInput) for a domain or host that cannot be.
+std::string cyclone_configuration(const ParticipantOptions& options);
+
+/// A member of a DDS domain: root of every other entity. May be shared between threads.
+///
+/// If CYCLONEDDS_URI is set in the environment it replaces the built-in configuration. All
+/// participants of a process on one domain share one configuration.
+class Participant {
+ public:
+  /// \throws Failure(InvalidInput) if the options cannot be; Failure(Unavailable) if the domain
+  ///         cannot be joined, e.g. because its discovery port is taken by another server.
+  explicit Participant(const ParticipantOptions& options);
+  ~Participant();
+  Participant(Participant&&) noexcept;
+
+  Handle get() const noexcept { return entity_.get(); }
+  const ParticipantOptions& options() const noexcept { return options_; }
+
+ private:
+  class Domain;
+
+  ParticipantOptions options_;
+  std::shared_ptr<Domain> domain_;  // shared by the participants of this process on one domain
+  Entity entity_;
+};
+
+}  // namespace kinship::dds

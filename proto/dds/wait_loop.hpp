@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "proto/dds/participant.hpp"
+
+namespace kinship::dds {
+
+/// Waits on one thread for requests of any number of repliers.
+///
+/// Handlers of the attached repliers run on the thread that called run(). wake() and stop() may
+/// be called from any thread, also from a handler.
+class WaitLoop {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit WaitLoop(const Participant& participant);
+  ~WaitLoop();
+  WaitLoop(const WaitLoop&) = delete;
+  WaitLoop& operator=(const WaitLoop&) = delete;
+
+  /// Serves until stop().
+  /// \param on_wake  called before every wait: does what is due and returns when to be called
+  ///                 again at the latest (Clock::time_point::max(): when woken).
+  void run(const std::function<Clock::time_point()>& on_wake);
+
+  void wake();  ///< has on_wake called soon
+  void stop();  ///< run() returns after the handler it is in; also if called before run()
+
+  /// For repliers: `on_data` is called on the loop's thread when `reader` has samples. Call before
+  /// run(); the reader must live as long as the loop runs.
+  void attach(const Entity& reader, std::function<void()> on_data);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kinship::dds
