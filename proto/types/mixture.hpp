@@ -7,9 +7,9 @@ namespace kinship {
 
 /// A Gaussian mixture over configurations: K components in d dimensions, joint units.
 ///
-/// Invariant: K >= 1, d >= 1; weights non-negative, sum 1 within 1e-6 (then normalised); every
-/// value finite; covariances d x d and symmetric within 1e-9 of their largest entry (then made
-/// exactly symmetric). Positive definiteness is checked where a factor is needed.
+/// Invariant: K >= 1, d >= 1; weights non-negative, sum 1 within 1e-6 (normalised unless within
+/// 1e-12); every value finite; covariances d x d and symmetric within 1e-9 of their largest entry
+/// (then made exactly symmetric). Positive definiteness is checked where a factor is needed.
 class Mixture {
  public:
   /// \param weights      K.

@@ -1,0 +1,30 @@
+#include "proto/types/enum_text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinship {
+namespace {
+
+TEST(EnumText, EveryWordIsReadBack) {
+  for (const Outcome outcome : {Outcome::Solved, Outcome::Timeout, Outcome::Failed})
+    EXPECT_EQ(parse_outcome(to_text(outcome)).value(), outcome);
+  for (const Arm arm : {Arm::Guided, Arm::Control, Arm::Uniform})
+    EXPECT_EQ(parse_arm(to_text(arm)).value(), arm);
+  for (const DistributionState state : {DistributionState::Ready, DistributionState::Failed})
+    EXPECT_EQ(parse_distribution_state(to_text(state)).value(), state);
+}
+
+TEST(EnumText, RefusalListsTheAllowedWords) {
+  const auto outcome = parse_outcome("Solved");
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(outcome.error().message, "outcome: 'Solved' is not one of solved, timeout, failed");
+  EXPECT_FALSE(parse_arm(""));
+}
+
+TEST(EnumText, ValueOutsideTheEnumIsACallersBug) {
+  EXPECT_THROW(to_text(static_cast<Arm>(7)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kinship
