@@ -1,0 +1,76 @@
+#include "proto/json/attempt_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/json/reader.hpp"
+#include "proto/json/record_json.hpp"
+#include "proto/json/writer.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+
+namespace kinship::json {
+namespace {
+
+void read_robot(const Reader& reader, NamedAttempt& named) {
+  const std::string text = reader.text(kMaxLabelBytes);
+  if (const auto digest = Digest::from_hex(text)) {
+    named.attempt.robot = *digest;
+    return;
+  }
+  if (const auto error = check_label(text)) reader.refuse(error->message);
+  named.label = text;
+}
+
+std::optional<Path> read_path(const Reader& reader, Outcome outcome) {
+  const auto waypoints = reader.find("waypoints");
+  if (outcome != Outcome::Solved) {
+    if (waypoints) waypoints->refuse("must be null unless record.outcome is 'solved'");
+    return std::nullopt;
+  }
+  if (!waypoints) reader.at("waypoints").refuse("must not be null if record.outcome is 'solved'");
+  Eigen::MatrixXd matrix = waypoints->columns(kMaxDof, kMaxWaypoints);
+  if (matrix.cols() < 2 || matrix.rows() < 1)
+    waypoints->refuse(std::to_string(matrix.cols()) + " waypoints of " +
+                      std::to_string(matrix.rows()) + " joints, must be at least 2 of 1");
+  return Path(std::move(matrix));
+}
+
+NamedAttempt read_attempt(const Reader& reader) {
+  NamedAttempt named;
+  Attempt& attempt = named.attempt;
+  attempt.report_uuid = reader.at("report_uuid").uuid();
+  attempt.task = reader.at("task").text(kMaxTaskBytes);
+  if (const auto error = check_task(attempt.task)) throw Failure(*error);
+  read_robot(reader.at("robot"), named);
+  if (const auto machine = reader.find("machine")) {
+    attempt.machine = machine->text(kMaxMachineBytes);
+    if (const auto error = check_machine(attempt.machine)) throw Failure(*error);
+  }
+  if (const auto placement = reader.find("T_task_base")) attempt.T_task_base = placement->pose();
+  attempt.record = read_record(reader.at("record"));
+  attempt.path = read_path(reader, attempt.record.outcome);
+  if (const auto scene = reader.find("scene")) scene->refuse("not supported yet, must be null");
+  return named;
+}
+
+}  // namespace
+
+std::string to_json(const Attempt& attempt) {
+  OrderedJson object;
+  object["report_uuid"] = attempt.report_uuid.text();
+  object["task"] = attempt.task;
+  object["robot"] = attempt.robot.hex();
+  object["machine"] = attempt.machine;
+  object["T_task_base"] = pose_or_null(attempt.T_task_base);
+  object["waypoints"] =
+      attempt.path ? list_of_columns(attempt.path->waypoints()) : OrderedJson(nullptr);
+  object["record"] = record_object(attempt.record);
+  object["scene"] = nullptr;
+  return write(object);
+}
+
+Result<NamedAttempt> attempt_from_json(std::string_view text) {
+  return read_document(text, "experience", read_attempt);
+}
+
+}  // namespace kinship::json

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/result.hpp"
+#include "proto/types/uuid.hpp"
+
+/// Reading of untrusted JSON; for the sources of this library only.
+namespace kinship::json {
+
+inline constexpr std::size_t kMaxDocumentBytes = 64'000'000;
+inline constexpr std::size_t kMaxDocumentValues = 2'000'000;
+inline constexpr std::size_t kMaxDocumentDepth = 32;
+
+/// A JSON value and the name of its place in the document, e.g. `record.share`. Borrows from its
+/// Document. Every method throws Failure(InvalidInput), or TooLarge, that names place, value and
+/// limit if the value is not what is asked for.
+class Reader {
+ public:
+  Reader(const nlohmann::json& value, std::string name) : value_(&value), name_(std::move(name)) {}
+
+  const std::string& name() const noexcept { return name_; }
+
+  Reader at(std::string_view key) const;                       ///< a required member of an object
+  std::optional<Reader> find(std::string_view key) const;      ///< empty if missing or null
+  std::vector<std::string> keys(std::size_t max_count) const;  ///< of an object
+  std::vector<Reader> elements(std::size_t max_count) const;   ///< of an array
+
+  bool boolean() const;
+  double number(double lowest = std::numeric_limits<double>::lowest(),
+                double highest = std::numeric_limits<double>::max()) const;  ///< always finite
+  std::uint64_t count(std::uint64_t highest = std::numeric_limits<std::uint64_t>::max()) const;
+  std::int64_t integer() const;
+  std::string text(std::size_t max_bytes) const;
+  Digest digest() const;
+  Uuid uuid() const;
+  Eigen::Isometry3d pose() const;                      ///< [x, y, z, qx, qy, qz, qw]
+  Eigen::VectorXd vector(std::size_t max_size) const;  ///< a list of numbers
+
+  /// A list of equally long lists of numbers. \return one column per inner list.
+  Eigen::MatrixXd columns(std::size_t max_rows, std::size_t max_columns) const;
+
+  [[noreturn]] void refuse(const std::string& problem) const;
+
+ private:
+  void require_array(std::size_t max_count) const;
+  double number_at(std::size_t index) const;
+
+  const nlohmann::json* value_;
+  std::string name_;
+};
+
+/// Owner of a parsed document whose size, number of values and depth were checked before.
+class Document {
+ public:
+  /// \param what  named in messages, e.g. "problem".
+  /// \throws Failure(TooLarge or InvalidInput).
+  Document(std::string_view text, std::string_view what);
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+  ~Document();
+
+  Reader root() const;
+
+ private:
+  std::unique_ptr<nlohmann::json> json_;
+  std::string what_;
+};
+
+/// Parses `text` and applies `read` to its root; a Failure on the way becomes the error.
+template <typename Read>
+Result<std::invoke_result_t<Read, const Reader&>> read_document(std::string_view text,
+                                                                std::string_view what, Read read) {
+  try {
+    const Document document(text, what);
+    return read(document.root());
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
+
+}  // namespace kinship::json

@@ -1,0 +1,173 @@
+#include "proto/json/scene_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/types/limits.hpp"
+
+namespace kinship::json {
+namespace {
+
+constexpr std::size_t kMaxObjects = 4096;
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <typename... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+double read_extent(const Reader& reader) {
+  return reader.number(std::numeric_limits<double>::min(), kMaxPlacement_m);  // m, above 0
+}
+
+std::string read_name(const Reader& reader) {
+  std::string name = reader.text(kMaxLinkNameBytes);
+  if (name.empty()) reader.refuse("is empty");
+  return name;
+}
+
+Eigen::Vector3d read_size(const Reader& reader) {
+  const auto elements = reader.elements(3);
+  if (elements.size() != 3) reader.refuse(std::to_string(elements.size()) + " extents, must be 3");
+  return {read_extent(elements[0]), read_extent(elements[1]), read_extent(elements[2])};
+}
+
+/// [radius, length]
+std::pair<double, double> read_round(const Reader& reader) {
+  const auto elements = reader.elements(2);
+  if (elements.size() != 2) reader.refuse("must be [radius, length]");
+  return {read_extent(elements[0]), read_extent(elements[1])};
+}
+
+Shape read_shape(const Reader& reader) {
+  if (reader.find("mesh")) reader.refuse("meshes are not supported yet");
+  if (const auto box = reader.find("box")) return BoxShape{read_size(*box)};
+  if (const auto sphere = reader.find("sphere")) return SphereShape{read_extent(*sphere)};
+  if (const auto cylinder = reader.find("cylinder")) {
+    const auto [radius_m, length_m] = read_round(*cylinder);
+    return CylinderShape{radius_m, length_m};
+  }
+  if (const auto capsule = reader.find("capsule")) {
+    const auto [radius_m, length_m] = read_round(*capsule);
+    return CapsuleShape{radius_m, length_m};
+  }
+  reader.refuse("must be one of box, cylinder, sphere, capsule");
+}
+
+OrderedJson shape_object(const Shape& shape) {
+  OrderedJson object;
+  std::visit(Overloaded{[&](const BoxShape& box) { object["box"] = list(box.size); },
+                        [&](const CylinderShape& cylinder) {
+                          object["cylinder"] = {cylinder.radius_m, cylinder.length_m};
+                        },
+                        [&](const SphereShape& sphere) { object["sphere"] = sphere.radius_m; },
+                        [&](const CapsuleShape& capsule) {
+                          object["capsule"] = {capsule.radius_m, capsule.length_m};
+                        }},
+             shape);
+  return object;
+}
+
+Eigen::Isometry3d read_center(const Reader& reader) {
+  const Eigen::VectorXd center = reader.vector(3);
+  if (center.size() != 3 || center.cwiseAbs().maxCoeff() > kMaxPlacement_m)
+    reader.refuse("must be 3 coordinates of at most " + std::to_string(kMaxPlacement_m) + " m");
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = center;
+  return T;
+}
+
+/// Calls read(element) for each element of an optional list and collects what it returns.
+template <typename Read>
+void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
+  const auto objects = reader.find(key);
+  if (!objects) return;
+  for (const Reader& element : objects->elements(kMaxObjects)) {
+    SceneObject object = read(element);
+    object.name = read_name(element.at("name"));
+    scene.objects.push_back(std::move(object));
+  }
+}
+
+}  // namespace
+
+OrderedJson scene_object(const Scene& scene) {
+  OrderedJson document;
+  for (const char* key : {"boxes", "cylinders", "spheres", "capsules"})
+    document[key] = OrderedJson::array();
+  for (const SceneObject& object : scene.objects) {
+    OrderedJson entry;
+    entry["name"] = object.name;
+    const auto add_round = [&](const char* key, double radius_m, double length_m) {
+      entry["pose"] = pose_list(object.T_task_object);
+      entry["radius"] = radius_m;
+      entry["length"] = length_m;
+      document[key].push_back(entry);
+    };
+    std::visit(Overloaded{[&](const BoxShape& box) {
+                            entry["pose"] = pose_list(object.T_task_object);
+                            entry["size"] = list(box.size);
+                            document["boxes"].push_back(entry);
+                          },
+                          [&](const CylinderShape& cylinder) {
+                            add_round("cylinders", cylinder.radius_m, cylinder.length_m);
+                          },
+                          [&](const SphereShape& sphere) {
+                            entry["center"] = list(object.T_task_object.translation());
+                            entry["radius"] = sphere.radius_m;
+                            document["spheres"].push_back(entry);
+                          },
+                          [&](const CapsuleShape& capsule) {
+                            add_round("capsules", capsule.radius_m, capsule.length_m);
+                          }},
+               object.shape);
+  }
+  return document;
+}
+
+Scene read_scene(const Reader& reader) {
+  Scene scene;
+  read_objects(reader, "boxes", scene, [](const Reader& box) {
+    return SceneObject{"", BoxShape{read_size(box.at("size"))}, box.at("pose").pose()};
+  });
+  read_objects(reader, "cylinders", scene, [](const Reader& cylinder) {
+    const CylinderShape shape{read_extent(cylinder.at("radius")),
+                              read_extent(cylinder.at("length"))};
+    return SceneObject{"", shape, cylinder.at("pose").pose()};
+  });
+  read_objects(reader, "spheres", scene, [](const Reader& sphere) {
+    return SceneObject{"", SphereShape{read_extent(sphere.at("radius"))},
+                       read_center(sphere.at("center"))};
+  });
+  read_objects(reader, "capsules", scene, [](const Reader& capsule) {
+    const CapsuleShape shape{read_extent(capsule.at("radius")), read_extent(capsule.at("length"))};
+    return SceneObject{"", shape, capsule.at("pose").pose()};
+  });
+  if (const auto meshes = reader.find("meshes"); meshes && !meshes->elements(kMaxObjects).empty())
+    meshes->refuse("meshes are not supported yet");
+  return scene;
+}
+
+OrderedJson attached_object(const AttachedObject& attached) {
+  OrderedJson object;
+  object["name"] = attached.name;
+  object["link"] = attached.link;
+  object["shape"] = shape_object(attached.shape);
+  object["T_link_object"] = pose_list(attached.T_link_object);
+  object["touch_links"] = attached.touch_links;
+  return object;
+}
+
+AttachedObject read_attached(const Reader& reader) {
+  AttachedObject attached;
+  attached.name = read_name(reader.at("name"));
+  attached.link = read_name(reader.at("link"));
+  attached.shape = read_shape(reader.at("shape"));
+  attached.T_link_object = reader.at("T_link_object").pose();
+  if (const auto links = reader.find("touch_links"))
+    for (const Reader& link : links->elements(kMaxCollisionPairs))
+      attached.touch_links.push_back(read_name(link));
+  return attached;
+}
+
+}  // namespace kinship::json

@@ -1,0 +1,136 @@
+#include "proto/json/attempt_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+constexpr const char* kUuid = "01234567-89ab-4def-8123-456789abcdef";
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t position = text.find(from);
+  EXPECT_NE(position, std::string::npos) << from;
+  return text.replace(position, from.size(), to);
+}
+
+std::string solved_line() {
+  return std::string(R"({"report_uuid":")") + kUuid +
+         R"(","task":"bin_to_shelf","robot":"panda-2",)" +
+         R"("machine":"Zelle 3, Süd","T_task_base":[1,2,3,0,0,0,1],)"
+         R"("waypoints":[[0.1,0.2],[0.3,0.4],[0.5,0.6]],)"
+         R"("record":{"outcome":"solved","planner":"birrt","planner_options":"step=0.1",)"
+         R"("planning_time_s":0.25,"collision_checks":1234,"projections":5,"time_limit_s":10,)"
+         R"("arm":"guided","share":0.9,"distribution_id":")" +
+         std::string(64, 'a') + R"(","distribution_revision":7},"scene":null})";
+}
+
+std::string message_of(const std::string& line) {
+  const auto result = attempt_from_json(line);
+  return result ? "accepted" : result.error().message;
+}
+
+TEST(AttemptJson, ReadsTheLineOfTheFileFormat) {
+  const auto named = attempt_from_json(solved_line());
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_EQ(named->label, "panda-2");
+  EXPECT_EQ(named->attempt.robot, Digest{});
+  EXPECT_EQ(named->attempt.report_uuid.text(), kUuid);
+  EXPECT_EQ(named->attempt.machine, "Zelle 3, Süd");
+  EXPECT_EQ(named->attempt.T_task_base->translation(), Eigen::Vector3d(1, 2, 3));
+  ASSERT_TRUE(named->attempt.path);
+  EXPECT_EQ(named->attempt.path->dof(), 2);
+  EXPECT_EQ(named->attempt.path->waypoints().col(2), Eigen::Vector2d(0.5, 0.6));
+  const PlanningRecord& record = named->attempt.record;
+  EXPECT_EQ(record.outcome, Outcome::Solved);
+  EXPECT_EQ(record.arm, Arm::Guided);
+  EXPECT_EQ(record.collision_checks, 1234U);
+  EXPECT_EQ(record.distribution_id->hex(), std::string(64, 'a'));
+  EXPECT_EQ(record.distribution_revision, 7U);
+}
+
+TEST(AttemptJson, WritesTheMembersInTheOrderOfTheFileFormat) {
+  Attempt attempt = attempt_from_json(solved_line())->attempt;
+  attempt.path.reset();
+  attempt.T_task_base.reset();
+  attempt.record = PlanningRecord{};
+  const std::string zeros(64, '0');
+  EXPECT_EQ(to_json(attempt),
+            std::string(R"({"report_uuid":")") + kUuid + R"(","task":"bin_to_shelf","robot":")" +
+                zeros +
+                R"(","machine":"Zelle 3, Süd","T_task_base":null,"waypoints":null,)"
+                R"("record":{"outcome":"failed","planner":"","planner_options":"",)"
+                R"("planning_time_s":0.0,"collision_checks":0,"projections":0,"time_limit_s":0.0,)"
+                R"("arm":"uniform","share":0.0,"distribution_id":null,"distribution_revision":0},)"
+                R"("scene":null})");
+}
+
+TEST(AttemptJson, RobotOfSixtyFourDigitsIsADigest) {
+  const std::string hex(64, 'B');
+  const auto named = attempt_from_json(replaced(solved_line(), "panda-2", hex));
+  ASSERT_TRUE(named);
+  EXPECT_EQ(named->label, "");
+  EXPECT_EQ(named->attempt.robot.hex(), std::string(64, 'b'));
+}
+
+TEST(AttemptJson, UnknownMembersAreIgnoredAndOptionalOnesMayBeMissing) {
+  const std::string line =
+      std::string(R"({"report_uuid":")") + kUuid +
+      R"(","task":"t","robot":"r","new_member":{"a":[1]},)"
+      R"("record":{"outcome":"timeout","planning_time_s":1,"collision_checks":2}})";
+  const auto named = attempt_from_json(line);
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_FALSE(named->attempt.path);
+  EXPECT_FALSE(named->attempt.T_task_base);
+  EXPECT_EQ(named->attempt.record.arm, Arm::Uniform);
+}
+
+TEST(AttemptJson, PathIsThereExactlyIfSolved) {
+  EXPECT_EQ(message_of(replaced(solved_line(), "solved", "timeout")),
+            "waypoints: must be null unless record.outcome is 'solved'");
+  EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", "null")),
+            "waypoints: must not be null if record.outcome is 'solved'");
+  EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", "[[1,2]]")),
+            "waypoints: 1 waypoints of 2 joints, must be at least 2 of 1");
+  EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", "[[],[]]")),
+            "waypoints: 2 waypoints of 0 joints, must be at least 2 of 1");
+}
+
+TEST(AttemptJson, RefusalNamesFieldValueAndLimit) {
+  EXPECT_EQ(message_of(replaced(solved_line(), "bin_to_shelf", "bin to shelf")),
+            "task: byte 4 is not one of A-Z a-z 0-9 _ . : -");
+  EXPECT_EQ(message_of(replaced(solved_line(), "\"share\":0.9", "\"share\":1.1")),
+            "record.share: 1.1 exceeds 1");
+  EXPECT_EQ(message_of(replaced(solved_line(), "\"guided\"", "\"lucky\"")),
+            "arm: 'lucky' is not one of guided, control, uniform");
+  EXPECT_EQ(message_of(replaced(solved_line(), "[0.3,0.4]", "[0.3]")),
+            "waypoints[1]: 1 numbers, the first has 2");
+  EXPECT_EQ(message_of(replaced(solved_line(), "\"scene\":null", "\"scene\":{}")),
+            "scene: not supported yet, must be null");
+  EXPECT_EQ(message_of(replaced(solved_line(), "panda-2", "")), "robot: label: is empty");
+  EXPECT_EQ(message_of(replaced(solved_line(), "Zelle 3", "Zelle\\n3")),
+            "machine: byte 6 is a control character");
+}
+
+TEST(AttemptJson, DofAndLengthAreLimited) {
+  std::string wide = "[0";
+  for (int i = 0; i < 32; ++i) wide += ",0";
+  wide += "]";
+  EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]",
+                                "[" + wide + "," + wide + "]")),
+            "waypoints[0]: 33 elements exceed 32");
+  std::string many = "[[0]";
+  for (int i = 0; i < 16384; ++i) many += ",[0]";
+  EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", many + "]")),
+            "waypoints: 16385 elements exceed 16384");
+}
+
+TEST(AttemptJson, BytesThatAreNotUtf8AreReplacedWhenWritten) {
+  Attempt attempt = attempt_from_json(solved_line())->attempt;
+  attempt.machine = "cell \xff";
+  EXPECT_EQ(attempt_from_json(to_json(attempt))->attempt.machine, "cell \xef\xbf\xbd");
+}
+
+}  // namespace
+}  // namespace kinship::json

@@ -1,0 +1,105 @@
+#include "proto/json/distribution_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+Distribution two_components() {
+  Distribution distribution;
+  distribution.id.bytes.fill(0x1a);
+  distribution.revision = 3;
+  distribution.task = "bin_to_shelf";
+  distribution.profile = "default";
+  distribution.engines = "transfer 1, density 1";
+  distribution.configurations = 400;
+  Eigen::MatrixXd means(2, 2);
+  means << 0.1, 0.3, 0.2, 0.4;
+  Eigen::Matrix2d covariance;
+  covariance << 2, 0.5, 0.5, 1;
+  distribution.mixture =
+      Mixture(Eigen::Vector2d(0.25, 0.75), means, {covariance, Eigen::Matrix2d::Identity()});
+  distribution.limits.resize(2, 2);
+  distribution.limits << -1, -2, 1, 2;
+  distribution.recommended_share = 0.9;
+  return distribution;
+}
+
+std::string changed(std::string_view from, std::string_view to) {
+  std::string text = to_json(two_components());
+  const std::size_t position = text.find(from);
+  EXPECT_NE(position, std::string::npos) << from;
+  return text.replace(position, from.size(), to);
+}
+
+std::string message_of(const std::string& text) {
+  const auto result = distribution_from_json(text);
+  return result ? "accepted" : result.error().message;
+}
+
+TEST(DistributionJson, WritesTheDocumentOfTheFileFormat) {
+  const std::string text = to_json(two_components());
+  for (const char* member :
+       {R"("weights":[0.25,0.75])", R"("means":[[0.1,0.2],[0.3,0.4]])",
+        R"("covariances":[[[2.0,0.5],[0.5,1.0]],[[1.0,0.0],[0.0,1.0]]])",
+        R"("limits":[[-1.0,1.0],[-2.0,2.0]])", R"("cuts":null)", R"("k_curve":null)",
+        R"("held_out_score":null)", R"("recommended_share":0.9)", R"("state":"ready")",
+        R"("revision":3)", R"("T_task_base":null)", R"("sources":[])", R"("configurations":400)"})
+    EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
+}
+
+TEST(DistributionJson, FailedHasNoMixtureAndSaysWhy) {
+  Distribution failed = two_components();
+  failed.mixture.reset();
+  failed.state = DistributionState::Failed;
+  failed.reason = "no pose of 12 paths is within reach";
+  failed.limits.resize(2, 0);
+  const auto back = distribution_from_json(to_json(failed));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->state, DistributionState::Failed);
+  EXPECT_EQ(back->reason, failed.reason);
+  EXPECT_FALSE(back->mixture);
+}
+
+TEST(DistributionJson, MixtureThatIsNoneIsRefused) {
+  EXPECT_EQ(message_of(changed("[0.25,0.75]", "[0.25,0.85]")),
+            "weights, means, covariances: Mixture: weights must be >= 0 with sum 1, means finite");
+  EXPECT_EQ(
+      message_of(changed("[0.25,0.75]", "[1.0]")),
+      "weights, means, covariances: Mixture: need K >= 1 weights, d x K means, K covariances");
+  EXPECT_EQ(message_of(changed("[2.0,0.5]", "[2.0,0.6]")),
+            "weights, means, covariances: Mixture: covariances must be symmetric");
+  EXPECT_EQ(message_of(changed("[0.25,0.75]", "null")), "weights: must be an array, is null");
+}
+
+TEST(DistributionJson, LimitsMustFitTheMixture) {
+  EXPECT_EQ(message_of(changed("[[-1.0,1.0],[-2.0,2.0]]", "[[-1,1]]")),
+            "limits: 1 joints, means have 2");
+  EXPECT_EQ(message_of(changed("[[-1.0,1.0],[-2.0,2.0]]", "[[-1,1],[2,-2]]")),
+            "limits: joint 1 has lower limit 2.000000 above upper -2.000000");
+  EXPECT_EQ(message_of(changed("[[-1.0,1.0],[-2.0,2.0]]", "[[1],[2]]")),
+            "limits: each joint needs [lower, upper]");
+}
+
+TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
+  EXPECT_EQ(message_of(changed("\"ready\"", "\"stale\"")),
+            "state: 'stale' is not one of ready, failed");
+  EXPECT_EQ(message_of(changed("\"ready\"", "\"failed\"")),
+            "weights: must be null if state is 'failed'");
+  EXPECT_EQ(message_of(changed("\"recommended_share\":0.9", "\"recommended_share\":2")),
+            "recommended_share: 2 exceeds 1");
+  EXPECT_EQ(message_of(changed("\"cuts\":null", "\"cuts\":[0,0]")),
+            "cuts: not supported yet, must be null");
+}
+
+TEST(DistributionJson, ComponentsAreLimited) {
+  std::string weights = "[0";
+  for (int i = 0; i < 1024; ++i) weights += ",0";
+  EXPECT_EQ(message_of(changed("[0.25,0.75]", weights + "]")),
+            "weights: 1025 elements exceed 1024");
+}
+
+}  // namespace
+}  // namespace kinship::json

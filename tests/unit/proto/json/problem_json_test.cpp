@@ -1,0 +1,113 @@
+#include "proto/json/problem_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+constexpr const char* kProblem = R"({"name": "shelf 7", "T_task_base": [0, 0, 0.5, 0, 0, 0, 1],
+  "start": [0.1, 0.2], "goal": {"configurations": [[1, 2], [3, 4]]},
+  "scene": {"boxes": [{"name": "table", "pose": [1, 0, 0, 0, 0, 0, 1], "size": [1, 2, 0.1]}],
+            "cylinders": [{"name": "post", "pose": [0, 1, 0, 0, 0, 0, 1], "radius": 0.1, "length": 2}],
+            "spheres": [{"name": "ball", "center": [0, 0, 1], "radius": 0.2}], "meshes": []},
+  "attached": [{"name": "crate", "link": "hand", "shape": {"box": [0.1, 0.2, 0.3]},
+                "T_link_object": [0, 0, 0.1, 0, 0, 0, 1], "touch_links": ["finger"]}],
+  "allowed_collisions": [["crate", "table"]], "constraint": null, "time_limit_s": 5, "seed": 42})";
+
+std::string changed(std::string_view from, std::string_view to) {
+  std::string text = kProblem;
+  const std::size_t position = text.find(from);
+  EXPECT_NE(position, std::string::npos) << from;
+  return text.replace(position, from.size(), to);
+}
+
+std::string message_of(const std::string& text) {
+  const auto result = problem_from_json(text);
+  return result ? "accepted" : result.error().message;
+}
+
+TEST(ProblemJson, ReadsTheLineOfTheFileFormat) {
+  const auto problem = problem_from_json(kProblem);
+  ASSERT_TRUE(problem) << problem.error().message;
+  EXPECT_EQ(problem->start, Eigen::Vector2d(0.1, 0.2));
+  EXPECT_EQ(problem->goal_configurations.col(1), Eigen::Vector2d(3, 4));
+  EXPECT_FALSE(problem->T_task_goal);
+  ASSERT_EQ(problem->scene.objects.size(), 3U);
+  EXPECT_EQ(std::get<BoxShape>(problem->scene.objects[0].shape).size, Eigen::Vector3d(1, 2, 0.1));
+  EXPECT_EQ(std::get<CylinderShape>(problem->scene.objects[1].shape).length_m, 2);
+  EXPECT_EQ(problem->scene.objects[2].T_task_object.translation(), Eigen::Vector3d(0, 0, 1));
+  ASSERT_EQ(problem->attached.size(), 1U);
+  EXPECT_EQ(problem->attached[0].touch_links, std::vector<std::string>{"finger"});
+  EXPECT_EQ(problem->allowed_collisions[0].second, "table");
+  EXPECT_EQ(problem->time_limit_s, 5);
+  EXPECT_EQ(problem->seed, 42U);
+}
+
+TEST(ProblemJson, OnlyNameStartAndGoalAreRequired) {
+  const auto problem =
+      problem_from_json(R"({"name": "n", "start": [0], "goal": {"pose": [1, 0, 0, 0, 0, 0, 1]}})");
+  ASSERT_TRUE(problem) << problem.error().message;
+  EXPECT_EQ(problem->T_task_goal->translation(), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(problem->time_limit_s, 10);
+  EXPECT_TRUE(problem->scene.objects.empty());
+}
+
+TEST(ProblemJson, WhatIsNotSupportedYetIsRefused) {
+  EXPECT_EQ(message_of(changed("\"meshes\": []", R"("meshes": [{"name": "m"}])")),
+            "scene.meshes: meshes are not supported yet");
+  EXPECT_EQ(message_of(changed("\"constraint\": null", "\"constraint\": {}")),
+            "constraint: not supported yet, must be null");
+  EXPECT_EQ(message_of(changed(R"({"box": [0.1, 0.2, 0.3]})", R"({"mesh": "a.stl"})")),
+            "attached[0].shape: meshes are not supported yet");
+}
+
+TEST(ProblemJson, GoalIsEitherConfigurationsOrPose) {
+  EXPECT_EQ(message_of(changed("\"configurations\"", "\"neither\"")),
+            "goal: must have either configurations or pose");
+  EXPECT_EQ(message_of(changed("\"goal\": {", R"("goal": {"pose": [0,0,0,0,0,0,1], )")),
+            "goal: must have either configurations or pose");
+  EXPECT_EQ(message_of(changed("[[1, 2], [3, 4]]", "[]")), "goal.configurations: is empty");
+  EXPECT_EQ(message_of(changed("[[1, 2], [3, 4]]", "[[1, 2, 3]]")),
+            "goal.configurations: 3 joints, start has 2");
+}
+
+TEST(ProblemJson, SolidsNeedPositiveExtents) {
+  EXPECT_FALSE(problem_from_json(changed("[1, 2, 0.1]", "[1, 2, 0]")));
+  EXPECT_FALSE(problem_from_json(changed("\"radius\": 0.2", "\"radius\": -0.2")));
+  EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2]")),
+            "scene.boxes[0].size: 2 extents, must be 3");
+  EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2, 1e4]")),
+            "scene.boxes[0].size[2]: 10000 exceeds 1000");
+  EXPECT_EQ(message_of(changed(R"({"box": [0.1, 0.2, 0.3]})", R"({"cone": 1})")),
+            "attached[0].shape: must be one of box, cylinder, sphere, capsule");
+}
+
+TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
+  ProblemResult result;
+  result.name = "shelf 7";
+  result.reason = "time limit";
+  EXPECT_EQ(to_json(result),
+            R"({"name":"shelf 7","solved":false,"collision_checks":0,"projections":0,)"
+            R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,)"
+            R"("reason":"time limit"})");
+}
+
+TEST(ProblemJson, GuidedResultIsReadBack) {
+  ProblemResult result;
+  result.solved = true;
+  result.waypoints = Eigen::MatrixXd::Random(3, 4);
+  result.distribution_id = Digest{};
+  result.distribution_revision = 9;
+  result.share = 0.75;
+  const auto back = problem_result_from_json(to_json(result));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back->waypoints, *result.waypoints);
+  EXPECT_EQ(back->distribution_id, result.distribution_id);
+  EXPECT_EQ(back->distribution_revision, 9U);
+  EXPECT_EQ(back->share, 0.75);
+}
+
+}  // namespace
+}  // namespace kinship::json

@@ -1,0 +1,63 @@
+#include "proto/json/robot_description_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+RobotDescription planar_arm() {
+  RobotDescription description;
+  description.label = "planar-3";
+  description.urdf = "<robot name=\"p\">\n  <link name=\"a\"/>\n</robot>";
+  description.base_link = "base";
+  description.tip_link = "tip";
+  description.task_axes.matters = {true, true, false, false, false, true};
+  description.held_joints = {{"lift", 0.25}, {"head", -1}};
+  description.never_colliding = {{"a", "b"}, {"b", "c"}};
+  return description;
+}
+
+TEST(RobotDescriptionJson, IsReadBack) {
+  const RobotDescription written = planar_arm();
+  const auto back = robot_description_from_json(to_json(written));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->label, written.label);
+  EXPECT_EQ(back->urdf, written.urdf);
+  EXPECT_EQ(back->base_link, written.base_link);
+  EXPECT_EQ(back->tip_link, written.tip_link);
+  EXPECT_TRUE(back->T_tip_transfer.isApprox(written.T_tip_transfer));
+  EXPECT_EQ(back->task_axes, written.task_axes);
+  EXPECT_EQ(back->held_joints, written.held_joints);
+  EXPECT_EQ(back->never_colliding, written.never_colliding);
+}
+
+TEST(RobotDescriptionJson, AxesAreWrittenByName) {
+  EXPECT_NE(to_json(planar_arm()).find(R"("task_axes":["x","y","yaw"])"), std::string::npos);
+  const auto refused = robot_description_from_json(
+      R"({"label": "a", "urdf": "", "base_link": "b", "tip_link": "t", "task_axes": ["w"]})");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "task_axes[0]: 'w' is not one of x, y, z, roll, pitch, yaw");
+}
+
+TEST(RobotDescriptionJson, AllAxesMatterIfNothingIsSaid) {
+  const auto read = robot_description_from_json(
+      R"({"label": "a", "urdf": "", "base_link": "b", "tip_link": "t"})");
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->task_axes.all());
+}
+
+TEST(RobotDescriptionJson, SizesAreLimited) {
+  RobotDescription description = planar_arm();
+  description.urdf.assign(1'000'001, ' ');
+  EXPECT_EQ(robot_description_from_json(to_json(description)).error().message,
+            "urdf: 1000001 bytes exceed 1000000");
+  description = planar_arm();
+  for (int i = 0; i < 64; ++i) description.held_joints["joint_" + std::to_string(i)] = 0;
+  EXPECT_EQ(robot_description_from_json(to_json(description)).error().message,
+            "held_joints: 66 members exceed 64");
+}
+
+}  // namespace
+}  // namespace kinship::json

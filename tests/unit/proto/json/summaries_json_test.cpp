@@ -1,0 +1,98 @@
+#include "proto/json/summaries_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+/// Law: what was read writes the same text again, so every member went both ways.
+template <typename Summary, typename Read>
+void expect_same_text_again(const Summary& summary, Read read) {
+  const std::string text = to_json(summary);
+  const auto back = read(text);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+}
+
+Digest digest_of(std::uint8_t byte) {
+  Digest digest;
+  digest.bytes.fill(byte);
+  return digest;
+}
+
+TEST(SummariesJson, RobotIsReadBack) {
+  const RobotSummary robot{digest_of(1), "panda", "base", "hand",       7,
+                           "numeric",    60,      64,     1234567890123};
+  EXPECT_EQ(to_json(robot),
+            R"({"robot":")" + digest_of(1).hex() +
+                R"(","label":"panda","base_link":"base","tip_link":"hand","dof":7,)"
+                R"("solver":"numeric","paths":60,"attempts":64,"registered_ms":1234567890123})");
+  expect_same_text_again(robot, robot_summary_from_json);
+}
+
+TEST(SummariesJson, TaskIsReadBack) {
+  TaskSummary task{"bin_to_shelf", 100, 120, {}};
+  task.robots.push_back({digest_of(2), "panda", 60, 70, 12});
+  task.robots.push_back({digest_of(3), "iiwa14", 40, 50, 11});
+  expect_same_text_again(task, task_summary_from_json);
+}
+
+TEST(SummariesJson, PathIsReadBack) {
+  PathSummary path;
+  path.robot = digest_of(4);
+  path.label = "panda";
+  path.task = "bin_to_shelf";
+  path.machine = "cell 3";
+  path.record.outcome = Outcome::Solved;
+  path.record.distribution_id = digest_of(5);
+  path.record.share = 0.1;
+  path.waypoints = 17;
+  path.length = 1.0 / 3.0;
+  path.received_ms = 5;
+  expect_same_text_again(path, path_summary_from_json);
+  path.T_task_base = Eigen::Isometry3d::Identity();
+  expect_same_text_again(path, path_summary_from_json);
+}
+
+TEST(SummariesJson, DistributionIsReadBack) {
+  expect_same_text_again(
+      DistributionSummary{digest_of(6), 2, "bin_to_shelf", digest_of(7), "ur10e", "default",
+                          DistributionState::Failed, "nothing within reach", 0, 0, 120, 99},
+      distribution_summary_from_json);
+}
+
+TEST(SummariesJson, StatusIsReadBack) {
+  ServerStatus status;
+  status.version = "0.1.0";
+  status.store_file = "/var/lib/kinship/store.sqlite";
+  status.schema_version = 1;
+  std::uint64_t value = 10;  // every counter another value: none is taken for its neighbour
+  for (std::uint64_t* counter :
+       {&status.uptime_s, &status.robots, &status.tasks, &status.paths, &status.attempts,
+        &status.distributions, &status.reports_received, &status.reports_refused, &status.fetches,
+        &status.fetches_from_memory, &status.fits, &status.queued_reports, &status.queued_fits,
+        &status.store_bytes})
+    *counter = ++value;
+  status.writable = false;
+  status.storage_message = "disk full";
+  expect_same_text_again(status, server_status_from_json);
+  EXPECT_EQ(server_status_from_json(to_json(status))->store_bytes, value);
+}
+
+TEST(SummariesJson, RowOfAnotherKindIsRefusedByItsMissingMember) {
+  const auto refused = robot_summary_from_json(to_json(ServerStatus{}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "robot: is missing");
+}
+
+TEST(SummariesJson, CountersMustFit) {
+  std::string text = to_json(RobotSummary{});
+  const std::string member = "\"dof\":0";
+  text.replace(text.find(member), member.size(), "\"dof\":4294967296");
+  EXPECT_EQ(robot_summary_from_json(text).error().message, "dof: 4294967296 exceeds 4294967295");
+}
+
+}  // namespace
+}  // namespace kinship::json
