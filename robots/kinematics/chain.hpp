@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,7 +31,8 @@ struct ChainLink {
   std::string name;
   int joint = -1;  ///< index of the last joint that moves it; -1: fixed to the base link
   Eigen::Isometry3d T_joint_link = Eigen::Isometry3d::Identity();  ///< in that joint's moving frame
-  int parent = -1;  ///< index of the parent link in Chain::links(); -1: the URDF's root link
+  /// Index of the parent link in Chain::links(), below this link's own; -1: the URDF's root link.
+  int parent = -1;
 };
 
 /// What a Chain is made of.
@@ -44,12 +46,18 @@ struct ChainParts {
   std::vector<ChainLink> links;  ///< every link of the URDF
 };
 
+/// The first thing that keeps parts from being a Chain, with its value and the limit, in words.
+std::optional<std::string> find_fault(const ChainParts& parts);
+
 /// A kinematic chain from a base link to a tip link with a transfer frame: what a robot is to us.
 ///
-/// Invariant: 1 to kMaxDof joints, unit axes, finite limits with lower < upper, finite transforms.
+/// Invariant: 1 to kMaxDof joints, unit axes, finite limits with lower < upper, rigid transforms,
+/// every coordinate and limit at most kMaxPlacement_m, at least one task axis, links after their
+/// parents.
 class Chain {
  public:
-  /// \throws std::invalid_argument if the invariant does not hold.
+  /// The limits of continuous joints are set to -pi and pi.
+  /// \throws std::invalid_argument with find_fault() if the invariant does not hold.
   explicit Chain(ChainParts parts);
 
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(parts_.joints.size()); }
@@ -63,14 +71,16 @@ class Chain {
   const Eigen::VectorXd& lower() const noexcept { return lower_; }  ///< dof
   const Eigen::VectorXd& upper() const noexcept { return upper_; }  ///< dof
 
-  /// Whether every joint lies within its limits; continuous joints always do.
+  /// Whether every joint lies within its limits; continuous joints always do, NaN never.
+  /// \throws std::invalid_argument if q.size() != dof().
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 0) const;
 
   /// Index into links(), or -1.
   int find_link(std::string_view name) const noexcept;
 
   /// Identity of the robot: SHA-256 of joint types, axes, origins, limits, transfer frame and
-  /// task axes. Names, labels and geometry do not count.
+  /// task axes, each number rounded to 1e-9 (m, rad, 1) so that machines whose libraries differ in
+  /// the last bits agree. Names, labels and geometry do not count.
   Digest digest() const;
 
  private:

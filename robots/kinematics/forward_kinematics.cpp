@@ -1,0 +1,71 @@
+#include "robots/kinematics/forward_kinematics.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "robots/kinematics/joint_motion.hpp"
+
+namespace kinship::kinematics {
+namespace {
+
+void check_size(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  if (q.size() != chain.dof())
+    throw std::invalid_argument("forward kinematics: " + std::to_string(q.size()) + " values for " +
+                                std::to_string(chain.dof()) + " joints");
+}
+
+Eigen::Isometry3d T_base_last(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  check_size(chain, q);
+  Eigen::Isometry3d T_base_joint = Eigen::Isometry3d::Identity();
+  Eigen::Index i = 0;
+  for (const Joint& joint : chain.joints()) {
+    follow(joint.T_previous_joint, T_base_joint);
+    move(joint, q[i++], T_base_joint);
+  }
+  return T_base_joint;
+}
+
+}  // namespace
+
+Eigen::Isometry3d T_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  Eigen::Isometry3d T = T_base_last(chain, q);
+  follow(chain.T_last_tip(), T);
+  return T;
+}
+
+Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  Eigen::Isometry3d T = T_base_tip(chain, q);
+  follow(chain.T_tip_transfer(), T);
+  return T;
+}
+
+std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
+                                           const Eigen::Ref<const Eigen::VectorXd>& q) {
+  check_size(chain, q);
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(chain.joints().size());
+  Eigen::Isometry3d T_base_joint = Eigen::Isometry3d::Identity();
+  Eigen::Index i = 0;
+  for (const Joint& joint : chain.joints()) {
+    follow(joint.T_previous_joint, T_base_joint);
+    move(joint, q[i++], T_base_joint);
+    poses.push_back(T_base_joint);
+  }
+  return poses;
+}
+
+std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,
+                                          const Eigen::Ref<const Eigen::VectorXd>& q) {
+  const std::vector<Eigen::Isometry3d> joints = joint_poses(chain, q);
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(chain.links().size());
+  for (const ChainLink& link : chain.links()) {
+    Eigen::Isometry3d T_base_link = Eigen::Isometry3d::Identity();
+    if (link.joint >= 0) T_base_link = joints[static_cast<std::size_t>(link.joint)];
+    follow(link.T_joint_link, T_base_link);
+    poses.push_back(T_base_link);
+  }
+  return poses;
+}
+
+}  // namespace kinship::kinematics

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::kinematics {
+
+/// Rotation by an angle about a unit axis.
+/// Source: Rodrigues' formula; Siciliano et al., Robotics (2009), eq. 2.25.
+inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& axis, double angle_rad) {
+  const double s = std::sin(angle_rad), c = std::cos(angle_rad), v = 1 - c;
+  const double x = axis.x(), y = axis.y(), z = axis.z();
+  Eigen::Matrix3d R;
+  R << x * x * v + c, x * y * v - z * s, x * z * v + y * s,  //
+      x * y * v + z * s, y * y * v + c, y * z * v - x * s,   //
+      x * z * v - y * s, y * z * v + x * s, z * z * v + c;
+  return R;
+}
+
+/// Moves a frame from one joint's moving frame to the next joint's frame at zero.
+inline void follow(const Eigen::Isometry3d& T_previous_joint, Eigen::Isometry3d& T_base_frame) {
+  const Eigen::Matrix3d R = T_base_frame.linear();
+  T_base_frame.translation() += R * T_previous_joint.translation();
+  T_base_frame.linear().noalias() = R * T_previous_joint.linear();
+}
+
+/// Moves a joint's frame at zero to its moving frame at `value`, joint units.
+inline void move(const Joint& joint, double value, Eigen::Isometry3d& T_base_frame) {
+  const Eigen::Matrix3d R = T_base_frame.linear();
+  if (joint.type == JointType::Prismatic)
+    T_base_frame.translation() += value * (R * joint.axis);
+  else
+    T_base_frame.linear().noalias() = R * rotation_about(joint.axis, value);
+}
+
+}  // namespace kinship::kinematics
