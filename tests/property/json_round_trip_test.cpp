@@ -119,7 +119,9 @@ TEST(JsonRoundTrip, AttemptComesBackBitByBit) {
       EXPECT_TRUE(same_bits(read.path->waypoints(), written.path->waypoints()));
     }
     ASSERT_EQ(read.T_task_base.has_value(), written.T_task_base.has_value());
-    if (written.T_task_base) EXPECT_TRUE(read.T_task_base->isApprox(*written.T_task_base, 1e-12));
+    if (written.T_task_base) {
+      EXPECT_TRUE(read.T_task_base->isApprox(*written.T_task_base, 1e-12));
+    }
   }
 }
 
