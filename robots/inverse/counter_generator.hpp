@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <bit>
+#include <cstdint>
+
+namespace kinship::inverse {
+
+/// Random numbers that are a pure function of a key and a counter, so that results depend neither
+/// on threads nor on the order in which poses are solved.
+/// Source: Steele, Lea and Flood, Fast splittable pseudorandom number generators (2014):
+/// SplitMix64.
+class CounterGenerator {
+ public:
+  explicit CounterGenerator(std::uint64_t key) noexcept : state_(key) {}
+
+  /// Keyed by a seed and the exact bits of a pose.
+  CounterGenerator(std::uint64_t seed, const Eigen::Isometry3d& pose) noexcept
+      : state_(mixed(seed)) {
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 4; ++column)  // adding 0 turns -0 into 0
+        state_ = mixed(state_ ^ std::bit_cast<std::uint64_t>(pose(row, column) + 0.0));
+  }
+
+  std::uint64_t next() noexcept {
+    state_ += kStep;
+    return mixed(state_);
+  }
+
+  /// Uniform in [0, 1).
+  double uniform() noexcept { return static_cast<double>(next() >> 11U) * 0x1p-53; }
+
+ private:
+  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
+
+  static std::uint64_t mixed(std::uint64_t z) noexcept {
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111eb;
+    return z ^ (z >> 31U);
+  }
+
+  std::uint64_t state_;
+};
+
+}  // namespace kinship::inverse

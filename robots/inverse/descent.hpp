@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "proto/types/limits.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::inverse {
+
+/// A configuration with storage on the stack.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
+
+/// Error of a pose in the task axes: x, y, z (m), then 2 sin(angle / 2) times the rotation axis;
+/// expressed in the base link; zero where an axis does not matter.
+using TaskError = Eigen::Matrix<double, 6, 1>;
+
+/// From an actual to a wanted pose of the transfer frame, both in the base link. Without the yaw
+/// row, say, the error vanishes exactly if a rotation about the base's z axis is all that is left.
+TaskError task_error(const Eigen::Isometry3d& T_base_wanted, const Eigen::Isometry3d& T_base_actual,
+                     const TaskAxes& axes);
+
+/// Damped Levenberg-Marquardt descent of one chain towards poses of its transfer frame: no heap, no
+/// state between calls, may be shared by threads. The damping grows with the squared error.
+/// Source: Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method,
+/// IEEE T-RO 27 (2011), eq. 14, 23.
+class Descent {
+ public:
+  explicit Descent(const kinematics::Chain& chain);
+
+  /// Steer: joints outside their limits are pulled towards mid-range within the chain's redundancy
+  /// (none: no effect). Joints with a full turn of room need no help: a turn brings them back.
+  enum class Limits { Steer, Ignore };
+
+  /// Moves `q` towards the pose, in at most `max_iterations` steps. It may end outside the limits.
+  /// \return the squared norm of the task error that is left.
+  double run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int max_iterations,
+             JointVector& q) const;
+
+  /// No configuration puts the transfer frame farther than this from the first joint's origin.
+  double reach_m() const noexcept { return reach_m_; }
+  const Eigen::Vector3d& p_base_first_joint() const noexcept { return p_base_first_joint_; }
+
+ private:
+  using TaskJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, static_cast<int>(kMaxDof)>;
+
+  /// A joint whose axis was turned into z: constant pose in the frame before, then the motion.
+  struct Step {
+    Eigen::Matrix3d R;
+    Eigen::Vector3d p;
+    bool prismatic = false;
+    bool bounded = false;  ///< has less than a turn of room
+    double lower = 0, upper = 0;
+  };
+
+  TaskError error_and_jacobian(const Eigen::Isometry3d& T_base_transfer, const JointVector& q,
+                               TaskJacobian& J_base_transfer) const;
+  /// Pull of each joint towards mid-range: 0 within limits. \return whether any is not 0.
+  bool steer(const JointVector& q, JointVector& pull) const;
+
+  std::vector<Step> steps_;
+  Eigen::Matrix3d R_last_transfer_;
+  Eigen::Vector3d p_last_transfer_;
+  TaskAxes axes_;
+  bool redundant_ = false;
+  double reach_m_ = 0;
+  Eigen::Vector3d p_base_first_joint_;
+};
+
+}  // namespace kinship::inverse

@@ -1,0 +1,151 @@
+#include "robots/inverse/inverse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "robots/inverse/joint_space.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/unit/robots/inverse/chains.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+using kinematics::JointType;
+constexpr double kPi = std::numbers::pi;
+
+bool contains(const InverseSolutions& solutions, const Eigen::VectorXd& q) {
+  return ((solutions.configurations.colwise() - q).colwise().norm().array() < 1e-5).any();
+}
+
+TEST(Inverse, FindsBothElbowsOfATwoJointArm) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(1, 1, 0));
+  ASSERT_EQ(solutions.configurations.cols(), 2);
+  EXPECT_TRUE(contains(solutions, Eigen::Vector2d(0, kPi / 2)));
+  EXPECT_TRUE(contains(solutions, Eigen::Vector2d(kPi / 2, -kPi / 2)));
+  EXPECT_EQ(solutions.reason, NoSolution::None);
+}
+
+TEST(Inverse, FindsBothBranchesOfAThreeJointArmWithYaw) {
+  const auto chain = PlanarArm{.lengths_m = {0.5, 0.4, 0.2}, .limit = 3}.chain();
+  const Eigen::Vector3d q(0.3, 0.8, -0.5);
+  const auto solutions = inverse(chain, kinematics::T_base_tip(chain, q), {.max_solutions = 0});
+  ASSERT_EQ(solutions.configurations.cols(), 2);
+  EXPECT_TRUE(contains(solutions, q));
+}
+
+TEST(Inverse, APoseBeyondTheArmIsOutOfReach) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(2.001, 0, 0));
+  EXPECT_EQ(solutions.configurations.cols(), 0);
+  EXPECT_EQ(solutions.configurations.rows(), 2);
+  EXPECT_EQ(solutions.reason, NoSolution::OutOfReach);
+}
+
+TEST(Inverse, APoseInTheHoleOfTheWorkspaceIsOutOfReach) {
+  const auto chain = PlanarArm{.lengths_m = {1, 0.5}, .yaw = false}.chain();
+  EXPECT_EQ(inverse(chain, planar_pose(0.2, 0.1, 0)).reason, NoSolution::OutOfReach);
+}
+
+TEST(Inverse, LimitsAreTheReasonWhenOnlyTheyForbid) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 1, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(-1, 1, 0));
+  EXPECT_EQ(solutions.configurations.cols(), 0);
+  EXPECT_EQ(solutions.reason, NoSolution::Limits);
+}
+
+TEST(Inverse, SolutionsOutsideLimitsAreLeftOut) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 1.8, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(0.5, 1.3, 0));
+  ASSERT_EQ(solutions.configurations.cols(), 1);
+  EXPECT_TRUE(chain.within_limits(solutions.configurations.col(0)));
+}
+
+TEST(Inverse, RedundantArmFillsUpToLAtLeastDApart) {
+  const auto chain = PlanarArm{.lengths_m = {0.3, 0.25, 0.2, 0.15, 0.1}, .limit = 2.5}.chain();
+  const auto solutions =
+      inverse(chain, planar_pose(0.5, 0.3, 0.8), {.max_solutions = 12, .min_distance = 0.5});
+  ASSERT_EQ(solutions.configurations.cols(), 12);
+  for (Eigen::Index a = 0; a < 12; ++a)
+    for (Eigen::Index b = 0; b < a; ++b)
+      EXPECT_GE(distance(chain, solutions.configurations.col(a), solutions.configurations.col(b)),
+                0.5);
+}
+
+TEST(Inverse, ALargerDistanceLeavesFewerSolutions) {
+  const auto chain = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 2.5}.chain();
+  const Eigen::Isometry3d T = planar_pose(0.5, 0.3, 0.8);
+  const auto dense = inverse(chain, T, {.max_solutions = 0, .min_distance = 0.2});
+  const auto sparse = inverse(chain, T, {.max_solutions = 0, .min_distance = 2});
+  EXPECT_GT(dense.configurations.cols(), 2 * sparse.configurations.cols());
+  EXPECT_GE(sparse.configurations.cols(), 1);
+}
+
+TEST(Inverse, WithoutADistanceTheSameSolutionStillCountsOnce) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(1, 1, 0), {.min_distance = 0});
+  EXPECT_EQ(solutions.configurations.cols(), 2);
+}
+
+TEST(Inverse, EqualSeedAndPoseGiveEqualBytesOthersDiffer) {
+  const auto chain = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 2.5}.chain();
+  const Eigen::Isometry3d T = planar_pose(0.5, 0.3, 0.8);
+  const Eigen::MatrixXd first = inverse(chain, T, {.seed = 1}).configurations;
+  EXPECT_EQ(first, inverse(chain, T, {.seed = 1}).configurations);
+  EXPECT_NE(first, inverse(chain, T, {.seed = 2}).configurations);
+}
+
+TEST(Inverse, DistanceIsWrappedForContinuousJointsOnly) {
+  PlanarArm arm{.lengths_m = {1, 1}, .yaw = false};
+  const Eigen::Isometry3d T = planar_pose(-1.99, 0, 0);  // q = +-(pi - 0.1, 0.2)
+  const InverseOptions options{.max_solutions = 0, .min_distance = 0.5};
+  EXPECT_EQ(inverse(arm.chain(), T, options).configurations.cols(), 2);
+  arm.type = JointType::Continuous;
+  const auto solutions = inverse(arm.chain(), T, options);
+  ASSERT_EQ(solutions.configurations.cols(), 1);
+  EXPECT_LE(solutions.configurations.cwiseAbs().maxCoeff(), kPi);
+}
+
+TEST(Inverse, OfTurnedCopiesOnlyTheOneNearestMidRangeIsReturned) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}, .limit = 3 * kPi, .yaw = false}.chain();
+  const auto solutions = inverse(chain, planar_pose(1, 1, 0), {.max_solutions = 0});
+  ASSERT_EQ(solutions.configurations.cols(), 2);
+  EXPECT_LE(solutions.configurations.cwiseAbs().maxCoeff(), kPi);
+}
+
+TEST(Inverse, PrismaticJointsSlideWithinTheirLimits) {
+  kinematics::ChainParts parts;  // a gantry: x, y and a turn about z
+  parts.base_link = "base";
+  parts.tip_link = "tip";
+  for (const Eigen::Vector3d axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+    kinematics::Joint joint;
+    joint.name = "slide";
+    joint.type = JointType::Prismatic;
+    joint.axis = axis;
+    joint.lower = -0.5;
+    joint.upper = 2;
+    parts.joints.push_back(joint);
+  }
+  parts.joints.push_back({.name = "turn", .lower = -1, .upper = 1});
+  parts.task_axes = planar_axes(true);
+  const kinematics::Chain chain(parts);
+
+  const auto solutions = inverse(chain, planar_pose(1.5, -0.3, 0.4));
+  ASSERT_EQ(solutions.configurations.cols(), 1);
+  EXPECT_TRUE(contains(solutions, Eigen::Vector3d(1.5, -0.3, 0.4)));
+  EXPECT_EQ(inverse(chain, planar_pose(1.5, -0.8, 0.4)).reason, NoSolution::Limits);
+}
+
+TEST(Inverse, RefusesWhatIsNoQuestion) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1}}.chain();
+  Eigen::Isometry3d T = planar_pose(1, 1, 0);
+  EXPECT_THROW(inverse(chain, T, {.max_solutions = -1}), std::invalid_argument);
+  EXPECT_THROW(inverse(chain, T, {.min_distance = -0.1}), std::invalid_argument);
+  T.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(inverse(chain, T), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kinship::inverse
