@@ -119,7 +119,7 @@ TEST(Inverse, PrismaticJointsSlideWithinTheirLimits) {
   kinematics::ChainParts parts;  // a gantry: x, y and a turn about z
   parts.base_link = "base";
   parts.tip_link = "tip";
-  for (const Eigen::Vector3d axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
     kinematics::Joint joint;
     joint.name = "slide";
     joint.type = JointType::Prismatic;
