@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace kinship::store {
+
+/// CRC-32C (Castagnoli polynomial, reflected, as in RFC 3720 section 12.1) of `bytes`. Finds every
+/// burst of up to 32 flipped bits.
+/// \param previous  the CRC of what comes before `bytes`; 0 at the beginning.
+std::uint32_t crc32c(std::span<const std::uint8_t> bytes, std::uint32_t previous = 0);
+
+}  // namespace kinship::store

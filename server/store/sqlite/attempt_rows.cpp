@@ -1,0 +1,170 @@
+#include "server/store/sqlite/attempt_rows.hpp"
+
+#include <string>
+
+#include "server/store/sqlite/clock.hpp"
+#include "server/store/sqlite/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+enum class AttemptStatus : std::uint8_t { Stored = 1, DuplicateContent = 2, Unsolved = 3 };
+
+Receipt refused(const Uuid& report_uuid, const std::string& why) {
+  return {report_uuid, ReceiptStatus::Refused, "attempt " + report_uuid.text() + ": " + why};
+}
+
+/// The receipt of a report that came before under the same UUID.
+std::optional<Receipt> earlier_receipt(Database& database, const PreparedAttempt& prepared) {
+  const Uuid& uuid = prepared.attempt.report_uuid;
+  const auto query = database.cached("SELECT body_sha256 FROM attempt WHERE report_uuid = ?");
+  if (!query->bind(1, Bytes(uuid.bytes)).step()) return std::nullopt;
+  if (id_of<Digest>(query->column_blob(0)) == prepared.body)
+    return Receipt{uuid, ReceiptStatus::Duplicate, ""};
+  return refused(uuid, "this UUID was used for another report");
+}
+
+struct RobotRow {
+  std::int64_t id = 0;
+  std::int64_t dof = 0;
+};
+
+std::optional<RobotRow> find_robot_row(Database& database, const Digest& robot) {
+  const auto query = database.cached("SELECT id, dof FROM robot WHERE digest = ?");
+  if (!query->bind(1, Bytes(robot.bytes)).step()) return std::nullopt;
+  return RobotRow{query->column_integer(0), query->column_integer(1)};
+}
+
+void insert_row(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
+                AttemptStatus status, std::optional<std::int64_t> path_id) {
+  const Attempt& attempt = prepared.attempt;
+  const PlanningRecord& record = attempt.record;
+  const auto T_task_base = optional_pose_blob(attempt.T_task_base);
+  std::optional<Bytes> distribution;
+  if (record.distribution_id) distribution = Bytes(record.distribution_id->bytes);
+  database
+      .cached(
+          "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
+          " machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
+          " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
+          " distribution_revision, received_ms) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id,
+                 key.robot_id, path_id, static_cast<std::int64_t>(status),
+                 std::string_view(attempt.machine), blob_or_null(T_task_base),
+                 code_of(record.outcome), std::string_view(record.planner),
+                 std::string_view(record.planner_options), record.planning_time_s,
+                 static_cast<std::int64_t>(record.collision_checks),
+                 static_cast<std::int64_t>(record.projections), record.time_limit_s,
+                 code_of(record.arm), record.share, distribution,
+                 static_cast<std::int64_t>(record.distribution_revision), now_ms())
+      .run();
+}
+
+}  // namespace
+
+std::int64_t ensure_task(Database& database, std::string_view task) {
+  {
+    const auto query = database.cached("SELECT id FROM task WHERE name = ?");
+    if (query->bind(1, task).step()) return query->column_integer(0);
+  }
+  database.cached("INSERT INTO task (name) VALUES (?)")->bind(1, task).run();
+  return database.last_insert_id();
+}
+
+Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
+  Database& database = batch.database();
+  const Attempt& attempt = prepared.attempt;
+  if (std::optional<Receipt> earlier = earlier_receipt(database, prepared)) return *earlier;
+  const std::optional<RobotRow> robot = find_robot_row(database, attempt.robot);
+  if (!robot)
+    return refused(attempt.report_uuid,
+                   "robot " + attempt.robot.short_hex() + " is not registered");
+  if (prepared.path && prepared.path->blob.dof != robot->dof)
+    return refused(attempt.report_uuid, "path of " + std::to_string(prepared.path->blob.dof) +
+                                            " joints, robot " + attempt.robot.short_hex() +
+                                            " has " + std::to_string(robot->dof));
+
+  const ExperienceKey key{ensure_task(database, attempt.task), robot->id};
+  database
+      .cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+  AttemptStatus status = AttemptStatus::Unsolved;
+  std::optional<std::int64_t> path_id;
+  if (prepared.path) {
+    path_id = find_path(database, key, prepared.path->content);
+    status = path_id ? AttemptStatus::DuplicateContent : AttemptStatus::Stored;
+    if (!path_id) path_id = insert_path(database, key, prepared);
+  }
+  insert_row(database, prepared, key, status, path_id);
+  const bool stored = status == AttemptStatus::Stored;
+  database
+      .cached(
+          "UPDATE experience SET attempts = attempts + 1, paths = paths + ? "
+          "WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(std::int64_t{stored ? 1 : 0}, key.task_id, key.robot_id)
+      .run();
+  if (stored) {
+    batch.paths_changed(key.task_id, key.robot_id);
+    return {attempt.report_uuid, ReceiptStatus::Stored, ""};
+  }
+  return {attempt.report_uuid, prepared.path ? ReceiptStatus::Duplicate : ReceiptStatus::Recorded,
+          ""};
+}
+
+std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
+                                             std::string_view task) {
+  const auto query = database.cached(
+      "SELECT experience.task_id, experience.robot_id FROM experience "
+      "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
+      "WHERE task.name = ? AND robot.digest = ?");
+  if (!query->bind_all(task, Bytes(robot.bytes)).step()) return std::nullopt;
+  return ExperienceKey{query->column_integer(0), query->column_integer(1)};
+}
+
+std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task) {
+  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
+  if (!key) return 0;
+  const auto query =
+      database.cached("SELECT generation FROM experience WHERE task_id = ? AND robot_id = ?");
+  return query->bind_all(key->task_id, key->robot_id).step() ? count_of(*query, 0) : 0;
+}
+
+PlanningRecord read_record(const Statement& row, int first_column) {
+  int column = first_column;
+  PlanningRecord record;
+  record.outcome = outcome_of(row.column_integer(column++));
+  record.planner = row.column_text(column++);
+  record.planner_options = row.column_text(column++);
+  record.planning_time_s = row.column_real(column++);
+  record.collision_checks = count_of(row, column++);
+  record.projections = count_of(row, column++);
+  record.time_limit_s = row.column_real(column++);
+  record.arm = arm_of(row.column_integer(column++));
+  record.share = row.column_real(column++);
+  record.distribution_id = optional_id_of<Digest>(row, column++);
+  record.distribution_revision = count_of(row, column);
+  return record;
+}
+
+std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_uuid) {
+  constexpr int kFirstOfRecord = 5;
+  const auto query = database.cached(
+      "SELECT robot.digest, task.name, attempt.machine, attempt.T_task_base, attempt.path_id, " +
+      std::string(kRecordColumns) +
+      "FROM attempt JOIN robot ON robot.id = attempt.robot_id "
+      "JOIN task ON task.id = attempt.task_id WHERE attempt.report_uuid = ?");
+  if (!query->bind(1, Bytes(report_uuid.bytes)).step()) return std::nullopt;
+  AttemptRow row;
+  row.attempt.report_uuid = report_uuid;
+  row.attempt.robot = id_of<Digest>(query->column_blob(0));
+  row.attempt.task = query->column_text(1);
+  row.attempt.machine = query->column_text(2);
+  row.attempt.T_task_base = pose_from_blob(query->column_blob(3));
+  if (!query->column_is_null(4)) row.path_id = query->column_integer(4);
+  row.attempt.record = read_record(*query, kFirstOfRecord);
+  return row;
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,58 @@
+#include "server/store/sqlite/connection.hpp"
+
+#include "server/store/sqlite/clock.hpp"
+#include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/transaction.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::int64_t kNewestRowsChecked = 64;
+
+// The writer checkpoints itself, at 1000 pages of 8 KB; a second connection that does can corrupt
+// the file in SQLite before 3.51.3 (see the README).
+void configure_writer(Database& database) {
+  database.execute(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
+      "PRAGMA wal_autocheckpoint = 1000; PRAGMA journal_size_limit = 67108864;"
+      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON");
+}
+
+}  // namespace
+
+std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
+  auto database = std::make_unique<Database>(file, Access::Create);
+  database->execute("PRAGMA page_size = 8192");  // counts for a new file only
+  // A file of somebody else is refused before anything is written to it, so migrate() goes first.
+  database->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
+  migrate(*database, file, embedded_migrations());
+  configure_writer(*database);
+  return database;
+}
+
+std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
+  auto database = std::make_unique<Database>(file, Access::ReadWrite);
+  configure_writer(*database);
+  check_schema(*database, file, embedded_migrations());
+  check_newest_paths(*database, kNewestRowsChecked);
+  Transaction probe(*database, Transaction::Kind::Write);
+  Statement(database->connection(),
+            "INSERT INTO setting VALUES ('reopened_ms', ?) "
+            "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
+      .bind(1, std::to_string(now_ms()))
+      .run();
+  probe.commit();
+  return database;
+}
+
+std::unique_ptr<Database> open_reader(const std::filesystem::path& file) {
+  auto database = std::make_unique<Database>(file, Access::ReadOnly);
+  // Readers wait for nobody but a recovery of the WAL.
+  database->execute(
+      "PRAGMA query_only = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA mmap_size = 0;"
+      "PRAGMA busy_timeout = 5000; PRAGMA cell_size_check = ON");
+  return database;
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "server/store/sqlite/database.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store {
+
+/// \return the revision given: 1, then one more at each call for the same id.
+/// \throws Failure(NotFound) if its robot is not registered.
+std::uint64_t upsert_distribution(Database& database, const Distribution& distribution);
+
+/// A distribution without its store epoch.
+struct DistributionRead {
+  std::optional<Distribution> distribution;
+  bool damaged = false;  ///< it is there, but cannot be used
+};
+DistributionRead select_distribution(Database& database, const Digest& id);
+
+}  // namespace kinship::store

@@ -1,0 +1,251 @@
+#include "server/store/sqlite/listings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+std::int64_t rows_of_page(std::size_t limit) {
+  constexpr std::size_t kMaxRows = 10'000;
+  return static_cast<std::int64_t>(std::clamp<std::size_t>(limit, 1, kMaxRows));
+}
+
+/// Reads up to `rows` rows; a row more says that another page follows.
+/// \param read       makes a row of the statement.
+/// \param cursor_of  the cursor that continues after the row at the statement.
+template <typename Row, typename Read, typename CursorOf>
+Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cursor_of) {
+  Page<Row> page;
+  std::string cursor;
+  while (query.step()) {
+    if (std::ssize(page.rows) == rows) {
+      page.next_cursor = std::move(cursor);
+      break;
+    }
+    page.rows.push_back(read(query));
+    cursor = cursor_of(query);
+  }
+  return page;
+}
+
+[[noreturn]] void refuse_cursor(std::string_view cursor) {
+  throw Failure(ErrorCode::InvalidInput,
+                "cursor '" + std::string(cursor) + "' is not one of this listing");
+}
+
+/// "12.3.4567": task, robot and path of the last row shown; zeros at the beginning.
+std::array<std::int64_t, 3> parse_path_cursor(std::string_view cursor) {
+  std::array<std::int64_t, 3> key{};
+  if (cursor.empty()) return key;
+  const char* position = cursor.data();
+  const char* const end = cursor.data() + cursor.size();
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const auto [after, error] = std::from_chars(position, end, key[i]);
+    const bool last = i + 1 == key.size();
+    if (error != std::errc() || (last ? after != end : after == end || *after != '.'))
+      refuse_cursor(cursor);
+    position = after + 1;
+  }
+  return key;
+}
+
+std::vector<TaskRobotSummary> robots_of_task(Database& database, std::int64_t task_id) {
+  const auto query = database.cached(
+      "SELECT robot.digest, robot.label, experience.paths, experience.attempts,"
+      " experience.generation FROM experience JOIN robot ON robot.id = experience.robot_id "
+      "WHERE experience.task_id = ? ORDER BY robot.label");
+  query->bind(1, task_id);
+  std::vector<TaskRobotSummary> robots;
+  while (query->step())
+    robots.push_back({id_of<Digest>(query->column_blob(0)), std::string(query->column_text(1)),
+                      count_of(*query, 2), count_of(*query, 3), count_of(*query, 4)});
+  return robots;
+}
+
+/// \param row  of task id and name.
+TaskSummary read_task(Database& database, const Statement& row) {
+  TaskSummary summary;
+  summary.task = row.column_text(1);
+  summary.robots = robots_of_task(database, row.column_integer(0));
+  for (const TaskRobotSummary& robot : summary.robots) {
+    summary.paths += robot.paths;
+    summary.attempts += robot.attempts;
+  }
+  return summary;
+}
+
+PathSummary read_path_summary(const Statement& row) {
+  constexpr int kFirstOfRecord = 11;
+  PathSummary summary;
+  summary.report_uuid = id_of<Uuid>(row.column_blob(3));
+  summary.robot = id_of<Digest>(row.column_blob(4));
+  summary.label = row.column_text(5);
+  summary.task = row.column_text(6);
+  summary.waypoints = count_of(row, 7);
+  summary.length = row.column_real(8);
+  summary.machine = row.column_text(9);
+  summary.received_ms = row.column_integer(10);
+  summary.record = read_record(row, kFirstOfRecord);
+  constexpr int kPose = kFirstOfRecord + 11;
+  summary.T_task_base = pose_from_blob(row.column_blob(kPose));
+  return summary;
+}
+
+DistributionSummary read_distribution_summary(const Statement& row) {
+  DistributionSummary summary;
+  summary.id = id_of<Digest>(row.column_blob(0));
+  summary.revision = count_of(row, 1);
+  summary.task = row.column_text(2);
+  summary.robot = id_of<Digest>(row.column_blob(3));
+  summary.label = row.column_text(4);
+  summary.profile = row.column_text(5);
+  summary.state = state_of(row.column_integer(6));
+  summary.reason = row.column_text(7);
+  summary.components = count_of(row, 8);
+  summary.configurations = count_of(row, 9);
+  summary.paths = count_of(row, 10);
+  summary.fitted_ms = row.column_integer(11);
+  return summary;
+}
+
+/// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
+std::string filters(const std::optional<Digest>& robot, std::string_view task) {
+  std::string sql;
+  if (robot) sql += " AND robot.digest = ?1";
+  if (!task.empty()) sql += " AND task.name = ?2";
+  return sql;
+}
+
+void bind_filters(Statement& query, const std::optional<Digest>& robot, std::string_view task) {
+  if (robot) query.bind(1, Bytes(robot->bytes));
+  if (!task.empty()) query.bind(2, task);
+}
+
+}  // namespace
+
+Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  const auto query = database.cached(
+      "SELECT digest, label, base_link, tip_link, dof, registered_ms,"
+      " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
+      " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id) "
+      "FROM robot WHERE label > ? ORDER BY label LIMIT ?");
+  query->bind_all(cursor, rows + 1);
+  const auto read = [](const Statement& row) {
+    RobotSummary summary;
+    summary.robot = id_of<Digest>(row.column_blob(0));
+    summary.label = row.column_text(1);
+    summary.base_link = row.column_text(2);
+    summary.tip_link = row.column_text(3);
+    summary.dof = static_cast<std::uint32_t>(row.column_integer(4));
+    summary.registered_ms = row.column_integer(5);
+    summary.paths = count_of(row, 6);
+    summary.attempts = count_of(row, 7);
+    return summary;
+  };
+  return read_page<RobotSummary>(
+      *query, rows, read, [](const Statement& row) { return std::string(row.column_text(1)); });
+}
+
+Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  const auto query =
+      database.cached("SELECT id, name FROM task WHERE name > ? ORDER BY name LIMIT ?");
+  query->bind_all(cursor, rows + 1);
+  return read_page<TaskSummary>(
+      *query, rows, [&](const Statement& row) { return read_task(database, row); },
+      [](const Statement& row) { return std::string(row.column_text(1)); });
+}
+
+std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task) {
+  const auto query = database.cached("SELECT id, name FROM task WHERE name = ?");
+  if (!query->bind(1, task).step()) return std::nullopt;
+  return read_task(database, *query);
+}
+
+Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
+                                std::string_view task, std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  const auto [task_id, robot_id, path_id] = parse_path_cursor(cursor);
+  const auto query = database.cached(
+      "SELECT path.task_id, path.robot_id, path.id, path.report_uuid, robot.digest, robot.label,"
+      " task.name, path.waypoint_count, path.length, attempt.machine, attempt.received_ms, " +
+      std::string(kRecordColumns) +
+      ", path.T_task_base FROM path JOIN robot ON robot.id = path.robot_id "
+      "JOIN task ON task.id = path.task_id "
+      "JOIN attempt ON attempt.report_uuid = path.report_uuid "
+      "WHERE path.damaged = 0 AND (path.task_id, path.robot_id, path.id) > (?3, ?4, ?5)" +
+      filters(robot, task) + " ORDER BY path.task_id, path.robot_id, path.id LIMIT ?6");
+  bind_filters(*query, robot, task);
+  query->bind(3, task_id).bind(4, robot_id).bind(5, path_id).bind(6, rows + 1);
+  return read_page<PathSummary>(*query, rows, read_path_summary, [](const Statement& row) {
+    return std::to_string(row.column_integer(0)) + "." + std::to_string(row.column_integer(1)) +
+           "." + std::to_string(row.column_integer(2));
+  });
+}
+
+Page<DistributionSummary> page_of_distributions(Database& database,
+                                                const std::optional<Digest>& robot,
+                                                std::string_view task, std::string_view cursor,
+                                                std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  Digest after;
+  if (!cursor.empty()) {
+    const std::optional<Digest> parsed = Digest::from_hex(cursor);
+    if (!parsed) refuse_cursor(cursor);
+    after = *parsed;
+  }
+  const auto query = database.cached(
+      "SELECT distribution.digest, revision, task.name, robot.digest, robot.label, profile, state,"
+      " reason, components, configurations, paths, fitted_ms FROM distribution "
+      "JOIN robot ON robot.id = distribution.robot_id JOIN task ON task.id = distribution.task_id "
+      "WHERE distribution.digest > ?3" +
+      filters(robot, task) + " ORDER BY distribution.digest LIMIT ?4");
+  bind_filters(*query, robot, task);
+  query->bind(3, Bytes(after.bytes)).bind(4, rows + 1);
+  return read_page<DistributionSummary>(
+      *query, rows, read_distribution_summary,
+      [](const Statement& row) { return id_of<Digest>(row.column_blob(0)).hex(); });
+}
+
+std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task) {
+  const auto query = database.cached(
+      "SELECT robot.digest, experience.paths, experience.generation FROM experience "
+      "JOIN robot ON robot.id = experience.robot_id JOIN task ON task.id = experience.task_id "
+      "WHERE task.name = ? AND experience.paths > 0 ORDER BY robot.digest");
+  query->bind(1, task);
+  std::vector<ExperienceSummary> robots;
+  while (query->step())
+    robots.push_back(
+        {id_of<Digest>(query->column_blob(0)), count_of(*query, 1), count_of(*query, 2)});
+  return robots;
+}
+
+void count_rows(Database& database, StoreStatus& status) {
+  const auto query = database.cached(
+      "SELECT (SELECT count(*) FROM robot), (SELECT count(*) FROM task),"
+      " (SELECT coalesce(sum(paths), 0) FROM experience),"
+      " (SELECT coalesce(sum(attempts), 0) FROM experience),"
+      " (SELECT count(*) FROM distribution), (SELECT count(*) FROM path WHERE damaged = 1),"
+      " (SELECT user_version FROM pragma_user_version),"
+      " (SELECT page_count FROM pragma_page_count) * (SELECT page_size FROM pragma_page_size)");
+  query->step();
+  status.robots = count_of(*query, 0);
+  status.tasks = count_of(*query, 1);
+  status.paths = count_of(*query, 2);
+  status.attempts = count_of(*query, 3);
+  status.distributions = count_of(*query, 4);
+  status.schema_version = static_cast<std::uint32_t>(query->column_integer(6));
+  status.bytes = count_of(*query, 7);
+  if (const std::uint64_t damaged = count_of(*query, 5); damaged > 0)
+    status.message += std::to_string(damaged) + " damaged paths set aside; ";
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,120 @@
+#include "server/store/sqlite/migrations.hpp"
+
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "proto/types/sha256.hpp"
+#include "server/store/sqlite/clock.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/transaction.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw Failure(ErrorCode::Storage, "store '" + file.string() + "' " + why);
+}
+
+Digest text_digest(const Migration& migration) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(migration.text.data());
+  return Sha256().add(Bytes(bytes, migration.text.size())).finish();
+}
+
+/// 0: an empty file. Otherwise the version of a Kinship store.
+std::int64_t checked_version(Database& database, const std::filesystem::path& file,
+                             std::span<const Migration> migrations) {
+  std::int64_t application = 0;
+  try {
+    application = database.integer("PRAGMA application_id");
+  } catch (const SqliteError& error) {
+    if ((error.sqlite_code() & 0xFF) == SQLITE_NOTADB) refuse(file, "is no SQLite database");
+    throw;
+  }
+  if (application == 0 && database.integer("SELECT count(*) FROM sqlite_master") == 0) return 0;
+  if (application != kApplicationId) refuse(file, "is a database, but no Kinship store");
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  const auto newest = static_cast<std::int64_t>(migrations.size());
+  if (version > newest)
+    refuse(file, "has schema " + std::to_string(version) + "; this binary knows up to " +
+                     std::to_string(newest));
+  return version;
+}
+
+void check_history(Database& database, const std::filesystem::path& file, std::int64_t version,
+                   std::span<const Migration> migrations) {
+  Statement applied(database.connection(),
+                    "SELECT version, sha256 FROM schema_migration ORDER BY version");
+  std::int64_t expected = 0;
+  while (applied.step()) {
+    ++expected;
+    if (applied.column_integer(0) != expected || expected > version) break;
+    const Digest known = text_digest(migrations[static_cast<std::size_t>(expected - 1)]);
+    const Bytes stored = applied.column_blob(1);
+    if (!std::equal(stored.begin(), stored.end(), known.bytes.begin(), known.bytes.end()))
+      refuse(file, "was made by another text of migration " + std::to_string(expected) +
+                       " than this binary has");
+  }
+  if (expected != version)
+    refuse(file, "says schema " + std::to_string(version) + ", but records migrations up to " +
+                     std::to_string(expected));
+}
+
+void sync_file(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (!synced)
+    throw Failure(ErrorCode::Storage, "backup '" + file.string() + "': " + std::strerror(reason));
+}
+
+/// Under its final name there is never half a backup.
+void back_up(Database& database, const std::filesystem::path& file, std::int64_t version) {
+  const std::filesystem::path backup = file.string() + ".backup-" + std::to_string(version);
+  const std::filesystem::path partial = backup.string() + ".partial";
+  std::filesystem::remove(partial);
+  Statement(database.connection(), "VACUUM INTO ?").bind(1, partial.string()).run();
+  sync_file(partial);
+  std::filesystem::rename(partial, backup);
+}
+
+void apply(Database& database, const Migration& migration) {
+  Transaction transaction(database, Transaction::Kind::Write);
+  database.execute(std::string(migration.text));
+  const Digest digest = text_digest(migration);
+  Statement(database.connection(), "INSERT INTO schema_migration VALUES (?, ?, ?, ?, ?)")
+      .bind_all(migration.version, migration.name, Bytes(digest.bytes), now_ms(),
+                std::string_view(sqlite3_libversion()))
+      .run();
+  database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+  transaction.commit();
+}
+
+}  // namespace
+
+void migrate(Database& database, const std::filesystem::path& file,
+             std::span<const Migration> migrations) {
+  const std::int64_t version = checked_version(database, file, migrations);
+  if (version > 0) check_history(database, file, version, migrations);
+  const auto done = static_cast<std::size_t>(version);
+  if (version > 0 && done < migrations.size()) back_up(database, file, version);
+  for (const Migration& migration : migrations.subspan(done)) apply(database, migration);
+}
+
+void check_schema(Database& database, const std::filesystem::path& file,
+                  std::span<const Migration> migrations) {
+  const std::int64_t version = checked_version(database, file, migrations);
+  if (version != static_cast<std::int64_t>(migrations.size()))
+    refuse(file, "has schema " + std::to_string(version) + " instead of " +
+                     std::to_string(migrations.size()));
+  check_history(database, file, version, migrations);
+}
+
+}  // namespace kinship::store

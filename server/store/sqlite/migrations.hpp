@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "server/store/sqlite/database.hpp"
+
+namespace kinship::store {
+
+/// One file of schema/sqlite.
+struct Migration {
+  std::int64_t version = 0;  ///< 1, 2, 3, ... without gaps
+  std::string_view name;     ///< of the file, without ".sql"
+  std::string_view text;
+};
+
+/// All migrations that this binary knows, by version (written by embed_migrations.cmake).
+std::span<const Migration> embedded_migrations();
+
+/// Brings a database to the newest of `migrations`, each in one transaction, and records it with
+/// the SHA-256 of its text. A database that holds something is first copied to
+/// FILE.backup-<its version>.
+/// \throws Failure(Storage) if the file is no Kinship store, is newer than `migrations`, or was
+///         made by a migration of another text; nothing is changed then.
+void migrate(Database& database, const std::filesystem::path& file,
+             std::span<const Migration> migrations);
+
+/// The checks of migrate() without any change: ours, at the newest version, same texts.
+/// \throws Failure(Storage) if not.
+void check_schema(Database& database, const std::filesystem::path& file,
+                  std::span<const Migration> migrations);
+
+}  // namespace kinship::store

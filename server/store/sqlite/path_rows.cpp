@@ -1,0 +1,136 @@
+#include "server/store/sqlite/path_rows.hpp"
+
+#include <string>
+#include <utility>
+
+#include "server/store/crc32c.hpp"
+#include "server/store/sqlite/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::string_view kColumns =
+    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints "
+    "FROM path ";
+
+/// Everything that a transfer relies on is under the checksum, not the waypoints alone.
+struct PathContent {
+  Bytes report_uuid;
+  Bytes T_task_base;  // empty: missing
+  std::int64_t dof = 0;
+  std::int64_t waypoint_count = 0;
+  std::int64_t encoding = 0;
+  Bytes waypoints;
+
+  std::uint32_t crc() const {
+    ByteWriter header;
+    header.add(report_uuid).add(T_task_base);
+    for (const std::int64_t number : {dof, waypoint_count, encoding})
+      header.add(static_cast<std::uint64_t>(number));
+    return crc32c(waypoints, crc32c(header.bytes()));
+  }
+};
+
+/// \param row  of kColumns.
+std::optional<StoredPath> read_row(const Statement& row) {
+  const PathContent content{row.column_blob(1),    row.column_blob(2),    row.column_integer(3),
+                            row.column_integer(4), row.column_integer(5), row.column_blob(7)};
+  if (content.crc() != row.column_integer(6)) return std::nullopt;
+  std::optional<Path> path =
+      decode_waypoints(content.dof, content.waypoint_count, content.encoding, content.waypoints);
+  if (!path) return std::nullopt;
+  std::optional<Eigen::Isometry3d> T_task_base;
+  if (!row.column_is_null(2)) {
+    T_task_base = pose_from_blob(content.T_task_base);
+    if (!T_task_base) return std::nullopt;
+  }
+  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
+                    std::move(*path)};
+}
+
+void take_row(const Statement& row, PathsRead& read) {
+  if (std::optional<StoredPath> path = read_row(row))
+    read.paths.push_back(std::move(*path));
+  else
+    read.damaged.push_back(row.column_integer(0));
+}
+
+}  // namespace
+
+std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& key,
+                                      const Digest& content) {
+  const auto query = database.cached(
+      "SELECT id FROM path "
+      "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND damaged = 0");
+  query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
+  if (!query->step()) return std::nullopt;
+  return query->column_integer(0);
+}
+
+std::int64_t insert_path(Database& database, const ExperienceKey& key,
+                         const PreparedAttempt& prepared) {
+  const PreparedPath& path = *prepared.path;
+  const auto T_task_base = optional_pose_blob(prepared.attempt.T_task_base);
+  const PathContent content{Bytes(prepared.attempt.report_uuid.bytes),
+                            blob_or_null(T_task_base).value_or(Bytes()),
+                            path.blob.dof,
+                            path.blob.waypoint_count,
+                            static_cast<std::int64_t>(path.blob.encoding),
+                            Bytes(path.blob.bytes)};
+  database
+      .cached(
+          "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
+          " dof, waypoint_count, encoding, crc32c, waypoints) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
+                 path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
+                 content.encoding, std::int64_t{content.crc()}, content.waypoints)
+      .run();
+  return database.last_insert_id();
+}
+
+PathsRead select_paths(Database& database, const ExperienceKey& key, std::int64_t after_id,
+                       std::int64_t limit) {
+  const auto query =
+      database.cached(std::string(kColumns) +
+                      "WHERE task_id = ? AND robot_id = ? AND id > ? AND damaged = 0 ORDER BY id");
+  query->bind_all(key.task_id, key.robot_id, after_id);
+  PathsRead read;
+  while (std::ssize(read.paths) < limit && query->step()) take_row(*query, read);
+  return read;
+}
+
+PathsRead select_path(Database& database, std::int64_t id) {
+  const auto query = database.cached(std::string(kColumns) + "WHERE id = ? AND damaged = 0");
+  query->bind(1, id);
+  PathsRead read;
+  if (query->step()) take_row(*query, read);
+  return read;
+}
+
+std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
+  ExperienceKey key;
+  {
+    const auto query = database.cached("SELECT task_id, robot_id FROM path WHERE id = ?");
+    if (!query->bind(1, id).step()) return std::nullopt;
+    key = {query->column_integer(0), query->column_integer(1)};
+  }
+  database.cached("UPDATE path SET damaged = 1 WHERE id = ? AND damaged = 0")->bind(1, id).run();
+  if (database.changed_rows() == 0) return std::nullopt;
+  database.cached("UPDATE experience SET paths = paths - 1 WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+  return key;
+}
+
+void check_newest_paths(Database& database, std::int64_t count) {
+  const auto query =
+      database.cached(std::string(kColumns) + "WHERE damaged = 0 ORDER BY id DESC LIMIT ?");
+  query->bind(1, count);
+  while (query->step())
+    if (!read_row(*query))
+      throw Failure(ErrorCode::Storage,
+                    "path " + std::to_string(query->column_integer(0)) + " is damaged");
+}
+
+}  // namespace kinship::store

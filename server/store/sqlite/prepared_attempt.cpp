@@ -1,0 +1,73 @@
+#include "server/store/sqlite/prepared_attempt.hpp"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/pose.hpp"
+#include "proto/types/sha256.hpp"
+
+namespace kinship::store {
+namespace {
+
+std::optional<std::string> reason_against(const Attempt& attempt) {
+  const PlanningRecord& record = attempt.record;
+  if ((record.outcome == Outcome::Solved) != attempt.path.has_value())
+    return attempt.path ? "an attempt that is not solved has a path"
+                        : "a solved attempt has no path";
+  constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  for (const std::uint64_t counter :
+       {record.collision_checks, record.projections, record.distribution_revision})
+    if (counter > kLargest)
+      return "counter " + std::to_string(counter) + " exceeds " + std::to_string(kLargest);
+  if (attempt.path && attempt.path->dof() > static_cast<Eigen::Index>(kMaxDof))
+    return "path of " + std::to_string(attempt.path->dof()) + " joints exceeds " +
+           std::to_string(kMaxDof);
+  if (attempt.path && attempt.path->size() > static_cast<Eigen::Index>(kMaxWaypoints))
+    return "path of " + std::to_string(attempt.path->size()) + " waypoints exceeds " +
+           std::to_string(kMaxWaypoints);
+  return std::nullopt;
+}
+
+double length_of(const Eigen::MatrixXd& waypoints) {
+  const Eigen::Index segments = waypoints.cols() - 1;
+  return (waypoints.rightCols(segments) - waypoints.leftCols(segments)).colwise().norm().sum();
+}
+
+Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path) {
+  const PlanningRecord& record = attempt.record;
+  Sha256 hash;
+  hash.add(attempt.robot).add(attempt.machine).add(attempt.task);
+  hash.add(std::uint64_t{attempt.T_task_base ? 1U : 0U});
+  if (attempt.T_task_base)
+    for (const double number : to_pose_array(*attempt.T_task_base)) hash.add(number);
+  hash.add(static_cast<std::uint64_t>(record.outcome));
+  hash.add(record.planner).add(record.planner_options);
+  hash.add(record.planning_time_s).add(record.collision_checks).add(record.projections);
+  hash.add(record.time_limit_s).add(static_cast<std::uint64_t>(record.arm)).add(record.share);
+  hash.add(std::uint64_t{record.distribution_id ? 1U : 0U});
+  if (record.distribution_id) hash.add(*record.distribution_id);
+  hash.add(record.distribution_revision);
+  if (path) hash.add(path->content);
+  return hash.finish();
+}
+
+}  // namespace
+
+Result<PreparedAttempt> prepare(Attempt attempt) {
+  if (auto reason = reason_against(attempt))
+    return Error{ErrorCode::InvalidInput,
+                 "attempt " + attempt.report_uuid.text() + ": " + std::move(*reason)};
+  std::optional<PreparedPath> path;
+  if (attempt.path) {
+    const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
+    path = PreparedPath{Sha256().add(waypoints).finish(), length_of(waypoints),
+                        encode_waypoints(waypoints)};
+  }
+  const Digest body = body_digest(attempt, path);
+  attempt.path.reset();
+  return PreparedAttempt{std::move(attempt), body, std::move(path)};
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/result.hpp"
+#include "server/store/sqlite/waypoint_blob.hpp"
+
+namespace kinship::store {
+
+/// A path ready to be written.
+struct PreparedPath {
+  Digest content;     ///< of the waypoints alone: the same path is kept once per robot and task
+  double length = 0;  ///< joint units
+  WaypointBlob blob;
+};
+
+/// An attempt with all that can be computed before the writer has it.
+struct PreparedAttempt {
+  Attempt attempt;  ///< without its path
+  Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
+  std::optional<PreparedPath> path;
+};
+
+/// \return the reason if it cannot be stored: solved without a path or the reverse, a counter
+///         over 2^63, more joints or waypoints than the limits.
+Result<PreparedAttempt> prepare(Attempt attempt);
+
+}  // namespace kinship::store

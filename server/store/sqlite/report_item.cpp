@@ -1,0 +1,54 @@
+#include "server/store/sqlite/report_item.hpp"
+
+#include <utility>
+
+#include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/transaction.hpp"
+
+namespace kinship::store {
+namespace {
+
+Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared) {
+  Savepoint savepoint(batch.database());
+  try {
+    Receipt receipt = insert_attempt(batch, prepared);
+    savepoint.keep();
+    return receipt;
+  } catch (const SqliteError& error) {
+    if (!error.concerns_one_row()) throw;
+    return {prepared.attempt.report_uuid, ReceiptStatus::Refused, error.what()};
+  }
+}
+
+}  // namespace
+
+ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
+    : done_(std::move(done)) {
+  for (Attempt& attempt : attempts) {
+    const Uuid uuid = attempt.report_uuid;
+    Result<PreparedAttempt> prepared = prepare(std::move(attempt));
+    if (prepared) {
+      prepared_.emplace_back(std::move(prepared).value());
+      receipts_.push_back({uuid, ReceiptStatus::TryAgain, ""});
+    } else {
+      prepared_.emplace_back(std::nullopt);
+      receipts_.push_back({uuid, ReceiptStatus::Refused, prepared.error().message});
+    }
+  }
+}
+
+void ReportItem::apply(Batch& batch) {
+  for (std::size_t i = 0; i < prepared_.size(); ++i)
+    if (prepared_[i]) receipts_[i] = insert_alone(batch, *prepared_[i]);
+}
+
+void ReportItem::finish(const Error* error) {
+  if (error != nullptr)
+    for (std::size_t i = 0; i < prepared_.size(); ++i)
+      if (prepared_[i])
+        receipts_[i] = {receipts_[i].report_uuid, ReceiptStatus::TryAgain, error->message};
+  done_(receipts_);
+}
+
+}  // namespace kinship::store

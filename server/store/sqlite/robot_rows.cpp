@@ -1,0 +1,137 @@
+#include "server/store/sqlite/robot_rows.hpp"
+
+#include <string>
+#include <utility>
+
+#include "server/store/crc32c.hpp"
+#include "server/store/sqlite/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::string_view kColumns =
+    "SELECT id, digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes, registered_ms,"
+    " crc32c, urdf FROM robot ";
+
+std::int64_t mask_of(const TaskAxes& axes) {
+  std::int64_t mask = 0;
+  for (std::size_t i = 0; i < axes.matters.size(); ++i)
+    if (axes.matters[i]) mask |= std::int64_t{1} << i;
+  return mask;
+}
+
+TaskAxes axes_of(std::int64_t mask) {
+  TaskAxes axes;
+  for (std::size_t i = 0; i < axes.matters.size(); ++i) axes.matters[i] = ((mask >> i) & 1) != 0;
+  return axes;
+}
+
+/// \param T_tip_transfer  as stored: a pose does not come back from its 7 numbers to the last bit.
+std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer) {
+  const RobotDescription& description = robot.description;
+  ByteWriter all;
+  all.add(Bytes(robot.digest.bytes)).add(std::uint64_t{robot.dof}).add(description.label);
+  all.add(description.urdf).add(description.base_link).add(description.tip_link);
+  all.add(T_tip_transfer).add(static_cast<std::uint64_t>(mask_of(description.task_axes)));
+  for (const auto& [joint, position] : description.held_joints) all.add(joint).add(position);
+  for (const auto& [a, b] : description.never_colliding) all.add(a).add(b);
+  return crc32c(all.bytes());
+}
+
+void insert_parts(Database& database, std::int64_t robot_id, const RobotDescription& description) {
+  for (const auto& [joint, position] : description.held_joints)
+    database.cached("INSERT INTO robot_held_joint VALUES (?, ?, ?)")
+        ->bind_all(robot_id, std::string_view(joint), position)
+        .run();
+  std::int64_t ordinal = 0;
+  for (const auto& [a, b] : description.never_colliding)
+    database.cached("INSERT INTO robot_never_colliding VALUES (?, ?, ?, ?)")
+        ->bind_all(robot_id, ordinal++, std::string_view(a), std::string_view(b))
+        .run();
+}
+
+void select_parts(Database& database, std::int64_t robot_id, RobotDescription& description) {
+  const auto held =
+      database.cached("SELECT joint, position FROM robot_held_joint WHERE robot_id = ?");
+  held->bind(1, robot_id);
+  while (held->step()) description.held_joints.emplace(held->column_text(0), held->column_real(1));
+  const auto pairs = database.cached(
+      "SELECT link_a, link_b FROM robot_never_colliding WHERE robot_id = ? ORDER BY ordinal");
+  pairs->bind(1, robot_id);
+  while (pairs->step())
+    description.never_colliding.emplace_back(pairs->column_text(0), pairs->column_text(1));
+}
+
+/// Empty if the row is not what insert_robot() wrote.
+std::optional<RobotRecord> read_row(Database& database, const Statement& row) {
+  RobotRecord robot;
+  robot.digest = id_of<Digest>(row.column_blob(1));
+  robot.dof = static_cast<std::uint32_t>(row.column_integer(3));
+  robot.registered_ms = row.column_integer(8);
+  RobotDescription& description = robot.description;
+  description.label = row.column_text(2);
+  description.base_link = row.column_text(4);
+  description.tip_link = row.column_text(5);
+  description.task_axes = axes_of(row.column_integer(7));
+  description.urdf = row.column_text(10);
+  select_parts(database, row.column_integer(0), description);
+  if (robot_crc(robot, row.column_blob(6)) != row.column_integer(9)) return std::nullopt;
+  const std::optional<Eigen::Isometry3d> T_tip_transfer = pose_from_blob(row.column_blob(6));
+  if (!T_tip_transfer) return std::nullopt;
+  description.T_tip_transfer = *T_tip_transfer;
+  return robot;
+}
+
+template <typename Value>
+bool has_robot(Database& database, std::string_view sql, const Value& value) {
+  const auto query = database.cached(sql);
+  return query->bind(1, value).step();
+}
+
+}  // namespace
+
+Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot) {
+  const RobotDescription& description = robot.description;
+  if (has_robot(database, "SELECT 1 FROM robot WHERE digest = ?", Bytes(robot.digest.bytes)))
+    return RegisterStatus::Known;
+  if (has_robot(database, "SELECT 1 FROM robot WHERE label = ?",
+                std::string_view(description.label)))
+    return Error{ErrorCode::Conflict,
+                 "robot '" + description.label + "': another robot has this label"};
+  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
+  database
+      .cached(
+          "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
+          " registered_ms, crc32c, urdf) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(Bytes(robot.digest.bytes), std::string_view(description.label),
+                 std::int64_t{robot.dof}, std::string_view(description.base_link),
+                 std::string_view(description.tip_link), Bytes(T_tip_transfer),
+                 mask_of(description.task_axes), robot.registered_ms,
+                 std::int64_t{robot_crc(robot, T_tip_transfer)}, std::string_view(description.urdf))
+      .run();
+  insert_parts(database, database.last_insert_id(), description);
+  return RegisterStatus::Registered;
+}
+
+std::optional<RobotRecord> select_robot(Database& database, const Digest& robot) {
+  const auto query = database.cached(std::string(kColumns) + "WHERE digest = ?");
+  if (!query->bind(1, Bytes(robot.bytes)).step()) return std::nullopt;
+  std::optional<RobotRecord> record = read_row(database, *query);
+  if (!record)
+    throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged");
+  return record;
+}
+
+RobotsRead select_robots(Database& database) {
+  const auto query = database.cached(std::string(kColumns) + "ORDER BY label");
+  RobotsRead read;
+  while (query->step()) {
+    if (std::optional<RobotRecord> robot = read_row(database, *query))
+      read.robots.push_back(std::move(*robot));
+    else
+      ++read.damaged;
+  }
+  return read;
+}
+
+}  // namespace kinship::store

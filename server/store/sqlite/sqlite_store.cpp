@@ -1,0 +1,263 @@
+#include "server/store/sqlite/sqlite_store.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/distribution_rows.hpp"
+#include "server/store/sqlite/listings.hpp"
+#include "server/store/sqlite/lock_file.hpp"
+#include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/reader_pool.hpp"
+#include "server/store/sqlite/report_item.hpp"
+#include "server/store/sqlite/robot_rows.hpp"
+#include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/writer.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// A function on the write batch whose result somebody waits for.
+template <typename Function>
+class CallItem : public WriteItem {
+ public:
+  using Value = std::invoke_result_t<Function, Batch&>;
+
+  explicit CallItem(Function function) : function_(std::move(function)) {}
+
+  std::future<Value> result() { return promise_.get_future(); }
+  void apply(Batch& batch) override { value_.emplace(function_(batch)); }
+  void finish(const Error* error) override {
+    if (error != nullptr)
+      promise_.set_exception(std::make_exception_ptr(Failure(*error)));
+    else
+      promise_.set_value(std::move(*value_));
+  }
+
+ private:
+  Function function_;
+  std::optional<Value> value_;
+  std::promise<Value> promise_;
+};
+
+/// Sets paths aside that a reader found damaged; if it fails, the next reader finds them again.
+class DamageItem : public WriteItem {
+ public:
+  explicit DamageItem(std::vector<std::int64_t> paths) : paths_(std::move(paths)) {}
+
+  void apply(Batch& batch) override {
+    for (const std::int64_t path : paths_)
+      if (const auto key = mark_damaged(batch.database(), path))
+        batch.paths_changed(key->task_id, key->robot_id);
+  }
+  void finish(const Error* /*error*/) override {}
+
+ private:
+  std::vector<std::int64_t> paths_;
+};
+
+/// Parents are made for the owner alone; links are followed, so that one file has one lock.
+std::filesystem::path prepared_location(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(file);
+  const std::filesystem::path directory = absolute.parent_path();
+  if (!std::filesystem::exists(directory)) {
+    std::filesystem::create_directories(directory, error);
+    if (!error) std::filesystem::permissions(directory, std::filesystem::perms::owner_all, error);
+  }
+  if (!error && !std::filesystem::is_directory(directory))
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (error)
+    throw Failure(ErrorCode::Storage,
+                  "directory '" + directory.string() + "' of the store: " + error.message());
+  return std::filesystem::weakly_canonical(absolute);
+}
+
+Uuid ensure_epoch(Database& database) {
+  Transaction transaction(database, Transaction::Kind::Write);
+  database.cached("INSERT INTO setting VALUES ('epoch', ?) ON CONFLICT DO NOTHING")
+      ->bind(1, std::string_view(Uuid::random().text()))
+      .run();
+  std::optional<Uuid> epoch;
+  {
+    const auto query = database.cached("SELECT value FROM setting WHERE key = 'epoch'");
+    if (query->step()) epoch = Uuid::parse(query->column_text(0));
+  }
+  transaction.commit();
+  if (!epoch) throw Failure(ErrorCode::Storage, "store: its epoch is no UUID");
+  return *epoch;
+}
+
+class SqliteStore : public Store {
+ public:
+  explicit SqliteStore(const std::filesystem::path& file)
+      : file_(prepared_location(file)), lock_(file_), readers_(file_) {
+    std::unique_ptr<Database> database = open_writer(file_);
+    epoch_ = ensure_epoch(*database);
+    writer_ = std::make_unique<Writer>(std::move(database), [this] { return reopen(); });
+  }
+  // Readers close before the writer does, whose last act is to empty the WAL.
+  ~SqliteStore() override { readers_.suspend(); }
+
+  Uuid epoch() const override { return epoch_; }
+
+  StoreStatus status() const override {
+    StoreStatus status;
+    status.file = file_.string();
+    status.epoch = epoch_;
+    status.queued = writer_->queued();
+    const std::string trouble = writer_->trouble();
+    status.writable = trouble.empty();
+    if (!trouble.empty()) status.message = "not writable: " + trouble + "; ";
+    const ReaderPool::Lease reader = readers_.lease();
+    count_rows(*reader, status);
+    if (const std::size_t damaged = damaged_robots_; damaged > 0)
+      status.message += std::to_string(damaged) + " damaged robots left out; ";
+    constexpr int kFixed = 3'051'003;
+    if (sqlite3_libversion_number() < kFixed)
+      status.message += std::string("SQLite ") + sqlite3_libversion() +
+                        " is older than 3.51.3: no other program may write to the store; ";
+    if (!status.message.empty()) status.message.resize(status.message.size() - 2);
+    return status;
+  }
+
+  Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
+    return write([&](Batch& batch) { return insert_robot(batch.database(), robot); });
+  }
+
+  std::optional<RobotRecord> find_robot(const Digest& robot) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return select_robot(*reader, robot);
+  }
+
+  std::vector<RobotRecord> robots() const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    RobotsRead read = select_robots(*reader);
+    damaged_robots_ = read.damaged;
+    return std::move(read.robots);
+  }
+
+  void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
+    writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+  }
+
+  std::vector<ExperienceSummary> experience(std::string_view task) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return experience_of(*reader, task);
+  }
+
+  std::uint64_t generation(const Digest& robot, std::string_view task) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return generation_of(*reader, robot, task);
+  }
+
+  std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
+                                     std::int64_t after_id, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
+    if (!key) return {};
+    constexpr std::size_t kMaxPaths = 1'000'000;
+    return undamaged(select_paths(*reader, *key, after_id,
+                                  static_cast<std::int64_t>(std::min(limit, kMaxPaths))));
+  }
+
+  std::uint64_t put_distribution(const Distribution& distribution) override {
+    return write([&](Batch& batch) { return upsert_distribution(batch.database(), distribution); });
+  }
+
+  std::optional<Distribution> find_distribution(const Digest& id) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    std::optional<Distribution> distribution = select_distribution(*reader, id).distribution;
+    if (distribution) distribution->store_epoch = epoch_;
+    return distribution;
+  }
+
+  Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_robots(*reader, cursor, limit);
+  }
+
+  Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_tasks(*reader, cursor, limit);
+  }
+
+  std::optional<TaskSummary> find_task(std::string_view task) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return summary_of_task(*reader, task);
+  }
+
+  Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
+                               std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_paths(*reader, robot, task, cursor, limit);
+  }
+
+  std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    std::optional<AttemptRow> row = select_attempt(*reader, report_uuid);
+    if (!row) return std::nullopt;
+    if (row->path_id)
+      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
+        row->attempt.path = std::move(stored.path);
+    return std::move(row->attempt);
+  }
+
+  Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
+                                               std::string_view task, std::string_view cursor,
+                                               std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_distributions(*reader, robot, task, cursor, limit);
+  }
+
+ private:
+  /// Through the writer's queue; returns when it is durable.
+  template <typename Function>
+  std::invoke_result_t<Function, Batch&> write(Function function) {
+    auto item = std::make_unique<CallItem<Function>>(std::move(function));
+    auto result = item->result();
+    writer_->submit(std::move(item));
+    return result.get();
+  }
+
+  std::vector<StoredPath> undamaged(PathsRead read) const {
+    if (!read.damaged.empty())
+      writer_->submit(std::make_unique<DamageItem>(std::move(read.damaged)));
+    return std::move(read.paths);
+  }
+
+  /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.
+  std::unique_ptr<Database> reopen() {
+    readers_.suspend();
+    try {
+      std::unique_ptr<Database> database = reopen_writer(file_);
+      readers_.resume();
+      return database;
+    } catch (...) {
+      readers_.resume();
+      throw;
+    }
+  }
+
+  const std::filesystem::path file_;
+  const LockFile lock_;
+  mutable ReaderPool readers_;
+  Uuid epoch_;
+  mutable std::atomic<std::size_t> damaged_robots_ = 0;
+  std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above
+};
+
+}  // namespace
+
+std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file) {
+  return std::make_unique<SqliteStore>(file);
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,165 @@
+#include "server/store/sqlite/writer.hpp"
+
+#include <exception>
+#include <optional>
+
+#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/transaction.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// The item's own error, if it had one.
+std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
+  Savepoint savepoint(batch.database());
+  try {
+    item.apply(batch);
+  } catch (const SqliteError& error) {
+    if (!error.concerns_one_row()) throw;
+    return error.error();
+  } catch (const Failure& failure) {
+    return failure.error();
+  } catch (const std::exception& bug) {
+    return Error{ErrorCode::Internal, bug.what()};
+  }
+  savepoint.keep();
+  return std::nullopt;
+}
+
+}  // namespace
+
+void Batch::raise_generations() {
+  for (const auto& [task_id, robot_id] : changed_)
+    database_
+        ->cached(
+            "UPDATE experience SET generation = generation + 1 WHERE task_id = ? AND robot_id = ?")
+        ->bind_all(task_id, robot_id)
+        .run();
+}
+
+Writer::Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options)
+    : reopen_(std::move(reopen)),
+      options_(options),
+      database_(std::move(database)),
+      thread_([this] { run(); }) {}
+
+Writer::~Writer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void Writer::submit(std::unique_ptr<WriteItem> item) {
+  {
+    const std::lock_guard lock(mutex_);
+    queued_weight_ += item->weight();
+    queue_.push_back(std::move(item));
+  }
+  wake_.notify_one();
+}
+
+std::size_t Writer::queued() const {
+  const std::lock_guard lock(mutex_);
+  return queued_weight_;
+}
+
+std::string Writer::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+void Writer::run() {
+  while (true) {
+    Items items = take_batch();
+    if (!database_ && !recover()) {
+      const Error error{ErrorCode::Storage, trouble()};
+      finish_all(items, &error);
+      const std::lock_guard lock(mutex_);
+      if (stopping_ && queue_.empty()) return;
+      continue;
+    }
+    if (items.empty()) {
+      const std::lock_guard lock(mutex_);
+      if (!stopping_ || !queue_.empty()) continue;
+      break;
+    }
+    write(items);
+  }
+  close();
+}
+
+/// Empty if the writer shall stop or, after a failure, try to reopen.
+Writer::Items Writer::take_batch() {
+  std::unique_lock lock(mutex_);
+  const auto something_to_do = [this] { return stopping_ || !queue_.empty(); };
+  if (database_)
+    wake_.wait(lock, something_to_do);
+  else
+    wake_.wait_for(lock, options_.retry_after, something_to_do);
+  Items items;
+  std::size_t weight = 0;
+  while (!queue_.empty()) {
+    const std::size_t next = queue_.front()->weight();
+    if (!items.empty() && weight + next > options_.batch_cap) break;
+    weight += next;
+    items.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+  }
+  queued_weight_ -= weight;
+  return items;
+}
+
+void Writer::write(Items& items) {
+  std::vector<std::optional<Error>> errors(items.size());
+  try {
+    Transaction transaction(*database_, Transaction::Kind::Write);
+    Batch batch(*database_);
+    for (std::size_t i = 0; i < items.size(); ++i) errors[i] = apply_alone(*items[i], batch);
+    batch.raise_generations();
+    transaction.commit();
+  } catch (const Failure& failure) {
+    fail(failure);
+    const Error error = failure.error();
+    finish_all(items, &error);
+    recover();
+    return;
+  }
+  for (std::size_t i = 0; i < items.size(); ++i)
+    items[i]->finish(errors[i] ? &*errors[i] : nullptr);
+}
+
+void Writer::finish_all(Items& items, const Error* error) {
+  for (const auto& item : items) item->finish(error);
+}
+
+void Writer::fail(const Failure& failure) {
+  database_.reset();
+  const std::lock_guard lock(mutex_);
+  trouble_ = failure.what();
+}
+
+bool Writer::recover() {
+  try {
+    database_ = reopen_();
+  } catch (const Failure& failure) {
+    fail(failure);
+    return false;
+  }
+  const std::lock_guard lock(mutex_);
+  trouble_.clear();
+  return true;
+}
+
+void Writer::close() {
+  try {
+    database_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  } catch (const SqliteError&) {
+    // All is durable in the WAL already; the next start checkpoints it.
+  }
+  database_.reset();
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "proto/types/failure.hpp"
+#include "server/store/sqlite/database.hpp"
+
+namespace kinship::store {
+
+/// One write transaction while it is being filled.
+class Batch {
+ public:
+  explicit Batch(Database& database) : database_(&database) {}
+
+  Database& database() const noexcept { return *database_; }
+
+  /// Says that the paths of a robot and task changed; the batch raises their generation once.
+  void paths_changed(std::int64_t task_id, std::int64_t robot_id) {
+    changed_.emplace(task_id, robot_id);
+  }
+  void raise_generations();
+
+ private:
+  Database* database_;
+  std::set<std::pair<std::int64_t, std::int64_t>> changed_;
+};
+
+/// Something to be written. Both methods run on the writer's thread.
+class WriteItem {
+ public:
+  virtual ~WriteItem() = default;
+
+  virtual std::size_t weight() const { return 1; }  ///< counts towards the cap of a batch
+
+  /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that
+  /// does not concern one row: that one undoes the batch.
+  virtual void apply(Batch& batch) = 0;
+
+  /// Called once, when the item is durable (no error) or undone. Must not throw or block.
+  virtual void finish(const Error* error) = 0;
+};
+
+struct WriterOptions {
+  std::size_t batch_cap = 256;  ///< weight of one transaction, unless one item exceeds it alone
+  std::chrono::milliseconds retry_after{1000};  ///< between attempts to reopen a failed database
+};
+
+/// The thread that owns the only writing connection. It takes whatever is queued as one
+/// transaction and finishes the items after the commit is durable; nobody waits for a timer.
+///
+/// Fail-stop: on an I/O error, a full disk or damage it undoes the batch, finishes every item with
+/// the error, closes the connection and opens it again with checks; until that succeeds items are
+/// answered with the error.
+class Writer {
+ public:
+  /// \param database  the connection to begin with.
+  /// \param reopen    makes a checked connection after a failure, or throws Failure. Called on the
+  ///                  writer's thread when the old connection is closed.
+  using Reopen = std::function<std::unique_ptr<Database>()>;
+  Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options = {});
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  /// Writes what is queued, checkpoints, and closes the connection.
+  ~Writer();
+
+  void submit(std::unique_ptr<WriteItem> item);
+
+  std::size_t queued() const;  ///< weight of what waits
+  /// Empty while all is well; else why nothing is written.
+  std::string trouble() const;
+
+ private:
+  using Items = std::vector<std::unique_ptr<WriteItem>>;
+
+  void run();
+  Items take_batch();
+  void write(Items& items);
+  void finish_all(Items& items, const Error* error);
+  void fail(const Failure& failure);
+  bool recover();
+  void close();
+
+  const Reopen reopen_;
+  const WriterOptions options_;
+  std::unique_ptr<Database> database_;  // the writer's thread only; empty after a failure
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::unique_ptr<WriteItem>> queue_;  // guarded by mutex_, like all below
+  std::size_t queued_weight_ = 0;
+  std::string trouble_;
+  bool stopping_ = false;
+
+  std::thread thread_;  // last: starts when all the rest is there
+};
+
+}  // namespace kinship::store
