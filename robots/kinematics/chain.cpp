@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/number_text.hpp"
 #include "proto/types/sha256.hpp"
 
 namespace kinship::kinematics {
@@ -19,8 +20,8 @@ std::optional<std::string> find_fault(std::string_view what, const Eigen::Isomet
   if (!T.matrix().allFinite()) return name + ": pose is not finite";
   const double largest_m = T.translation().cwiseAbs().maxCoeff();
   if (largest_m > kMaxPlacement_m)
-    return name + ": coordinate " + std::to_string(largest_m) + " m exceeds " +
-           std::to_string(kMaxPlacement_m) + " m";
+    return name + ": coordinate " + number_text(largest_m) + " m exceeds " +
+           number_text(kMaxPlacement_m) + " m";
   const Eigen::Matrix3d R = T.linear();
   if (!(R.transpose() * R).isIdentity(kUnitTolerance) || R.determinant() < 0)
     return name + ": orientation is not a rotation";
@@ -31,15 +32,14 @@ std::optional<std::string> find_fault(const Joint& joint) {
   const std::string name = "joint '" + joint.name + "'";
   if (auto fault = find_fault(name, joint.T_previous_joint)) return fault;
   if (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > kUnitTolerance)
-    return name + ": axis has length " + std::to_string(joint.axis.norm()) + ", must be 1";
+    return name + ": axis has length " + number_text(joint.axis.norm()) + ", must be 1";
   if (joint.type == JointType::Continuous) return std::nullopt;
   for (const double limit : {joint.lower, joint.upper})
     if (!(std::abs(limit) <= kMaxPlacement_m))
-      return name + ": limit " + std::to_string(limit) + " exceeds " +
-             std::to_string(kMaxPlacement_m);
+      return name + ": limit " + number_text(limit) + " exceeds " + number_text(kMaxPlacement_m);
   if (!(joint.lower < joint.upper))
-    return name + ": lower limit " + std::to_string(joint.lower) + " is not below upper limit " +
-           std::to_string(joint.upper);
+    return name + ": lower limit " + number_text(joint.lower) + " is not below upper limit " +
+           number_text(joint.upper);
   return std::nullopt;
 }
 

@@ -34,7 +34,7 @@ TEST(Chain, RefusesPartsThatAreNoChainAndNamesThem) {
   EXPECT_NE(fault_after([](auto& p) { p.joints[2].axis *= 2; }).find("'joint_3': axis"),
             std::string::npos);
   EXPECT_EQ(fault_after([](auto& p) { p.joints[0].upper = -2; }),
-            "joint 'joint_1': lower limit -1.000000 is not below upper limit -2.000000");
+            "joint 'joint_1': lower limit -1 is not below upper limit -2");
   EXPECT_NE(fault_after([](auto& p) { p.joints[0].lower = kNan; }).find("limit nan"),
             std::string::npos);
   EXPECT_NE(fault_after([](auto& p) { p.joints[0].upper = 1e16; }).find("exceeds 1000"),

@@ -1,0 +1,259 @@
+#include "robots/kinematics/urdf.hpp"
+
+#include <urdf_model/model.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+#include "proto/types/number_text.hpp"
+#include "robots/kinematics/joint_motion.hpp"
+#include "robots/kinematics/urdf_model.hpp"
+
+namespace kinship::kinematics {
+namespace {
+
+constexpr double kShortestAxis = 1e-6;
+
+Failure invalid(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
+
+std::string words(const urdf::Joint& joint) { return "joint '" + joint.name + "'"; }
+
+bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
+
+/// A joint with one value: what a chain is made of, and what can be held.
+bool has_one_value(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+Eigen::Isometry3d T_parent_joint(const urdf::Joint& joint) {
+  const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
+  const urdf::Rotation& r = origin.rotation;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
+  T.translation() << origin.position.x, origin.position.y, origin.position.z;
+  return T;
+}
+
+struct Limits {
+  double lower = 0, upper = 0;
+};
+
+/// The stricter of the hard and the soft limits; soft limits of 0 and 0 are absent ones.
+Limits stricter_limits(const urdf::Joint& joint) {
+  if (joint.limits == nullptr) throw invalid(words(joint) + ": no limits");
+  const auto check = [&](const std::string& which, double lower, double upper) {
+    if (!(lower <= upper))
+      throw invalid(words(joint) + ": lower" + which + " limit " + number_text(lower) +
+                    " exceeds upper" + which + " limit " + number_text(upper));
+  };
+  Limits limits{joint.limits->lower, joint.limits->upper};
+  check("", limits.lower, limits.upper);
+  if (joint.safety == nullptr) return limits;
+  const double soft_lower = joint.safety->soft_lower_limit;
+  const double soft_upper = joint.safety->soft_upper_limit;
+  if (soft_lower == 0 && soft_upper == 0) return limits;
+  check(" soft", soft_lower, soft_upper);
+  limits.lower = std::max(limits.lower, soft_lower);
+  limits.upper = std::min(limits.upper, soft_upper);
+  check(" (hard and soft)", limits.lower, limits.upper);
+  return limits;
+}
+
+/// Type, axis and limits; pose still to be filled in.
+Joint read_joint(const urdf::Joint& source) {
+  Joint joint;
+  joint.name = source.name;
+  const Eigen::Vector3d axis(source.axis.x, source.axis.y, source.axis.z);
+  const double length = axis.norm();
+  if (!(length >= kShortestAxis && std::isfinite(length)))
+    throw invalid(words(source) + ": axis has length " + number_text(length) +
+                  ", which gives no direction");
+  joint.axis = axis / length;
+  if (source.type == urdf::Joint::CONTINUOUS) {
+    joint.type = JointType::Continuous;
+    return joint;
+  }
+  joint.type = source.type == urdf::Joint::PRISMATIC ? JointType::Prismatic : JointType::Revolute;
+  const Limits limits = stricter_limits(source);
+  joint.lower = limits.lower;
+  joint.upper = limits.upper;
+  return joint;
+}
+
+/// The joints from base link to tip link, fixed ones too.
+std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface& model,
+                                                      const std::string& base,
+                                                      const std::string& tip) {
+  if (model.getLink(base) == nullptr) throw invalid("base link '" + base + "': not in the URDF");
+  urdf::LinkConstSharedPtr link = model.getLink(tip);
+  if (link == nullptr) throw invalid("tip link '" + tip + "': not in the URDF");
+  std::vector<urdf::JointConstSharedPtr> joints;
+  while (link->name != base) {
+    if (link->parent_joint == nullptr)
+      throw invalid("base link '" + base + "' is not an ancestor of tip link '" + tip + "'");
+    joints.push_back(link->parent_joint);
+    link = link->getParent();
+  }
+  std::reverse(joints.begin(), joints.end());
+  return joints;
+}
+
+void check_on_chain(const urdf::Joint& joint) {
+  if (!has_one_value(joint))
+    throw invalid(words(joint) + " on the chain is floating or planar, which is not supported");
+  if (joint.mimic != nullptr)
+    throw invalid(words(joint) + " on the chain mimics joint '" + joint.mimic->joint_name +
+                  "', which is not supported");
+}
+
+/// Where the joints off the chain stand.
+class HeldJoints {
+ public:
+  HeldJoints(const urdf::ModelInterface& model, const std::map<std::string, double>& held,
+             const std::set<std::string>& on_chain)
+      : held_(held) {
+    for (const auto& [name, value] : held) {
+      if (name.size() > kMaxLinkNameBytes)
+        throw invalid("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
+                      std::to_string(kMaxLinkNameBytes));
+      const urdf::JointConstSharedPtr joint = model.getJoint(name);
+      if (joint == nullptr) throw invalid("held joint '" + name + "': not in the URDF");
+      if (on_chain.contains(name)) throw invalid("held joint '" + name + "': is on the chain");
+      if (!has_one_value(*joint))
+        throw invalid("held joint '" + name + "': is fixed, floating or planar");
+      check_value(*joint, value);
+    }
+  }
+
+  /// Pose of a joint's moving frame in its parent link; floating and planar joints stand at zero.
+  Eigen::Isometry3d T_parent_moving(const urdf::Joint& joint) const {
+    Eigen::Isometry3d T = T_parent_joint(joint);
+    if (has_one_value(joint)) move(read_joint(joint), value_of(joint), T);
+    return T;
+  }
+
+ private:
+  static void check_value(const urdf::Joint& joint, double value) {
+    const bool continuous = joint.type == urdf::Joint::CONTINUOUS;
+    const Limits limits =
+        continuous ? Limits{-kMaxPlacement_m, kMaxPlacement_m} : stricter_limits(joint);
+    if (!(value >= limits.lower && value <= limits.upper))
+      throw invalid("held joint '" + joint.name + "': value " + number_text(value) +
+                    " is outside its limits " + number_text(limits.lower) + " to " +
+                    number_text(limits.upper));
+  }
+
+  double value_of(const urdf::Joint& joint) const {
+    if (const auto held = held_.find(joint.name); held != held_.end()) return held->second;
+    if (joint.type == urdf::Joint::CONTINUOUS) return 0;
+    const Limits limits = stricter_limits(joint);
+    return std::clamp(0.0, limits.lower, limits.upper);
+  }
+
+  const std::map<std::string, double>& held_;
+};
+
+/// Pose of the URDF's root link in the base link, with every joint between them held.
+Eigen::Isometry3d T_base_root(const urdf::Link& base, const HeldJoints& held) {
+  Eigen::Isometry3d T_root_base = Eigen::Isometry3d::Identity();
+  for (const urdf::Link* link = &base; link->parent_joint != nullptr;
+       link = link->getParent().get())
+    T_root_base = held.T_parent_moving(*link->parent_joint) * T_root_base;
+  return T_root_base.inverse();
+}
+
+/// Fills joints' poses and links, from the root link on; parents come before their children.
+class TreeWalk {
+ public:
+  TreeWalk(const HeldJoints& held, const std::vector<urdf::JointConstSharedPtr>& on_chain,
+           ChainParts& parts)
+      : held_(held), parts_(parts) {
+    for (const auto& joint : on_chain) {
+      if (!moves(*joint)) continue;
+      check_on_chain(*joint);
+      index_[joint->name] = static_cast<int>(parts_.joints.size());
+      parts_.joints.push_back(read_joint(*joint));
+    }
+  }
+
+  void walk(const urdf::ModelInterface& model) {
+    std::vector<urdf::LinkConstSharedPtr> found = {model.getRoot()};
+    parts_.links.push_back(
+        {model.getRoot()->name, -1, T_base_root(*model.getLink(parts_.base_link), held_), -1});
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (const auto& joint : found[i]->child_joints) {
+        parts_.links.push_back(child_link(*joint, static_cast<int>(i)));
+        found.push_back(model.getLink(joint->child_link_name));
+      }
+    for (const ChainLink& link : parts_.links)
+      if (link.name == parts_.tip_link) parts_.T_last_tip = link.T_joint_link;
+  }
+
+ private:
+  ChainLink child_link(const urdf::Joint& joint, int parent) {
+    const ChainLink& above = parts_.links[static_cast<std::size_t>(parent)];
+    ChainLink link{joint.child_link_name, above.joint, Eigen::Isometry3d::Identity(), parent};
+    if (const auto on_chain = index_.find(joint.name); on_chain != index_.end()) {
+      link.joint = on_chain->second;
+      parts_.joints[static_cast<std::size_t>(link.joint)].T_previous_joint =
+          above.T_joint_link * T_parent_joint(joint);
+    } else if (link.name != parts_.base_link) {
+      link.T_joint_link = above.T_joint_link * held_.T_parent_moving(joint);
+    }
+    return link;
+  }
+
+  const HeldJoints& held_;
+  ChainParts& parts_;
+  std::map<std::string, int> index_;  // of the chain's moving joints, by name
+};
+
+void check_description(const RobotDescription& description) {
+  if (const auto error = check_label(description.label)) throw Failure(*error);
+  for (const auto& [what, name] : {std::pair("base link", &description.base_link),
+                                   std::pair("tip link", &description.tip_link)}) {
+    if (name->empty()) throw invalid(std::string(what) + ": name is empty");
+    if (name->size() > kMaxLinkNameBytes)
+      throw invalid(std::string(what) + ": name of " + std::to_string(name->size()) +
+                    " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
+  }
+  if (description.held_joints.size() > kMaxHeldJoints)
+    throw invalid("held joints: " + std::to_string(description.held_joints.size()) + " exceed " +
+                  std::to_string(kMaxHeldJoints));
+}
+
+ChainParts read_parts(const RobotDescription& description) {
+  check_description(description);
+  const UrdfModel model = parse_urdf(description.urdf).value_or_throw();
+  ChainParts parts;
+  parts.base_link = description.base_link;
+  parts.tip_link = description.tip_link;
+  parts.T_tip_transfer = description.T_tip_transfer;
+  parts.task_axes = description.task_axes;
+  const auto joints = joints_between(*model, description.base_link, description.tip_link);
+  std::set<std::string> on_chain;
+  for (const auto& joint : joints) on_chain.insert(joint->name);
+  const HeldJoints held(*model, description.held_joints, on_chain);
+  TreeWalk(held, joints, parts).walk(*model);
+  if (const auto fault = find_fault(parts)) throw invalid(*fault);
+  return parts;
+}
+
+}  // namespace
+
+Result<Chain> read_chain(const RobotDescription& description) {
+  try {
+    return Chain(read_parts(description));
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
+
+}  // namespace kinship::kinematics

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::kinematics {
+
+inline constexpr int kMaxUrdfDepth = 64;       ///< of nested elements: the parser recurses
+inline constexpr int kMaxUrdfAttributes = 64;  ///< of one element: the parser searches linearly
+inline constexpr int kMaxUrdfLinks = 1024;
+
+/// What makes a text unfit for the XML parser, or nothing. Checks size, control characters,
+/// nesting, attributes and number of links in one pass, and refuses document types, which could
+/// declare entities. Says nothing about whether the text is a URDF.
+std::optional<Error> check_markup(std::string_view text);
+
+}  // namespace kinship::kinematics

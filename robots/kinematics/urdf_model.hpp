@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "proto/types/result.hpp"
+
+namespace urdf {
+class ModelInterface;
+}
+
+namespace kinship::kinematics {
+
+/// A parsed URDF; include <urdf_model/model.h> to look inside.
+using UrdfModel = std::shared_ptr<const urdf::ModelInterface>;
+
+/// Parses URDF text from outside with urdfdom, without output and without throwing.
+/// \return a model whose links form one tree and whose names have at most kMaxLinkNameBytes;
+///         InvalidInput or TooLarge with the parser's own message otherwise.
+Result<UrdfModel> parse_urdf(const std::string& text);
+
+}  // namespace kinship::kinematics
