@@ -5,11 +5,14 @@
 #include <cmath>
 
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "tests/unit/robots/inverse/chains.hpp"
+#include "tests/support/planar_arm.hpp"
 
 namespace kinship::inverse {
 namespace {
 
+using test_support::planar_axes;
+using test_support::planar_pose;
+using test_support::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 
 TEST(TaskError, IsZeroBetweenEqualPosesAndTwiceTheHalfSineOtherwise) {

@@ -7,12 +7,15 @@
 
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "tests/unit/robots/inverse/chains.hpp"
+#include "tests/support/planar_arm.hpp"
 
 namespace kinship::inverse {
 namespace {
 
 using kinematics::JointType;
+using test_support::planar_axes;
+using test_support::planar_pose;
+using test_support::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 
 bool contains(const InverseSolutions& solutions, const Eigen::VectorXd& q) {

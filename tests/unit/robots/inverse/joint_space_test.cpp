@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/robots/inverse/chains.hpp"
+#include "tests/support/planar_arm.hpp"
 
 namespace kinship::inverse {
 namespace {
 
 using kinematics::JointType;
+using test_support::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 
 TEST(Normalize, OfTurnedCopiesTheOneNearestMidRangeStands) {

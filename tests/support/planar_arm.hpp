@@ -7,7 +7,7 @@
 
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::inverse {
+namespace kinship::test_support {
 
 inline TaskAxes planar_axes(bool yaw) { return {{true, true, false, false, false, yaw}}; }
 
@@ -17,6 +17,7 @@ struct PlanarArm {
   double limit = std::numbers::pi;  ///< of every joint, both ways
   kinematics::JointType type = kinematics::JointType::Revolute;
   bool yaw = true;  ///< whether the direction of the tip matters, or its place only
+  Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
 
   kinematics::Chain chain() const {
     kinematics::ChainParts parts;
@@ -32,6 +33,7 @@ struct PlanarArm {
       parts.joints.push_back(joint);
     }
     parts.T_last_tip.translation().x() = lengths_m.back();
+    parts.T_tip_transfer = T_tip_transfer;
     parts.task_axes = planar_axes(yaw);
     return kinematics::Chain(std::move(parts));
   }
@@ -44,4 +46,4 @@ inline Eigen::Isometry3d planar_pose(double x, double y, double yaw_rad) {
   return T;
 }
 
-}  // namespace kinship::inverse
+}  // namespace kinship::test_support
