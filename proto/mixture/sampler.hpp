@@ -29,9 +29,11 @@ class Sampler {
   static constexpr int kMaxDraws = 1000;
 
  private:
+  Eigen::Index draw_component(std::mt19937_64& generator) const;
+
   std::vector<double> cumulative_weights_;
-  Eigen::MatrixXd means_;                 // d x K
-  std::vector<Eigen::MatrixXd> factors_;  // lower Cholesky factors
+  Eigen::MatrixXd means_;    // d x K
+  Eigen::MatrixXd factors_;  // d x d K: column k d + i is row i of the Cholesky factor of k
   Eigen::Matrix2Xd limits_;
 };
 

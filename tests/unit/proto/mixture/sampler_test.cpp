@@ -1,0 +1,140 @@
+#include "proto/mixture/sampler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::mixture {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+
+Mixture tilted_2d() {
+  Eigen::MatrixXd means(2, 2);
+  means << -1, 2, 0.5, 0;
+  Eigen::Matrix2d first;
+  first << 0.5, 0.3, 0.3, 0.4;
+  Eigen::Matrix2d second;
+  second << 0.2, -0.1, -0.1, 0.3;
+  return {Eigen::Vector2d(0.3, 0.7), means, {first, second}};
+}
+
+Eigen::Matrix2Xd limits_of(double lower, double upper, Eigen::Index dimension) {
+  Eigen::Matrix2Xd limits(2, dimension);
+  limits.row(0).setConstant(lower);
+  limits.row(1).setConstant(upper);
+  return limits;
+}
+
+Eigen::MatrixXd draw(const Sampler& sampler, Eigen::Index count) {
+  std::mt19937_64 generator(kSeed);
+  Eigen::MatrixXd samples(sampler.dimension(), count);
+  for (Eigen::Index i = 0; i < count; ++i) samples.col(i) = sampler.sample(generator).value();
+  return samples;
+}
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& samples) {
+  const Eigen::MatrixXd centred = samples.colwise() - samples.rowwise().mean();
+  return centred * centred.transpose() / static_cast<double>(samples.cols());
+}
+
+TEST(Sampler, MeanAndCovarianceMatchIfLimitsAreWide) {
+  const Mixture mixture = tilted_2d();
+  const Eigen::MatrixXd samples = draw(Sampler(mixture, limits_of(-100, 100, 2)), 200'000);
+  const Eigen::Vector2d mean = mixture.means() * mixture.weights();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Eigen::Vector2d offset = mixture.means().col(k) - mean;
+    covariance += mixture.weights()[k] * (mixture.covariances()[static_cast<std::size_t>(k)] +
+                                          offset * offset.transpose());
+  }
+  EXPECT_LT((samples.rowwise().mean() - mean).cwiseAbs().maxCoeff(), 0.015);  // 4 sigma of 200 000
+  EXPECT_LT((covariance_of(samples) - covariance).cwiseAbs().maxCoeff(), 0.03);
+}
+
+TEST(Sampler, EverySampleIsInsideTheLimits) {
+  const Eigen::MatrixXd samples = draw(Sampler(tilted_2d(), limits_of(-1.2, 0.7, 2)), 20'000);
+  EXPECT_GE(samples.minCoeff(), -1.2);
+  EXPECT_LE(samples.maxCoeff(), 0.7);
+}
+
+TEST(Sampler, LimitsChangeTheSharesOfComponents) {
+  // Half of N(0, 1) lies above 0 and all of N(20, 1): (0.5 0.5) / (0.5 0.5 + 0.5) = 1/3.
+  Eigen::MatrixXd means(1, 2);
+  means << 0, 20;
+  const Mixture mixture(Eigen::Vector2d(0.5, 0.5), means,
+                        {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Ones(1, 1)});
+  const Eigen::MatrixXd samples = draw(Sampler(mixture, limits_of(0, 100, 1)), 100'000);
+  const double share = (samples.array() < 10).cast<double>().mean();
+  EXPECT_NEAR(share, 1.0 / 3.0, 0.006);  // 4 sigma
+}
+
+TEST(Sampler, TruncatedDrawsMatchARejectionReference) {
+  const Mixture mixture = tilted_2d();
+  const Eigen::Matrix2Xd limits = limits_of(-1.5, 1.5, 2);
+  const Eigen::MatrixXd samples = draw(Sampler(mixture, limits), 100'000);
+
+  std::mt19937_64 generator(kSeed + 1);
+  std::normal_distribution<double> normal;
+  std::discrete_distribution<std::size_t> component({0.3, 0.7});
+  Eigen::MatrixXd reference(2, samples.cols());
+  for (Eigen::Index i = 0; i < reference.cols();) {
+    const std::size_t k = component(generator);
+    const Eigen::Vector2d noise(normal(generator), normal(generator));
+    const Eigen::Vector2d q = mixture.means().col(static_cast<Eigen::Index>(k)) +
+                              mixture.covariances()[k].llt().matrixL() * noise;
+    if (q.cwiseAbs().maxCoeff() <= 1.5) reference.col(i++) = q;
+  }
+
+  EXPECT_LT((samples.rowwise().mean() - reference.rowwise().mean()).cwiseAbs().maxCoeff(), 0.02);
+  EXPECT_LT((covariance_of(samples) - covariance_of(reference)).cwiseAbs().maxCoeff(), 0.03);
+}
+
+TEST(Sampler, MixtureOutsideTheLimitsGivesNothing) {
+  std::mt19937_64 generator(kSeed);
+  EXPECT_FALSE(Sampler(tilted_2d(), limits_of(50, 60, 2)).sample(generator));
+}
+
+TEST(Sampler, JointWithEqualLimitsIsMetOnlyByChance) {
+  Eigen::Matrix2Xd limits = limits_of(-10, 10, 2);
+  limits(0, 1) = limits(1, 1) = 0.25;
+  std::mt19937_64 generator(kSeed);
+  EXPECT_FALSE(Sampler(tilted_2d(), limits).sample(generator));
+}
+
+TEST(Sampler, SameSeedSameBytes) {
+  const Sampler sampler(tilted_2d(), limits_of(-3, 3, 2));
+  const Eigen::MatrixXd first = draw(sampler, 1000);
+  EXPECT_EQ(first, draw(Sampler(tilted_2d(), limits_of(-3, 3, 2)), 1000));
+}
+
+TEST(Sampler, ComponentWithoutWeightIsNeverDrawn) {
+  const Mixture both = tilted_2d();
+  for (const Eigen::Vector2d& weights : {Eigen::Vector2d(0, 1), Eigen::Vector2d(1, 0)}) {
+    Eigen::MatrixXd means = both.means();
+    means.col(weights[0] == 0 ? 0 : 1).setConstant(1000);
+    const Mixture mixture(weights, means, both.covariances());
+    EXPECT_LT(draw(Sampler(mixture, limits_of(-1e6, 1e6, 2)), 20'000).maxCoeff(), 100);
+  }
+}
+
+TEST(Sampler, RefusesLimitsThatMakeNoSense) {
+  EXPECT_THROW(Sampler(tilted_2d(), limits_of(-1, 1, 3)), std::invalid_argument);
+  EXPECT_THROW(Sampler(tilted_2d(), limits_of(1, -1, 2)), std::invalid_argument);
+  EXPECT_THROW(Sampler(tilted_2d(), limits_of(std::numeric_limits<double>::quiet_NaN(), 1, 2)),
+               std::invalid_argument);
+}
+
+TEST(Sampler, RefusesACovarianceThatIsNotPositiveDefinite) {
+  const Mixture flat(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(2, 1),
+                     {Eigen::Matrix2d::Zero()});
+  EXPECT_THROW(Sampler(flat, limits_of(-1, 1, 2)), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::mixture
