@@ -102,7 +102,7 @@ TEST(Transfer, TheSameRobotElsewhereIsTransferred) {
 }
 
 TEST(Transfer, SummaryAndIndicesAddUp) {
-  const auto short_arm = PlanarArm{.lengths_m = {0.3, 0.25, 0.2, 0.1}, .limit = 1.5}.chain();
+  const auto short_arm = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 1.5}.chain();
   const auto transferred = transfer_path(source_path(), source_arm(), short_arm,
                                          planar_pose(0.1, 0, 0), {.pose_spacing = 0.05}, kSeed);
   const TransferSummary& summary = transferred.summary;
