@@ -1,0 +1,46 @@
+#include "proto/codec/conversation.hpp"
+
+#include "proto/types/limits.hpp"
+
+namespace kinship::codec {
+namespace {
+
+/// Cut at the limit, so that a refusal can always be sent; never inside a UTF-8 sequence.
+std::string message_of(const Error& error) {
+  if (error.message.size() <= kMaxMessageBytes) return error.message;
+  std::size_t end = kMaxMessageBytes;
+  while (end > 0 && (static_cast<unsigned char>(error.message[end]) & 0xC0U) == 0x80U) --end;
+  return error.message.substr(0, end);
+}
+
+}  // namespace
+
+RegisterReply RegisterConversation::refuse(const Error& error) {
+  RegisterReply reply;
+  reply.status = RegisterStatus::Refused;
+  reply.message = message_of(error);
+  return reply;
+}
+
+ReportReply ReportConversation::refuse(const Error& /*error*/) { return {}; }
+
+FetchReply FetchConversation::refuse(const Error& error) {
+  FetchReply reply;
+  reply.status = FetchStatus::Refused;
+  reply.message = message_of(error);
+  return reply;
+}
+
+AdminReply AdminConversation::refuse(const Error& error) {
+  const bool is_callers_fault = error.code == ErrorCode::InvalidInput ||
+                                error.code == ErrorCode::TooLarge ||
+                                error.code == ErrorCode::Conflict;
+  AdminReply reply;
+  reply.status = error.code == ErrorCode::NotFound ? AdminStatus::NotFound
+                 : is_callers_fault                ? AdminStatus::Refused
+                                                   : AdminStatus::Failed;
+  reply.message = message_of(error);
+  return reply;
+}
+
+}  // namespace kinship::codec

@@ -1,0 +1,189 @@
+#include "proto/codec/distribution_codec.hpp"
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/writer.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+
+namespace kinship::codec {
+namespace {
+
+constexpr std::size_t kMaxEnginesBytes = 128;
+
+/// Numbers in the lower triangle of a d x d matrix.
+std::size_t triangle_size(std::size_t dimension) { return dimension * (dimension + 1) / 2; }
+
+void write_mixture(const Mixture& mixture, Arena& arena, kinship_wire_Mixture& wire) {
+  const auto dimension = static_cast<std::size_t>(mixture.dimension());
+  const auto components = static_cast<std::size_t>(mixture.size());
+  write_numbers(arena, mixture.weights().data(), components, wire.weights);
+  write_numbers(arena, mixture.means().data(), dimension * components, wire.means);
+  arena.resize(wire.covariances, components * triangle_size(dimension));
+  double* next = wire.covariances._buffer;
+  for (const Eigen::MatrixXd& covariance : mixture.covariances())
+    for (Eigen::Index row = 0; row < covariance.rows(); ++row)
+      for (Eigen::Index column = 0; column <= row; ++column) *next++ = covariance(row, column);
+}
+
+std::optional<Mixture> read_mixture(const kinship_wire_Mixture& wire, std::size_t dimension,
+                                    Reader& reader) {
+  const auto weights = elements(wire.weights);
+  const auto means = elements(wire.means);
+  const auto covariances = elements(wire.covariances);
+  reader.rules.that(dimension > 0 && !weights.empty(), "mixture: no joint or no component")
+      .at_most("mixture: components", weights.size(), kMaxComponents);
+  if (reader.rules.broken()) return std::nullopt;  // the products below cannot overflow
+  reader.rules
+      .that(means.size() == weights.size() * dimension,
+            "mixture: " + std::to_string(means.size()) + " numbers of means, must be " +
+                std::to_string(weights.size() * dimension))
+      .that(covariances.size() == weights.size() * triangle_size(dimension),
+            "mixture: " + std::to_string(covariances.size()) + " numbers of covariances, must be " +
+                std::to_string(weights.size() * triangle_size(dimension)));
+  if (reader.rules.broken()) return std::nullopt;
+  const auto d = static_cast<Eigen::Index>(dimension);
+  const auto k = static_cast<Eigen::Index>(weights.size());
+  std::vector<Eigen::MatrixXd> matrices(weights.size(), Eigen::MatrixXd(d, d));
+  const double* next = covariances.data();
+  for (Eigen::MatrixXd& matrix : matrices)
+    for (Eigen::Index row = 0; row < d; ++row)
+      for (Eigen::Index column = 0; column <= row; ++column)
+        matrix(row, column) = matrix(column, row) = *next++;
+  try {
+    return Mixture(Eigen::Map<const Eigen::VectorXd>(weights.data(), k),
+                   Eigen::Map<const Eigen::MatrixXd>(means.data(), d, k), std::move(matrices));
+  } catch (const std::invalid_argument& error) {  // the class knows its own invariant
+    reader.rules.that(false, error.what());
+    return std::nullopt;
+  }
+}
+
+void write_sources(const std::vector<Source>& sources, Arena& arena,
+                   kinship_wire_Distribution& wire) {
+  arena.resize(wire.sources, sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    kinship_wire_Source& entry = wire.sources._buffer[i];
+    write_digest(sources[i].robot, entry.robot);
+    entry.label = arena.text(sources[i].label);
+    entry.paths = sources[i].paths;
+    entry.generation = sources[i].generation;
+    entry.poses = sources[i].poses;
+    entry.poses_solved = sources[i].poses_solved;
+  }
+}
+
+std::vector<Source> read_sources(const kinship_wire_Distribution& wire, Reader& reader) {
+  std::vector<Source> sources;
+  for (const kinship_wire_Source& entry : elements(wire.sources))
+    sources.push_back({read_digest(entry.robot), reader.text("label", entry.label, kMaxLabelBytes),
+                       entry.paths, entry.generation, entry.poses, entry.poses_solved});
+  return sources;
+}
+
+void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
+  rules.at_most("limits", static_cast<std::size_t>(limits.cols()), kMaxDof)
+      .that(limits.allFinite(), "limits: not all finite");
+  for (Eigen::Index joint = 0; joint < limits.cols() && !rules.broken(); ++joint)
+    if (limits(0, joint) > limits(1, joint))
+      rules.that(false, "limits: joint " + std::to_string(joint + 1) + " from " +
+                            std::to_string(limits(0, joint)) + " to " +
+                            std::to_string(limits(1, joint)));
+}
+
+}  // namespace
+
+std::optional<Error> check(const Distribution& distribution) {
+  Rules rules;
+  rules.name(check_task(distribution.task))
+      .text("profile", distribution.profile, kMaxProfileBytes)
+      .text("engines", distribution.engines, kMaxEnginesBytes)
+      .text("reason", distribution.reason, kMaxMessageBytes)
+      .text("evidence", distribution.evidence, kMaxMessageBytes)
+      .at_most("sources", distribution.sources.size(), kMaxSources)
+      .between("recommended_share", distribution.recommended_share, 0, 1)
+      .finite("held_out_score", distribution.held_out_score.value_or(0))
+      .not_negative("transfer_time_s", distribution.transfer_time_s)
+      .not_negative("fit_time_s", distribution.fit_time_s);
+  if (distribution.T_task_base) rules.pose("T_task_base", *distribution.T_task_base);
+  for (const Source& source : distribution.sources)
+    rules.text("label of a source", source.label, kMaxLabelBytes);
+  check_limits(distribution.limits, rules);
+  const auto& mixture = distribution.mixture;
+  rules.that(mixture.has_value() == (distribution.state == DistributionState::Ready),
+             mixture ? "mixture: given although failed" : "mixture: missing although ready");
+  if (mixture)
+    rules.at_most("mixture: components", static_cast<std::size_t>(mixture->size()), kMaxComponents)
+        .that(mixture->dimension() == distribution.limits.cols(),
+              "mixture: dimension " + std::to_string(mixture->dimension()) +
+                  " differs from that of the limits, " +
+                  std::to_string(distribution.limits.cols()));
+  return rules.broken();
+}
+
+void write_distribution(const Distribution& distribution, Arena& arena,
+                        kinship_wire_Distribution& wire) {
+  write_digest(distribution.id, wire.id);
+  wire.revision = distribution.revision;
+  write_uuid(distribution.store_epoch, wire.store_epoch);
+  wire.task = arena.text(distribution.task);
+  write_digest(distribution.robot, wire.robot);
+  write_placement(arena, distribution.T_task_base, wire.T_task_base);
+  wire.profile = arena.text(distribution.profile);
+  wire.engines = arena.text(distribution.engines);
+  wire.state = static_cast<std::uint32_t>(distribution.state);
+  wire.reason = arena.text(distribution.reason);
+  write_sources(distribution.sources, arena, wire);
+  wire.configurations = distribution.configurations;
+  if (distribution.mixture) {
+    arena.resize(wire.mixture, 1);
+    write_mixture(*distribution.mixture, arena, wire.mixture._buffer[0]);
+  }
+  write_numbers(arena, distribution.limits.data(),
+                static_cast<std::size_t>(distribution.limits.size()), wire.limits);
+  if (distribution.held_out_score)
+    write_numbers(arena, &*distribution.held_out_score, 1, wire.held_out_score);
+  wire.recommended_share = distribution.recommended_share;
+  wire.evidence = arena.text(distribution.evidence);
+  wire.fitted_ms = distribution.fitted_ms;
+  wire.transfer_time_s = distribution.transfer_time_s;
+  wire.fit_time_s = distribution.fit_time_s;
+}
+
+Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
+  Distribution distribution;
+  distribution.id = read_digest(wire.id);
+  distribution.revision = wire.revision;
+  distribution.store_epoch = read_uuid(wire.store_epoch);
+  distribution.task = reader.text("task", wire.task, kMaxTaskBytes);
+  distribution.robot = read_digest(wire.robot);
+  distribution.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
+  distribution.profile = reader.text("profile", wire.profile, kMaxProfileBytes);
+  distribution.engines = reader.text("engines", wire.engines, kMaxEnginesBytes);
+  distribution.state = reader.enumerator("state", wire.state, DistributionState::Failed);
+  distribution.reason = reader.text("reason", wire.reason, kMaxMessageBytes);
+  distribution.configurations = wire.configurations;
+  const auto limits = elements(wire.limits);
+  reader.rules.at_most("sources", wire.sources._length, kMaxSources)
+      .at_most("limits (numbers)", limits.size(), 2 * kMaxDof)
+      .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
+  if (reader.rules.broken()) return distribution;
+  distribution.sources = read_sources(wire, reader);
+  distribution.limits = Eigen::Map<const Eigen::Matrix2Xd>(
+      limits.data(), 2, static_cast<Eigen::Index>(limits.size() / 2));
+  if (const auto mixture = elements(wire.mixture); !mixture.empty())
+    distribution.mixture = read_mixture(mixture[0], limits.size() / 2, reader);
+  distribution.held_out_score =
+      reader.optional_number("held_out_score", elements(wire.held_out_score));
+  distribution.recommended_share = wire.recommended_share;
+  distribution.evidence = reader.text("evidence", wire.evidence, kMaxMessageBytes);
+  distribution.fitted_ms = wire.fitted_ms;
+  distribution.transfer_time_s = wire.transfer_time_s;
+  distribution.fit_time_s = wire.fit_time_s;
+  return distribution;
+}
+
+}  // namespace kinship::codec

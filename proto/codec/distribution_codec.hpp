@@ -1,0 +1,18 @@
+#pragma once
+
+#include "proto/codec/arena.hpp"
+#include "proto/codec/reader.hpp"
+#include "proto/idl/fetch.h"
+#include "proto/types/distribution.hpp"
+
+/// The part of the fetch codec that handles distributions.
+namespace kinship::codec {
+
+/// \param distribution  checked by check(const Distribution&).
+void write_distribution(const Distribution& distribution, Arena& arena,
+                        kinship_wire_Distribution& wire);
+
+/// Broken rules are left in the reader.
+Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader);
+
+}  // namespace kinship::codec

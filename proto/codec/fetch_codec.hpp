@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "proto/codec/message.hpp"
+#include "proto/idl/fetch.h"
+
+namespace kinship::codec {
+
+/// The rule of the contract that a request or a distribution breaks, if any.
+std::optional<Error> check(const FetchRequest& request);
+std::optional<Error> check(const Distribution& distribution);
+
+Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request);
+Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire);
+
+/// \return TooLarge for a mixture that does not fit into a sample.
+Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchReply& reply);
+Result<FetchReply> decode(const kinship_wire_FetchReply& wire);
+
+}  // namespace kinship::codec

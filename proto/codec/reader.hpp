@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "proto/codec/rules.hpp"
+#include "proto/types/digest.hpp"
+#include "proto/types/uuid.hpp"
+
+namespace kinship::codec {
+
+/// The elements of a sequence of Cyclone DDS; empty for one that a shorter message left out.
+template <typename Sequence>
+auto elements(const Sequence& sequence) {
+  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
+  return std::span<const Element>(sequence._buffer, sequence._buffer ? sequence._length : 0);
+}
+
+Digest read_digest(const std::uint8_t (&bytes)[32]);
+Uuid read_uuid(const std::uint8_t (&bytes)[16]);
+
+/// Turns members of an incoming message into parts of a value and remembers the first that cannot
+/// be one. Sizes are checked before anything is allocated; what it returns after a broken rule
+/// means nothing.
+class Reader {
+ public:
+  /// \param value  may be null (a shorter message left it out): reads as empty.
+  std::string text(std::string_view what, const char* value, std::size_t limit);
+
+  /// None or seven numbers.
+  std::optional<Eigen::Isometry3d> placement(std::string_view what, std::span<const double> pose);
+  Eigen::Isometry3d pose(std::string_view what, std::span<const double, 7> pose);
+
+  /// None or 32 bytes.
+  std::optional<Digest> optional_digest(std::string_view what, std::span<const std::uint8_t> bytes);
+
+  /// None or one finite number.
+  std::optional<double> optional_number(std::string_view what, std::span<const double> value);
+
+  /// \param last  the enumerator with the largest value; they count from 0.
+  template <typename Enumeration>
+  Enumeration enumerator(std::string_view what, std::uint32_t value, Enumeration last) {
+    rules.between(what, value, 0, static_cast<double>(last));
+    return static_cast<Enumeration>(std::min(value, static_cast<std::uint32_t>(last)));
+  }
+
+  Rules rules;
+};
+
+}  // namespace kinship::codec

@@ -1,0 +1,121 @@
+#include "proto/codec/register_codec.hpp"
+
+#include "proto/codec/reader.hpp"
+#include "proto/codec/writer.hpp"
+#include "proto/types/names.hpp"
+
+namespace kinship::codec {
+namespace {
+
+std::optional<Error> check(const RegisterReply& reply) {
+  return Rules()
+      .at_most("dof", reply.dof, kMaxDof)
+      .text("solver", reply.solver, kMaxPlannerBytes)
+      .text("message", reply.message, kMaxMessageBytes)
+      .broken();
+}
+
+}  // namespace
+
+std::optional<Error> check(const RobotDescription& description) {
+  Rules rules;
+  rules.name(check_label(description.label))
+      .not_empty("urdf", description.urdf)
+      .at_most("urdf (bytes)", description.urdf.size(), kMaxUrdfBytes)
+      .text("urdf", description.urdf, kMaxUrdfBytes)
+      .not_empty("base_link", description.base_link)
+      .text("base_link", description.base_link, kMaxLinkNameBytes)
+      .not_empty("tip_link", description.tip_link)
+      .text("tip_link", description.tip_link, kMaxLinkNameBytes)
+      .pose("T_tip_transfer", description.T_tip_transfer)
+      .at_most("held_joints", description.held_joints.size(), kMaxHeldJoints)
+      .at_most("never_colliding", description.never_colliding.size(), kMaxCollisionPairs);
+  if (rules.broken()) return rules.broken();
+  for (const auto& [joint, position] : description.held_joints)
+    rules.not_empty("held joint", joint)
+        .text("held joint", joint, kMaxLinkNameBytes)
+        .finite("position of held joint", position);
+  for (const auto& [first, second] : description.never_colliding)
+    for (const std::string* link : {&first, &second})
+      rules.not_empty("never_colliding", *link).text("never_colliding", *link, kMaxLinkNameBytes);
+  return rules.broken();
+}
+
+Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
+                                                     const RobotDescription& description) {
+  if (const auto error = check(description)) return *error;
+  Message<kinship_wire_RegisterRequest> message(head);
+  Arena& arena = *message.arena;
+  auto& wire = message.wire;
+  wire.label = arena.text(description.label);
+  wire.urdf = arena.text(description.urdf);
+  wire.base_link = arena.text(description.base_link);
+  wire.tip_link = arena.text(description.tip_link);
+  const PoseArray transfer = to_pose_array(description.T_tip_transfer);
+  std::copy(transfer.begin(), transfer.end(), std::begin(wire.T_tip_transfer));
+  std::copy(description.task_axes.matters.begin(), description.task_axes.matters.end(),
+            std::begin(wire.task_axes));
+  arena.resize(wire.held_joints, description.held_joints.size());
+  std::size_t i = 0;
+  for (const auto& [joint, position] : description.held_joints)
+    wire.held_joints._buffer[i++] = {arena.text(joint), position};
+  arena.resize(wire.never_colliding, description.never_colliding.size());
+  i = 0;
+  for (const auto& [first, second] : description.never_colliding)
+    wire.never_colliding._buffer[i++] = {arena.text(first), arena.text(second)};
+  return limited(std::move(message));
+}
+
+Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
+  Reader reader;
+  RobotDescription description;
+  description.label = reader.text("label", wire.label, kMaxLabelBytes);
+  description.urdf = reader.text("urdf", wire.urdf, kMaxUrdfBytes);
+  description.base_link = reader.text("base_link", wire.base_link, kMaxLinkNameBytes);
+  description.tip_link = reader.text("tip_link", wire.tip_link, kMaxLinkNameBytes);
+  description.T_tip_transfer = reader.pose("T_tip_transfer", wire.T_tip_transfer);
+  std::copy(std::begin(wire.task_axes), std::end(wire.task_axes),
+            description.task_axes.matters.begin());
+  reader.rules.at_most("held_joints", wire.held_joints._length, kMaxHeldJoints)
+      .at_most("never_colliding", wire.never_colliding._length, kMaxCollisionPairs);
+  if (reader.rules.broken()) return *reader.rules.broken();
+  for (const auto& held : elements(wire.held_joints)) {
+    const std::string joint = reader.text("held joint", held.joint, kMaxLinkNameBytes);
+    if (!description.held_joints.emplace(joint, held.position).second)
+      reader.rules.that(false, "held joint '" + joint + "': is there twice");
+  }
+  for (const auto& pair : elements(wire.never_colliding))
+    description.never_colliding.emplace_back(
+        reader.text("never_colliding", pair.first, kMaxLinkNameBytes),
+        reader.text("never_colliding", pair.second, kMaxLinkNameBytes));
+  if (reader.rules.broken()) return *reader.rules.broken();
+  if (const auto error = check(description)) return *error;
+  return description;
+}
+
+Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const RegisterReply& reply) {
+  if (const auto error = check(reply)) return *error;
+  Message<kinship_wire_RegisterReply> message(head);
+  auto& wire = message.wire;
+  wire.status = static_cast<std::uint32_t>(reply.status);
+  write_digest(reply.robot, wire.robot);
+  wire.dof = reply.dof;
+  wire.solver = message.arena->text(reply.solver);
+  wire.message = message.arena->text(reply.message);
+  return message;
+}
+
+Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
+  Reader reader;
+  RegisterReply reply;
+  reply.status = reader.enumerator("status", wire.status, RegisterStatus::Refused);
+  reply.robot = read_digest(wire.robot);
+  reply.dof = wire.dof;
+  reply.solver = reader.text("solver", wire.solver, kMaxPlannerBytes);
+  reply.message = reader.text("message", wire.message, kMaxMessageBytes);
+  if (reader.rules.broken()) return *reader.rules.broken();
+  if (const auto error = check(reply)) return *error;
+  return reply;
+}
+
+}  // namespace kinship::codec

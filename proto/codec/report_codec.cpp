@@ -1,0 +1,208 @@
+#include "proto/codec/report_codec.hpp"
+
+#include "proto/codec/reader.hpp"
+#include "proto/codec/writer.hpp"
+#include "proto/types/names.hpp"
+
+namespace kinship::codec {
+namespace {
+
+void check_record(const PlanningRecord& record, Rules& rules) {
+  rules.name(check_planner(record.planner))
+      .text("planner_options", record.planner_options, kMaxPlannerOptionsBytes)
+      .not_negative("planning_time_s", record.planning_time_s)
+      .not_negative("time_limit_s", record.time_limit_s)
+      .between("share", record.share, 0, 1);
+}
+
+void write_record(const PlanningRecord& record, Arena& arena, kinship_wire_PlanningRecord& wire) {
+  wire.outcome = static_cast<std::uint32_t>(record.outcome);
+  wire.planner = arena.text(record.planner);
+  wire.planner_options = arena.text(record.planner_options);
+  wire.planning_time_s = record.planning_time_s;
+  wire.collision_checks = record.collision_checks;
+  wire.projections = record.projections;
+  wire.time_limit_s = record.time_limit_s;
+  wire.arm = static_cast<std::uint32_t>(record.arm);
+  wire.share = record.share;
+  if (record.distribution_id) {
+    const auto& bytes = record.distribution_id->bytes;
+    arena.resize(wire.distribution_id, bytes.size());
+    std::copy(bytes.begin(), bytes.end(), wire.distribution_id._buffer);
+  }
+  wire.distribution_revision = record.distribution_revision;
+}
+
+PlanningRecord read_record(const kinship_wire_PlanningRecord& wire, Reader& reader) {
+  PlanningRecord record;
+  record.outcome = reader.enumerator("outcome", wire.outcome, Outcome::Failed);
+  record.planner = reader.text("planner", wire.planner, kMaxPlannerBytes);
+  record.planner_options =
+      reader.text("planner_options", wire.planner_options, kMaxPlannerOptionsBytes);
+  record.planning_time_s = wire.planning_time_s;
+  record.collision_checks = wire.collision_checks;
+  record.projections = wire.projections;
+  record.time_limit_s = wire.time_limit_s;
+  record.arm = reader.enumerator("arm", wire.arm, Arm::Uniform);
+  record.share = wire.share;
+  record.distribution_id =
+      reader.optional_digest("distribution_id", elements(wire.distribution_id));
+  record.distribution_revision = wire.distribution_revision;
+  return record;
+}
+
+/// A path from dof and waypoints, or none; sizes are checked before it is made.
+std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) {
+  const auto numbers = elements(wire.waypoints);
+  if (numbers.empty() && wire.dof == 0) return std::nullopt;
+  reader.rules.between("dof", wire.dof, 1, kMaxDof);
+  if (reader.rules.broken()) return std::nullopt;
+  const std::size_t count = numbers.size() / wire.dof;
+  reader.rules
+      .that(count * wire.dof == numbers.size(), "waypoints: " + std::to_string(numbers.size()) +
+                                                    " numbers are no multiple of dof " +
+                                                    std::to_string(wire.dof))
+      .that(count >= 2, "waypoints: " + std::to_string(count) + ", must be at least 2")
+      .at_most("waypoints", count, kMaxWaypoints);
+  for (std::size_t i = 0; i < numbers.size() && !reader.rules.broken(); ++i)
+    if (!std::isfinite(numbers[i]))
+      reader.rules.that(false, "waypoint " + std::to_string(i / wire.dof + 1) + ", joint " +
+                                   std::to_string(i % wire.dof + 1) + ": is not finite");
+  if (reader.rules.broken()) return std::nullopt;
+  return Path(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), wire.dof,
+                                                static_cast<Eigen::Index>(count)));
+}
+
+void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& wire) {
+  write_uuid(attempt.report_uuid, wire.report_uuid);
+  write_digest(attempt.robot, wire.robot);
+  wire.machine = arena.text(attempt.machine);
+  wire.task = arena.text(attempt.task);
+  write_placement(arena, attempt.T_task_base, wire.T_task_base);
+  write_record(attempt.record, arena, wire.record);
+  if (!attempt.path) return;
+  const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
+  wire.dof = static_cast<std::uint32_t>(waypoints.rows());
+  write_numbers(arena, waypoints.data(), static_cast<std::size_t>(waypoints.size()),
+                wire.waypoints);
+}
+
+Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
+  Reader reader;
+  Attempt attempt;
+  attempt.report_uuid = read_uuid(wire.report_uuid);
+  attempt.robot = read_digest(wire.robot);
+  attempt.machine = reader.text("machine", wire.machine, kMaxMachineBytes);
+  attempt.task = reader.text("task", wire.task, kMaxTaskBytes);
+  attempt.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
+  attempt.record = read_record(wire.record, reader);
+  attempt.path = read_path(wire, reader);
+  if (reader.rules.broken()) return *reader.rules.broken();
+  if (const auto error = check(attempt)) return *error;
+  return attempt;
+}
+
+}  // namespace
+
+std::size_t batch_bytes(const Attempt& attempt) {
+  return attempt.path ? sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size())
+                      : 0;
+}
+
+std::optional<Error> check(const Attempt& attempt) {
+  Rules rules;
+  rules.that(attempt.report_uuid != Uuid{}, "report_uuid: is zero")
+      .name(check_machine(attempt.machine))
+      .name(check_task(attempt.task));
+  if (attempt.T_task_base) rules.pose("T_task_base", *attempt.T_task_base);
+  check_record(attempt.record, rules);
+  rules.that(
+      attempt.path.has_value() == (attempt.record.outcome == Outcome::Solved),
+      attempt.path ? "waypoints: given although not solved" : "waypoints: missing although solved");
+  if (attempt.path)
+    rules.at_most("dof", static_cast<std::size_t>(attempt.path->dof()), kMaxDof)
+        .at_most("waypoints", static_cast<std::size_t>(attempt.path->size()), kMaxWaypoints)
+        .at_most("waypoints (bytes)", batch_bytes(attempt), kMaxBatchBytes);
+  return rules.broken();
+}
+
+Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
+  Rules rules;
+  rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
+  std::size_t bytes = 0;
+  for (const Attempt& attempt : request.attempts) {
+    rules.name(check(attempt));
+    bytes += batch_bytes(attempt);
+  }
+  rules.at_most("waypoints of a batch (bytes)", bytes, kMaxBatchBytes);
+  if (rules.broken()) return *rules.broken();
+  Message<kinship_wire_ReportRequest> message(head);
+  message.arena->resize(message.wire.attempts, request.attempts.size());
+  for (std::size_t i = 0; i < request.attempts.size(); ++i)
+    write_attempt(request.attempts[i], *message.arena, message.wire.attempts._buffer[i]);
+  return limited(std::move(message));
+}
+
+Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
+  const auto attempts = elements(wire.attempts);
+  Rules rules;
+  rules.at_most("attempts of a batch", attempts.size(), kMaxAttemptsPerBatch);
+  if (rules.broken()) return *rules.broken();
+  ReportRequest request;
+  request.attempts.reserve(attempts.size());
+  std::size_t bytes = 0;
+  for (const kinship_wire_Attempt& entry : attempts) {
+    bytes += sizeof(double) * elements(entry.waypoints).size();
+    Result<Attempt> attempt =
+        bytes > kMaxBatchBytes
+            ? Result<Attempt>(Error{ErrorCode::TooLarge,
+                                    "waypoints of a batch (bytes): " + std::to_string(bytes) +
+                                        " exceeds " + std::to_string(kMaxBatchBytes)})
+            : read_attempt(entry);
+    if (attempt)
+      request.attempts.push_back(std::move(attempt).value());
+    else
+      request.refused.push_back(
+          {read_uuid(entry.report_uuid), ReceiptStatus::Refused, attempt.error().message});
+  }
+  return request;
+}
+
+Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply) {
+  Rules rules;
+  rules.at_most("receipts", reply.receipts.size(), kMaxAttemptsPerBatch);
+  for (const Receipt& receipt : reply.receipts)
+    rules.text("message", receipt.message, kMaxMessageBytes);
+  if (rules.broken()) return *rules.broken();
+  Message<kinship_wire_ReportReply> message(head);
+  write_uuid(reply.store_epoch, message.wire.store_epoch);
+  message.arena->resize(message.wire.receipts, reply.receipts.size());
+  for (std::size_t i = 0; i < reply.receipts.size(); ++i) {
+    const Receipt& receipt = reply.receipts[i];
+    kinship_wire_Receipt& wire = message.wire.receipts._buffer[i];
+    write_uuid(receipt.report_uuid, wire.report_uuid);
+    wire.status = static_cast<std::uint32_t>(receipt.status);
+    wire.message = message.arena->text(receipt.message);
+  }
+  return limited(std::move(message));
+}
+
+Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
+  Reader reader;
+  reader.rules.at_most("receipts", wire.receipts._length, kMaxAttemptsPerBatch);
+  if (reader.rules.broken()) return *reader.rules.broken();
+  ReportReply reply;
+  reply.store_epoch = read_uuid(wire.store_epoch);
+  for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
+    Receipt receipt;
+    receipt.report_uuid = read_uuid(entry.report_uuid);
+    receipt.status = reader.enumerator("status", entry.status, ReceiptStatus::TryAgain);
+    receipt.message = reader.text("message", entry.message, kMaxMessageBytes);
+    reader.rules.text("message", receipt.message, kMaxMessageBytes);
+    reply.receipts.push_back(std::move(receipt));
+  }
+  if (reader.rules.broken()) return *reader.rules.broken();
+  return reply;
+}
+
+}  // namespace kinship::codec

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "proto/codec/message.hpp"
+#include "proto/idl/report.h"
+
+namespace kinship::codec {
+
+/// The rule of the contract that an attempt breaks, if any. Whether the robot is known and the
+/// path within its limits is for the server to say.
+std::optional<Error> check(const Attempt& attempt);
+
+/// What counts against kMaxBatchBytes: 8 bytes a waypoint and joint.
+std::size_t batch_bytes(const Attempt& attempt);
+
+/// \return InvalidInput or TooLarge if an attempt breaks a rule or the batch is too large.
+Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request);
+
+/// Attempts that break a rule come out as refused receipts; the others are not affected. An error
+/// only if there are more attempts than a batch may have.
+Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire);
+
+Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply);
+Result<ReportReply> decode(const kinship_wire_ReportReply& wire);
+
+}  // namespace kinship::codec

@@ -1,0 +1,68 @@
+#include "proto/codec/rules.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "proto/types/names.hpp"
+#include "proto/types/pose.hpp"
+
+namespace kinship::codec {
+
+void Rules::breaks(ErrorCode code, std::string message) {
+  if (!broken_) broken_ = Error{code, std::move(message)};
+}
+
+Rules& Rules::name(const std::optional<Error>& error) {
+  if (error) breaks(error->code, error->message);
+  return *this;
+}
+
+Rules& Rules::text(std::string_view what, std::string_view value, std::size_t limit) {
+  return name(check_text(what, value, limit));
+}
+
+Rules& Rules::not_empty(std::string_view what, std::string_view value) {
+  if (value.empty()) breaks(ErrorCode::InvalidInput, std::string(what) + ": is empty");
+  return *this;
+}
+
+Rules& Rules::between(std::string_view what, double value, double lowest, double highest) {
+  if (!(value >= lowest && value <= highest))  // so that NaN breaks it
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": " + std::to_string(value) +
+                                        " is not between " + std::to_string(lowest) + " and " +
+                                        std::to_string(highest));
+  return *this;
+}
+
+Rules& Rules::finite(std::string_view what, double value) {
+  if (!std::isfinite(value)) breaks(ErrorCode::InvalidInput, std::string(what) + ": is not finite");
+  return *this;
+}
+
+Rules& Rules::not_negative(std::string_view what, double value) {
+  finite(what, value);
+  if (value < 0)
+    breaks(ErrorCode::InvalidInput,
+           std::string(what) + ": " + std::to_string(value) + " is negative");
+  return *this;
+}
+
+Rules& Rules::at_most(std::string_view what, std::size_t value, std::size_t limit) {
+  if (value > limit)
+    breaks(ErrorCode::TooLarge,
+           std::string(what) + ": " + std::to_string(value) + " exceeds " + std::to_string(limit));
+  return *this;
+}
+
+Rules& Rules::pose(std::string_view what, const Eigen::Isometry3d& T) {
+  const auto checked = from_pose_array(to_pose_array(T));
+  if (!checked) breaks(checked.error().code, std::string(what) + ": " + checked.error().message);
+  return *this;
+}
+
+Rules& Rules::that(bool holds, std::string_view message) {
+  if (!holds) breaks(ErrorCode::InvalidInput, std::string(message));
+  return *this;
+}
+
+}  // namespace kinship::codec

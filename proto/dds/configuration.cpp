@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "proto/dds/participant.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::dds {
+namespace {
+
+bool is_host_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+         c == '-' || c == '_' || c == ':';
+}
+
+/// Text that goes into the XML.
+const std::string& checked(std::string_view what, const std::string& name) {
+  if (name.size() > 253 || !std::all_of(name.begin(), name.end(), is_host_character))
+    throw Failure(ErrorCode::InvalidInput, std::string(what) + " '" + name + "': no such name");
+  return name;
+}
+
+bool is_loopback(const std::string& host) {
+  return host.starts_with("127.") || host == "localhost";
+}
+
+std::string interfaces(const ParticipantOptions& options) {
+  std::string name = checked("network interface", options.network_interface);
+  if (name.empty() && (options.role == Role::Server || is_loopback(options.server))) name = "lo";
+  if (name.empty()) return {};
+  return "<Interfaces><NetworkInterface name=\"" + name + "\" multicast=\"false\"/></Interfaces>";
+}
+
+std::string discovery(const ParticipantOptions& options) {
+  if (options.role == Role::Server) return "<ParticipantIndex>0</ParticipantIndex>";
+  if (options.server.empty())
+    throw Failure(ErrorCode::InvalidInput, "host of the server: is empty");
+  return "<ParticipantIndex>none</ParticipantIndex><Peers><Peer address=\"" +
+         checked("host of the server", options.server) + ":" +
+         std::to_string(discovery_port(options.domain)) + "\"/></Peers>";
+}
+
+}  // namespace
+
+std::uint16_t discovery_port(std::uint32_t domain) {
+  if (domain > kMaxDomain)
+    throw Failure(ErrorCode::InvalidInput,
+                  "domain " + std::to_string(domain) + " exceeds " + std::to_string(kMaxDomain));
+  return static_cast<std::uint16_t>(7400 + 250 * domain + 10);
+}
+
+std::string cyclone_configuration(const ParticipantOptions& options) {
+  discovery_port(options.domain);  // checks the domain
+  return "<CycloneDDS xmlns=\"https://cdds.io/config\"><Domain Id=\"any\"><General>" +
+         interfaces(options) +
+         "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize>"
+         "<FragmentSize>8000B</FragmentSize></General><Discovery>" +
+         discovery(options) +
+         "<SPDPInterval>1s</SPDPInterval><LeaseDuration>5s</LeaseDuration></Discovery><Internal>"
+         "<SocketReceiveBufferSize max=\"4MB\"/><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
+         "<MaxSampleSize>2MB</MaxSampleSize></Internal></Domain></CycloneDDS>";
+}
+
+}  // namespace kinship::dds

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <dds/dds.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "proto/dds/entity.hpp"
+
+namespace kinship::dds {
+
+/// Up to 16 samples taken from a reader and returned to it on destruction. For sources of
+/// proto/dds only.
+class Loan {
+ public:
+  /// \throws Failure(Internal) if they cannot be taken.
+  Loan(const Entity& reader, std::string_view what) : reader_(reader.get()) {
+    const auto capacity = static_cast<std::uint32_t>(samples_.size());
+    count_ = require(dds_take(reader_, samples_.data(), infos_.data(), capacity, capacity), what);
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+  ~Loan() {
+    if (count_ > 0) dds_return_loan(reader_, samples_.data(), count_);
+  }
+
+  std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+
+  /// The message, or null if this sample only tells about an instance.
+  const void* operator[](std::size_t i) const noexcept {
+    return infos_[i].valid_data ? samples_[i] : nullptr;
+  }
+
+ private:
+  Handle reader_;
+  std::array<void*, 16> samples_{};  // null: Cyclone DDS lends its own
+  std::array<dds_sample_info_t, 16> infos_{};
+  std::int32_t count_ = 0;
+};
+
+}  // namespace kinship::dds

@@ -1,0 +1,82 @@
+#include "proto/dds/participant.hpp"
+
+#include <dds/dds.h>
+
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "proto/dds/log.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::dds {
+namespace {
+
+std::string describe_failure(const ParticipantOptions& options, Handle code) {
+  const std::string port = std::to_string(discovery_port(options.domain));
+  std::string message = "domain " + std::to_string(options.domain) + ": cannot join";
+  if (options.role == Role::Server)
+    message += " as its server at UDP port " + port + ", is another server running?";
+  message += " (" + std::string(dds_strretcode(-code));
+  if (const std::string line = last_log_line(); !line.empty()) message += ": " + line;
+  return message + ")";
+}
+
+}  // namespace
+
+/// A domain of Cyclone DDS with its configuration. Cyclone DDS knows one per id and process.
+class Participant::Domain {
+ public:
+  /// The domain of this id, made if this process has none yet.
+  static std::shared_ptr<Domain> join(const ParticipantOptions& options) {
+    static std::mutex mutex;  // guards domains
+    static std::map<std::uint32_t, std::weak_ptr<Domain>> domains;
+    const std::string configuration = cyclone_configuration(options);
+    const std::lock_guard lock(mutex);
+    std::weak_ptr<Domain>& known = domains[options.domain];
+    if (auto domain = known.lock()) {
+      const bool is_server_here = domain->role_ == Role::Server && options.role == Role::Client;
+      if (domain->configuration_ != configuration && !is_server_here)
+        throw Failure(ErrorCode::InvalidInput, "domain " + std::to_string(options.domain) +
+                                                   ": this process uses it already, with "
+                                                   "another server or role");
+      return domain;
+    }
+    auto domain = std::make_shared<Domain>(options, configuration);
+    known = domain;
+    return domain;
+  }
+
+  Domain(const ParticipantOptions& options, const std::string& configuration)
+      : role_(options.role), configuration_(configuration) {
+    limit_log();
+    if (std::getenv("CYCLONEDDS_URI")) return;  // the user's configuration, read by Cyclone DDS
+    const Handle handle = dds_create_domain(options.domain, configuration.c_str());
+    if (handle < 0) throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
+    entity_.emplace(handle, "domain");
+  }
+
+ private:
+  Role role_;
+  std::string configuration_;
+  std::optional<Entity> entity_;
+};
+
+namespace {
+
+Entity create_participant(const ParticipantOptions& options) {
+  const Handle handle = dds_create_participant(options.domain, nullptr, nullptr);
+  if (handle < 0) throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
+  return {handle, "participant"};
+}
+
+}  // namespace
+
+Participant::Participant(const ParticipantOptions& options)
+    : options_(options), domain_(Domain::join(options)), entity_(create_participant(options)) {}
+
+Participant::~Participant() = default;
+Participant::Participant(Participant&&) noexcept = default;
+
+}  // namespace kinship::dds

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "proto/types/uuid.hpp"
+
+struct dds_qos;
+
+/// The QoS of every entity; proto/README.md says the same for other languages.
+namespace kinship::dds {
+
+struct DeleteQos {
+  void operator()(dds_qos* qos) const noexcept;
+};
+using Qos = std::unique_ptr<dds_qos, DeleteQos>;
+
+/// Reliable, keep all, volatile; a writer blocks for at most 100 ms.
+Qos request_qos();
+
+/// Reliable, keep last 64, volatile, without autodispose: a writer never blocks, and a lost reply
+/// is asked for again.
+Qos reply_qos();
+
+/// Of a publisher or subscriber in one partition.
+Qos partition_qos(const std::string& partition);
+
+inline constexpr unsigned kReplyPartitions = 16;
+
+std::string reply_partition(unsigned number);  ///< "reply_00" to "reply_15"
+
+/// Number of the partition in which a client reads replies: FNV-1a (32 bits) of the 16 bytes of
+/// its id, modulo 16. So a reply reaches a sixteenth of the clients, not all of them.
+unsigned reply_partition_of(const Uuid& client_id);
+
+}  // namespace kinship::dds

@@ -1,0 +1,187 @@
+#include "proto/dds/request_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "proto/dds/loan.hpp"
+#include "proto/dds/qos.hpp"
+
+namespace kinship::dds {
+namespace {
+
+/// Times between sends: 100 ms, 300 ms, then every second.
+std::chrono::milliseconds delay_after(int sends) {
+  using std::chrono::milliseconds;
+  return sends == 1 ? milliseconds(100) : sends == 2 ? milliseconds(300) : milliseconds(1000);
+}
+
+/// Keeps replies for other clients of the partition out of the reader.
+bool is_for_client(const void* sample, void* client_id) {
+  return head_of(sample).client_id == *static_cast<const Uuid*>(client_id);
+}
+
+Entity create_filtered_topic(Handle participant, const Topics& topics, Uuid& client_id) {
+  Entity topic(
+      dds_create_topic(participant, &topics.reply, topics.reply_topic().c_str(), nullptr, nullptr),
+      "topic " + topics.reply_topic());
+  require(dds_set_topic_filter_and_arg(topic.get(), is_for_client, &client_id), "topic filter");
+  return topic;
+}
+
+}  // namespace
+
+RequestLine::Waiter::Waiter(const RequestLine& line)
+    : guard(dds_create_guardcondition(line.participant_), "guard condition"),
+      waitset(dds_create_waitset(line.participant_), "waitset") {
+  for (const Handle entity : {guard.get(), line.condition_.get(), line.writer_.get()})
+    require(dds_waitset_attach(waitset.get(), entity, 0), "waitset");
+}
+
+RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
+                         const Topics& topics)
+    : participant_(participant.get()),
+      client_id_(client_id),
+      name_(topics.name),
+      request_topic_(dds_create_topic(participant_, &topics.request, topics.request_topic().c_str(),
+                                      nullptr, nullptr),
+                     "topic " + topics.request_topic()),
+      reply_topic_(create_filtered_topic(participant_, topics, client_id_)),
+      subscriber_(dds_create_subscriber(
+                      participant_,
+                      partition_qos(reply_partition(reply_partition_of(client_id))).get(), nullptr),
+                  "subscriber"),
+      reader_(dds_create_reader(subscriber_.get(), reply_topic_.get(), reply_qos().get(), nullptr),
+              "reader " + topics.reply_topic()),
+      condition_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
+      writer_(dds_create_writer(participant_, request_topic_.get(), request_qos().get(), nullptr),
+              "writer " + topics.request_topic()) {
+  require(dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS), "status mask");
+}
+
+RequestLine::Outcome RequestLine::call(const codec::Head& head, const void* request,
+                                       Clock::time_point deadline,
+                                       const std::function<void(const void*)>& on_reply) {
+  std::unique_ptr<Waiter> waiter = acquire_waiter();
+  Call call{on_reply, *waiter};
+  {
+    const std::lock_guard lock(mutex_);
+    calls_.emplace(head.sequence_number, &call);
+  }
+  const auto leave = [&] {
+    const std::lock_guard lock(mutex_);
+    calls_.erase(head.sequence_number);
+  };
+  try {
+    const Outcome outcome = wait_for_reply(call, request, deadline);
+    leave();
+    release_waiter(std::move(waiter));
+    return outcome;
+  } catch (...) {
+    leave();
+    throw;
+  }
+}
+
+RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* request,
+                                                 Clock::time_point deadline) {
+  int sends = 0;
+  std::uint64_t servers_seen = servers_seen_;
+  Clock::time_point next_send = Clock::now();
+  while (true) {
+    notice_servers();
+    hand_out_replies();
+    {
+      const std::lock_guard lock(mutex_);
+      if (call.is_answered) return Outcome::Answered;
+    }
+    if (is_cancelled_) return Outcome::Cancelled;
+    const Clock::time_point now = Clock::now();
+    if (now >= deadline) return Outcome::TimedOut;
+    if (const std::uint64_t seen = servers_seen_; seen != servers_seen) {
+      servers_seen = seen;
+      sends = 0;
+      next_send = now;
+    }
+    if (now >= next_send) {
+      // Without a server the sample would be lost; its appearance ends the wait below. A time-out
+      // of the writer means that the sample was not sent: it is, next time.
+      if (has_server() && dds_write(writer_.get(), request) == DDS_RETCODE_OK) sends++;
+      next_send = Clock::now() + delay_after(std::max(sends, 1));
+    }
+    wait(call.waiter, std::min(deadline, next_send));
+  }
+}
+
+void RequestLine::wait(const Waiter& waiter, Clock::time_point until) const {
+  std::array<dds_attach_t, 3> ready{};
+  const auto time = std::chrono::nanoseconds(until - Clock::now());
+  require(dds_waitset_wait(waiter.waitset.get(), ready.data(), ready.size(),
+                           std::max<dds_duration_t>(time.count(), 0)),
+          "waitset");
+  bool ignored = false;
+  require(dds_take_guardcondition(waiter.guard.get(), &ignored), "guard condition");
+}
+
+void RequestLine::hand_out_replies() {
+  std::vector<Handle> others;
+  while (true) {
+    const Loan replies(reader_, "replies of " + name_);
+    if (replies.size() == 0) break;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < replies.size(); ++i) {
+      if (!replies[i]) continue;
+      const auto call = calls_.find(head_of(replies[i]).sequence_number);
+      if (call == calls_.end() || call->second->is_answered) continue;
+      call->second->on_reply(replies[i]);
+      call->second->is_answered = true;
+      others.push_back(call->second->waiter.guard.get());
+    }
+  }
+  for (const Handle guard : others) dds_set_guardcondition(guard, true);
+}
+
+void RequestLine::notice_servers() {
+  dds_publication_matched_status_t status{};
+  require(dds_get_publication_matched_status(writer_.get(), &status), "writer " + name_);
+  if (status.current_count_change == 0 && status.total_count_change == 0) return;
+  if (status.total_count_change > 0) ++servers_seen_;
+  wake_all();  // reading the status took it from the other callers
+}
+
+bool RequestLine::has_server() const {
+  return dds_get_matched_subscriptions(writer_.get(), nullptr, 0) > 0;
+}
+
+void RequestLine::wake_all() {
+  std::vector<Handle> guards;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [sequence_number, call] : calls_) guards.push_back(call->waiter.guard.get());
+  }
+  for (const Handle guard : guards) dds_set_guardcondition(guard, true);
+}
+
+void RequestLine::cancel() {
+  is_cancelled_ = true;
+  wake_all();
+}
+
+std::unique_ptr<RequestLine::Waiter> RequestLine::acquire_waiter() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_waiters_.empty()) {
+      auto waiter = std::move(idle_waiters_.back());
+      idle_waiters_.pop_back();
+      return waiter;
+    }
+  }
+  return std::make_unique<Waiter>(*this);
+}
+
+void RequestLine::release_waiter(std::unique_ptr<Waiter> waiter) {
+  const std::lock_guard lock(mutex_);
+  idle_waiters_.push_back(std::move(waiter));
+}
+
+}  // namespace kinship::dds

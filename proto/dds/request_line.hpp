@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "proto/dds/participant.hpp"
+#include "proto/dds/wire.hpp"
+
+namespace kinship::dds {
+
+/// The part of a Requester that does not depend on the conversation: sends, resends, and hands
+/// each reply to the call that waits for it. For sources of proto/dds only.
+///
+/// There is no thread of its own: whichever caller sees replies first hands them out and wakes
+/// the others.
+class RequestLine {
+ public:
+  using Clock = std::chrono::steady_clock;
+  enum class Outcome { Answered, TimedOut, Cancelled };
+
+  RequestLine(const Participant& participant, const Uuid& client_id, const Topics& topics);
+
+  codec::Head next_head() { return {client_id_, ++last_sequence_number_}; }
+
+  /// \param request   the message, with `head` in it.
+  /// \param on_reply  decodes the message; called at most once, before call() returns, maybe on
+  ///                  another caller's thread.
+  Outcome call(const codec::Head& head, const void* request, Clock::time_point deadline,
+               const std::function<void(const void*)>& on_reply);
+
+  void cancel();
+  bool has_server() const;  ///< whether one is known right now
+
+ private:
+  struct Waiter {
+    explicit Waiter(const RequestLine& line);
+    Entity guard;
+    Entity waitset;
+  };
+  struct Call {
+    const std::function<void(const void*)>& on_reply;
+    const Waiter& waiter;
+    bool is_answered = false;
+  };
+
+  std::unique_ptr<Waiter> acquire_waiter();
+  void release_waiter(std::unique_ptr<Waiter> waiter);
+  Outcome wait_for_reply(const Call& call, const void* request, Clock::time_point deadline);
+  void wait(const Waiter& waiter, Clock::time_point until) const;
+  void hand_out_replies();
+  void notice_servers();
+  void wake_all();
+
+  Handle participant_;
+  Uuid client_id_;
+  std::string name_;
+  Entity request_topic_;
+  Entity reply_topic_;
+  Entity subscriber_;
+  Entity reader_;
+  Entity condition_;
+  Entity writer_;
+  std::atomic<std::uint64_t> last_sequence_number_ = 0;
+  std::atomic<std::uint64_t> servers_seen_ = 0;
+  std::atomic<bool> is_cancelled_ = false;
+
+  std::mutex mutex_;  // guards what follows and Call::is_answered
+  std::map<std::uint64_t, Call*> calls_;
+  std::vector<std::unique_ptr<Waiter>> idle_waiters_;
+};
+
+}  // namespace kinship::dds

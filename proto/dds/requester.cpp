@@ -1,0 +1,74 @@
+#include "proto/dds/requester.hpp"
+
+#include <optional>
+#include <string>
+
+#include "proto/dds/request_line.hpp"
+
+namespace kinship::dds {
+
+template <typename Conversation>
+class Requester<Conversation>::Implementation {
+ public:
+  using Reply = typename Conversation::Reply;
+
+  Implementation(const Participant& participant, const Uuid& client_id)
+      : options_(participant.options()),
+        line_(participant, client_id, Wire<Conversation>::topics()) {}
+
+  Result<Reply> call(const typename Conversation::Request& request, Clock::time_point deadline) {
+    const Clock::time_point start = Clock::now();
+    const codec::Head head = line_.next_head();
+    const auto message = codec::encode(head, request);
+    if (!message) return message.error();
+    std::optional<Result<Reply>> reply;
+    const auto outcome = line_.call(head, &message->wire, deadline, [&reply](const void* wire) {
+      reply.emplace(codec::decode(*static_cast<const typename Wire<Conversation>::Reply*>(wire)));
+    });
+    if (outcome != RequestLine::Outcome::Answered) return nobody_answered(start);
+    if (!*reply)
+      return Error{ErrorCode::Internal,
+                   std::string("reply to ") + Conversation::kName + ": " + reply->error().message};
+    return *std::move(reply);
+  }
+
+  void cancel() { line_.cancel(); }
+
+ private:
+  Error nobody_answered(Clock::time_point start) const {
+    const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
+    return {ErrorCode::Unavailable, std::string(Conversation::kName) + ": " +
+                                        (line_.has_server() ? "the server" : "no server") +
+                                        " answered within " + std::to_string(waited.count()) +
+                                        " ms (domain " + std::to_string(options_.domain) + ", " +
+                                        options_.server + ")"};
+  }
+
+  ParticipantOptions options_;
+  RequestLine line_;
+};
+
+template <typename Conversation>
+Requester<Conversation>::Requester(const Participant& participant, const Uuid& client_id)
+    : implementation_(std::make_unique<Implementation>(participant, client_id)) {}
+
+template <typename Conversation>
+Requester<Conversation>::~Requester() = default;
+
+template <typename Conversation>
+Result<typename Conversation::Reply> Requester<Conversation>::call(
+    const typename Conversation::Request& request, Clock::time_point deadline) {
+  return implementation_->call(request, deadline);
+}
+
+template <typename Conversation>
+void Requester<Conversation>::cancel() {
+  implementation_->cancel();
+}
+
+template class Requester<codec::RegisterConversation>;
+template class Requester<codec::ReportConversation>;
+template class Requester<codec::FetchConversation>;
+template class Requester<codec::AdminConversation>;
+
+}  // namespace kinship::dds
