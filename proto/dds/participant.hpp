@@ -19,7 +19,7 @@ struct ParticipantOptions {
   std::string server = "127.0.0.1";  ///< client: host of kinshipd
   /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
   /// what Cyclone DDS finds best.
-  std::string network_interface;
+  std::string network_interface = {};
 };
 
 inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536

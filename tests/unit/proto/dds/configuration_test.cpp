@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "proto/dds/log.hpp"
+#include "proto/dds/participant.hpp"
+#include "proto/dds/qos.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::dds {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Configuration, PortFollowsTheDomain) {
+  EXPECT_EQ(discovery_port(0), 7410);
+  EXPECT_EQ(discovery_port(3), 8160);
+  EXPECT_EQ(discovery_port(kMaxDomain), 64910);
+  EXPECT_THROW(discovery_port(kMaxDomain + 1), Failure);
+}
+
+TEST(Configuration, ClientKnowsOnlyTheServer) {
+  const std::string xml = cyclone_configuration({.domain = 3, .server = "10.0.0.7"});
+  EXPECT_TRUE(contains(xml, "<ParticipantIndex>none</ParticipantIndex>"));
+  EXPECT_TRUE(contains(xml, "<Peers><Peer address=\"10.0.0.7:8160\"/></Peers>"));
+  EXPECT_FALSE(contains(xml, "NetworkInterface"));
+}
+
+TEST(Configuration, LoopbackIsUsedForServersAndForLocalClients) {
+  EXPECT_TRUE(contains(cyclone_configuration({.role = Role::Server}), "name=\"lo\""));
+  EXPECT_TRUE(contains(cyclone_configuration({.server = "localhost"}), "name=\"lo\""));
+  EXPECT_TRUE(contains(cyclone_configuration({.role = Role::Server, .network_interface = "eth0"}),
+                       "name=\"eth0\""));
+}
+
+TEST(Configuration, RefusesNamesThatWouldChangeTheXml) {
+  EXPECT_THROW(cyclone_configuration({.server = "a\"/><Peer address=\"b"}), Failure);
+  EXPECT_THROW(cyclone_configuration({.server = ""}), Failure);
+  EXPECT_THROW(cyclone_configuration({.network_interface = "<lo>"}), Failure);
+}
+
+TEST(ReplyPartition, IsTheWorkedExampleOfTheContract) {
+  const auto client_id = Uuid::parse("00112233-4455-6677-8899-aabbccddeeff");
+  ASSERT_TRUE(client_id);
+  EXPECT_EQ(reply_partition(reply_partition_of(*client_id)), "reply_05");
+}
+
+TEST(ReplyPartition, SpreadsClientsOverAllPartitions) {
+  std::set<unsigned> seen;
+  for (int i = 0; i < 1000; ++i) seen.insert(reply_partition_of(Uuid::random()));
+  EXPECT_EQ(seen.size(), kReplyPartitions);
+  EXPECT_LT(*seen.rbegin(), kReplyPartitions);
+}
+
+}  // namespace
+}  // namespace kinship::dds

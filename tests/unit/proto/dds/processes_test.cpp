@@ -1,0 +1,139 @@
+// Client and server in processes of their own, over loopback. Each test has a domain of its own.
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "proto/dds/qos.hpp"
+#include "proto/dds/request_line.hpp"
+#include "proto/dds/requester.hpp"
+#include "tests/support/child_process.hpp"
+
+namespace kinship::dds {
+namespace {
+
+using namespace std::chrono_literals;
+using AdminRequester = Requester<codec::AdminConversation>;
+
+test::ChildProcess start_server(std::uint32_t domain) {
+  return test::ChildProcess({KINSHIP_ECHO_SERVER, std::to_string(domain)});
+}
+
+AdminRequester::Clock::time_point in(std::chrono::milliseconds time) {
+  return AdminRequester::Clock::now() + time;
+}
+
+AdminRequest echo(const std::string& text) {
+  AdminRequest request;
+  request.argument = text;
+  return request;
+}
+
+/// Row of the reply, or the error's message.
+std::string text_of(const Result<AdminReply>& reply) {
+  if (!reply) return reply.error().message;
+  return reply->rows.empty() ? reply->message : reply->rows.front();
+}
+
+TEST(Processes, RequestIsAnswered) {
+  const Participant participant({.domain = 100});
+  AdminRequester requester(participant, Uuid::random());
+  test::ChildProcess server = start_server(100);
+  ASSERT_EQ(server.read_line(), "ready");
+  EXPECT_EQ(text_of(requester.call(echo("hello"), in(10s))), "hello");
+  EXPECT_EQ(text_of(requester.call(echo("again"), in(10s))), "again");
+}
+
+TEST(Processes, CallWaitsForAServerThatStartsLater) {
+  const Participant participant({.domain = 101});
+  AdminRequester requester(participant, Uuid::random());
+  auto reply =
+      std::async(std::launch::async, [&] { return requester.call(echo("late"), in(20s)); });
+  EXPECT_EQ(reply.wait_for(200ms), std::future_status::timeout);
+  test::ChildProcess server = start_server(101);
+  EXPECT_EQ(text_of(reply.get()), "late");
+}
+
+TEST(Processes, CallIsAnsweredByTheServerAfterOneThatWasKilled) {
+  const Participant participant({.domain = 102});
+  AdminRequester requester(participant, Uuid::random());
+  test::ChildProcess first = start_server(102);
+  ASSERT_EQ(first.read_line(), "ready");
+  ASSERT_EQ(text_of(requester.call(echo("first"), in(10s))), "first");
+  first.kill();
+  auto reply =
+      std::async(std::launch::async, [&] { return requester.call(echo("second"), in(20s)); });
+  test::ChildProcess second = start_server(102);
+  EXPECT_EQ(text_of(reply.get()), "second");
+}
+
+TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {
+  const Uuid one = Uuid::random();
+  Uuid other = Uuid::random();
+  while (reply_partition_of(one) != reply_partition_of(other)) other = Uuid::random();
+  const Participant participant({.domain = 103});
+  AdminRequester requester_one(participant, one);  // both count from 1
+  AdminRequester requester_other(participant, other);
+  test::ChildProcess server = start_server(103);
+  ASSERT_EQ(server.read_line(), "ready");
+  for (int i = 0; i < 20; ++i) {
+    auto reply =
+        std::async(std::launch::async, [&] { return requester_one.call(echo("one"), in(10s)); });
+    EXPECT_EQ(text_of(requester_other.call(echo("other"), in(10s))), "other");
+    EXPECT_EQ(text_of(reply.get()), "one");
+  }
+}
+
+TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
+  const Participant participant({.domain = 104});
+  RequestLine line(participant, Uuid::random(), Wire<codec::AdminConversation>::topics());
+  test::ChildProcess server = start_server(104);
+  const codec::Head head = line.next_head();
+  codec::Message<kinship_wire_AdminRequest> message(head);  // by hand: encode() would refuse it
+  char empty[] = "";
+  message.wire.argument = message.wire.robot = message.wire.task = message.wire.cursor = empty;
+  message.wire.verb = 1000;
+  AdminReply reply;
+  const auto outcome = line.call(head, &message.wire, in(10s), [&](const void* wire) {
+    reply = codec::decode(*static_cast<const kinship_wire_AdminReply*>(wire)).value_or_throw();
+  });
+  EXPECT_EQ(outcome, RequestLine::Outcome::Answered);
+  EXPECT_EQ(reply.status, AdminStatus::Refused);
+  EXPECT_EQ(reply.message, "verb: 1000.000000 is not between 0.000000 and 8.000000");
+}
+
+TEST(Processes, SecondServerOfADomainIsRefusedByName) {
+  test::ChildProcess first = start_server(105);
+  ASSERT_EQ(first.read_line(), "ready");
+  test::ChildProcess second = start_server(105);
+  const std::string line = second.read_line();
+  EXPECT_EQ(line.find("error: domain 105: cannot join as its server at UDP port 33660"), 0U)
+      << line;
+  EXPECT_EQ(second.wait(), 1);
+}
+
+TEST(Processes, LargeReplyArrivesWhole) {
+  const Participant participant({.domain = 106});
+  AdminRequester requester(participant, Uuid::random());
+  test::ChildProcess server = start_server(106);
+  AdminRequest request;
+  request.verb = AdminVerb::ListPaths;
+  request.limit = 300;
+  EXPECT_EQ(text_of(requester.call(request, in(10s))), std::string(300'000, 'x'));
+}
+
+TEST(Processes, ReplyThatIsTooLargeBecomesARefusal) {
+  const Participant participant({.domain = 107});
+  AdminRequester requester(participant, Uuid::random());
+  test::ChildProcess server = start_server(107);
+  AdminRequest request;
+  request.verb = AdminVerb::ListPaths;
+  request.limit = 600;
+  const auto reply = requester.call(request, in(10s));
+  ASSERT_TRUE(reply) << reply.error().message;
+  EXPECT_EQ(reply->status, AdminStatus::Refused);
+  EXPECT_EQ(reply->message, "row: 600000 bytes exceed 524288");
+}
+
+}  // namespace
+}  // namespace kinship::dds
