@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/experiments/wilcoxon.hpp"
+#include "proto/types/problem.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship::experiments {
+
+/// What one planner did on the problems that both planners answered.
+///
+/// Means count an unsolved attempt with what it had used when it gave up (a lower bound); medians
+/// count it as worse than any solved one, so a median is infinite if half are unsolved.
+struct PlannerStatistics {
+  std::size_t solved = 0;
+  std::size_t with_guidance = 0;  ///< attempts that drew from a distribution
+  double mean_checks = 0;
+  double median_checks = 0;
+  double mean_time_s = 0;
+  double median_time_s = 0;
+};
+
+/// Uniform against guided planning over the same problems.
+struct Comparison {
+  std::size_t pairs = 0;
+  PlannerStatistics uniform;
+  PlannerStatistics guided;
+  double mean_checks_ratio = 0;  ///< uniform / guided
+  double median_checks_ratio = 0;
+  double mean_time_ratio = 0;
+  double median_time_ratio = 0;
+  WilcoxonSummary checks_test;  ///< unsolved = infinite; both unsolved = no difference
+  WilcoxonSummary time_test;
+  std::vector<std::string> unpaired;  ///< names that only one side answered
+};
+
+/// Pairs results by name and compares them.
+/// \return InvalidInput if a name occurs twice on one side or no name is on both.
+Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
+                           const std::vector<ProblemResult>& guided);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,133 @@
+#include "client/experiments/comparison_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+namespace kinship::experiments {
+namespace {
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
+
+/// 12345 as "12 345"; what is infinite as "unsolved".
+std::string count_text(double value) {
+  if (!std::isfinite(value)) return "unsolved";
+  std::string digits = formatted("%.0f", value);
+  constexpr std::size_t kGroup = 3;
+  for (std::size_t i = digits.size(); i > kGroup; i -= kGroup) digits.insert(i - kGroup, " ");
+  return digits;
+}
+
+std::string seconds_text(double value) {
+  return std::isfinite(value) ? formatted("%.3f", value) : "unsolved";
+}
+
+/// Uniform / guided; both unsolved says nothing.
+std::string ratio_text(double ratio) {
+  if (std::isnan(ratio)) return "-";
+  return std::isinf(ratio) ? "inf" : formatted("%.2f", ratio);
+}
+
+std::string p_text(double p) { return formatted(p < 1e-3 ? "%.1e" : "%.4f", p); }
+
+void write_row(std::ostream& out, const std::string& name, const std::string& uniform,
+               const std::string& guided, const std::string& ratio, const std::string& p) {
+  constexpr std::size_t kName = 26;
+  constexpr std::size_t kColumn = 11;
+  out << "  " << name << std::string(kName - std::min(kName, name.size()), ' ')
+      << padded(uniform, kColumn) << padded(guided, kColumn);
+  if (!ratio.empty()) out << padded(ratio, kColumn - 2);
+  if (!p.empty()) out << padded(p, kColumn);
+  out << '\n';
+}
+
+std::string method_text(const WilcoxonSummary& test) {
+  const std::string how = test.method == WilcoxonMethod::Exact
+                              ? "exact"
+                              : "normal approximation, corrected for ties and continuity";
+  return how + ", " + std::to_string(test.pairs) + " pairs that differ";
+}
+
+std::string solved_text(const PlannerStatistics& planner, std::size_t pairs) {
+  return std::to_string(planner.solved) + "/" + std::to_string(pairs);
+}
+
+/// A JSON number, or null for what JSON cannot say.
+std::string json_number(double value) {
+  return std::isfinite(value) ? formatted("%.12g", value) : "null";
+}
+
+std::string json_of(const PlannerStatistics& planner) {
+  return "{\"solved\":" + std::to_string(planner.solved) +
+         ",\"with_guidance\":" + std::to_string(planner.with_guidance) +
+         ",\"mean_checks\":" + json_number(planner.mean_checks) +
+         ",\"median_checks\":" + json_number(planner.median_checks) +
+         ",\"mean_time_s\":" + json_number(planner.mean_time_s) +
+         ",\"median_time_s\":" + json_number(planner.median_time_s) + "}";
+}
+
+std::string json_of(const WilcoxonSummary& test) {
+  const bool exact = test.method == WilcoxonMethod::Exact;
+  return "{\"p\":" + json_number(test.p) + ",\"pairs\":" + std::to_string(test.pairs) +
+         ",\"dropped\":" + std::to_string(test.dropped) +
+         ",\"rank_sum_plus\":" + json_number(test.rank_sum_plus) +
+         ",\"rank_sum_minus\":" + json_number(test.rank_sum_minus) + ",\"method\":\"" +
+         (exact ? "exact" : "normal_approximation") + "\"}";
+}
+
+}  // namespace
+
+void write_table(const Comparison& comparison, std::ostream& out) {
+  const PlannerStatistics& u = comparison.uniform;
+  const PlannerStatistics& g = comparison.guided;
+  out << comparison.pairs << " problems, each planned with both\n\n";
+  write_row(out, "", "uniform", "guided", "ratio", "p");
+  write_row(out, "solved", solved_text(u, comparison.pairs), solved_text(g, comparison.pairs), "",
+            "");
+  write_row(out, "collision checks, mean", count_text(u.mean_checks), count_text(g.mean_checks),
+            ratio_text(comparison.mean_checks_ratio), p_text(comparison.checks_test.p));
+  write_row(out, "collision checks, median", count_text(u.median_checks),
+            count_text(g.median_checks), ratio_text(comparison.median_checks_ratio), "");
+  write_row(out, "planning time s, mean", seconds_text(u.mean_time_s), seconds_text(g.mean_time_s),
+            ratio_text(comparison.mean_time_ratio), p_text(comparison.time_test.p));
+  write_row(out, "planning time s, median", seconds_text(u.median_time_s),
+            seconds_text(g.median_time_s), ratio_text(comparison.median_time_ratio), "");
+
+  out << "\nratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst "
+         "("
+      << method_text(comparison.checks_test) << ").\n";
+  if (u.solved < comparison.pairs || g.solved < comparison.pairs)
+    out << "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
+           "is a lower bound.\n";
+  if (g.with_guidance < comparison.pairs)
+    out << "Only " << g.with_guidance << " of the " << comparison.pairs
+        << " guided attempts drew from a distribution.\n";
+  if (u.with_guidance > 0)
+    out << u.with_guidance << " of the uniform attempts drew from a distribution.\n";
+  if (!comparison.unpaired.empty())
+    out << comparison.unpaired.size() << " problems were answered by one side only and left out.\n";
+}
+
+void write_json(const Comparison& comparison, std::ostream& out) {
+  out << "{\"pairs\":" << comparison.pairs << ",\"uniform\":" << json_of(comparison.uniform)
+      << ",\"guided\":" << json_of(comparison.guided)
+      << ",\"ratio\":{\"mean_checks\":" << json_number(comparison.mean_checks_ratio)
+      << ",\"median_checks\":" << json_number(comparison.median_checks_ratio)
+      << ",\"mean_time\":" << json_number(comparison.mean_time_ratio)
+      << ",\"median_time\":" << json_number(comparison.median_time_ratio)
+      << "},\"wilcoxon_checks\":" << json_of(comparison.checks_test)
+      << ",\"wilcoxon_time\":" << json_of(comparison.time_test)
+      << ",\"unpaired\":" << comparison.unpaired.size() << "}\n";
+}
+
+}  // namespace kinship::experiments

@@ -1,0 +1,151 @@
+#include "client/experiments/shelf_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace kinship::experiments {
+namespace {
+
+// All lengths in m. The shelf's frame: origin on the table below the middle of the opening, x into
+// the shelf, y to its left, z up.
+constexpr double kThickness = 0.015;     // of boards, sides and back
+constexpr double kCompartmentWidth = 0.22;
+constexpr double kCompartmentHeight = 0.22;
+constexpr double kDepth = 0.26;
+constexpr double kFirstFloor = 0.16;     // top of the lowest board above the table
+constexpr std::size_t kColumns = 2;
+constexpr std::size_t kRows = 2;
+constexpr std::size_t kCompartments = kColumns * kRows;
+
+constexpr double kPlaceNoise_m = 0.02;
+constexpr double kTurnNoise_rad = 3 * std::numbers::pi / 180;
+constexpr double kPickTurnNoise_rad = 8 * std::numbers::pi / 180;
+
+/// Normal noise, cut at 2.5 standard deviations so that objects do not grow into each other.
+class Noise {
+ public:
+  explicit Noise(std::mt19937_64& generator) : generator_(generator) {}
+
+  double operator()(double deviation) {
+    constexpr double kCut = 2.5;
+    return deviation * std::clamp(normal_(generator_), -kCut, kCut);
+  }
+
+ private:
+  std::mt19937_64& generator_;
+  std::normal_distribution<double> normal_;
+};
+
+Eigen::Isometry3d upright(double x, double y, double z, double yaw_rad = 0) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << x, y, z;
+  T.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return T;
+}
+
+Eigen::Isometry3d noisy(double x, double y, double z, double turn_noise_rad, Noise& noise) {
+  const double dx = noise(kPlaceNoise_m);
+  const double dy = noise(kPlaceNoise_m);
+  return upright(x + dx, y + dy, z, noise(turn_noise_rad));
+}
+
+void add_box(Scene& scene, std::string name, const Eigen::Vector3d& size,
+             const Eigen::Isometry3d& T_task_object) {
+  scene.objects.push_back({std::move(name), BoxShape{size}, T_task_object});
+}
+
+/// Middle of a compartment's floor at the opening, in the shelf's frame.
+Eigen::Vector3d floor_of(std::size_t compartment) {
+  const double column = static_cast<double>(compartment % kColumns);
+  const double row = static_cast<double>(compartment / kColumns);
+  const double pitch = kCompartmentWidth + kThickness;
+  return {0, (column - (kColumns - 1) / 2.0) * pitch,
+          kFirstFloor + row * (kCompartmentHeight + kThickness)};
+}
+
+void add_shelf(Scene& scene, const Eigen::Isometry3d& T_task_shelf) {
+  const double width = kColumns * kCompartmentWidth + (kColumns + 1) * kThickness;
+  const double bottom = kFirstFloor - kThickness;
+  const double height = kRows * kCompartmentHeight + (kRows + 1) * kThickness;
+  for (std::size_t row = 0; row <= kRows; ++row) {
+    const double z = kFirstFloor + static_cast<double>(row) * (kCompartmentHeight + kThickness);
+    add_box(scene, "board_" + std::to_string(row), {kDepth, width, kThickness},
+            T_task_shelf * upright(kDepth / 2, 0, z - kThickness / 2));
+  }
+  for (std::size_t side = 0; side <= kColumns; ++side) {
+    const double y = (static_cast<double>(side) - kColumns / 2.0) * (kCompartmentWidth + kThickness);
+    add_box(scene, "side_" + std::to_string(side), {kDepth, kThickness, height},
+            T_task_shelf * upright(kDepth / 2, y, bottom + height / 2));
+  }
+  add_box(scene, "back", {kThickness, width, height},
+          T_task_shelf * upright(kDepth + kThickness / 2, 0, bottom + height / 2));
+  add_box(scene, "plinth", {kDepth, width, bottom}, T_task_shelf * upright(kDepth / 2, 0, bottom / 2));
+}
+
+/// Puts boxes into one or two compartments other than the goal.
+void add_occupants(Scene& scene, const Eigen::Isometry3d& T_task_shelf, std::size_t goal,
+                   std::mt19937_64& generator) {
+  const Eigen::Vector3d kSize(0.12, 0.10, 0.16);
+  std::array<std::size_t, kCompartments - 1> others{};
+  for (std::size_t i = 0; i < others.size(); ++i) others[i] = i < goal ? i : i + 1;
+  std::shuffle(others.begin(), others.end(), generator);
+  const std::size_t occupied = 1 + generator() % 2;
+  Noise noise(generator);
+  for (std::size_t i = 0; i < occupied; ++i) {
+    const Eigen::Vector3d floor = floor_of(others[i]);
+    const Eigen::Isometry3d T_shelf_box =
+        noisy(floor.x() + 0.10, floor.y(), floor.z() + kSize.z() / 2, kTurnNoise_rad, noise);
+    add_box(scene, "occupant_" + std::to_string(i), kSize, T_task_shelf * T_shelf_box);
+  }
+}
+
+/// The table and what stands on it besides the shelf.
+void add_table(Scene& scene, Noise& noise) {
+  constexpr double kGap = 0.002;  // the top lies a little below z = 0
+  add_box(scene, kTableName, {1.8, 1.8, 0.04}, upright(0.3, 0, -0.02 - kGap));
+  const Eigen::Isometry3d T_task_post = noisy(0.42, -0.16, 0.19, 0, noise);
+  scene.objects.push_back({"post", CylinderShape{0.03, 0.38}, T_task_post});
+  add_box(scene, "neighbour_left", {0.08, 0.08, 0.14},
+          noisy(0.52, -0.46, 0.07, kPickTurnNoise_rad, noise));
+  add_box(scene, "neighbour_right", {0.08, 0.08, 0.18},
+          noisy(0.24, -0.58, 0.09, kPickTurnNoise_rad, noise));
+}
+
+}  // namespace
+
+BoxShape held_box() { return {{0.07, 0.05, 0.12}}; }
+
+Eigen::Isometry3d T_transfer_box() { return upright(0, 0, 0.08); }
+
+ShelfScene draw_shelf_scene(std::mt19937_64& generator) {
+  Noise noise(generator);
+  ShelfScene instance;
+  add_table(instance.scene, noise);
+  const Eigen::Isometry3d T_task_shelf = noisy(0.50, 0.14, 0, kTurnNoise_rad, noise);
+  add_shelf(instance.scene, T_task_shelf);
+  const std::size_t goal = generator() % kCompartments;
+  add_occupants(instance.scene, T_task_shelf, goal, generator);
+
+  // Half a turn about y = x + z ... maps z to -z: the gripper looks down and closes along y.
+  Eigen::Isometry3d R_down = Eigen::Isometry3d::Identity();
+  R_down.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  const double above_table = T_transfer_box().translation().z() + held_box().size.z() / 2 + 0.03;
+  instance.T_task_pick = noisy(0.36, -0.42, above_table, kPickTurnNoise_rad, noise) * R_down;
+
+  // The gripper looks into the shelf; as after a turn about y from the pick.
+  Eigen::Isometry3d R_forward = Eigen::Isometry3d::Identity();
+  R_forward.linear() << 0, 0, 1, 0, -1, 0, 1, 0, 0;
+  constexpr double kPalmBehindOpening = 0.03;
+  const Eigen::Vector3d floor = floor_of(goal);
+  const double sideways = noise(kPlaceNoise_m / 2);
+  const double inward = kPalmBehindOpening + noise(kPlaceNoise_m / 2);
+  const double above_floor = held_box().size.x() / 2 + 0.05;
+  instance.T_task_place =
+      T_task_shelf * upright(inward, floor.y() + sideways, floor.z() + above_floor) * R_forward;
+  return instance;
+}
+
+}  // namespace kinship::experiments

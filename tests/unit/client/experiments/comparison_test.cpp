@@ -1,0 +1,143 @@
+#include "client/experiments/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "client/experiments/comparison_table.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+ProblemResult attempt(const std::string& name, bool solved, std::uint64_t checks, double time_s) {
+  ProblemResult result;
+  result.name = name;
+  result.solved = solved;
+  result.collision_checks = checks;
+  result.planning_time_s = time_s;
+  return result;
+}
+
+ProblemResult guided_attempt(const std::string& name, bool solved, std::uint64_t checks,
+                             double time_s) {
+  ProblemResult result = attempt(name, solved, checks, time_s);
+  result.distribution_id = Digest{};
+  return result;
+}
+
+const std::vector<ProblemResult> kUniform = {
+    attempt("a", true, 1000, 1), attempt("b", true, 3000, 3), attempt("c", false, 60000, 50)};
+const std::vector<ProblemResult> kGuided = {guided_attempt("c", true, 2000, 2),
+                                            guided_attempt("a", true, 500, 0.5),
+                                            guided_attempt("b", true, 1500, 1.5)};
+
+Comparison compared(const std::vector<ProblemResult>& uniform,
+                    const std::vector<ProblemResult>& guided) {
+  return compare(uniform, guided).value_or_throw();
+}
+
+std::string table_of(const Comparison& comparison) {
+  std::ostringstream out;
+  write_table(comparison, out);
+  return out.str();
+}
+
+TEST(Comparison, PairsByNameInWhateverOrder) {
+  const Comparison comparison = compared(kUniform, kGuided);
+  EXPECT_EQ(comparison.pairs, 3U);
+  EXPECT_EQ(comparison.uniform.solved, 2U);
+  EXPECT_EQ(comparison.guided.solved, 3U);
+  EXPECT_EQ(comparison.checks_test.rank_sum_plus, 6);  // uniform is worse in every pair
+  EXPECT_EQ(comparison.checks_test.p, 0.25);
+}
+
+TEST(Comparison, MeansAreCappedAndMediansRankUnsolvedWorst) {
+  const Comparison comparison = compared(kUniform, kGuided);
+  EXPECT_DOUBLE_EQ(comparison.uniform.mean_checks, 64000.0 / 3);
+  EXPECT_DOUBLE_EQ(comparison.uniform.median_checks, 3000);
+  EXPECT_DOUBLE_EQ(comparison.mean_checks_ratio, 64000.0 / 4000.0);
+  EXPECT_DOUBLE_EQ(comparison.median_time_ratio, 2);
+}
+
+TEST(Comparison, AnUnsolvedAttemptWithFewChecksStillRanksWorst) {
+  const Comparison comparison =
+      compared({attempt("a", false, 10, 0.1)}, {guided_attempt("a", true, 5000, 5)});
+  EXPECT_EQ(comparison.checks_test.rank_sum_plus, 1);
+  EXPECT_TRUE(std::isinf(comparison.uniform.median_checks));
+}
+
+TEST(Comparison, BothUnsolvedIsATie) {
+  const Comparison comparison =
+      compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", false, 60001, 8)});
+  EXPECT_EQ(comparison.checks_test.dropped, 1U);
+  EXPECT_EQ(comparison.checks_test.p, 1);
+}
+
+TEST(Comparison, NamesWhatOnlyOneSideAnswered) {
+  auto uniform = kUniform;
+  uniform.push_back(attempt("d", true, 1, 1));
+  auto guided = kGuided;
+  guided.push_back(guided_attempt("e", true, 1, 1));
+  const Comparison comparison = compared(uniform, guided);
+  EXPECT_EQ(comparison.pairs, 3U);
+  EXPECT_EQ(comparison.unpaired, (std::vector<std::string>{"d", "e"}));
+}
+
+TEST(Comparison, RefusesDuplicatesAndStrangers) {
+  EXPECT_FALSE(compare({kUniform[0], kUniform[0]}, kGuided));
+  EXPECT_FALSE(compare({attempt("x", true, 1, 1)}, kGuided));
+  EXPECT_FALSE(compare({}, {}));
+}
+
+TEST(ComparisonTable, ShowsEveryFigureInItsColumn) {
+  const std::string table = table_of(compared(kUniform, kGuided));
+  EXPECT_EQ(
+      table,
+      "3 problems, each planned with both\n"
+      "\n"
+      "                                uniform     guided    ratio          p\n"
+      "  solved                            2/3        3/3\n"
+      "  collision checks, mean         21 333      1 333    16.00     0.2500\n"
+      "  collision checks, median        3 000      1 500     2.00\n"
+      "  planning time s, mean          18.000      1.333    13.50     0.2500\n"
+      "  planning time s, median         3.000      1.500     2.00\n"
+      "\n"
+      "ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst "
+      "(exact, 3 pairs that differ).\n"
+      "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
+      "is a lower bound.\n");
+}
+
+TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {
+  const std::string table = table_of(compared(kUniform, kUniform));
+  EXPECT_NE(table.find("Only 0 of the 3 guided attempts drew"), std::string::npos);
+  EXPECT_NE(table.find("1.00"), std::string::npos);
+}
+
+TEST(ComparisonTable, SaysUnsolvedInsteadOfInfinity) {
+  const std::string table =
+      table_of(compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", true, 1000, 1)}));
+  EXPECT_NE(table.find("unsolved"), std::string::npos);
+  EXPECT_NE(table.find("inf"), std::string::npos);
+}
+
+TEST(ComparisonJson, IsOneDocumentWithNullForInfinity) {
+  std::ostringstream out;
+  write_json(compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", true, 1000, 1)}), out);
+  EXPECT_EQ(out.str(),
+            "{\"pairs\":1,\"uniform\":{\"solved\":0,\"with_guidance\":0,\"mean_checks\":60000,"
+            "\"median_checks\":null,\"mean_time_s\":9,\"median_time_s\":null},"
+            "\"guided\":{\"solved\":1,\"with_guidance\":1,\"mean_checks\":1000,"
+            "\"median_checks\":1000,\"mean_time_s\":1,\"median_time_s\":1},"
+            "\"ratio\":{\"mean_checks\":60,\"median_checks\":null,\"mean_time\":9,"
+            "\"median_time\":null},"
+            "\"wilcoxon_checks\":{\"p\":1,\"pairs\":1,\"dropped\":0,\"rank_sum_plus\":1,"
+            "\"rank_sum_minus\":0,\"method\":\"exact\"},"
+            "\"wilcoxon_time\":{\"p\":1,\"pairs\":1,\"dropped\":0,\"rank_sum_plus\":1,"
+            "\"rank_sum_minus\":0,\"method\":\"exact\"},\"unpaired\":0}\n");
+}
+
+}  // namespace
+}  // namespace kinship::experiments
