@@ -56,6 +56,8 @@ ProblemResult read_problem_result(const Reader& reader) {
   result.name = reader.at("name").text(kMaxTaskBytes);
   result.solved = reader.at("solved").boolean();
   result.collision_checks = reader.at("collision_checks").count();
+  if (const auto checks = reader.find("goal_checks")) result.goal_checks = checks->count();
+  if (const auto checks = reader.find("shortcut_checks")) result.shortcut_checks = checks->count();
   result.projections = reader.at("projections").count();
   result.planning_time_s = reader.at("planning_time_s").number(0);
   result.time_limit_s = reader.at("time_limit_s").number(0);
@@ -101,6 +103,8 @@ std::string to_json(const ProblemResult& result) {
   object["name"] = result.name;
   object["solved"] = result.solved;
   object["collision_checks"] = result.collision_checks;
+  object["goal_checks"] = result.goal_checks;
+  object["shortcut_checks"] = result.shortcut_checks;
   object["projections"] = result.projections;
   object["planning_time_s"] = result.planning_time_s;
   object["time_limit_s"] = result.time_limit_s;

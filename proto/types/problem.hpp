@@ -31,7 +31,9 @@ struct Problem {
 struct ProblemResult {
   std::string name;
   bool solved = false;
-  std::uint64_t collision_checks = 0;
+  std::uint64_t collision_checks = 0;  ///< of planning
+  std::uint64_t goal_checks = 0;       ///< of goal configurations, before planning
+  std::uint64_t shortcut_checks = 0;   ///< of shortening the path, after planning
   std::uint64_t projections = 0;
   double planning_time_s = 0;
   double time_limit_s = 0;

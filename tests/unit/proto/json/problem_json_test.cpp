@@ -89,7 +89,8 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
   result.name = "shelf 7";
   result.reason = "time limit";
   EXPECT_EQ(to_json(result),
-            R"({"name":"shelf 7","solved":false,"collision_checks":0,"projections":0,)"
+            R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
+            R"("shortcut_checks":0,"projections":0,)"
             R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,)"
             R"("reason":"time limit"})");
 }
@@ -101,12 +102,25 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.distribution_id = Digest{};
   result.distribution_revision = 9;
   result.share = 0.75;
+  result.goal_checks = 20;
+  result.shortcut_checks = 300;
   const auto back = problem_result_from_json(to_json(result));
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(*back->waypoints, *result.waypoints);
   EXPECT_EQ(back->distribution_id, result.distribution_id);
   EXPECT_EQ(back->distribution_revision, 9U);
   EXPECT_EQ(back->share, 0.75);
+  EXPECT_EQ(back->goal_checks, 20U);
+  EXPECT_EQ(back->shortcut_checks, 300U);
+}
+
+TEST(ProblemJson, ChecksOutsidePlanningMayBeMissingInAResult) {
+  const auto back = problem_result_from_json(
+      R"({"name":"a","solved":false,"collision_checks":7,"projections":0,)"
+      R"("planning_time_s":0,"time_limit_s":1,"waypoints":null,"guidance":null,"reason":""})");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->goal_checks, 0U);
+  EXPECT_EQ(back->shortcut_checks, 0U);
 }
 
 }  // namespace
