@@ -11,11 +11,11 @@ namespace {
 
 // All lengths in m. The shelf's frame: origin on the table below the middle of the opening, x into
 // the shelf, y to its left, z up.
-constexpr double kThickness = 0.015;     // of boards, sides and back
+constexpr double kThickness = 0.015;  // of boards, sides and back
 constexpr double kCompartmentWidth = 0.22;
 constexpr double kCompartmentHeight = 0.22;
 constexpr double kDepth = 0.26;
-constexpr double kFirstFloor = 0.16;     // top of the lowest board above the table
+constexpr double kFirstFloor = 0.16;  // top of the lowest board above the table
 constexpr std::size_t kColumns = 2;
 constexpr std::size_t kRows = 2;
 constexpr std::size_t kCompartments = kColumns * kRows;
@@ -76,13 +76,15 @@ void add_shelf(Scene& scene, const Eigen::Isometry3d& T_task_shelf) {
             T_task_shelf * upright(kDepth / 2, 0, z - kThickness / 2));
   }
   for (std::size_t side = 0; side <= kColumns; ++side) {
-    const double y = (static_cast<double>(side) - kColumns / 2.0) * (kCompartmentWidth + kThickness);
+    const double y =
+        (static_cast<double>(side) - kColumns / 2.0) * (kCompartmentWidth + kThickness);
     add_box(scene, "side_" + std::to_string(side), {kDepth, kThickness, height},
             T_task_shelf * upright(kDepth / 2, y, bottom + height / 2));
   }
   add_box(scene, "back", {kThickness, width, height},
           T_task_shelf * upright(kDepth + kThickness / 2, 0, bottom + height / 2));
-  add_box(scene, "plinth", {kDepth, width, bottom}, T_task_shelf * upright(kDepth / 2, 0, bottom / 2));
+  add_box(scene, "plinth", {kDepth, width, bottom},
+          T_task_shelf * upright(kDepth / 2, 0, bottom / 2));
 }
 
 /// Puts boxes into one or two compartments other than the goal.

@@ -1,0 +1,113 @@
+#include "client/plan/guidance.hpp"
+
+#include <cstdio>
+#include <utility>
+
+namespace kinship::plan {
+namespace {
+
+GuidanceAnswer refusal(NoGuidance why, std::string message) {
+  return {std::nullopt, why, std::move(message)};
+}
+
+std::string share_text(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f", share);
+  return text;
+}
+
+std::string describe(const Distribution& distribution, double share) {
+  std::string text = "distribution " + distribution.id.short_hex() + " revision " +
+                     std::to_string(distribution.revision) + ", " +
+                     std::to_string(distribution.mixture->size()) + " components fitted to " +
+                     std::to_string(distribution.configurations) + " configurations from ";
+  for (std::size_t i = 0; i < distribution.sources.size(); ++i) {
+    const Source& source = distribution.sources[i];
+    text += (i == 0 ? "" : ", ") +
+            (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
+            std::to_string(source.paths) + " paths)";
+  }
+  text += "; share " + share_text(share);
+  if (!distribution.evidence.empty()) text += " (" + distribution.evidence + ")";
+  if (!distribution.reason.empty()) text += "; warning: " + distribution.reason;
+  return text;
+}
+
+GuidanceAnswer use(const Distribution& distribution, const GuidanceWish& wish) {
+  if (!distribution.mixture || distribution.mixture->dimension() != wish.dof)
+    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
+                                           " has no mixture over " + std::to_string(wish.dof) +
+                                           " joints");
+  const double share = wish.share.value_or(distribution.recommended_share);
+  if (!(share >= 0 && share <= 1))
+    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
+                                           " recommends share " + std::to_string(share) +
+                                           ", must be 0 to 1");
+  GuidanceAnswer answer;
+  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
+  answer.message = describe(distribution, share);
+  return answer;
+}
+
+std::string or_else(const std::string& message, const std::string& otherwise) {
+  return message.empty() ? otherwise : message;
+}
+
+}  // namespace
+
+GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
+                              const Eigen::Isometry3d& T_task_base) {
+  FetchRequest request;
+  request.task = wish.task;
+  request.robot = wish.robot;
+  request.T_task_base = T_task_base;
+  request.profile = wish.profile;
+  request.deadline = wish.wait;
+  const Result<FetchReply> reply = fetch(request);
+  if (!reply) {
+    const bool nobody = reply.error().code == ErrorCode::Unavailable;
+    return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
+  }
+  switch (reply->status) {
+    case FetchStatus::Ready:
+      if (reply->distribution) return use(*reply->distribution, wish);
+      return refusal(NoGuidance::Failed, "the server sent no distribution");
+    case FetchStatus::NoExperience:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply->message, "no experience with task '" + wish.task + "'"));
+    case FetchStatus::UnknownRobot:
+      return refusal(
+          NoGuidance::NotFound,
+          or_else(reply->message, "the server does not know robot " + wish.robot.short_hex()));
+    case FetchStatus::Failed:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply->distribution ? reply->distribution->reason : reply->message,
+                             "nothing could be transferred or fitted"));
+    case FetchStatus::Pending:
+      return refusal(NoGuidance::Failed, "the distribution is still being made after " +
+                                             std::to_string(wish.wait.count()) + " ms");
+    case FetchStatus::Busy:
+      return refusal(NoGuidance::Failed, or_else(reply->message, "the server is busy"));
+    case FetchStatus::Refused:
+      break;
+  }
+  return refusal(NoGuidance::Failed, or_else(reply->message, "the server refused the request"));
+}
+
+std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(const Eigen::Isometry3d& T_task_base) {
+  const PoseArray key = to_pose_array(snapped(T_task_base));
+  if (const auto known = answers_.find(key); known != answers_.end()) return {known->second, false};
+  GuidanceAnswer answer = server_missing_
+                              ? refusal(NoGuidance::NoServer, "no server answered before")
+                              : fetch_guidance(fetch_, wish_, T_task_base);
+  if (answer.why_not == NoGuidance::NoServer) server_missing_ = true;
+  return {answers_.emplace(key, std::move(answer)).first->second, true};
+}
+
+const Guidance* GuidanceBook::find(const Eigen::Isometry3d& T_task_base) const {
+  const auto known = answers_.find(to_pose_array(snapped(T_task_base)));
+  if (known == answers_.end() || !known->second.guidance) return nullptr;
+  return &*known->second.guidance;
+}
+
+}  // namespace kinship::plan

@@ -1,0 +1,167 @@
+#include "client/plan/plan_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <map>
+#include <ostream>
+#include <sstream>
+
+#include "proto/types/names.hpp"
+#include "proto/types/pose.hpp"
+
+namespace kinship::plan {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  kinship-plan problems.jsonl --model robots/models/panda
+      plan with uniform samples; results on standard output
+  kinship-plan problems.jsonl --model robots/models/panda --task box_to_shelf --report --output results.jsonl
+      ask kinshipd for guidance, plan uniformly if there is none, report every attempt
+  kinship-plan problems.jsonl --model robots/models/ur10e --task box_to_shelf --guidance require --share 0.9
+      plan only with guidance; exit code 3 if the fleet has no experience, 4 if no server answers
+  kinship-plan - cell3.urdf --base base_link --tip tool0 --transfer "0 0 0.12 0 0 0 1" --label cell3
+      a robot without a model folder; problems on standard input
+
+Exit codes: 0 every line was answered (unsolved is an answer), 1 failed or interrupted, 2 wrong usage,
+3 no such task or distribution (--guidance require), 4 no server answered (--guidance require).)";
+
+/// What needs a second look after parsing.
+struct RawOptions {
+  std::string transfer;
+  std::string guidance;
+  double timeout_s = 5;
+  double wait_s = 30;
+  double share = 0;
+};
+
+void add_robot_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
+  RobotFiles& robot = options.robot;
+  app.add_option("problems", options.problems, "problems, JSON Lines; - is standard input")
+      ->required();
+  CLI::Option* const urdf =
+      app.add_option("urdf", robot.urdf, "URDF of a robot without a model folder");
+  CLI::Option* const model =
+      app.add_option("--model", robot.model, "model folder: robot.urdf and chain.toml");
+  model->excludes(urdf);
+  app.add_option("--base", robot.base_link, "base link, with a URDF")->needs(urdf);
+  app.add_option("--tip", robot.tip_link, "tip link, with a URDF")->needs(urdf);
+  app.add_option("--transfer", raw.transfer,
+                 "transfer frame in the tip link, \"x y z qx qy qz qw\", with a URDF")
+      ->needs(urdf);
+  app.add_option("--label", robot.label, "name of the robot for people, with a URDF")->needs(urdf);
+}
+
+void add_planning_options(CLI::App& app, PlanOptions& options) {
+  PlanSettings& settings = options.settings;
+  app.add_option("--resolution", settings.resolution,
+                 "largest distance between checked configurations, joint units")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->capture_default_str();
+  app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->capture_default_str();
+  app.add_option("--shortcut-checks", settings.shortcut_checks,
+                 "collision checks spent on shortening a path; 0: none")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))
+      ->capture_default_str();
+  app.add_option("--seed-offset", options.seed_offset, "added to the seed of every problem");
+  app.add_option("--output", options.output, "file for the results; standard output if missing");
+}
+
+void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
+  app.add_option("--task", options.task, "task under which experience is kept");
+  app.add_option("--guidance", raw.guidance,
+                 "none: uniform; auto: guided if possible; require: guided or not at all "
+                 "(default: auto with --task, otherwise none)")
+      ->check(CLI::IsMember({"none", "auto", "require"}));
+  app.add_option("--profile", options.profile, "profile of the distribution")
+      ->capture_default_str();
+  app.add_option("--share", raw.share, "share of guided samples; the server's advice if missing")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_flag("--report", options.report, "report every attempt to the server");
+  app.add_option("--machine", options.machine, "name of this robot or cell in reports");
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  app.add_option("--timeout", raw.timeout_s, "seconds to wait for a server")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  app.add_option("--wait", raw.wait_s, "seconds to wait for a distribution that is being made")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged");
+}
+
+Eigen::Isometry3d read_pose(const std::string& text) {
+  std::istringstream stream(text);
+  PoseArray numbers{};
+  for (double& number : numbers)
+    if (!(stream >> number))
+      throw CLI::ValidationError("--transfer", "'" + text + "' is not seven numbers");
+  std::string rest;
+  if (stream >> rest) throw CLI::ValidationError("--transfer", "more than seven numbers");
+  const Result<Eigen::Isometry3d> pose = from_pose_array(numbers);
+  if (!pose) throw CLI::ValidationError("--transfer", pose.error().message);
+  return *pose;
+}
+
+std::chrono::milliseconds milliseconds_of(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+}
+
+void require_name(const std::optional<Error>& error, const std::string& option) {
+  if (error) throw CLI::ValidationError(option, error->message);
+}
+
+/// What CLI11 cannot say by itself.
+void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) {
+  RobotFiles& robot = options.robot;
+  if (robot.model.empty() && robot.urdf.empty())
+    throw CLI::ValidationError("robot", "give --model DIR, or a URDF with --base and --tip");
+  if (!robot.urdf.empty() && (robot.base_link.empty() || robot.tip_link.empty()))
+    throw CLI::ValidationError("robot", "a URDF needs --base and --tip");
+  if (!raw.transfer.empty()) robot.T_tip_transfer = read_pose(raw.transfer);
+  if (robot.label.empty() && !robot.urdf.empty()) robot.label = robot.urdf.stem().string();
+  if (!robot.urdf.empty()) require_name(check_label(robot.label), "--label");
+
+  const std::string guidance =
+      raw.guidance.empty() ? (options.task.empty() ? "none" : "auto") : raw.guidance;
+  options.guidance = guidance == "none"   ? GuidanceMode::None
+                     : guidance == "auto" ? GuidanceMode::Auto
+                                          : GuidanceMode::Require;
+  if (options.task.empty() && options.guidance != GuidanceMode::None)
+    throw CLI::ValidationError("--guidance", guidance + " needs --task");
+  if (options.task.empty() && options.report)
+    throw CLI::ValidationError("--report", "needs --task");
+  if (!options.task.empty()) require_name(check_task(options.task), "--task");
+  require_name(check_machine(options.machine), "--machine");
+  if (app.count("--share") > 0) options.share = raw.share;
+  options.timeout = milliseconds_of(raw.timeout_s);
+  options.wait = milliseconds_of(raw.wait_s);
+}
+
+}  // namespace
+
+std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,
+                                                  std::ostream& out, std::ostream& err) {
+  constexpr int kWrongUsage = 2;
+  PlanOptions options;
+  RawOptions raw;
+  CLI::App app{"kinship-plan: plans motions of one robot, guided by the experience of its fleet"};
+  app.footer(kExamples);
+  add_robot_options(app, options, raw);
+  add_planning_options(app, options);
+  add_server_options(app, options, raw);
+  try {
+    app.parse(argc, argv);
+    complete(app, raw, options);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error, out, err);
+    return code == 0 ? 0 : kWrongUsage;
+  }
+  return options;
+}
+
+}  // namespace kinship::plan

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "client/plan/plan_settings.hpp"
+
+namespace kinship::plan {
+
+enum class GuidanceMode { None, Auto, Require };
+
+/// Where the robot's description is: a model folder, or a URDF file and what it does not say.
+struct RobotFiles {
+  std::filesystem::path model;
+  std::filesystem::path urdf;
+  std::string base_link, tip_link, label;
+  Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
+};
+
+/// The command line of kinship-plan.
+struct PlanOptions {
+  std::filesystem::path problems;  ///< "-": standard input
+  RobotFiles robot;
+  std::string task;
+  GuidanceMode guidance = GuidanceMode::Auto;
+  std::string profile = "default";
+  std::optional<double> share;
+  bool report = false;
+  std::string machine;  ///< empty: the host's name
+  PlanSettings settings;
+  std::uint64_t seed_offset = 0;  ///< added to each problem's seed
+  std::filesystem::path output;   ///< empty: standard output
+  std::uint32_t domain = 0;
+  std::chrono::milliseconds timeout{5000};
+  std::chrono::milliseconds wait{30000};
+  std::filesystem::path outbox;  ///< empty: the client's default
+};
+
+/// \return the options, or the exit code after help (0) or a wrong command line (2, with what is
+///         wrong on `err`).
+std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,
+                                                  std::ostream& out, std::ostream& err);
+
+}  // namespace kinship::plan

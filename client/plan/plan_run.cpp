@@ -1,0 +1,101 @@
+#include "client/plan/plan_run.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "client/plan/attempt_record.hpp"
+#include "client/plan/problem_lines.hpp"
+#include "client/plan/progress.hpp"
+#include "client/plan/robot_files.hpp"
+#include "client/plan/server_line.hpp"
+#include "proto/json/problem_json.hpp"
+
+namespace kinship::plan {
+namespace {
+
+std::string host_name() {
+  std::array<char, 65> name{};  // HOST_NAME_MAX and a terminator
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+int exit_code_without(NoGuidance why_not) {
+  switch (why_not) {
+    case NoGuidance::None:
+      return kDone;
+    case NoGuidance::NoServer:
+      return kNoServer;
+    case NoGuidance::NotFound:
+      return kNotFound;
+    case NoGuidance::Failed:
+      break;
+  }
+  return kFailed;
+}
+
+void write_result(const ProblemResult& result, std::ostream& results) {
+  results << json::to_json(result) << std::endl;  // flushed: a reader may follow
+  if (!results) throw Failure(ErrorCode::Storage, "cannot write the results");
+}
+
+GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain) {
+  GuidanceWish wish;
+  wish.task = options.task;
+  wish.robot = chain.digest();
+  wish.dof = chain.dof();
+  wish.profile = options.profile;
+  wish.share = options.share;
+  wish.wait = options.wait;
+  return wish;
+}
+
+}  // namespace
+
+int run_plan(const PlanOptions& options, const RunStreams& streams,
+             const std::function<bool()>& stop) {
+  const LoadedRobot robot = load_robot(options.robot);
+  std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
+  ServerLine server(options, robot.description, streams.messages);
+  const GuidanceWish wish = wish_of(options, robot.planned.chain);
+  const NoGuidance why_not = server.fetch_guidance(wish, lines);
+  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None)
+    return exit_code_without(why_not);
+
+  const std::string machine = options.machine.empty() ? host_name() : options.machine;
+  const Reporter reporter{wish.robot, machine, options.task};
+  Progress progress(streams.messages, streams.messages_on_terminal, lines.size());
+  bool complete = true;
+  for (ProblemLine& line : lines) {
+    if (stop()) {
+      complete = false;
+      break;
+    }
+    if (!line.problem) {
+      const ProblemResult broken = broken_line_result(line.number, line.problem.error());
+      write_result(broken, streams.results);
+      progress.add(broken);
+      continue;
+    }
+    Problem problem = *std::move(line.problem);
+    problem.seed += options.seed_offset;
+    const PlannedProblem planned = plan_problem(
+        robot.planned, problem, server.guidance(problem.T_task_base), options.settings, stop);
+    if (planned.interrupted) {
+      complete = false;
+      break;
+    }
+    write_result(planned.result, streams.results);
+    progress.add(planned.result);
+    if (options.report && planned.attempted)
+      server.report(make_attempt(reporter, problem, planned, options.settings));
+  }
+  progress.finish();
+  server.finish();
+  if (!complete) streams.messages << "interrupted: the remaining problems were not planned\n";
+  return complete ? kDone : kFailed;
+}
+
+}  // namespace kinship::plan

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+namespace kinship::plan {
+
+/// How every problem of a run is planned, guided or not.
+struct PlanSettings {
+  double resolution = 0.05;             ///< between checked configurations, joint units
+  double overshoot = 1.5;               ///< see planning::BirrtOptions
+  std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
+  std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
+  int max_goals = 20;                   ///< goal configurations found for a goal pose
+};
+
+}  // namespace kinship::plan

@@ -1,0 +1,153 @@
+#include "client/plan/guidance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace kinship::plan {
+namespace {
+
+constexpr Eigen::Index kDof = 2;
+
+Mixture one_component(Eigen::Index dimension) {
+  return Mixture(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(dimension, 1),
+                 {Eigen::MatrixXd::Identity(dimension, dimension)});
+}
+
+FetchReply ready(double recommended_share = 0.9, Eigen::Index dimension = kDof) {
+  Distribution distribution;
+  distribution.id.bytes[0] = 0xab;
+  distribution.revision = 3;
+  distribution.configurations = 400;
+  distribution.sources = {{Digest{}, "panda", 60, 60, 900, 880}};
+  distribution.mixture = one_component(dimension);
+  distribution.recommended_share = recommended_share;
+  FetchReply reply;
+  reply.status = FetchStatus::Ready;
+  reply.distribution = distribution;
+  return reply;
+}
+
+FetchReply status_only(FetchStatus status) {
+  FetchReply reply;
+  reply.status = status;
+  return reply;
+}
+
+GuidanceWish wish() {
+  GuidanceWish wish;
+  wish.task = "box_to_shelf";
+  wish.dof = kDof;
+  return wish;
+}
+
+Eigen::Isometry3d placement(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
+
+GuidanceAnswer answer_to(const Result<FetchReply>& reply, const GuidanceWish& for_what = wish()) {
+  return fetch_guidance([&](const FetchRequest&) { return reply; }, for_what, placement(0));
+}
+
+TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
+  EXPECT_EQ(answer_to(ready(0.9)).guidance->share, 0.9);
+  GuidanceWish own_share = wish();
+  own_share.share = 0.25;
+  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->share, 0.25);
+}
+
+TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
+  const GuidanceAnswer answer = answer_to(ready());
+  EXPECT_EQ(answer.message,
+            "distribution ab0000000000 revision 3, 1 components fitted to 400 configurations from "
+            "panda (60 paths); share 0.90");
+  EXPECT_EQ(answer.guidance->revision, 3U);
+  EXPECT_EQ(answer.why_not, NoGuidance::None);
+}
+
+TEST(FetchGuidance, AsksForTaskRobotPlacementAndProfile) {
+  GuidanceWish special = wish();
+  special.profile = "paper";
+  special.robot.bytes[5] = 7;
+  special.wait = std::chrono::milliseconds(1234);
+  FetchRequest seen;
+  fetch_guidance(
+      [&](const FetchRequest& request) {
+        seen = request;
+        return Result<FetchReply>(ready());
+      },
+      special, placement(0.5));
+  EXPECT_EQ(seen.task, "box_to_shelf");
+  EXPECT_EQ(seen.profile, "paper");
+  EXPECT_EQ(seen.robot, special.robot);
+  EXPECT_EQ(seen.deadline.count(), 1234);
+  EXPECT_EQ(seen.T_task_base->translation().x(), 0.5);
+}
+
+TEST(FetchGuidance, TellsNobodyFromNothingFromFailure) {
+  EXPECT_EQ(answer_to(Error{ErrorCode::Unavailable, "nobody"}).why_not, NoGuidance::NoServer);
+  EXPECT_EQ(answer_to(Error{ErrorCode::Internal, "odd"}).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::NoExperience)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::UnknownRobot)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Failed)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Pending)).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Busy)).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Refused)).why_not, NoGuidance::Failed);
+}
+
+TEST(FetchGuidance, EveryRefusalHasAReason) {
+  for (const FetchStatus status :
+       {FetchStatus::NoExperience, FetchStatus::UnknownRobot, FetchStatus::Failed,
+        FetchStatus::Pending, FetchStatus::Busy, FetchStatus::Refused, FetchStatus::Ready})
+    EXPECT_NE(answer_to(status_only(status)).message, "");
+}
+
+TEST(FetchGuidance, RefusesADistributionThatDoesNotFitTheRobot) {
+  const GuidanceAnswer answer = answer_to(ready(0.9, kDof + 1));
+  EXPECT_FALSE(answer.guidance);
+  EXPECT_EQ(answer.why_not, NoGuidance::Failed);
+  EXPECT_FALSE(answer_to(ready(1.5)).guidance);
+}
+
+TEST(GuidanceBook, AsksOncePerPlacementWithinAMillimetre) {
+  int asked = 0;
+  GuidanceBook book(
+      [&](const FetchRequest&) {
+        ++asked;
+        return Result<FetchReply>(ready());
+      },
+      wish());
+  EXPECT_TRUE(book.ask(placement(0.1)).second);
+  EXPECT_FALSE(book.ask(placement(0.1001)).second);
+  EXPECT_TRUE(book.ask(placement(0.2)).second);
+  EXPECT_EQ(asked, 2);
+}
+
+TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
+  GuidanceBook book(
+      [](const FetchRequest& request) {
+        const bool experienced = request.T_task_base->translation().x() > 0;
+        return Result<FetchReply>(experienced ? ready() : status_only(FetchStatus::NoExperience));
+      },
+      wish());
+  book.ask(placement(-1));
+  book.ask(placement(1));
+  EXPECT_EQ(book.find(placement(-1)), nullptr);
+  EXPECT_EQ(book.find(placement(0.5)), nullptr);
+  ASSERT_NE(book.find(placement(1)), nullptr);
+  EXPECT_EQ(book.find(placement(1))->revision, 3U);
+}
+
+TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {
+  int asked = 0;
+  GuidanceBook book(
+      [&](const FetchRequest&) {
+        ++asked;
+        return Result<FetchReply>(Error{ErrorCode::Unavailable, "no server answered in 5 s"});
+      },
+      wish());
+  EXPECT_EQ(book.ask(placement(0.1)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(book.ask(placement(0.2)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(asked, 1);
+}
+
+}  // namespace
+}  // namespace kinship::plan

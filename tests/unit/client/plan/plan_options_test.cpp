@@ -1,0 +1,101 @@
+#include "client/plan/plan_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <vector>
+
+namespace kinship::plan {
+namespace {
+
+struct Parsed {
+  std::variant<PlanOptions, int> answer;
+  std::string out, err;
+
+  const PlanOptions& options() const { return std::get<PlanOptions>(answer); }
+  int code() const { return std::get<int>(answer); }
+};
+
+Parsed parsed(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "kinship-plan");
+  std::ostringstream out;
+  std::ostringstream err;
+  auto answer = parse_plan_options(static_cast<int>(arguments.size()), arguments.data(), out, err);
+  return {std::move(answer), out.str(), err.str()};
+}
+
+TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
+  const PlanOptions options = parsed({"problems.jsonl", "--model", "panda"}).options();
+  EXPECT_EQ(options.problems, "problems.jsonl");
+  EXPECT_EQ(options.robot.model, "panda");
+  EXPECT_EQ(options.guidance, GuidanceMode::None);
+  EXPECT_FALSE(options.report);
+  EXPECT_EQ(options.settings.resolution, 0.05);
+  EXPECT_EQ(options.settings.shortcut_checks, 300U);
+}
+
+TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
+  const PlanOptions options = parsed({"p", "--model", "m", "--task", "a"}).options();
+  EXPECT_EQ(options.guidance, GuidanceMode::Auto);
+  EXPECT_FALSE(options.share);
+}
+
+TEST(PlanOptions, ReadsARobotFromAUrdf) {
+  const PlanOptions options =
+      parsed({"p", "dir/arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0.1 0 0 0 1"})
+          .options();
+  EXPECT_EQ(options.robot.label, "arm");
+  EXPECT_EQ(options.robot.T_tip_transfer.translation().z(), 0.1);
+}
+
+TEST(PlanOptions, ReadsWhatConcernsTheServer) {
+  const PlanOptions options =
+      parsed({"p",        "--model", "m",         "--task",   "a",         "--guidance",
+              "require",  "--share", "0",         "--report", "--machine", "cell 3",
+              "--domain", "7",       "--timeout", "0.5",      "--wait",    "2",
+              "--outbox", "box",     "--profile", "paper"})
+          .options();
+  EXPECT_EQ(options.guidance, GuidanceMode::Require);
+  EXPECT_EQ(options.share, 0.0);
+  EXPECT_TRUE(options.report);
+  EXPECT_EQ(options.machine, "cell 3");
+  EXPECT_EQ(options.domain, 7U);
+  EXPECT_EQ(options.timeout.count(), 500);
+  EXPECT_EQ(options.wait.count(), 2000);
+  EXPECT_EQ(options.outbox, "box");
+  EXPECT_EQ(options.profile, "paper");
+}
+
+TEST(PlanOptions, HelpShowsExamplesAndEndsWell) {
+  const Parsed help = parsed({"--help"});
+  EXPECT_EQ(help.code(), 0);
+  EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+}
+
+TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
+  const std::vector<std::vector<const char*>> wrong = {
+      {},
+      {"p"},
+      {"p", "--model", "m", "arm.urdf"},
+      {"p", "arm.urdf", "--base", "b"},
+      {"p", "--model", "m", "--base", "b"},
+      {"p", "--model", "m", "--report"},
+      {"p", "--model", "m", "--guidance", "auto"},
+      {"p", "--model", "m", "--task", "a b"},
+      {"p", "--model", "m", "--task", "a", "--guidance", "perhaps"},
+      {"p", "--model", "m", "--task", "a", "--share", "1.5"},
+      {"p", "--model", "m", "--resolution", "0"},
+      {"p", "--model", "m", "--domain", "300"},
+      {"p", "arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0"},
+      {"p", "arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0 0 0 0 9"},
+      {"p", "--model", "m", "--bogus"}};
+  for (const auto& arguments : wrong) {
+    const Parsed answer = parsed(arguments);
+    ASSERT_TRUE(std::holds_alternative<int>(answer.answer)) << arguments.size();
+    EXPECT_EQ(answer.code(), 2);
+    EXPECT_NE(answer.err, "");
+  }
+}
+
+}  // namespace
+}  // namespace kinship::plan
