@@ -26,15 +26,20 @@ struct Surroundings {
 /// it was asked. Not shared between threads.
 class CollisionWorld {
  public:
-  /// Links that touch in each of many random configurations are never checked (see README), nor
-  /// are links joined by one moving or by fixed joints.
-  /// \throws Failure(InvalidInput) if an attached object names an unknown link or a shape is not
-  ///         finite and positive.
+  /// Never checked: what is fixed to each other, neighbouring links, the shapes' never-colliding
+  /// pairs and, if there are none of these, links that touch in at least 95 % of 200 random
+  /// configurations (seeded: equal input, equal answers).
+  /// \throws Failure(InvalidInput) if an attached object or an allowed pair names what is not
+  ///         there, a shape is not finite and positive, or a pose not finite.
   CollisionWorld(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
                  const Surroundings& surroundings);
+  CollisionWorld(CollisionWorld&&) noexcept;
+  CollisionWorld& operator=(CollisionWorld&&) noexcept;
   ~CollisionWorld();
 
   /// Counts one check, whatever answers it.
+  /// \param q  dof, joint units; limits are not checked.
+  /// \throws std::invalid_argument if q has the wrong size or is not finite.
   bool collides(const Eigen::Ref<const Eigen::VectorXd>& q);
 
   /// Names of two things that touch at q, for messages; empty if none do. Counts no check.

@@ -1,0 +1,104 @@
+#include "robots/collision/body.hpp"
+
+#include <algorithm>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::collision {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Failure(ErrorCode::InvalidInput, message);
+}
+
+void require_finite(const Eigen::Isometry3d& T, const std::string& what) {
+  if (!T.matrix().allFinite()) refuse(what + ": pose is not finite");
+}
+
+Solid make_solid(const Shape& shape, const std::string& what) {
+  try {
+    return Solid(shape);
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(), what + ": " + failure.what());
+  }
+}
+
+const kinematics::ChainLink& link_at(const kinematics::Chain& chain, int link) {
+  if (link < 0 || link >= static_cast<int>(chain.links().size()))
+    refuse("link " + std::to_string(link) + " of a shape is not a link of the chain");
+  return chain.links()[static_cast<std::size_t>(link)];
+}
+
+void require_link(const kinematics::Chain& chain, const std::string& name,
+                  const std::string& what) {
+  if (chain.find_link(name) < 0) refuse(what + ": no link named '" + name + "'");
+}
+
+Body make_attached(const kinematics::Chain& chain, const AttachedObject& object) {
+  const std::string what = "attached object '" + object.name + "'";
+  require_link(chain, object.link, what);
+  for (const std::string& name : object.touch_links) require_link(chain, name, what);
+  require_finite(object.T_link_object, what);
+  const int index = chain.find_link(object.link);
+  const kinematics::ChainLink& link = link_at(chain, index);
+  return {BodyKind::Attached,
+          object.name,
+          index,
+          link.joint,
+          link.T_joint_link * object.T_link_object,
+          make_solid(object.shape, what),
+          object.touch_links};
+}
+
+void require_known_names(const std::vector<Body>& bodies, const kinematics::Chain& chain,
+                         const Surroundings& surroundings) {
+  const auto known = [&](const std::string& name) {
+    return chain.find_link(name) >= 0 ||
+           std::any_of(bodies.begin(), bodies.end(),
+                       [&](const Body& body) { return body.name == name; });
+  };
+  for (const auto& [first, second] : surroundings.allowed_collisions)
+    for (const std::string& name : {first, second})
+      if (!known(name))
+        refuse("allowed collision ('" + first + "', '" + second +
+               "'): no link, object or attachment named '" + name + "'");
+}
+
+}  // namespace
+
+std::vector<Body> make_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
+                              const Surroundings& surroundings) {
+  std::vector<Body> bodies;
+  for (const geometry::LinkShape& shape : shapes.shapes) {
+    const kinematics::ChainLink& link = link_at(chain, shape.link);
+    const std::string what = "link '" + link.name + "'";
+    require_finite(shape.T_link_shape, what);
+    bodies.push_back({BodyKind::Link,
+                      link.name,
+                      shape.link,
+                      link.joint,
+                      link.T_joint_link * shape.T_link_shape,
+                      make_solid(shape.shape, what),
+                      {}});
+  }
+  for (const AttachedObject& object : surroundings.attached)
+    bodies.push_back(make_attached(chain, object));
+
+  require_finite(surroundings.T_task_base, "placement of the base in the task frame");
+  const Eigen::Isometry3d T_base_task = surroundings.T_task_base.inverse(Eigen::Isometry);
+  for (const SceneObject& object : surroundings.scene.objects) {
+    const std::string what = "scene object '" + object.name + "'";
+    require_finite(object.T_task_object, what);
+    bodies.push_back({BodyKind::Obstacle,
+                      object.name,
+                      -1,
+                      -1,
+                      T_base_task * object.T_task_object,
+                      make_solid(object.shape, what),
+                      {}});
+  }
+  require_known_names(bodies, chain, surroundings);
+  return bodies;
+}
+
+}  // namespace kinship::collision

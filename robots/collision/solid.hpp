@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "proto/types/scene.hpp"
+
+namespace fcl {
+template <typename S>
+class CollisionGeometry;
+}
+
+namespace kinship::collision {
+
+/// A shape prepared for many questions: spheres that cover it and its own bounding box, both of
+/// which say "apart" cheaply, and FCL's geometry for when they cannot. Immutable, cheap to copy.
+class Solid {
+ public:
+  /// \throws Failure(InvalidInput) if a size is not finite and positive.
+  explicit Solid(const Shape& shape);
+
+  /// Whether two solids share a point, given their poses in one frame.
+  friend bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
+                    const Eigen::Isometry3d& T_base_b);
+
+ private:
+  /// Whether the spheres that cover this solid stay clear of the bounding box of `other`.
+  bool cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
+
+  double radius_m_ = 0;  // of the sphere about the centre that holds everything
+  Eigen::Vector3d half_extents_m_ = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> cover_centers_m_;  // along the longest axis
+  double cover_radius_m_ = 0;
+  std::shared_ptr<const fcl::CollisionGeometry<double>> geometry_;  // shared by copies, immutable
+};
+
+}  // namespace kinship::collision

@@ -1,0 +1,111 @@
+#include "robots/geometry/link_shapes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "robots/kinematics/urdf.hpp"
+
+namespace kinship::geometry {
+namespace {
+
+/// Two links and a joint between them; the collision elements go into the second.
+RobotDescription describe(const std::string& collisions) {
+  RobotDescription description;
+  description.label = "two_links";
+  description.urdf = R"(<robot name="two_links">
+    <link name="base"/>
+    <link name="arm">)" +
+                     collisions + R"(</link>
+    <joint name="turn" type="revolute">
+      <parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+      <limit lower="-1" upper="1" effort="1" velocity="1"/>
+    </joint></robot>)";
+  description.base_link = "base";
+  description.tip_link = "arm";
+  return description;
+}
+
+std::string collision(const std::string& geometry, const std::string& origin = "") {
+  return "<collision>" + origin + "<geometry>" + geometry + "</geometry></collision>";
+}
+
+Result<RobotShapes> read(const RobotDescription& description) {
+  return read_shapes(description, kinematics::read_chain(description).value_or_throw());
+}
+
+TEST(ReadShapes, ReadsBoxCylinderAndSphereWithTheirPlaces) {
+  const auto shapes = read(describe(
+      collision("<box size='1 2 3'/>", "<origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/>") +
+      collision("<cylinder radius='0.1' length='0.5'/>") + collision("<sphere radius='0.2'/>")));
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  ASSERT_EQ(shapes->shapes.size(), 3u);
+  EXPECT_EQ(std::get<BoxShape>(shapes->shapes[0].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE((shapes->shapes[0].T_link_shape * Eigen::Vector3d(0, -1, 0))
+                  .isApprox(Eigen::Vector3d(2, 0, 0), 1e-12));
+  EXPECT_EQ(std::get<CylinderShape>(shapes->shapes[1].shape).length_m, 0.5);
+  EXPECT_EQ(std::get<SphereShape>(shapes->shapes[2].shape).radius_m, 0.2);
+  for (const LinkShape& shape : shapes->shapes) EXPECT_EQ(shape.link, 1);
+}
+
+TEST(ReadShapes, FusesCapsules) {
+  const auto shapes =
+      read(describe(collision("<cylinder radius='0.1' length='0.5'/>") +
+                    collision("<sphere radius='0.1'/>", "<origin xyz='0 0 0.25'/>") +
+                    collision("<sphere radius='0.1'/>", "<origin xyz='0 0 -0.25'/>")));
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  ASSERT_EQ(shapes->shapes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<CapsuleShape>(shapes->shapes[0].shape));
+}
+
+TEST(ReadShapes, RefusesAMeshByLinkName) {
+  const auto shapes = read(describe(collision("<mesh filename='package://a/b.stl'/>")));
+  ASSERT_FALSE(shapes);
+  EXPECT_EQ(shapes.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(shapes.error().message, "link 'arm': collision meshes are not supported yet");
+}
+
+TEST(ReadShapes, TakesAVisualMesh) {
+  const auto shapes =
+      read(describe("<visual><geometry><mesh filename='package://a/b.stl'/></geometry></visual>"));
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  EXPECT_TRUE(shapes->shapes.empty());
+}
+
+TEST(ReadShapes, RefusesSizesThatAreNotPositive) {
+  const auto shapes = read(describe(collision("<sphere radius='-0.1'/>")));
+  ASSERT_FALSE(shapes);
+  EXPECT_EQ(shapes.error().message,
+            "link 'arm': sphere radius of -0.1 m is not between 0 and 1000 m");
+}
+
+TEST(ReadShapes, TurnsNeverCollidingNamesIntoSortedIndices) {
+  RobotDescription description = describe("");
+  description.never_colliding = {{"arm", "base"}, {"base", "arm"}, {"arm", "arm"}};
+  const auto shapes = read(description);
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  EXPECT_EQ(shapes->never_colliding, (std::vector<std::pair<int, int>>{{0, 1}}));
+}
+
+TEST(ReadShapes, RefusesANeverCollidingPairWithoutALink) {
+  RobotDescription description = describe("");
+  description.never_colliding = {{"arm", "leg"}};
+  const auto shapes = read(description);
+  ASSERT_FALSE(shapes);
+  EXPECT_NE(shapes.error().message.find("no link named 'leg'"), std::string::npos);
+}
+
+TEST(ReadShapes, SaysNothingOnTheTerminal) {
+  const RobotDescription sound = describe("");
+  const kinematics::Chain chain = kinematics::read_chain(sound).value_or_throw();
+  RobotDescription broken = sound;
+  broken.urdf = "<robot name='x'><link name='a'/><joint/></robot>";
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(read_shapes(broken, chain));
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace kinship::geometry
