@@ -1,0 +1,200 @@
+#include "robots/collision/collision_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "proto/types/failure.hpp"
+#include "tests/unit/robots/collision/toy_arm.hpp"
+
+namespace kinship::collision {
+namespace {
+
+using namespace test_support;
+using Names = std::pair<std::string, std::string>;
+
+constexpr int kJoints = 3;
+const Eigen::VectorXd kStraight = angles({0, 0, 0});  // along x, the tip at 1.5 m
+const Eigen::VectorXd kTurned = angles({M_PI / 2, 0, 0});
+
+CollisionWorld make_world(const Surroundings& surroundings) {
+  return CollisionWorld(toy_chain(kJoints), toy_shapes(kJoints), surroundings);
+}
+
+Surroundings with_object(const SceneObject& object) {
+  Surroundings surroundings;
+  surroundings.scene.objects.push_back(object);
+  return surroundings;
+}
+
+AttachedObject held_box(const std::string& link, double x, double size_m) {
+  AttachedObject object;
+  object.name = "held";
+  object.link = link;
+  object.shape = BoxShape{Eigen::Vector3d::Constant(size_m)};
+  object.T_link_object = shift(x);
+  return object;
+}
+
+TEST(CollisionWorld, AnArmTouchesWhatLiesInItsWay) {
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
+  EXPECT_TRUE(world.collides(kStraight));
+  EXPECT_FALSE(world.collides(kTurned));
+  EXPECT_EQ(world.find_contact(kStraight), (Names{"link3", "post"}));
+  EXPECT_EQ(world.find_contact(kTurned), std::nullopt);
+}
+
+TEST(CollisionWorld, ObstaclesStandInTheTaskFrame) {
+  Surroundings surroundings = with_object(box_at("post", 1.2, 0));
+  surroundings.T_task_base = shift(1.2, -1.2);  // so the post stands at (0, 1.2) in the base
+  CollisionWorld world = make_world(surroundings);
+  EXPECT_FALSE(world.collides(kStraight));
+  EXPECT_TRUE(world.collides(kTurned));
+
+  surroundings.T_task_base = Eigen::Isometry3d::Identity();
+  surroundings.T_task_base.linear() =
+      Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  CollisionWorld turned = make_world(surroundings);
+  EXPECT_FALSE(turned.collides(kStraight));
+  EXPECT_TRUE(turned.collides(kTurned));
+}
+
+TEST(CollisionWorld, AnAttachedObjectFollowsItsLink) {
+  Surroundings surroundings = with_object(box_at("post", 1.7, 0));
+  CollisionWorld empty_handed = make_world(surroundings);
+  EXPECT_FALSE(empty_handed.collides(kStraight));
+
+  surroundings.attached = {held_box("link3", 0.2, 0.2)};
+  CollisionWorld holding = make_world(surroundings);
+  EXPECT_TRUE(holding.collides(kStraight));
+  EXPECT_EQ(holding.find_contact(kStraight), (Names{"held", "post"}));
+  EXPECT_FALSE(holding.collides(kTurned));
+}
+
+TEST(CollisionWorld, AnAttachedObjectMayTouchItsTouchLinks) {
+  const Eigen::VectorXd folded = angles({0, 0, 2.6});  // the held box comes back to link 2
+  Surroundings surroundings;
+  surroundings.attached = {held_box("link3", -0.2, 0.3)};
+  CollisionWorld strict = make_world(surroundings);
+  EXPECT_EQ(strict.find_contact(folded), (Names{"link2", "held"}));
+
+  surroundings.attached[0].touch_links = {"link2"};
+  CollisionWorld lenient = make_world(surroundings);
+  EXPECT_EQ(lenient.find_contact(folded), std::nullopt);
+}
+
+TEST(CollisionWorld, AnAttachedObjectIsNotCheckedAgainstTheLinkThatHoldsIt) {
+  Surroundings surroundings;
+  surroundings.attached = {held_box("link3", -0.25, 0.1)};
+  EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+}
+
+TEST(CollisionWorld, AllowedPairsMayTouchInEitherOrder) {
+  Surroundings surroundings = with_object(box_at("post", 1.2, 0));
+  surroundings.allowed_collisions = {{"post", "link3"}};
+  EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+  surroundings.allowed_collisions = {{"link3", "post"}};
+  EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+  surroundings.allowed_collisions = {{"link2", "post"}};
+  EXPECT_TRUE(make_world(surroundings).collides(kStraight));
+}
+
+TEST(CollisionWorld, AFoldedArmCollidesWithItself) {
+  CollisionWorld world = make_world({});
+  const Eigen::VectorXd triangle = angles({0, 2.4, 2.4});  // link 3 comes back to link 1
+  EXPECT_EQ(world.find_contact(triangle), (Names{"link1", "link3"}));
+  EXPECT_FALSE(world.collides(angles({0, 1.2, 1.2})));
+}
+
+TEST(CollisionWorld, NeighboursAreNeverChecked) {
+  EXPECT_FALSE(make_world({}).collides(angles({0, M_PI, 0})));  // link 2 lies on link 1
+}
+
+TEST(CollisionWorld, NeverCollidingPairsAreNotChecked) {
+  geometry::RobotShapes shapes = toy_shapes(kJoints);
+  shapes.never_colliding = {{1, 3}};
+  CollisionWorld world(toy_chain(kJoints), shapes, {});
+  EXPECT_FALSE(world.collides(angles({0, 2.4, 2.4})));
+}
+
+/// A sphere on link 3 so large that it always reaches link 1.
+geometry::RobotShapes always_touching_shapes() {
+  geometry::RobotShapes shapes = toy_shapes(kJoints);
+  shapes.shapes.push_back({3, SphereShape{1.2}, Eigen::Isometry3d::Identity()});
+  return shapes;
+}
+
+TEST(CollisionWorld, LinksThatAlwaysTouchAreNotChecked) {
+  CollisionWorld world(toy_chain(kJoints), always_touching_shapes(), {});
+  EXPECT_FALSE(world.collides(kStraight));
+}
+
+TEST(CollisionWorld, LinksThatAlwaysTouchAreCheckedIfNeverCollidingPairsAreGiven) {
+  geometry::RobotShapes shapes = always_touching_shapes();
+  shapes.never_colliding = {{1, 2}};
+  CollisionWorld world(toy_chain(kJoints), shapes, {});
+  EXPECT_EQ(world.find_contact(kStraight), (Names{"link1", "link3"}));
+}
+
+TEST(CollisionWorld, AStandingLinkThatTouchesAnObstacleMakesEveryConfigurationCollide) {
+  geometry::RobotShapes shapes = toy_shapes(kJoints);
+  shapes.shapes.push_back({0, SphereShape{0.05}, Eigen::Isometry3d::Identity()});
+  Surroundings surroundings = with_object(box_at("table", 0, -0.09));
+  CollisionWorld blocked(toy_chain(kJoints), shapes, surroundings);
+  EXPECT_TRUE(blocked.collides(kTurned));
+  EXPECT_EQ(blocked.find_contact(kTurned), (Names{"base", "table"}));
+
+  surroundings.allowed_collisions = {{"base", "table"}};
+  CollisionWorld allowed(toy_chain(kJoints), shapes, surroundings);
+  EXPECT_EQ(allowed.find_contact(kTurned), std::nullopt);
+}
+
+TEST(CollisionWorld, EveryQuestionCountsOneWhateverAnswersIt) {
+  geometry::RobotShapes shapes = toy_shapes(kJoints);
+  shapes.shapes.push_back({0, SphereShape{0.05}, Eigen::Isometry3d::Identity()});
+  CollisionWorld free(toy_chain(kJoints), shapes, {});
+  CollisionWorld blocked(toy_chain(kJoints), shapes, with_object(box_at("table", 0, -0.09)));
+  for (CollisionWorld* world : {&free, &blocked}) {
+    EXPECT_EQ(world->checks(), 0u);
+    world->collides(kStraight);              // nothing near
+    world->collides(angles({0, 2.4, 2.4}));  // itself
+    world->find_contact(kStraight);          // counts none
+    EXPECT_EQ(world->checks(), 2u);
+  }
+}
+
+void expect_refused(const Surroundings& surroundings, const std::string& part_of_message) {
+  try {
+    make_world(surroundings);
+    FAIL() << "accepted; expected: " << part_of_message;
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::InvalidInput);
+    EXPECT_NE(std::string(failure.what()).find(part_of_message), std::string::npos)
+        << failure.what();
+  }
+}
+
+TEST(CollisionWorld, RefusesWhatCannotBeMeantByName) {
+  Surroundings surroundings;
+  surroundings.attached = {held_box("leg", 0, 0.1)};
+  expect_refused(surroundings, "attached object 'held': no link named 'leg'");
+  surroundings.attached = {held_box("link3", 0, 0.1)};
+  surroundings.attached[0].touch_links = {"paw"};
+  expect_refused(surroundings, "no link named 'paw'");
+  surroundings.attached = {held_box("link3", 0, -0.1)};
+  expect_refused(surroundings, "attached object 'held': box extent of -0.1 m");
+  expect_refused(with_object(box_at("wall", 0, 0, 0)), "scene object 'wall': box extent of 0 m");
+  expect_refused(with_object(box_at("wall", NAN, 0)), "scene object 'wall': pose is not finite");
+  Surroundings misspelt = with_object(box_at("table", 5, 0));
+  misspelt.allowed_collisions = {{"link1", "tabel"}};
+  expect_refused(misspelt, "named 'tabel'");
+}
+
+TEST(CollisionWorld, RefusesAConfigurationThatIsNone) {
+  CollisionWorld world = make_world({});
+  EXPECT_THROW(world.collides(angles({0, 0})), std::invalid_argument);
+  EXPECT_THROW(world.collides(angles({0, NAN, 0})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kinship::collision

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "robots/collision/solid.hpp"
+#include "tests/unit/robots/collision/nearest_points.hpp"
+#include "tests/unit/robots/collision/toy_arm.hpp"
+
+namespace kinship::collision {
+namespace {
+
+using namespace test_support;
+
+constexpr std::uint64_t kSeed = 31;
+constexpr double kTouching_m = 1e-7, kApart_m = 1e-4;  // between them the reference cannot say
+
+class RandomWorld {
+ public:
+  double number(double lower, double upper) {
+    return std::uniform_real_distribution<double>(lower, upper)(generator_);
+  }
+
+  Shape shape() {
+    const auto size = [&] { return 0.02 + 0.3 * std::pow(number(0, 1), 2); };
+    switch (generator_() % 4) {
+      case 0:
+        return BoxShape{{size(), size(), size()}};
+      case 1:
+        return CylinderShape{size(), size()};
+      case 2:
+        return SphereShape{size()};
+      default:
+        return CapsuleShape{size(), size()};
+    }
+  }
+
+  /// Half of the poses have axes along those of the base: faces and edges meet exactly there.
+  Eigen::Isometry3d pose(double reach_m) {
+    Eigen::Isometry3d T =
+        shift(number(-reach_m, reach_m), number(-reach_m, reach_m), number(-reach_m, reach_m));
+    if (generator_() % 2 == 0) {
+      std::normal_distribution<double> normal;
+      const Eigen::Quaterniond q(normal(generator_), normal(generator_), normal(generator_),
+                                 normal(generator_));
+      T.linear() = q.normalized().toRotationMatrix();
+    } else if (generator_() % 2 == 0) {
+      T.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    }
+    return T;
+  }
+
+ private:
+  std::mt19937_64 generator_{kSeed};
+};
+
+TEST(Touch, AgreesWithAlternatingProjections) {
+  RandomWorld random;
+  int touching = 0, apart = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Shape a = random.shape(), b = random.shape();
+    const Eigen::Isometry3d T_base_a = random.pose(0.2), T_base_b = random.pose(0.2);
+    const double distance = distance_m(a, T_base_a, b, T_base_b);
+    if (distance > kTouching_m && distance < kApart_m) continue;
+    const bool expected = distance <= kTouching_m;
+    (expected ? touching : apart) += 1;
+    ASSERT_EQ(touch(Solid(a), T_base_a, Solid(b), T_base_b), expected)
+        << "pair " << i << ", shapes " << a.index() << " and " << b.index() << ", distance "
+        << distance;
+  }
+  EXPECT_GT(touching, 500);
+  EXPECT_GT(apart, 500);
+}
+
+/// Poses of the toy arm's link shapes, by the formula for a planar arm.
+std::vector<Eigen::Isometry3d> shape_poses(const geometry::RobotShapes& shapes,
+                                           const Eigen::VectorXd& q) {
+  std::vector<Eigen::Isometry3d> poses;
+  double x = 0, y = 0, angle = 0;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    angle += q[i];
+    Eigen::Isometry3d T = shift(x, y);
+    T.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    poses.push_back(T * shift(kLink_m) * shapes.shapes[static_cast<std::size_t>(i)].T_link_shape);
+    x += kLink_m * std::cos(angle);
+    y += kLink_m * std::sin(angle);
+  }
+  return poses;
+}
+
+TEST(CollisionWorld, AgreesWithDistancesOfAPlanarArm) {
+  RandomWorld random;
+  constexpr int kJoints = 4;
+  const auto shapes = toy_shapes(kJoints);
+  Surroundings surroundings;
+  surroundings.T_task_base = random.pose(1.0);
+  for (int i = 0; i < 6; ++i)
+    surroundings.scene.objects.push_back({"object" + std::to_string(i), random.shape(),
+                                          surroundings.T_task_base * random.pose(1.2)});
+  CollisionWorld world(toy_chain(kJoints), shapes, surroundings);
+  const Eigen::Isometry3d T_base_task = surroundings.T_task_base.inverse();
+  int collisions = 0;
+  constexpr int kConfigurations = 300;
+  for (int i = 0; i < kConfigurations; ++i) {
+    const Eigen::VectorXd q =
+        Eigen::VectorXd::NullaryExpr(kJoints, [&] { return random.number(-M_PI, M_PI); });
+    const auto poses = shape_poses(shapes, q);
+    double nearest = 1e9;
+    for (std::size_t a = 0; a < poses.size(); ++a) {
+      for (const SceneObject& object : surroundings.scene.objects)
+        nearest = std::min(nearest, distance_m(shapes.shapes[a].shape, poses[a], object.shape,
+                                               T_base_task * object.T_task_object));
+      for (std::size_t b = a + 2; b < poses.size(); ++b)
+        nearest = std::min(nearest, distance_m(shapes.shapes[a].shape, poses[a],
+                                               shapes.shapes[b].shape, poses[b]));
+    }
+    if (nearest > kTouching_m && nearest < kApart_m) continue;
+    collisions += nearest <= kTouching_m;
+    ASSERT_EQ(world.collides(q), nearest <= kTouching_m) << q.transpose();
+  }
+  EXPECT_GT(collisions, kConfigurations / 10);
+  EXPECT_LT(collisions, kConfigurations * 9 / 10);
+}
+
+}  // namespace
+}  // namespace kinship::collision

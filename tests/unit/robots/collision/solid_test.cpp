@@ -1,0 +1,81 @@
+#include "robots/collision/solid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "proto/types/failure.hpp"
+#include "tests/unit/robots/collision/toy_arm.hpp"
+
+namespace kinship::collision {
+namespace {
+
+using test_support::shift;
+
+bool touch_at(const Shape& a, const Shape& b, const Eigen::Isometry3d& T_a_b) {
+  const Eigen::Isometry3d T_base_a = shift(0.3, -0.2, 1.1);  // anywhere but the origin
+  const bool there = touch(Solid(a), T_base_a, Solid(b), T_base_a * T_a_b);
+  const bool back = touch(Solid(b), T_base_a * T_a_b, Solid(a), T_base_a);
+  EXPECT_EQ(there, back);
+  return there;
+}
+
+/// The second shape, moved along x, touches up to `reach` and not beyond.
+void expect_reach(const Shape& a, const Shape& b, double reach_m) {
+  EXPECT_TRUE(touch_at(a, b, shift(reach_m - 1e-4)));
+  EXPECT_FALSE(touch_at(a, b, shift(reach_m + 1e-4)));
+}
+
+TEST(Solid, EveryPairOfShapesTouchesUpToItsReach) {
+  const Shape box = BoxShape{{0.2, 0.4, 0.6}};
+  const Shape cylinder = CylinderShape{0.3, 0.5};
+  const Shape sphere = SphereShape{0.25};
+  const Shape capsule = CapsuleShape{0.15, 0.8};
+  expect_reach(box, box, 0.2);
+  expect_reach(box, cylinder, 0.4);
+  expect_reach(box, sphere, 0.35);
+  expect_reach(box, capsule, 0.25);
+  expect_reach(cylinder, cylinder, 0.6);
+  expect_reach(cylinder, sphere, 0.55);
+  expect_reach(cylinder, capsule, 0.45);
+  expect_reach(sphere, sphere, 0.5);
+  expect_reach(sphere, capsule, 0.4);
+  expect_reach(capsule, capsule, 0.3);
+}
+
+TEST(Solid, ASizeIsAFullExtentAndACapsuleEndsInHalfSpheres) {
+  const Shape needle = BoxShape{{0.001, 0.001, 0.001}};
+  const auto reach_along_z = [&](const Shape& shape, double z) {
+    return touch_at(shape, needle, shift(0, 0, z));
+  };
+  EXPECT_TRUE(reach_along_z(BoxShape{{1, 1, 0.6}}, 0.3));
+  EXPECT_FALSE(reach_along_z(BoxShape{{1, 1, 0.6}}, 0.301));
+  EXPECT_TRUE(reach_along_z(CylinderShape{1, 0.6}, 0.3));
+  EXPECT_FALSE(reach_along_z(CylinderShape{1, 0.6}, 0.301));
+  EXPECT_TRUE(reach_along_z(CapsuleShape{0.1, 0.6}, 0.4));
+  EXPECT_FALSE(reach_along_z(CapsuleShape{0.1, 0.6}, 0.401));
+}
+
+TEST(Solid, OneInsideAnotherTouches) {
+  const Shape large = BoxShape{{2, 2, 2}};
+  for (const Shape& small : {Shape(BoxShape{{0.1, 0.1, 0.1}}), Shape(SphereShape{0.1}),
+                             Shape(CapsuleShape{0.1, 0.2}), Shape(CylinderShape{0.1, 0.2})})
+    EXPECT_TRUE(touch_at(large, small, shift(0.3, 0.2, 0.1)));
+}
+
+TEST(Solid, BoxCylinderCornersAreExact) {
+  // The cylinder's rim passes the box's vertical edge at a distance of (sqrt 2 - 1) times 0.1.
+  const Shape box = BoxShape{{0.2, 0.2, 0.2}};
+  const Shape cylinder = CylinderShape{0.1, 0.2};
+  const double diagonal = 0.1 + 0.1 / std::sqrt(2.0);
+  EXPECT_TRUE(touch_at(box, cylinder, shift(diagonal - 1e-4, diagonal - 1e-4)));
+  EXPECT_FALSE(touch_at(box, cylinder, shift(diagonal + 1e-4, diagonal + 1e-4)));
+}
+
+TEST(Solid, RefusesWhatIsNoShape) {
+  EXPECT_THROW(Solid(SphereShape{0}), Failure);
+  EXPECT_THROW(Solid(BoxShape{{1, NAN, 1}}), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::collision
