@@ -1,32 +1,18 @@
 #include "robots/geometry/link_shapes.hpp"
 
-#include <console_bridge/console.h>
-#include <urdf_model/link.h>
-#include <urdf_parser/urdf_parser.h>
+#include <urdf_model/model.h>
 
 #include <algorithm>
-#include <exception>
-#include <memory>
 #include <optional>
 
-#include "proto/types/limits.hpp"
 #include "robots/geometry/capsule_fusion.hpp"
 #include "robots/geometry/shape_rules.hpp"
+#include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::geometry {
 namespace {
 
 Error invalid(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& text) {
-  // urdfdom writes its complaints to the terminal; ours are in the Result.
-  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
-  try {
-    return urdf::parseURDF(text);
-  } catch (const std::exception&) {
-    return nullptr;
-  }
-}
 
 std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
@@ -50,10 +36,13 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
 /// The shape of one collision element; nothing if the element is empty.
 Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision,
                                                 const std::string& link_name, int link) {
-  if (!collision.geometry) return std::optional<LinkShape>();
+  if (!collision.geometry)
+    return std::optional<LinkShape>();
   const auto shape = to_shape(*collision.geometry);
-  if (!shape) return invalid("link '" + link_name + "': collision meshes are not supported yet");
-  if (const auto why = broken_rule(*shape)) return invalid("link '" + link_name + "': " + *why);
+  if (!shape)
+    return invalid("link '" + link_name + "': collision meshes are not supported yet");
+  if (const auto why = broken_rule(*shape))
+    return invalid("link '" + link_name + "': " + *why);
   const LinkShape result{link, *shape, to_isometry(collision.origin)};
   if (!result.T_link_shape.matrix().allFinite())
     return invalid("link '" + link_name + "': collision origin is not finite");
@@ -65,12 +54,16 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
   std::vector<LinkShape> shapes;
   for (const auto& [name, link] : model.links_) {
     const int index = chain.find_link(name);
-    if (index < 0) return invalid("link '" + name + "' of the URDF is not a link of the chain");
+    if (index < 0)
+      return invalid("link '" + name + "' of the URDF is not a link of the chain");
     for (const auto& collision : link->collision_array) {
-      if (!collision) continue;
+      if (!collision)
+        continue;
       const auto shape = read_collision(*collision, name, index);
-      if (!shape) return shape.error();
-      if (*shape) shapes.push_back(**shape);
+      if (!shape)
+        return shape.error();
+      if (*shape)
+        shapes.push_back(**shape);
     }
   }
   std::stable_sort(shapes.begin(), shapes.end(),
@@ -87,7 +80,8 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
     if (a < 0 || b < 0)
       return invalid("never-colliding pair ('" + first + "', '" + second + "'): no link named '" +
                      (a < 0 ? first : second) + "'");
-    if (a != b) pairs.emplace_back(std::min(a, b), std::max(a, b));
+    if (a != b)
+      pairs.emplace_back(std::min(a, b), std::max(a, b));
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -98,15 +92,15 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
 
 Result<RobotShapes> read_shapes(const RobotDescription& description,
                                 const kinematics::Chain& chain) {
-  if (description.urdf.size() > kMaxUrdfBytes)
-    return Error{ErrorCode::TooLarge, "URDF of " + std::to_string(description.urdf.size()) +
-                                          " bytes exceeds " + std::to_string(kMaxUrdfBytes)};
-  const auto model = parse(description.urdf);
-  if (!model) return invalid("URDF of '" + description.label + "' cannot be parsed");
-  auto shapes = read_links(*model, chain);
-  if (!shapes) return shapes.error();
+  const auto model = kinematics::parse_urdf(description.urdf);
+  if (!model)
+    return model.error();
+  auto shapes = read_links(**model, chain);
+  if (!shapes)
+    return shapes.error();
   auto pairs = read_pairs(description, chain);
-  if (!pairs) return pairs.error();
+  if (!pairs)
+    return pairs.error();
   return RobotShapes{fuse_capsules(*shapes), *std::move(pairs)};
 }
 

@@ -27,8 +27,9 @@ struct RobotShapes {
 
 /// Reads the collision elements of a description's URDF for the links of its chain: boxes,
 /// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule.
+/// Shapes come in the order of the links; a link paired with itself is left out.
 /// \return InvalidInput with the link named for a mesh (not supported yet), a size that is not
-///         finite and positive, or a pair that names no link.
+///         finite and positive, or a pair that names no link; what parse_urdf says of the text.
 Result<RobotShapes> read_shapes(const RobotDescription& description,
                                 const kinematics::Chain& chain);
 
