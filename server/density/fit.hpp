@@ -20,14 +20,20 @@ struct FitOptions {
 
 struct FitSummary {
   Mixture mixture;
-  std::vector<double> log_likelihoods;  ///< weighted mean per configuration after each iteration
+  /// Weighted mean per configuration after each iteration, nats; the last is that of `mixture`.
+  std::vector<double> log_likelihoods;
 };
 
 /// Fits a Gaussian mixture with full covariances: k-means++ start, Lloyd iterations, EM.
-/// \param configurations  d x N, finite, joint units.
+/// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
+/// that lose their data on the way are left out. Deterministic: equal input, equal bytes. Neither
+/// the order of the configurations nor repetition instead of weight matters beyond rounding.
+/// \param configurations  d x N, at most 1e6 in magnitude, joint units.
 /// \param weights         N, non-negative, positive sum.
-/// \return the mixture, or InvalidInput if there are fewer than d + 1 distinct configurations,
-///         a number is not finite, or no weight is positive.
+/// \return the mixture, or InvalidInput if there are fewer than d + 1 distinct configurations of
+///         positive weight, a number is not finite or too large, no weight is positive, or the
+///         configurations are degenerate and the covariance floor too small to make up for it.
+/// \throws std::invalid_argument if sizes differ or an option is outside its range.
 /// Source: Bishop, Pattern Recognition and Machine Learning (2006), section 9.2; Arthur and
 /// Vassilvitskii, k-means++ (2007).
 Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
