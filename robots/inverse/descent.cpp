@@ -22,7 +22,8 @@ Eigen::Vector3d rotation_error(const Eigen::Matrix3d& R) {
 
 void drop_free_axes(const TaskAxes& axes, TaskError& error) {
   for (std::size_t i = 0; i < axes.matters.size(); ++i)
-    if (!axes.matters[i]) error[static_cast<Eigen::Index>(i)] = 0;
+    if (!axes.matters[i])
+      error[static_cast<Eigen::Index>(i)] = 0;
 }
 
 }  // namespace
@@ -52,8 +53,10 @@ Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
                                       joint.upper - joint.lower < 2 * std::numbers::pi);
     step.lower = joint.lower;
     step.upper = joint.upper;
-    if (!steps_.empty()) reach_m_ += step.p.norm();
-    if (step.prismatic) reach_m_ += std::max(std::abs(step.lower), std::abs(step.upper));
+    if (!steps_.empty())
+      reach_m_ += step.p.norm();
+    if (step.prismatic)
+      reach_m_ += std::max(std::abs(step.lower), std::abs(step.upper));
     steps_.push_back(step);
     T_turned_moving = T_joint_turned.inverse();
   }
@@ -103,7 +106,8 @@ TaskError Descent::error_and_jacobian(const Eigen::Isometry3d& T_base_transfer,
   error << T_base_transfer.translation() - p,
       rotation_error(T_base_transfer.linear() * R.transpose());
   for (Eigen::Index row = 0; row < 6; ++row) {
-    if (axes_.matters[static_cast<std::size_t>(row)]) continue;
+    if (axes_.matters[static_cast<std::size_t>(row)])
+      continue;
     error[row] = 0;
     J_base_transfer.row(row).setZero();
   }
@@ -114,11 +118,12 @@ bool Descent::steer(const JointVector& q, JointVector& pull) const {
   bool outside = false;
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const Step& step = steps_[static_cast<std::size_t>(j)];
-    const double off_middle = q[j] - 0.5 * (step.lower + step.upper);
-    const double nearest =
-        step.prismatic ? off_middle : std::remainder(off_middle, 2 * std::numbers::pi);
-    const bool pulled = step.bounded && std::abs(nearest) > 0.5 * (step.upper - step.lower);
-    pull[j] = pulled ? -kSteeringGain * nearest : 0;
+    const double half = 0.5 * (step.upper - step.lower);
+    double off_middle = q[j] - 0.5 * (step.lower + step.upper);
+    if (!step.prismatic && std::abs(off_middle) > half)
+      off_middle = std::remainder(off_middle, 2 * std::numbers::pi);
+    const bool pulled = step.bounded && std::abs(off_middle) > half;
+    pull[j] = pulled ? -kSteeringGain * off_middle : 0;
     outside = outside || pulled;
   }
   return outside;
@@ -133,7 +138,8 @@ double Descent::run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int
     const TaskError error = error_and_jacobian(T_base_transfer, q, jacobian);
     const double squared = error.squaredNorm();
     const bool outside = steering && steer(q, pull);
-    if ((squared < kDone && !outside) || iteration == max_iterations) return squared;
+    if ((squared < kDone && !outside) || iteration == max_iterations)
+      return squared;
 
     Eigen::Matrix<double, 6, 6> system = Eigen::Matrix<double, 6, 6>::Zero();
     system.diagonal().setConstant(kDampingShare * squared + kSmallestDamping);

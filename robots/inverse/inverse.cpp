@@ -24,6 +24,7 @@ constexpr int kPatientStarts = 16;
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
 constexpr int kMostStarts = 4000;
+constexpr int kFirstStarts = 16;
 constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;  // starts in a row without a new solution
 constexpr double kNear = 0.1;   // task error (m and rad) worth more patience
@@ -44,16 +45,21 @@ class Search {
         generator_(options.seed, T_base_tip) {}
 
   InverseSolutions run(const InverseOptions& options) {
-    if (beyond_reach()) return {Eigen::MatrixXd(chain_.dof(), 0), NoSolution::OutOfReach};
-    if (options.attempts > 0) {
-      start(options.attempts, Descent::Limits::Steer, kIterations, options.attempts);
-    } else if (options.max_solutions == 0) {
-      start(kMostStarts, Descent::Limits::Steer, kIterations, kSaturated);
-    } else {
-      const int starts = std::max(kFewestStarts, kStartsPerSolution * most_solutions_);
-      start(starts, Descent::Limits::Steer, kIterations, starts);
-    }
-    if (found_.empty()) insist(options.attempts > 0 ? 0 : kPatientStarts);
+    const bool all = options.max_solutions == 0;
+    const bool chosen_here = options.attempts == 0;
+    int starts = options.attempts;
+    if (chosen_here)
+      starts = all ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * most_solutions_);
+    const int patience = all ? kSaturated : starts;
+    if (beyond_reach())
+      return solutions();
+    const int first = std::min(starts, kFirstStarts);
+    start(first, Descent::Limits::Steer, kIterations, first);
+    if (found_.empty() && !promising())
+      return solutions();
+    start(starts - first, Descent::Limits::Steer, kIterations, patience);
+    if (found_.empty() && chosen_here)
+      start(kPatientStarts, Descent::Limits::Steer, kPatientIterations, kPatientStarts);
     return solutions();
   }
 
@@ -61,28 +67,28 @@ class Search {
   bool beyond_reach() const {
     Eigen::Vector3d p = T_base_transfer_.translation() - descent_.p_base_first_joint();
     for (Eigen::Index axis = 0; axis < 3; ++axis)
-      if (!chain_.task_axes().matters[static_cast<std::size_t>(axis)]) p[axis] = 0;
+      if (!chain_.task_axes().matters[static_cast<std::size_t>(axis)])
+        p[axis] = 0;
     return p.norm() > descent_.reach_m() + kTolerance;
   }
+
+  bool enough() const { return static_cast<int>(found_.size()) == most_solutions_; }
 
   /// Runs up to `count` starts, until there are enough solutions or `patience` starts in a row
   /// have brought no new one.
   void start(int count, Descent::Limits limits, int iterations, int patience) {
-    for (int i = 0, idle = 0; i < count && idle < patience; ++i) {
+    for (int i = 0, idle = 0; i < count && idle < patience && !enough(); ++i) {
       JointVector q = random_start();
       const double squared = descent_.run(T_base_transfer_, limits, iterations, q);
       least_squared_error_ = std::min(least_squared_error_, squared);
       idle = squared < kTolerance * kTolerance && accept(q) ? 0 : idle + 1;
-      if (static_cast<int>(found_.size()) == most_solutions_) return;
     }
   }
 
-  /// Nothing found: learns without regard to limits what stands in the way, and tries longer if
-  /// there is hope.
-  void insist(int starts) {
+  /// Nothing found so far: learns without regard to limits what stands in the way.
+  bool promising() {
     start(kDiagnosticStarts, Descent::Limits::Ignore, kIterations, kDiagnosticStarts);
-    if (!found_.empty() || least_squared_error_ > kNear * kNear) return;
-    start(starts, Descent::Limits::Steer, kPatientIterations, starts);
+    return !found_.empty() || least_squared_error_ < kNear * kNear;
   }
 
   /// Uniform within the limits; within a turn around mid-range where they are wider.
@@ -92,7 +98,8 @@ class Search {
       const kinematics::Joint& joint = chain_.joints()[static_cast<std::size_t>(j)];
       const double middle = 0.5 * (joint.lower + joint.upper);
       double half = 0.5 * (joint.upper - joint.lower);
-      if (joint.type != kinematics::JointType::Prismatic) half = std::min(half, std::numbers::pi);
+      if (joint.type != kinematics::JointType::Prismatic)
+        half = std::min(half, std::numbers::pi);
       q[j] = middle + (2 * generator_.uniform() - 1) * half;
     }
     return q;
@@ -106,10 +113,12 @@ class Search {
       return false;
     }
     for (const JointVector& other : found_)
-      if (distance(chain_, q, other) < min_distance_) return false;
+      if (distance(chain_, q, other) < min_distance_)
+        return false;
     const TaskError error =
         task_error(T_base_transfer_, kinematics::T_base_transfer(chain_, q), chain_.task_axes());
-    if (error.head<3>().norm() > kTolerance || error.tail<3>().norm() > kTolerance) return false;
+    if (error.head<3>().norm() > kTolerance || error.tail<3>().norm() > kTolerance)
+      return false;
     found_.push_back(q);
     return true;
   }
@@ -119,7 +128,8 @@ class Search {
     result.configurations.resize(chain_.dof(), static_cast<Eigen::Index>(found_.size()));
     for (std::size_t i = 0; i < found_.size(); ++i)
       result.configurations.col(static_cast<Eigen::Index>(i)) = found_[i];
-    if (!found_.empty()) return result;
+    if (!found_.empty())
+      return result;
     if (outside_limits_)
       result.reason = NoSolution::Limits;
     else if (least_squared_error_ > kFar * kFar)

@@ -24,7 +24,8 @@ bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q) {
       continue;
     }
     const double middle = 0.5 * (joint.lower + joint.upper);
-    if (joint.type == JointType::Revolute) q[j] = middle + std::remainder(q[j] - middle, kTurn);
+    if (joint.type == JointType::Revolute)
+      q[j] = middle + std::remainder(q[j] - middle, kTurn);
     inside = inside && q[j] >= joint.lower - kRounding && q[j] <= joint.upper + kRounding;
     q[j] = inside ? std::clamp(q[j], joint.lower, joint.upper) : q[j];
   }
