@@ -1,0 +1,213 @@
+#include "server/store/sqlite/sqlite_store.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "server/store/sqlite/database.hpp"
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance,
+                         testing::Values(Engine{"Sqlite",
+                                                [](const std::filesystem::path& directory) {
+                                                  return open_sqlite_store(directory / "store.db");
+                                                }}),
+                         [](const auto& engine) { return engine.param.name; });
+
+/// What only a store in an SQLite file can show.
+class SqliteStoreTest : public testing::Test {
+ protected:
+  void open() {
+    store_.reset();
+    store_ = open_sqlite_store(file_);
+    static_cast<void>(store_->register_robot(robot_));
+  }
+  Attempt attempt(std::uint64_t number) const {
+    return test::make_attempt(robot_.digest, "shelf", number);
+  }
+  /// Something that wrote to the file behind the server's back; the store is closed.
+  void damage(const std::string& sql) {
+    store_.reset();
+    Database database(file_, Access::ReadWrite);
+    database.execute(sql);
+    ASSERT_GT(database.changed_rows(), 0) << sql;
+  }
+  std::string refusal() const {
+    try {
+      open_sqlite_store(file_);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "";
+  }
+  /// Waits until what a reader handed to the writer is committed.
+  void drain() { test::report(*store_, {}); }
+
+  const test::TemporaryDirectory directory_;
+  const std::filesystem::path file_ = directory_ / "store.db";
+  const RobotRecord robot_ = test::make_robot("panda", 1);
+  std::unique_ptr<Store> store_;
+};
+
+constexpr const char* kFlipByte =
+    "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 50) || x'A5' ||"
+    " substr(waypoints, 52) AS BLOB) WHERE id = 2";
+
+TEST_F(SqliteStoreTest, SetsADamagedPathAside) {
+  open();
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  damage(kFlipByte);
+  open();
+  const auto paths = store_->read_paths(robot_.digest, "shelf", 0, 2);
+  ASSERT_EQ(paths.size(), 2U);  // a full page, without the damaged one
+  EXPECT_EQ(paths[0].report_uuid, test::id_from<Uuid>(1));
+  EXPECT_EQ(paths[1].report_uuid, test::id_from<Uuid>(3));
+  drain();
+  const StoreStatus status = store_->status();
+  EXPECT_EQ(status.paths, 2U);
+  EXPECT_EQ(status.attempts, 3U);
+  EXPECT_NE(status.message.find("1 damaged path"), std::string::npos) << status.message;
+  EXPECT_EQ(store_->generation(robot_.digest, "shelf"), 2U);  // a fit with it is stale
+  EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.size(), 2U);
+}
+
+TEST_F(SqliteStoreTest, AnAttemptOfADamagedPathIsShownWithoutIt) {
+  open();
+  test::report(*store_, {attempt(1), attempt(2)});
+  damage(kFlipByte);
+  open();
+  const std::optional<Attempt> found = store_->find_attempt(test::id_from<Uuid>(2));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->record.collision_checks, 1234U);
+  EXPECT_FALSE(found->path);
+}
+
+TEST_F(SqliteStoreTest, TakesTheContentOfADamagedPathAgain) {
+  open();
+  test::report(*store_, {attempt(1), attempt(2)});
+  damage(kFlipByte);
+  open();
+  store_->read_paths(robot_.digest, "shelf", 0, 10);
+  drain();
+  Attempt again = attempt(9);
+  again.path = attempt(2).path;
+  EXPECT_EQ(test::report(*store_, {again})[0].status, ReceiptStatus::Stored);
+  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 10).size(), 2U);
+}
+
+TEST_F(SqliteStoreTest, TheChecksumCoversPlacementAndShapeToo) {
+  const std::vector<std::string> edits = {
+      "T_task_base = NULL",
+      "T_task_base = CAST (substr(T_task_base, 1, 48) || x'0000000000000000' AS BLOB)",
+      "report_uuid = zeroblob(16)", "crc32c = crc32c - 1"};
+  for (const std::string& edit : edits) {
+    open();
+    const Attempt fresh = attempt(100 + store_->status().attempts);
+    test::report(*store_, {fresh});
+    const std::size_t before = store_->read_paths(robot_.digest, "shelf", 0, 100).size();
+    damage("UPDATE path SET " + edit + " WHERE id = (SELECT max(id) FROM path)");
+    open();
+    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 100).size(), before - 1) << edit;
+  }
+}
+
+TEST_F(SqliteStoreTest, ServesNoDamagedDistribution) {
+  open();
+  const Distribution distribution = test::make_distribution(robot_.digest, "shelf", 1);
+  store_->put_distribution(distribution);
+  damage("UPDATE distribution SET payload = CAST (payload || x'00' AS BLOB)");
+  open();
+  EXPECT_FALSE(store_->find_distribution(distribution.id));
+  EXPECT_EQ(store_->put_distribution(distribution), 2U);  // fitted again: the count goes on
+  EXPECT_TRUE(store_->find_distribution(distribution.id));
+}
+
+TEST_F(SqliteStoreTest, ServesNoDamagedRobot) {
+  open();
+  damage("UPDATE robot_held_joint SET position = 0.03 WHERE joint = 'finger_1'");
+  open();
+  EXPECT_TRUE(store_->robots().empty());
+  EXPECT_THROW(store_->find_robot(robot_.digest), Failure);
+  EXPECT_NE(store_->status().message.find("1 damaged robot"), std::string::npos);
+}
+
+TEST_F(SqliteStoreTest, MakesItsDirectoryForTheOwnerAlone) {
+  store_ = open_sqlite_store(directory_ / "a" / "b" / "store.db");
+  EXPECT_EQ(std::filesystem::status(directory_ / "a" / "b").permissions(),
+            std::filesystem::perms::owner_all);
+}
+
+TEST_F(SqliteStoreTest, SaysWhichDirectoryItCannotMake) {
+  std::ofstream(directory_ / "file") << "x";
+  try {
+    open_sqlite_store(directory_ / "file" / "store.db");
+    FAIL() << "a store below a file";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Storage);
+    EXPECT_NE(std::string(failure.what()).find("file'"), std::string::npos) << failure.what();
+  }
+}
+
+TEST_F(SqliteStoreTest, RefusesAFileOfSomebodyElseAndLeavesItAlone) {
+  Database(file_, Access::Create).execute("CREATE TABLE t (x)");
+  const auto size = std::filesystem::file_size(file_);
+  EXPECT_NE(refusal().find("no Kinship store"), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(file_), size);
+  EXPECT_EQ(Database(file_, Access::ReadOnly).integer("PRAGMA application_id"), 0);
+}
+
+TEST_F(SqliteStoreTest, RefusesANewerSchema) {
+  open();
+  store_.reset();
+  Database(file_, Access::ReadWrite).execute("PRAGMA user_version = 1000");
+  EXPECT_NE(refusal().find("has schema 1000"), std::string::npos);
+}
+
+TEST_F(SqliteStoreTest, RefusesASecondServerAlsoThroughALink) {
+  open();
+  std::filesystem::create_symlink(file_, directory_ / "link.db");
+  const std::filesystem::path link = directory_ / "link.db";
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      open_sqlite_store(link);
+    } catch (const Failure& failure) {
+      _exit(failure.code() == ErrorCode::Unavailable ? 0 : 1);
+    }
+    _exit(2);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST_F(SqliteStoreTest, LeavesOneFileAndTheLockBehind) {
+  open();
+  test::report(*store_, {attempt(1)});
+  store_.reset();
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_.path()))
+    names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"store.db", "store.db.lock"}));
+}
+
+TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf8KbAndTheRulesOfItsSchema) {
+  open();
+  test::report(*store_, {attempt(1), test::make_unsolved(robot_.digest, "shelf", 2)});
+  store_.reset();
+  Database database(file_, Access::ReadOnly);
+  EXPECT_EQ(database.integer("PRAGMA page_size"), 8192);
+  EXPECT_EQ(database.integer("SELECT journal_mode = 'wal' FROM pragma_journal_mode"), 1);
+  EXPECT_EQ(database.integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
+  EXPECT_EQ(database.integer("SELECT integrity_check = 'ok' FROM pragma_integrity_check"), 1);
+}
+
+}  // namespace
+}  // namespace kinship::store

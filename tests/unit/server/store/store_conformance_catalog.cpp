@@ -1,0 +1,210 @@
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+TEST_P(StoreConformance, KnowsARobotByItsDigest) {
+  RobotRecord renamed = panda_;
+  renamed.description.label = "another";
+  EXPECT_EQ(*store_->register_robot(renamed), RegisterStatus::Known);
+  EXPECT_EQ(store_->find_robot(panda_.digest)->description.label, "panda");
+  EXPECT_EQ(store_->robots().size(), 2U);
+}
+
+TEST_P(StoreConformance, RefusesALabelThatAnotherRobotHas) {
+  const Result<RegisterStatus> second = store_->register_robot(test::make_robot("panda", 3));
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::Conflict);
+  EXPECT_NE(second.error().message.find("'panda'"), std::string::npos);
+}
+
+TEST_P(StoreConformance, GivesARobotBackAsItWas) {
+  const std::optional<RobotRecord> after = store_->find_robot(panda_.digest);
+  ASSERT_TRUE(after);
+  const RobotDescription& was = panda_.description;
+  const RobotDescription& is = after->description;
+  EXPECT_EQ(after->digest, panda_.digest);
+  EXPECT_EQ(after->dof, panda_.dof);
+  EXPECT_EQ(after->registered_ms, panda_.registered_ms);
+  EXPECT_EQ(is.label, was.label);
+  EXPECT_EQ(is.urdf, was.urdf);
+  EXPECT_EQ(is.base_link, was.base_link);
+  EXPECT_EQ(is.tip_link, was.tip_link);
+  EXPECT_TRUE(is.T_tip_transfer.isApprox(was.T_tip_transfer, 1e-15));
+  EXPECT_EQ(is.task_axes, was.task_axes);
+  EXPECT_EQ(is.held_joints, was.held_joints);
+  EXPECT_EQ(is.never_colliding, was.never_colliding);
+  EXPECT_FALSE(store_->find_robot(test::id_from<Digest>(9)));
+}
+
+TEST_P(StoreConformance, NamesTheRobotsWithPathsOfATask) {
+  report(solved(1));
+  report(test::make_unsolved(iiwa_.digest, "shelf", 2));
+  const std::vector<ExperienceSummary> experience = store_->experience("shelf");
+  ASSERT_EQ(experience.size(), 1U);
+  EXPECT_EQ(experience[0].robot, panda_.digest);
+  EXPECT_EQ(experience[0].paths, 1U);
+  EXPECT_EQ(experience[0].generation, 1U);
+  EXPECT_TRUE(store_->experience("table").empty());
+}
+
+TEST_P(StoreConformance, CountsTheRevisionsOfADistribution) {
+  Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  EXPECT_EQ(store_->put_distribution(distribution), 1U);
+  EXPECT_EQ(store_->put_distribution(distribution), 2U);
+  EXPECT_EQ(store_->put_distribution(test::make_distribution(panda_.digest, "shelf", 2)), 1U);
+  reopen();
+  EXPECT_EQ(store_->put_distribution(distribution), 3U);
+  EXPECT_EQ(store_->status().distributions, 2U);
+}
+
+TEST_P(StoreConformance, GivesTheNewestRevisionBack) {
+  Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  store_->put_distribution(distribution);
+  distribution.state = DistributionState::Failed;
+  distribution.reason = "out of reach";
+  distribution.mixture.reset();
+  store_->put_distribution(distribution);
+  const std::optional<Distribution> found = store_->find_distribution(distribution.id);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->revision, 2U);
+  EXPECT_EQ(found->store_epoch, store_->epoch());
+  EXPECT_EQ(found->state, DistributionState::Failed);
+  EXPECT_EQ(found->reason, "out of reach");
+  EXPECT_EQ(found->sources.size(), 1U);
+  EXPECT_FALSE(store_->find_distribution(test::id_from<Digest>(5)));
+}
+
+TEST_P(StoreConformance, ADistributionNeedsItsRobot) {
+  try {
+    store_->put_distribution(test::make_distribution(test::id_from<Digest>(7), "shelf", 1));
+    FAIL() << "stored for a robot that is not there";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::NotFound);
+  }
+}
+
+TEST_P(StoreConformance, ReopenKeepsEverything) {
+  report(solved(1));
+  report(test::make_unsolved(iiwa_.digest, "table", 2));
+  const Distribution distribution = test::make_distribution(iiwa_.digest, "shelf", 3);
+  store_->put_distribution(distribution);
+  const StoreStatus before = store_->status();
+  reopen();
+  const StoreStatus after = store_->status();
+  EXPECT_EQ(after.epoch, before.epoch);
+  EXPECT_EQ(after.robots, 2U);
+  EXPECT_EQ(after.tasks, 2U);
+  EXPECT_EQ(after.attempts, 2U);
+  EXPECT_EQ(after.paths, 1U);
+  EXPECT_EQ(after.distributions, 1U);
+  EXPECT_TRUE(after.writable);
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
+  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", 0, 10).size(), 1U);
+  EXPECT_EQ(store_->find_distribution(distribution.id)->mixture->means(),
+            distribution.mixture->means());
+  EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate);
+}
+
+/// Reads a listing to its end, page by page.
+template <typename Row, typename List>
+std::vector<Row> all_pages(List list) {
+  std::vector<Row> rows;
+  std::string cursor;
+  do {
+    Page<Row> page = list(cursor);
+    EXPECT_LE(page.rows.size(), 2U);
+    for (Row& row : page.rows) rows.push_back(std::move(row));
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
+  return rows;
+}
+
+TEST_P(StoreConformance, ListsRobotsByLabelPageByPage) {
+  for (std::uint64_t i = 3; i < 7; ++i)
+    ASSERT_TRUE(store_->register_robot(test::make_robot("robot" + std::to_string(i), i)));
+  report(solved(1));
+  report(test::make_unsolved(panda_.digest, "table", 2));
+  const auto robots = all_pages<RobotSummary>(
+      [this](const std::string& cursor) { return store_->list_robots(cursor, 2); });
+  ASSERT_EQ(robots.size(), 6U);
+  for (std::size_t i = 1; i < robots.size(); ++i) EXPECT_LT(robots[i - 1].label, robots[i].label);
+  EXPECT_EQ(robots[1].label, "panda");
+  EXPECT_EQ(robots[1].dof, test::kDof);
+  EXPECT_EQ(robots[1].paths, 1U);
+  EXPECT_EQ(robots[1].attempts, 2U);
+}
+
+TEST_P(StoreConformance, ListsTasksWithTheirRobots) {
+  report(solved(1));
+  report(test::make_unsolved(iiwa_.digest, "shelf", 2));
+  report(test::make_unsolved(iiwa_.digest, "bin", 3));
+  report(test::make_unsolved(iiwa_.digest, "table", 4));
+  const auto tasks = all_pages<TaskSummary>(
+      [this](const std::string& cursor) { return store_->list_tasks(cursor, 2); });
+  ASSERT_EQ(tasks.size(), 3U);
+  EXPECT_EQ(tasks[1].task, "shelf");
+  EXPECT_EQ(tasks[1].paths, 1U);
+  EXPECT_EQ(tasks[1].attempts, 2U);
+  ASSERT_EQ(tasks[1].robots.size(), 2U);
+  EXPECT_EQ(tasks[1].robots[1].label, "panda");
+  EXPECT_EQ(tasks[1].robots[1].generation, 1U);
+  EXPECT_EQ(store_->find_task("shelf")->attempts, 2U);
+  EXPECT_FALSE(store_->find_task("nothing"));
+}
+
+TEST_P(StoreConformance, ListsPathsOnceEachUnderEveryFilter) {
+  std::uint64_t number = 0;
+  for (const RobotRecord* robot : {&panda_, &iiwa_})
+    for (const char* const task : {"shelf", "table"})
+      for (int i = 0; i < 3; ++i) report(test::make_attempt(robot->digest, task, ++number));
+  const auto list = [this](const std::optional<Digest>& robot, const char* task) {
+    return all_pages<PathSummary>(
+        [&](const std::string& cursor) { return store_->list_paths(robot, task, cursor, 2); });
+  };
+  EXPECT_EQ(list(std::nullopt, "").size(), 12U);
+  EXPECT_EQ(list(panda_.digest, "").size(), 6U);
+  EXPECT_EQ(list(std::nullopt, "table").size(), 6U);
+  const auto paths = list(iiwa_.digest, "table");
+  ASSERT_EQ(paths.size(), 3U);
+  EXPECT_EQ(paths[0].report_uuid, test::id_from<Uuid>(10));
+  EXPECT_EQ(paths[0].label, "iiwa");
+  EXPECT_EQ(paths[0].task, "table");
+  EXPECT_EQ(paths[0].machine, "cell 7");
+  EXPECT_EQ(paths[0].waypoints, 20U);
+  EXPECT_GT(paths[0].length, 0);
+  EXPECT_GT(paths[0].received_ms, 0);
+  EXPECT_EQ(paths[0].record.collision_checks, 1234U);
+  EXPECT_TRUE(paths[0].T_task_base->isApprox(test::make_pose(), 1e-15));
+}
+
+TEST_P(StoreConformance, ListsDistributionsUnderEveryFilter) {
+  for (std::uint64_t i = 1; i <= 3; ++i)
+    store_->put_distribution(test::make_distribution(panda_.digest, "shelf", i));
+  store_->put_distribution(test::make_distribution(iiwa_.digest, "table", 4));
+  const auto list = [this](const std::optional<Digest>& robot, const char* task) {
+    return all_pages<DistributionSummary>([&](const std::string& cursor) {
+      return store_->list_distributions(robot, task, cursor, 2);
+    });
+  };
+  EXPECT_EQ(list(std::nullopt, "").size(), 4U);
+  EXPECT_EQ(list(panda_.digest, "").size(), 3U);
+  EXPECT_TRUE(list(panda_.digest, "table").empty());
+  const auto found = list(std::nullopt, "table");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].label, "iiwa");
+  EXPECT_EQ(found[0].revision, 1U);
+  EXPECT_EQ(found[0].components, 2U);
+  EXPECT_EQ(found[0].configurations, 3000U);
+  EXPECT_EQ(found[0].paths, 12U);
+  EXPECT_EQ(found[0].reason, "2 of 5 poses out of reach");
+}
+
+TEST_P(StoreConformance, RefusesACursorOfSomethingElse) {
+  for (const char* const cursor : {"x", "1", "1.2", "1.2.", "1.2.3.4", "1.2.x", "..", "1.2.3 "})
+    EXPECT_THROW(store_->list_paths({}, "", cursor, 2), Failure) << cursor;
+  EXPECT_THROW(store_->list_distributions({}, "", "12", 2), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::store

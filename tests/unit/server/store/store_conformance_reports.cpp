@@ -1,0 +1,191 @@
+#include <future>
+
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+using Statuses = std::vector<ReceiptStatus>;
+
+TEST_P(StoreConformance, AnswersEachAttemptInOrder) {
+  Attempt bad = solved(3);
+  bad.robot = test::id_from<Digest>(77);
+  const std::vector<Receipt> receipts = test::report(
+      *store_, {solved(1), test::make_unsolved(panda_.digest, "shelf", 2), bad, solved(4)});
+  EXPECT_EQ(test::statuses(receipts), (Statuses{ReceiptStatus::Stored, ReceiptStatus::Recorded,
+                                                ReceiptStatus::Refused, ReceiptStatus::Stored}));
+  EXPECT_EQ(receipts[1].report_uuid, test::id_from<Uuid>(2));
+  EXPECT_NE(receipts[2].message.find("not registered"), std::string::npos) << receipts[2].message;
+}
+
+TEST_P(StoreConformance, AnEmptyBatchIsAnswered) { EXPECT_TRUE(test::report(*store_, {}).empty()); }
+
+TEST_P(StoreConformance, ARetryIsADuplicateAndChangesNothing) {
+  const std::vector<Attempt> batch = {solved(1), test::make_unsolved(panda_.digest, "shelf", 2)};
+  test::report(*store_, batch);
+  const std::uint64_t generation = store_->generation(panda_.digest, "shelf");
+  EXPECT_EQ(test::statuses(test::report(*store_, batch)),
+            (Statuses{ReceiptStatus::Duplicate, ReceiptStatus::Duplicate}));
+  EXPECT_EQ(store_->status().attempts, 2U);
+  EXPECT_EQ(store_->status().paths, 1U);
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), generation);
+}
+
+TEST_P(StoreConformance, ARetryInTheSameBatchIsADuplicateToo) {
+  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), solved(1)})),
+            (Statuses{ReceiptStatus::Stored, ReceiptStatus::Duplicate}));
+}
+
+TEST_P(StoreConformance, OneUuidForTwoBodiesIsRefusedWhateverDiffers) {
+  const Attempt first = solved(1);
+  report(first);
+  std::vector<Attempt> others(10, first);
+  others[0].path = test::make_path(5);
+  others[1].task = "table";
+  others[2].robot = iiwa_.digest;
+  others[3].machine = "cell 8";
+  others[4].T_task_base.reset();
+  others[5].record.planning_time_s += 1;
+  others[6].record.arm = Arm::Guided;
+  others[7].record.distribution_id.reset();
+  others[8].record.planner_options += "x";
+  others[9] = test::make_unsolved(panda_.digest, "shelf", 1);
+  for (const Receipt& receipt : test::report(*store_, others)) {
+    EXPECT_EQ(receipt.status, ReceiptStatus::Refused);
+    EXPECT_NE(receipt.message.find("another report"), std::string::npos);
+  }
+  EXPECT_EQ(store_->status().attempts, 1U);
+}
+
+TEST_P(StoreConformance, TheSameContentAgainIsAnAttemptWithoutASecondPath) {
+  report(solved(1));
+  Attempt again = solved(2);
+  again.path = solved(1).path;
+  EXPECT_EQ(report(again), ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->status().attempts, 2U);
+  EXPECT_EQ(store_->status().paths, 1U);
+  EXPECT_EQ(store_->find_attempt(again.report_uuid)->path->waypoints(), again.path->waypoints());
+  EXPECT_EQ(report(again), ReceiptStatus::Duplicate);  // its own retry
+  EXPECT_EQ(store_->status().attempts, 2U);
+}
+
+TEST_P(StoreConformance, TheSameContentOfAnotherRobotOrTaskIsItsOwnPath) {
+  Attempt other_robot = solved(2);
+  other_robot.robot = iiwa_.digest;
+  Attempt other_task = solved(3);
+  other_task.task = "table";
+  other_robot.path = other_task.path = solved(1).path;
+  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), other_robot, other_task})),
+            Statuses(3, ReceiptStatus::Stored));
+  EXPECT_EQ(store_->status().paths, 3U);
+}
+
+TEST_P(StoreConformance, RefusesWhatCannotBeKept) {
+  Attempt wrong_dof = solved(1);
+  wrong_dof.path = test::make_path(1, test::kDof + 1);
+  Attempt no_path = solved(2);
+  no_path.path.reset();
+  Attempt failed_with_path = solved(3);
+  failed_with_path.record.outcome = Outcome::Failed;
+  Attempt counter = solved(4);
+  counter.record.collision_checks = ~std::uint64_t{0};
+  Attempt share = solved(5);
+  share.record.share = 1.5;
+  const std::vector<Receipt> receipts =
+      test::report(*store_, {wrong_dof, no_path, failed_with_path, counter, share, solved(6)});
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(receipts[i].status, ReceiptStatus::Refused) << i;
+    EXPECT_FALSE(receipts[i].message.empty()) << i;
+  }
+  EXPECT_EQ(receipts[5].status, ReceiptStatus::Stored);
+  EXPECT_EQ(store_->status().attempts, 1U);  // nothing of the refused ones is left
+  EXPECT_EQ(store_->status().paths, 1U);
+}
+
+TEST_P(StoreConformance, GivesAnAttemptBackAsItWas) {
+  const Attempt before = solved(1);
+  report(before);
+  const std::optional<Attempt> after = store_->find_attempt(before.report_uuid);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->report_uuid, before.report_uuid);
+  EXPECT_EQ(after->robot, before.robot);
+  EXPECT_EQ(after->machine, before.machine);
+  EXPECT_EQ(after->task, before.task);
+  EXPECT_TRUE(after->T_task_base->isApprox(*before.T_task_base, 1e-15));
+  EXPECT_EQ(after->record.outcome, Outcome::Solved);
+  EXPECT_EQ(after->record.planner, "birrt");
+  EXPECT_EQ(after->record.planner_options, "step=0.1");
+  EXPECT_EQ(after->record.planning_time_s, 0.25);
+  EXPECT_EQ(after->record.collision_checks, 1234U);
+  EXPECT_EQ(after->record.projections, 5U);
+  EXPECT_EQ(after->record.time_limit_s, 10);
+  EXPECT_EQ(after->record.arm, Arm::Control);
+  EXPECT_EQ(after->record.share, 0.5);
+  EXPECT_EQ(after->record.distribution_id, before.record.distribution_id);
+  EXPECT_EQ(after->record.distribution_revision, 7U);
+  EXPECT_EQ(after->path->waypoints(), before.path->waypoints());
+  EXPECT_FALSE(store_->find_attempt(test::id_from<Uuid>(50)));
+}
+
+TEST_P(StoreConformance, KeepsWhatIsMissingMissing) {
+  Attempt before = test::make_unsolved(panda_.digest, "shelf", 1);
+  before.T_task_base.reset();
+  before.record.distribution_id.reset();
+  before.record.outcome = Outcome::Failed;
+  report(before);
+  const std::optional<Attempt> after = store_->find_attempt(before.report_uuid);
+  ASSERT_TRUE(after);
+  EXPECT_FALSE(after->T_task_base || after->record.distribution_id || after->path);
+  EXPECT_EQ(after->record.outcome, Outcome::Failed);
+}
+
+TEST_P(StoreConformance, RaisesTheGenerationOnceForEachBatchThatBroughtPaths) {
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 0U);
+  test::report(*store_, {solved(1), solved(2), solved(3)});
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
+  test::report(*store_, {test::make_unsolved(panda_.digest, "shelf", 4)});
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
+  test::report(*store_, {solved(5)});
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 2U);
+  EXPECT_EQ(store_->generation(panda_.digest, "table"), 0U);
+  EXPECT_EQ(store_->generation(iiwa_.digest, "shelf"), 0U);
+}
+
+TEST_P(StoreConformance, ReadsPathsInTheOrderOfArrivalAndOnFromAnId) {
+  for (std::uint64_t i = 1; i <= 5; ++i) report(solved(i));
+  const std::vector<StoredPath> all = store_->read_paths(panda_.digest, "shelf", 0, 100);
+  ASSERT_EQ(all.size(), 5U);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].report_uuid, test::id_from<Uuid>(i + 1));
+    EXPECT_EQ(all[i].path.waypoints(), test::make_path(i + 1).waypoints());
+    EXPECT_TRUE(all[i].T_task_base->isApprox(test::make_pose(), 1e-15));
+    EXPECT_GT(all[i].id, i == 0 ? 0 : all[i - 1].id);
+  }
+  const auto some = store_->read_paths(panda_.digest, "shelf", all[1].id, 2);
+  ASSERT_EQ(some.size(), 2U);
+  EXPECT_EQ(some[0].id, all[2].id);
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", all[4].id, 2).empty());
+  EXPECT_TRUE(store_->read_paths(iiwa_.digest, "shelf", 0, 100).empty());
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "table", 0, 100).empty());
+}
+
+TEST_P(StoreConformance, AnswersEveryClientOfMany) {
+  constexpr std::uint64_t kClients = 8;
+  constexpr std::uint64_t kReports = 50;
+  std::vector<std::future<int>> clients;
+  for (std::uint64_t client = 0; client < kClients; ++client)
+    clients.push_back(std::async(std::launch::async, [this, client] {
+      int stored = 0;
+      for (std::uint64_t i = 0; i < kReports; ++i) {
+        if (report(solved(1000 * (client + 1) + i)) == ReceiptStatus::Stored) ++stored;
+        store_->read_paths(panda_.digest, "shelf", 0, 5);
+      }
+      return stored;
+    }));
+  for (std::future<int>& client : clients) EXPECT_EQ(client.get(), kReports);
+  EXPECT_EQ(store_->status().paths, kClients * kReports);
+  EXPECT_EQ(store_->status().queued, 0U);
+}
+
+}  // namespace
+}  // namespace kinship::store
