@@ -4,9 +4,11 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/mixture.hpp"
+#include "robots/kinematics/chain.hpp"
 
 namespace kinship::planning {
 
@@ -16,18 +18,30 @@ class ConfigurationSampler {
  public:
   /// Uniform.
   /// \param bounds  2 x dof: lower, upper, joint units (see planning_bounds).
+  /// \throws std::invalid_argument if a bound is not finite or a lower one exceeds its upper.
   explicit ConfigurationSampler(Eigen::Matrix2Xd bounds);
 
+  /// Guided samples follow the mixture truncated to the bounds. Joints wider than a turn know no
+  /// limits in the draw; they are moved by full turns into the bounds afterwards, and the draw is
+  /// repeated if no turn lies there. If nothing comes out, the sample is uniform.
+  /// \param chain  says which joints may be moved by full turns.
   /// \param share  of guided samples, 0 to 1.
-  ConfigurationSampler(Eigen::Matrix2Xd bounds, const Mixture& mixture, double share);
+  /// \throws std::invalid_argument also if dimensions differ or the share is none.
+  /// \throws Failure(Internal) if a covariance is not positive definite.
+  ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
+                       const Mixture& mixture, double share);
 
   Eigen::VectorXd sample(std::mt19937_64& generator) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
+  double share() const noexcept { return share_; }  ///< 0 if uniform
 
  private:
+  std::optional<Eigen::VectorXd> sample_guided(std::mt19937_64& generator) const;
+
   Eigen::Matrix2Xd bounds_;
   std::optional<mixture::Sampler> guided_;
+  std::vector<bool> turning_;
   double share_ = 0;
 };
 

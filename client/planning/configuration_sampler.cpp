@@ -1,0 +1,66 @@
+#include "client/planning/configuration_sampler.hpp"
+
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "client/planning/planning_bounds.hpp"
+
+namespace kinship::planning {
+namespace {
+
+constexpr int kMaxTurnDraws = 100;
+
+/// The bounds, but none for turning joints.
+Eigen::Matrix2Xd draw_limits(const Eigen::Matrix2Xd& bounds, const std::vector<bool>& turning) {
+  Eigen::Matrix2Xd limits = bounds;
+  for (Eigen::Index i = 0; i < limits.cols(); ++i)
+    if (turning[static_cast<std::size_t>(i)])
+      limits.col(i) << -std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::infinity();
+  return limits;
+}
+
+}  // namespace
+
+ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds) : bounds_(std::move(bounds)) {
+  if (!bounds_.allFinite() || (bounds_.row(0).array() > bounds_.row(1).array()).any())
+    throw std::invalid_argument("ConfigurationSampler: bounds are not finite or crossed");
+}
+
+ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
+                                           const Mixture& mixture, double share)
+    : ConfigurationSampler(std::move(bounds)) {
+  if (mixture.dimension() != bounds_.cols() || chain.dof() != bounds_.cols())
+    throw std::invalid_argument("ConfigurationSampler: chain, mixture and bounds differ in size");
+  if (!(share >= 0 && share <= 1))
+    throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
+  turning_ = turning_joints(chain);
+  guided_.emplace(mixture, draw_limits(bounds_, turning_));
+  share_ = share;
+}
+
+Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator) const {
+  std::uniform_real_distribution<double> unit(0, 1);
+  if (guided_ && unit(generator) < share_)
+    if (auto q = sample_guided(generator))
+      return *std::move(q);
+  Eigen::VectorXd q(bounds_.cols());
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    q[i] = bounds_(0, i) + (bounds_(1, i) - bounds_(0, i)) * unit(generator);
+  return q;
+}
+
+std::optional<Eigen::VectorXd> ConfigurationSampler::sample_guided(
+    std::mt19937_64& generator) const {
+  for (int draw = 0; draw < kMaxTurnDraws; ++draw) {
+    const auto q = guided_->sample(generator);
+    if (!q)
+      return std::nullopt;  // the mixture lies outside the bounds
+    if (auto turned = turned_into(bounds_, turning_, *q))
+      return turned;
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinship::planning

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ompl/base/StateSampler.h>
+
+#include <cstdint>
+#include <memory>
+#include <random>
+
+#include "client/planning/configuration_sampler.hpp"
+
+namespace kinship::planning {
+
+/// Gives any planner of OMPL the samples of a ConfigurationSampler wherever it asks for uniform
+/// ones; samples near a state are those of the space. One planner thread uses one instance.
+///
+/// RRT-like planners ask the space's StateSampler, roadmap planners a ValidStateSampler that asks
+/// it in turn, so the space is the one place to hook in.
+class GuidedStateSampler : public ompl::base::StateSampler {
+ public:
+  /// \param space    from make_state_space, with as many joints as the sampler has.
+  /// \param sampler  shared by all instances that planners of the space allocate.
+  GuidedStateSampler(const ompl::base::StateSpace* space,
+                     std::shared_ptr<const ConfigurationSampler> sampler, std::uint64_t seed);
+
+  void sampleUniform(ompl::base::State* state) override;
+  void sampleUniformNear(ompl::base::State* state, const ompl::base::State* near,
+                         double distance) override;
+  void sampleGaussian(ompl::base::State* state, const ompl::base::State* mean,
+                      double standard_deviation) override;
+
+ private:
+  std::shared_ptr<const ConfigurationSampler> sampler_;
+  std::mt19937_64 generator_;
+  ompl::base::StateSamplerPtr space_sampler_;
+};
+
+/// Makes every planner of the space draw from the sampler; the n-th allocated sampler is seeded
+/// with seed + n.
+/// \throws std::invalid_argument if space and sampler differ in size.
+void install_guided_sampler(ompl::base::StateSpace& space,
+                            std::shared_ptr<const ConfigurationSampler> sampler,
+                            std::uint64_t seed);
+
+}  // namespace kinship::planning

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::planning {
+
+/// Where a plan from `start` may go: the joint limits, but joints wider than a turn, continuous
+/// ones among them, only within half a turn of the start (clipped to their limits). Over several
+/// turns each posture exists many times, and trees that meet in different turns do not meet.
+/// \return 2 x dof: lower, upper, joint units.
+/// \throws std::invalid_argument if start has another size than the chain or is not finite.
+Eigen::Matrix2Xd planning_bounds(const kinematics::Chain& chain,
+                                 const Eigen::Ref<const Eigen::VectorXd>& start);
+
+/// Whether a full turn of each joint is another configuration of the same posture that a plan may
+/// have to choose from: joints wider than a turn, continuous ones among them.
+std::vector<bool> turning_joints(const kinematics::Chain& chain);
+
+/// The same posture within bounds: turning joints are moved by full turns.
+/// \param bounds  2 x dof.
+/// \return        empty if no turn of some joint lies within the bounds.
+std::optional<Eigen::VectorXd> turned_into(const Eigen::Matrix2Xd& bounds,
+                                           const std::vector<bool>& turning,
+                                           const Eigen::Ref<const Eigen::VectorXd>& q);
+
+}  // namespace kinship::planning

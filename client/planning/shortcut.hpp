@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+
+#include "client/planning/is_free.hpp"
+
+namespace kinship::planning {
+
+struct ShortcutOptions {
+  double step = 0.1;  ///< between checked configurations, joint units
+  /// In checks, not in time: a long budget concentrates the paths of a fleet, and a prior fitted
+  /// to them helps less.
+  std::uint64_t max_checks = 300;
+};
+
+struct ShortcutSummary {
+  /// dof x n: vertices of a path from the same start to the same goal, no longer than the given
+  /// one. `densified` at the step gives configurations that were all checked.
+  Eigen::MatrixXd waypoints;
+  std::uint64_t collision_checks = 0;
+};
+
+/// Shortens a free path: tries straight lines between two random places of it, and takes those
+/// that are free and shorter, until the budget is used up or many tries in a row came to nothing.
+/// \param waypoints  dof x n, n >= 1, free where `densified` at the step visits it.
+/// \throws std::invalid_argument if there is no waypoint or the step is not positive.
+/// Source: Geraerts and Overmars, Creating High-quality Paths for Motion Planning (2007), III-B.
+ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                         const ShortcutOptions& options, std::mt19937_64& generator);
+
+}  // namespace kinship::planning

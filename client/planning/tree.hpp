@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace kinship::planning {
+
+/// A tree of configurations grown from one or more roots. Nearest neighbours by a linear scan over
+/// contiguous storage, which beats a search structure up to some ten thousand nodes.
+class Tree {
+ public:
+  explicit Tree(Eigen::Index dof) : nodes_(kFirstCapacity, dof) {}
+
+  /// \param parent  index of a node, or -1 for a root.
+  /// \return        index of the new node.
+  Eigen::Index add(const Eigen::VectorXd& q, Eigen::Index parent);
+
+  /// Index of the node nearest to q (Euclidean, joint units; the first of equals).
+  Eigen::Index nearest(const Eigen::VectorXd& q) const;
+
+  Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }
+  Eigen::VectorXd node(Eigen::Index index) const { return nodes_.row(index).matrix().transpose(); }
+
+  /// From a node to its root: dof x n.
+  Eigen::MatrixXd branch(Eigen::Index index) const;
+
+ private:
+  static constexpr Eigen::Index kFirstCapacity = 1024;
+
+  Eigen::ArrayXXd nodes_;  // capacity x dof: one column per joint, so that the scan is vectorised
+  std::vector<Eigen::Index> parents_;
+};
+
+}  // namespace kinship::planning
