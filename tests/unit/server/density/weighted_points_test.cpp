@@ -33,7 +33,7 @@ TEST(PreparePoints, WeightedMeanIsTheOrigin) {
 }
 
 TEST(PreparePoints, OrderChangesNoBit) {
-  const Eigen::MatrixXd configurations = Eigen::MatrixXd::Random(3, 40);
+  const Eigen::MatrixXd configurations = Eigen::MatrixXd::Random(3, 10).replicate(1, 4);
   const Eigen::VectorXd weights = (1.5 + Eigen::VectorXd::Random(40).array()).matrix();
   const WeightedPoints forward = prepare_points(configurations, weights);
   const WeightedPoints backward =
