@@ -32,7 +32,8 @@ std::optional<Error> check(const AdminRequest& request) {
 }
 
 Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminRequest& request) {
-  if (const auto error = check(request)) return *error;
+  if (const auto error = check(request))
+    return *error;
   Message<kinship_wire_AdminRequest> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
@@ -54,13 +55,16 @@ Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   request.task = reader.text("task", wire.task, kMaxTaskBytes);
   request.cursor = reader.text("cursor", wire.cursor, kMaxCursorBytes);
   request.limit = wire.limit;
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(request)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(request))
+    return *error;
   return request;
 }
 
 Result<Message<kinship_wire_AdminReply>> encode(const Head& head, const AdminReply& reply) {
-  if (const auto error = check(reply)) return *error;
+  if (const auto error = check(reply))
+    return *error;
   Message<kinship_wire_AdminReply> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
@@ -78,13 +82,16 @@ Result<AdminReply> decode(const kinship_wire_AdminReply& wire) {
   AdminReply reply;
   reply.status = reader.enumerator("status", wire.status, AdminStatus::Failed);
   reader.rules.at_most("rows", wire.rows._length, kMaxPageRows);
-  if (reader.rules.broken()) return *reader.rules.broken();
+  if (reader.rules.broken())
+    return *reader.rules.broken();
   for (const char* row : elements(wire.rows))
     reply.rows.push_back(reader.text("row", row, kMaxPageBytes));
   reply.next_cursor = reader.text("next_cursor", wire.next_cursor, kMaxCursorBytes);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(reply)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(reply))
+    return *error;
   return reply;
 }
 

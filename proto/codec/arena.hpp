@@ -14,7 +14,8 @@ class Arena {
   /// A copy of `text` with a terminating zero byte.
   char* text(std::string_view text) {
     char* copy = allocate<char>(text.size() + 1);
-    if (!text.empty()) std::memcpy(copy, text.data(), text.size());
+    if (!text.empty())
+      std::memcpy(copy, text.data(), text.size());
     copy[text.size()] = '\0';
     return copy;
   }

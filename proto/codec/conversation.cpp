@@ -7,9 +7,11 @@ namespace {
 
 /// Cut at the limit, so that a refusal can always be sent; never inside a UTF-8 sequence.
 std::string message_of(const Error& error) {
-  if (error.message.size() <= kMaxMessageBytes) return error.message;
+  if (error.message.size() <= kMaxMessageBytes)
+    return error.message;
   std::size_t end = kMaxMessageBytes;
-  while (end > 0 && (static_cast<unsigned char>(error.message[end]) & 0xC0U) == 0x80U) --end;
+  while (end > 0 && (static_cast<unsigned char>(error.message[end]) & 0xC0U) == 0x80U)
+    --end;
   return error.message.substr(0, end);
 }
 

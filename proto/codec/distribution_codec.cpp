@@ -26,7 +26,8 @@ void write_mixture(const Mixture& mixture, Arena& arena, kinship_wire_Mixture& w
   double* next = wire.covariances._buffer;
   for (const Eigen::MatrixXd& covariance : mixture.covariances())
     for (Eigen::Index row = 0; row < covariance.rows(); ++row)
-      for (Eigen::Index column = 0; column <= row; ++column) *next++ = covariance(row, column);
+      for (Eigen::Index column = 0; column <= row; ++column)
+        *next++ = covariance(row, column);
 }
 
 std::optional<Mixture> read_mixture(const kinship_wire_Mixture& wire, std::size_t dimension,
@@ -36,7 +37,8 @@ std::optional<Mixture> read_mixture(const kinship_wire_Mixture& wire, std::size_
   const auto covariances = elements(wire.covariances);
   reader.rules.that(dimension > 0 && !weights.empty(), "mixture: no joint or no component")
       .at_most("mixture: components", weights.size(), kMaxComponents);
-  if (reader.rules.broken()) return std::nullopt;  // the products below cannot overflow
+  if (reader.rules.broken())
+    return std::nullopt;  // the products below cannot overflow
   reader.rules
       .that(means.size() == weights.size() * dimension,
             "mixture: " + std::to_string(means.size()) + " numbers of means, must be " +
@@ -44,7 +46,8 @@ std::optional<Mixture> read_mixture(const kinship_wire_Mixture& wire, std::size_
       .that(covariances.size() == weights.size() * triangle_size(dimension),
             "mixture: " + std::to_string(covariances.size()) + " numbers of covariances, must be " +
                 std::to_string(weights.size() * triangle_size(dimension)));
-  if (reader.rules.broken()) return std::nullopt;
+  if (reader.rules.broken())
+    return std::nullopt;
   const auto d = static_cast<Eigen::Index>(dimension);
   const auto k = static_cast<Eigen::Index>(weights.size());
   std::vector<Eigen::MatrixXd> matrices(weights.size(), Eigen::MatrixXd(d, d));
@@ -108,7 +111,8 @@ std::optional<Error> check(const Distribution& distribution) {
       .finite("held_out_score", distribution.held_out_score.value_or(0))
       .not_negative("transfer_time_s", distribution.transfer_time_s)
       .not_negative("fit_time_s", distribution.fit_time_s);
-  if (distribution.T_task_base) rules.pose("T_task_base", *distribution.T_task_base);
+  if (distribution.T_task_base)
+    rules.pose("T_task_base", *distribution.T_task_base);
   for (const Source& source : distribution.sources)
     rules.text("label of a source", source.label, kMaxLabelBytes);
   check_limits(distribution.limits, rules);
@@ -170,7 +174,8 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   reader.rules.at_most("sources", wire.sources._length, kMaxSources)
       .at_most("limits (numbers)", limits.size(), 2 * kMaxDof)
       .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
-  if (reader.rules.broken()) return distribution;
+  if (reader.rules.broken())
+    return distribution;
   distribution.sources = read_sources(wire, reader);
   distribution.limits = Eigen::Map<const Eigen::Matrix2Xd>(
       limits.data(), 2, static_cast<Eigen::Index>(limits.size() / 2));

@@ -22,7 +22,8 @@ std::optional<Error> check(const FetchReply& reply) {
       .between("retry_after (ms)", static_cast<double>(reply.retry_after.count()), 0,
                kMaxMilliseconds)
       .text("message", reply.message, kMaxMessageBytes);
-  if (reply.distribution) rules.name(codec::check(*reply.distribution));
+  if (reply.distribution)
+    rules.name(codec::check(*reply.distribution));
   return rules.broken();
 }
 
@@ -34,12 +35,14 @@ std::optional<Error> check(const FetchRequest& request) {
       .not_empty("profile", request.profile)
       .text("profile", request.profile, kMaxProfileBytes)
       .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0, kMaxMilliseconds);
-  if (request.T_task_base) rules.pose("T_task_base", *request.T_task_base);
+  if (request.T_task_base)
+    rules.pose("T_task_base", *request.T_task_base);
   return rules.broken();
 }
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request) {
-  if (const auto error = check(request)) return *error;
+  if (const auto error = check(request))
+    return *error;
   Message<kinship_wire_FetchRequest> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
@@ -61,13 +64,16 @@ Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire) {
   request.profile = reader.text("profile", wire.profile, kMaxProfileBytes);
   request.minimum_generation = wire.minimum_generation;
   request.deadline = std::chrono::milliseconds(wire.deadline_ms);
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(request)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(request))
+    return *error;
   return request;
 }
 
 Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchReply& reply) {
-  if (const auto error = check(reply)) return *error;
+  if (const auto error = check(reply))
+    return *error;
   Message<kinship_wire_FetchReply> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
@@ -89,8 +95,10 @@ Result<FetchReply> decode(const kinship_wire_FetchReply& wire) {
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
   if (const auto distribution = elements(wire.distribution); !distribution.empty())
     reply.distribution = read_distribution(distribution[0], reader);
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(reply)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(reply))
+    return *error;
   return reply;
 }
 

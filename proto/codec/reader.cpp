@@ -20,13 +20,15 @@ Uuid read_uuid(const std::uint8_t (&bytes)[16]) {
 
 std::string Reader::text(std::string_view what, const char* value, std::size_t limit) {
   const std::string_view text = value ? value : "";
-  if (text.size() > limit) rules.at_most(std::string(what) + " (bytes)", text.size(), limit);
+  if (text.size() > limit)
+    rules.at_most(std::string(what) + " (bytes)", text.size(), limit);
   return std::string(text.substr(0, limit));
 }
 
 std::optional<Eigen::Isometry3d> Reader::placement(std::string_view what,
                                                    std::span<const double> numbers) {
-  if (numbers.empty()) return std::nullopt;
+  if (numbers.empty())
+    return std::nullopt;
   if (numbers.size() != 7) {
     rules.that(false, std::string(what) + ": " + std::to_string(numbers.size()) +
                           " numbers, must be none or 7");
@@ -39,14 +41,16 @@ Eigen::Isometry3d Reader::pose(std::string_view what, std::span<const double, 7>
   PoseArray array{};
   std::copy(numbers.begin(), numbers.end(), array.begin());
   const auto T = from_pose_array(array);
-  if (T) return *T;
+  if (T)
+    return *T;
   rules.that(false, std::string(what) + ": " + T.error().message);
   return Eigen::Isometry3d::Identity();
 }
 
 std::optional<Digest> Reader::optional_digest(std::string_view what,
                                               std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return std::nullopt;
+  if (bytes.empty())
+    return std::nullopt;
   Digest digest;
   if (bytes.size() == digest.bytes.size())
     std::copy(bytes.begin(), bytes.end(), digest.bytes.begin());
@@ -58,7 +62,8 @@ std::optional<Digest> Reader::optional_digest(std::string_view what,
 
 std::optional<double> Reader::optional_number(std::string_view what,
                                               std::span<const double> value) {
-  if (value.empty()) return std::nullopt;
+  if (value.empty())
+    return std::nullopt;
   rules.at_most(what, value.size(), 1).finite(what, value[0]);
   return value[0];
 }

@@ -30,7 +30,8 @@ std::optional<Error> check(const RobotDescription& description) {
       .pose("T_tip_transfer", description.T_tip_transfer)
       .at_most("held_joints", description.held_joints.size(), kMaxHeldJoints)
       .at_most("never_colliding", description.never_colliding.size(), kMaxCollisionPairs);
-  if (rules.broken()) return rules.broken();
+  if (rules.broken())
+    return rules.broken();
   for (const auto& [joint, position] : description.held_joints)
     rules.not_empty("held joint", joint)
         .text("held joint", joint, kMaxLinkNameBytes)
@@ -43,7 +44,8 @@ std::optional<Error> check(const RobotDescription& description) {
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
                                                      const RobotDescription& description) {
-  if (const auto error = check(description)) return *error;
+  if (const auto error = check(description))
+    return *error;
   Message<kinship_wire_RegisterRequest> message(head);
   Arena& arena = *message.arena;
   auto& wire = message.wire;
@@ -78,7 +80,8 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
             description.task_axes.matters.begin());
   reader.rules.at_most("held_joints", wire.held_joints._length, kMaxHeldJoints)
       .at_most("never_colliding", wire.never_colliding._length, kMaxCollisionPairs);
-  if (reader.rules.broken()) return *reader.rules.broken();
+  if (reader.rules.broken())
+    return *reader.rules.broken();
   for (const auto& held : elements(wire.held_joints)) {
     const std::string joint = reader.text("held joint", held.joint, kMaxLinkNameBytes);
     if (!description.held_joints.emplace(joint, held.position).second)
@@ -88,13 +91,16 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
     description.never_colliding.emplace_back(
         reader.text("never_colliding", pair.first, kMaxLinkNameBytes),
         reader.text("never_colliding", pair.second, kMaxLinkNameBytes));
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(description)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(description))
+    return *error;
   return description;
 }
 
 Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const RegisterReply& reply) {
-  if (const auto error = check(reply)) return *error;
+  if (const auto error = check(reply))
+    return *error;
   Message<kinship_wire_RegisterReply> message(head);
   auto& wire = message.wire;
   wire.status = static_cast<std::uint32_t>(reply.status);
@@ -113,8 +119,10 @@ Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
   reply.dof = wire.dof;
   reply.solver = reader.text("solver", wire.solver, kMaxPlannerBytes);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(reply)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(reply))
+    return *error;
   return reply;
 }
 

@@ -54,9 +54,11 @@ PlanningRecord read_record(const kinship_wire_PlanningRecord& wire, Reader& read
 /// A path from dof and waypoints, or none; sizes are checked before it is made.
 std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) {
   const auto numbers = elements(wire.waypoints);
-  if (numbers.empty() && wire.dof == 0) return std::nullopt;
+  if (numbers.empty() && wire.dof == 0)
+    return std::nullopt;
   reader.rules.between("dof", wire.dof, 1, kMaxDof);
-  if (reader.rules.broken()) return std::nullopt;
+  if (reader.rules.broken())
+    return std::nullopt;
   const std::size_t count = numbers.size() / wire.dof;
   reader.rules
       .that(count * wire.dof == numbers.size(), "waypoints: " + std::to_string(numbers.size()) +
@@ -68,7 +70,8 @@ std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) 
     if (!std::isfinite(numbers[i]))
       reader.rules.that(false, "waypoint " + std::to_string(i / wire.dof + 1) + ", joint " +
                                    std::to_string(i % wire.dof + 1) + ": is not finite");
-  if (reader.rules.broken()) return std::nullopt;
+  if (reader.rules.broken())
+    return std::nullopt;
   return Path(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), wire.dof,
                                                 static_cast<Eigen::Index>(count)));
 }
@@ -80,7 +83,8 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   wire.task = arena.text(attempt.task);
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
   write_record(attempt.record, arena, wire.record);
-  if (!attempt.path) return;
+  if (!attempt.path)
+    return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
   wire.dof = static_cast<std::uint32_t>(waypoints.rows());
   write_numbers(arena, waypoints.data(), static_cast<std::size_t>(waypoints.size()),
@@ -97,8 +101,10 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   attempt.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
   attempt.record = read_record(wire.record, reader);
   attempt.path = read_path(wire, reader);
-  if (reader.rules.broken()) return *reader.rules.broken();
-  if (const auto error = check(attempt)) return *error;
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  if (const auto error = check(attempt))
+    return *error;
   return attempt;
 }
 
@@ -114,7 +120,8 @@ std::optional<Error> check(const Attempt& attempt) {
   rules.that(attempt.report_uuid != Uuid{}, "report_uuid: is zero")
       .name(check_machine(attempt.machine))
       .name(check_task(attempt.task));
-  if (attempt.T_task_base) rules.pose("T_task_base", *attempt.T_task_base);
+  if (attempt.T_task_base)
+    rules.pose("T_task_base", *attempt.T_task_base);
   check_record(attempt.record, rules);
   rules.that(
       attempt.path.has_value() == (attempt.record.outcome == Outcome::Solved),
@@ -135,7 +142,8 @@ Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const Repor
     bytes += batch_bytes(attempt);
   }
   rules.at_most("waypoints of a batch (bytes)", bytes, kMaxBatchBytes);
-  if (rules.broken()) return *rules.broken();
+  if (rules.broken())
+    return *rules.broken();
   Message<kinship_wire_ReportRequest> message(head);
   message.arena->resize(message.wire.attempts, request.attempts.size());
   for (std::size_t i = 0; i < request.attempts.size(); ++i)
@@ -147,7 +155,8 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
   const auto attempts = elements(wire.attempts);
   Rules rules;
   rules.at_most("attempts of a batch", attempts.size(), kMaxAttemptsPerBatch);
-  if (rules.broken()) return *rules.broken();
+  if (rules.broken())
+    return *rules.broken();
   ReportRequest request;
   request.attempts.reserve(attempts.size());
   std::size_t bytes = 0;
@@ -173,7 +182,8 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
   rules.at_most("receipts", reply.receipts.size(), kMaxAttemptsPerBatch);
   for (const Receipt& receipt : reply.receipts)
     rules.text("message", receipt.message, kMaxMessageBytes);
-  if (rules.broken()) return *rules.broken();
+  if (rules.broken())
+    return *rules.broken();
   Message<kinship_wire_ReportReply> message(head);
   write_uuid(reply.store_epoch, message.wire.store_epoch);
   message.arena->resize(message.wire.receipts, reply.receipts.size());
@@ -190,7 +200,8 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
 Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
   Reader reader;
   reader.rules.at_most("receipts", wire.receipts._length, kMaxAttemptsPerBatch);
-  if (reader.rules.broken()) return *reader.rules.broken();
+  if (reader.rules.broken())
+    return *reader.rules.broken();
   ReportReply reply;
   reply.store_epoch = read_uuid(wire.store_epoch);
   for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
@@ -201,7 +212,8 @@ Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
     reader.rules.text("message", receipt.message, kMaxMessageBytes);
     reply.receipts.push_back(std::move(receipt));
   }
-  if (reader.rules.broken()) return *reader.rules.broken();
+  if (reader.rules.broken())
+    return *reader.rules.broken();
   return reply;
 }
 

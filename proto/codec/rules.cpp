@@ -9,11 +9,13 @@
 namespace kinship::codec {
 
 void Rules::breaks(ErrorCode code, std::string message) {
-  if (!broken_) broken_ = Error{code, std::move(message)};
+  if (!broken_)
+    broken_ = Error{code, std::move(message)};
 }
 
 Rules& Rules::name(const std::optional<Error>& error) {
-  if (error) breaks(error->code, error->message);
+  if (error)
+    breaks(error->code, error->message);
   return *this;
 }
 
@@ -22,7 +24,8 @@ Rules& Rules::text(std::string_view what, std::string_view value, std::size_t li
 }
 
 Rules& Rules::not_empty(std::string_view what, std::string_view value) {
-  if (value.empty()) breaks(ErrorCode::InvalidInput, std::string(what) + ": is empty");
+  if (value.empty())
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": is empty");
   return *this;
 }
 
@@ -35,7 +38,8 @@ Rules& Rules::between(std::string_view what, double value, double lowest, double
 }
 
 Rules& Rules::finite(std::string_view what, double value) {
-  if (!std::isfinite(value)) breaks(ErrorCode::InvalidInput, std::string(what) + ": is not finite");
+  if (!std::isfinite(value))
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": is not finite");
   return *this;
 }
 
@@ -56,12 +60,14 @@ Rules& Rules::at_most(std::string_view what, std::size_t value, std::size_t limi
 
 Rules& Rules::pose(std::string_view what, const Eigen::Isometry3d& T) {
   const auto checked = from_pose_array(to_pose_array(T));
-  if (!checked) breaks(checked.error().code, std::string(what) + ": " + checked.error().message);
+  if (!checked)
+    breaks(checked.error().code, std::string(what) + ": " + checked.error().message);
   return *this;
 }
 
 Rules& Rules::that(bool holds, std::string_view message) {
-  if (!holds) breaks(ErrorCode::InvalidInput, std::string(message));
+  if (!holds)
+    breaks(ErrorCode::InvalidInput, std::string(message));
   return *this;
 }
 

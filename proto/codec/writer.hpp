@@ -30,7 +30,8 @@ void write_numbers(Arena& arena, const double* numbers, std::size_t size, Sequen
 
 template <typename Sequence>
 void write_placement(Arena& arena, const std::optional<Eigen::Isometry3d>& T, Sequence& sequence) {
-  if (!T) return;
+  if (!T)
+    return;
   const PoseArray pose = to_pose_array(*T);
   write_numbers(arena, pose.data(), pose.size(), sequence);
 }

@@ -26,13 +26,16 @@ bool is_loopback(const std::string& host) {
 
 std::string interfaces(const ParticipantOptions& options) {
   std::string name = checked("network interface", options.network_interface);
-  if (name.empty() && (options.role == Role::Server || is_loopback(options.server))) name = "lo";
-  if (name.empty()) return {};
+  if (name.empty() && (options.role == Role::Server || is_loopback(options.server)))
+    name = "lo";
+  if (name.empty())
+    return {};
   return "<Interfaces><NetworkInterface name=\"" + name + "\" multicast=\"false\"/></Interfaces>";
 }
 
 std::string discovery(const ParticipantOptions& options) {
-  if (options.role == Role::Server) return "<ParticipantIndex>0</ParticipantIndex>";
+  if (options.role == Role::Server)
+    return "<ParticipantIndex>0</ParticipantIndex>";
   if (options.server.empty())
     throw Failure(ErrorCode::InvalidInput, "host of the server: is empty");
   return "<ParticipantIndex>none</ParticipantIndex><Peers><Peer address=\"" +

@@ -19,7 +19,8 @@ Handle require(Handle result, std::string_view what) {
 Entity::Entity(Handle handle, std::string_view what) : handle_(require(handle, what)) {}
 
 Entity::~Entity() {
-  if (handle_ > 0) dds_delete(handle_);
+  if (handle_ > 0)
+    dds_delete(handle_);
 }
 
 }  // namespace kinship::dds

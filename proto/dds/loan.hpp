@@ -22,7 +22,8 @@ class Loan {
   Loan(const Loan&) = delete;
   Loan& operator=(const Loan&) = delete;
   ~Loan() {
-    if (count_ > 0) dds_return_loan(reader_, samples_.data(), count_);
+    if (count_ > 0)
+      dds_return_loan(reader_, samples_.data(), count_);
   }
 
   std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }

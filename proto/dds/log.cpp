@@ -36,7 +36,8 @@ class LimitedLog {
     last_line_ = line;
     const Clock::time_point now = Clock::now();
     if (now - window_start_ >= kWindow) {
-      if (left_out_ > 0) pass_on(std::to_string(left_out_) + " further lines were left out");
+      if (left_out_ > 0)
+        pass_on(std::to_string(left_out_) + " further lines were left out");
       window_start_ = now;
       lines_ = left_out_ = 0;
     }
@@ -48,7 +49,8 @@ class LimitedLog {
 
  private:
   void pass_on(std::string_view line) const {
-    if (sink_) sink_(line);
+    if (sink_)
+      sink_(line);
   }
 
   std::mutex mutex_;  // guards everything below
@@ -66,9 +68,11 @@ LimitedLog& limited_log() {
 }
 
 void on_line(void* /*argument*/, const dds_log_data_t* data) {
-  if (!data) return;
+  if (!data)
+    return;
   std::string_view line(data->message, data->size);
-  while (!line.empty() && line.back() == '\n') line.remove_suffix(1);
+  while (!line.empty() && line.back() == '\n')
+    line.remove_suffix(1);
   limited_log().write(line);
 }
 

@@ -19,7 +19,8 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   if (options.role == Role::Server)
     message += " as its server at UDP port " + port + ", is another server running?";
   message += " (" + std::string(dds_strretcode(-code));
-  if (const std::string line = last_log_line(); !line.empty()) message += ": " + line;
+  if (const std::string line = last_log_line(); !line.empty())
+    message += ": " + line;
   return message + ")";
 }
 
@@ -51,9 +52,11 @@ class Participant::Domain {
   Domain(const ParticipantOptions& options, const std::string& configuration)
       : role_(options.role), configuration_(configuration) {
     limit_log();
-    if (std::getenv("CYCLONEDDS_URI")) return;  // the user's configuration, read by Cyclone DDS
+    if (std::getenv("CYCLONEDDS_URI"))
+      return;  // the user's configuration, read by Cyclone DDS
     const Handle handle = dds_create_domain(options.domain, configuration.c_str());
-    if (handle < 0) throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
+    if (handle < 0)
+      throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
     entity_.emplace(handle, "domain");
   }
 
@@ -67,7 +70,8 @@ namespace {
 
 Entity create_participant(const ParticipantOptions& options) {
   const Handle handle = dds_create_participant(options.domain, nullptr, nullptr);
-  if (handle < 0) throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
+  if (handle < 0)
+    throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
   return {handle, "participant"};
 }
 

@@ -11,7 +11,8 @@ constexpr std::int32_t kReplyDepth = 64;
 
 Qos make_qos() {
   Qos qos(dds_create_qos());
-  if (!qos) throw Failure(ErrorCode::Internal, "dds_create_qos: out of memory");
+  if (!qos)
+    throw Failure(ErrorCode::Internal, "dds_create_qos: out of memory");
   return qos;
 }
 
@@ -53,7 +54,8 @@ std::string reply_partition(unsigned number) {
 unsigned reply_partition_of(const Uuid& client_id) {
   // Fowler, Noll, Vo: FNV-1a, 32 bits.
   std::uint32_t hash = 2166136261U;
-  for (const std::uint8_t byte : client_id.bytes) hash = (hash ^ byte) * 16777619U;
+  for (const std::uint8_t byte : client_id.bytes)
+    hash = (hash ^ byte) * 16777619U;
   return hash % kReplyPartitions;
 }
 

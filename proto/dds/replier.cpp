@@ -18,19 +18,25 @@ class Answer<Conversation>::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
-    if (is_sent_) return;
-    if (const auto line = line_.lock()) line->end(head_);
+    if (is_sent_)
+      return;
+    if (const auto line = line_.lock())
+      line->end(head_);
   }
 
   const codec::Head& head() const noexcept { return head_; }
 
   void send(const typename Conversation::Reply& reply) {
-    if (is_sent_.exchange(true)) return;
+    if (is_sent_.exchange(true))
+      return;
     const auto line = line_.lock();
-    if (!line) return;
+    if (!line)
+      return;
     auto message = codec::encode(head_, reply);
-    if (!message) message = codec::encode(head_, Conversation::refuse(message.error()));
-    if (message) line->send(head_, &message->wire);
+    if (!message)
+      message = codec::encode(head_, Conversation::refuse(message.error()));
+    if (message)
+      line->send(head_, &message->wire);
     line->end(head_);
   }
 
@@ -68,12 +74,14 @@ class Replier<Conversation>::Implementation {
   void take_requests() {
     const Loan requests(line_->reader(), "requests of " + line_->name());
     for (std::size_t i = 0; i < requests.size(); ++i)
-      if (requests[i]) serve(*static_cast<const WireRequest*>(requests[i]));
+      if (requests[i])
+        serve(*static_cast<const WireRequest*>(requests[i]));
   }
 
   void serve(const WireRequest& wire) {
     const codec::Head head = codec::head_of(wire);
-    if (!line_->begin(head)) return;
+    if (!line_->begin(head))
+      return;
     const Answer<Conversation> answer(
         std::make_shared<typename Answer<Conversation>::State>(line_, head));
     try {

@@ -93,11 +93,14 @@ RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* r
     hand_out_replies();
     {
       const std::lock_guard lock(mutex_);
-      if (call.is_answered) return Outcome::Answered;
+      if (call.is_answered)
+        return Outcome::Answered;
     }
-    if (is_cancelled_) return Outcome::Cancelled;
+    if (is_cancelled_)
+      return Outcome::Cancelled;
     const Clock::time_point now = Clock::now();
-    if (now >= deadline) return Outcome::TimedOut;
+    if (now >= deadline)
+      return Outcome::TimedOut;
     if (const std::uint64_t seen = servers_seen_; seen != servers_seen) {
       servers_seen = seen;
       sends = 0;
@@ -106,7 +109,8 @@ RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* r
     if (now >= next_send) {
       // Without a server the sample would be lost; its appearance ends the wait below. A time-out
       // of the writer means that the sample was not sent: it is, next time.
-      if (has_server() && dds_write(writer_.get(), request) == DDS_RETCODE_OK) sends++;
+      if (has_server() && dds_write(writer_.get(), request) == DDS_RETCODE_OK)
+        sends++;
       next_send = Clock::now() + delay_after(std::max(sends, 1));
     }
     wait(call.waiter, std::min(deadline, next_send));
@@ -127,25 +131,31 @@ void RequestLine::hand_out_replies() {
   std::vector<Handle> others;
   while (true) {
     const Loan replies(reader_, "replies of " + name_);
-    if (replies.size() == 0) break;
+    if (replies.size() == 0)
+      break;
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < replies.size(); ++i) {
-      if (!replies[i]) continue;
+      if (!replies[i])
+        continue;
       const auto call = calls_.find(head_of(replies[i]).sequence_number);
-      if (call == calls_.end() || call->second->is_answered) continue;
+      if (call == calls_.end() || call->second->is_answered)
+        continue;
       call->second->on_reply(replies[i]);
       call->second->is_answered = true;
       others.push_back(call->second->waiter.guard.get());
     }
   }
-  for (const Handle guard : others) dds_set_guardcondition(guard, true);
+  for (const Handle guard : others)
+    dds_set_guardcondition(guard, true);
 }
 
 void RequestLine::notice_servers() {
   dds_publication_matched_status_t status{};
   require(dds_get_publication_matched_status(writer_.get(), &status), "writer " + name_);
-  if (status.current_count_change == 0 && status.total_count_change == 0) return;
-  if (status.total_count_change > 0) ++servers_seen_;
+  if (status.current_count_change == 0 && status.total_count_change == 0)
+    return;
+  if (status.total_count_change > 0)
+    ++servers_seen_;
   wake_all();  // reading the status took it from the other callers
 }
 
@@ -157,9 +167,11 @@ void RequestLine::wake_all() {
   std::vector<Handle> guards;
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [sequence_number, call] : calls_) guards.push_back(call->waiter.guard.get());
+    for (const auto& [sequence_number, call] : calls_)
+      guards.push_back(call->waiter.guard.get());
   }
-  for (const Handle guard : guards) dds_set_guardcondition(guard, true);
+  for (const Handle guard : guards)
+    dds_set_guardcondition(guard, true);
 }
 
 void RequestLine::cancel() {

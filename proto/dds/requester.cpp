@@ -20,12 +20,14 @@ class Requester<Conversation>::Implementation {
     const Clock::time_point start = Clock::now();
     const codec::Head head = line_.next_head();
     const auto message = codec::encode(head, request);
-    if (!message) return message.error();
+    if (!message)
+      return message.error();
     std::optional<Result<Reply>> reply;
     const auto outcome = line_.call(head, &message->wire, deadline, [&reply](const void* wire) {
       reply.emplace(codec::decode(*static_cast<const typename Wire<Conversation>::Reply*>(wire)));
     });
-    if (outcome != RequestLine::Outcome::Answered) return nobody_answered(start);
+    if (outcome != RequestLine::Outcome::Answered)
+      return nobody_answered(start);
     if (!*reply)
       return Error{ErrorCode::Internal,
                    std::string("reply to ") + Conversation::kName + ": " + reply->error().message};

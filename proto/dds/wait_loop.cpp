@@ -16,7 +16,8 @@ constexpr dds_attach_t kWakeUp = -1;  // attachments of readers count from 0
 dds_duration_t time_until(WaitLoop::Clock::time_point when) {
   constexpr std::chrono::nanoseconds kLongest = std::chrono::hours(1);
   const auto now = WaitLoop::Clock::now();
-  if (when <= now) return 0;
+  if (when <= now)
+    return 0;
   return when - now > kLongest ? kLongest.count() : std::chrono::nanoseconds(when - now).count();
 }
 
@@ -42,7 +43,8 @@ class WaitLoop::Implementation {
     std::array<dds_attach_t, 16> ready{};
     while (!stopped_) {
       const Clock::time_point next = on_wake();
-      if (stopped_) return;
+      if (stopped_)
+        return;
       const std::int32_t count =
           require(dds_waitset_wait(waitset_.get(), ready.data(), ready.size(), time_until(next)),
                   "waitset");
@@ -50,7 +52,8 @@ class WaitLoop::Implementation {
       require(dds_take_guardcondition(wake_up_.get(), &ignored), "guard condition");
       const auto end = std::min(static_cast<std::size_t>(count), ready.size());
       for (std::size_t i = 0; i < end && !stopped_; ++i)
-        if (ready[i] != kWakeUp) sources_[static_cast<std::size_t>(ready[i])].on_data();
+        if (ready[i] != kWakeUp)
+          sources_[static_cast<std::size_t>(ready[i])].on_data();
     }
   }
 

@@ -17,13 +17,15 @@ class ChildProcess {
  public:
   explicit ChildProcess(const std::vector<std::string>& command) {
     int output[2];
-    if (pipe2(output, O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");
+    if (pipe2(output, O_CLOEXEC) != 0)
+      throw std::runtime_error("pipe failed");
     std::vector<char*> arguments;
     for (const std::string& argument : command)
       arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     pid_ = fork();
-    if (pid_ < 0) throw std::runtime_error("fork failed");
+    if (pid_ < 0)
+      throw std::runtime_error("fork failed");
     if (pid_ == 0) {
       dup2(output[1], STDOUT_FILENO);
       execv(arguments[0], arguments.data());
@@ -45,7 +47,8 @@ class ChildProcess {
   std::string read_line() {
     std::string line;
     char c = 0;
-    while (read(output_, &c, 1) == 1 && c != '\n') line.push_back(c);
+    while (read(output_, &c, 1) == 1 && c != '\n')
+      line.push_back(c);
     return line;
   }
 
@@ -53,14 +56,16 @@ class ChildProcess {
 
   /// Waits for its end. \return exit code, or 128 + the signal that ended it.
   int wait() {
-    if (is_running_) waitpid(pid_, &status_, 0);
+    if (is_running_)
+      waitpid(pid_, &status_, 0);
     is_running_ = false;
     return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
   }
 
   /// SIGKILL, and waits for the end.
   void kill() {
-    if (is_running_) signal(SIGKILL);
+    if (is_running_)
+      signal(SIGKILL);
     wait();
   }
 

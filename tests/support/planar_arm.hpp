@@ -27,7 +27,8 @@ struct PlanarArm {
       kinematics::Joint joint;
       joint.name = "joint" + std::to_string(j);
       joint.type = type;
-      if (j > 0) joint.T_previous_joint.translation().x() = lengths_m[j - 1];
+      if (j > 0)
+        joint.T_previous_joint.translation().x() = lengths_m[j - 1];
       joint.lower = -limit;
       joint.upper = limit;
       parts.joints.push_back(joint);

@@ -49,7 +49,8 @@ TEST(ReplyPartition, IsTheWorkedExampleOfTheContract) {
 
 TEST(ReplyPartition, SpreadsClientsOverAllPartitions) {
   std::set<unsigned> seen;
-  for (int i = 0; i < 1000; ++i) seen.insert(reply_partition_of(Uuid::random()));
+  for (int i = 0; i < 1000; ++i)
+    seen.insert(reply_partition_of(Uuid::random()));
   EXPECT_EQ(seen.size(), kReplyPartitions);
   EXPECT_LT(*seen.rbegin(), kReplyPartitions);
 }

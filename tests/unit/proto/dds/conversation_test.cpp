@@ -68,7 +68,8 @@ class Held {
   void hold(const AdminAnswer& answer) {
     const std::lock_guard lock(mutex_);
     answers_.push_back(answer);
-    if (answers_.size() == 1) first_.set_value();
+    if (answers_.size() == 1)
+      first_.set_value();
   }
   void wait_for_first() { first_.get_future().wait(); }
   std::size_t size() {
@@ -77,7 +78,8 @@ class Held {
   }
   void answer_all(const AdminReply& reply) {
     const std::lock_guard lock(mutex_);
-    for (const AdminAnswer& answer : answers_) answer(reply);
+    for (const AdminAnswer& answer : answers_)
+      answer(reply);
   }
 
  private:
@@ -100,7 +102,8 @@ TEST(Conversation, AnswerMayComeLaterFromAnotherThreadAndResendsAreDropped) {
 TEST(Conversation, RequestWhoseAnswerWasDroppedIsHandledAnew) {
   std::atomic<int> calls = 0;
   Pair pair(111, [&](const AdminRequest&, const AdminAnswer& answer) {
-    if (++calls > 1) answer(row("second time"));
+    if (++calls > 1)
+      answer(row("second time"));
   });
   EXPECT_EQ(pair.call("x")->rows.front(), "second time");
 }
@@ -131,11 +134,13 @@ TEST(Conversation, CallsOfSeveralThreadsRunSideBySide) {
       for (int i = 0; i < 50; ++i) {
         const std::string text = std::to_string(100 * thread + i);
         const auto reply = pair.call(text);
-        if (reply && reply->rows.front() == text) ++right;
+        if (reply && reply->rows.front() == text)
+          ++right;
       }
       return right;
     }));
-  for (auto& other : others) EXPECT_EQ(other.get(), 50);
+  for (auto& other : others)
+    EXPECT_EQ(other.get(), 50);
   held.answer_all(row("done"));
   EXPECT_EQ(slow.get()->rows.front(), "done");
 }
@@ -204,9 +209,12 @@ TEST(WaitLoop, WakesWhenItIsToldToAndWhenItIsTime) {
   int calls = 0;
   std::thread thread([&] {
     loop.run([&] {
-      if (++calls == 1) begun.set_value();
-      if (calls == 2) return Clock::now() + 20ms;  // woken by wake(); then by the time
-      if (calls == 3) loop.stop();
+      if (++calls == 1)
+        begun.set_value();
+      if (calls == 2)
+        return Clock::now() + 20ms;  // woken by wake(); then by the time
+      if (calls == 3)
+        loop.stop();
       return Clock::time_point::max();
     });
   });

@@ -31,7 +31,8 @@ AdminRequest echo(const std::string& text) {
 
 /// Row of the reply, or the error's message.
 std::string text_of(const Result<AdminReply>& reply) {
-  if (!reply) return reply.error().message;
+  if (!reply)
+    return reply.error().message;
   return reply->rows.empty() ? reply->message : reply->rows.front();
 }
 
@@ -70,7 +71,8 @@ TEST(Processes, CallIsAnsweredByTheServerAfterOneThatWasKilled) {
 TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {
   const Uuid one = Uuid::random();
   Uuid other = Uuid::random();
-  while (reply_partition_of(one) != reply_partition_of(other)) other = Uuid::random();
+  while (reply_partition_of(one) != reply_partition_of(other))
+    other = Uuid::random();
   const Participant participant({.domain = 103});
   AdminRequester requester_one(participant, one);  // both count from 1
   AdminRequester requester_other(participant, other);
