@@ -1,8 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -23,10 +24,12 @@ struct ClientOptions {
 /// A fleet member's line to kinshipd: registers a robot, reports attempts, fetches distributions.
 ///
 /// A report is on disk before report() returns and is sent in the background until the server's
-/// receipt says that it is durable there; it survives a crash of either side. May be shared
-/// between threads.
+/// receipt says that it is durable there; it survives a crash of either side. Processes may share
+/// an outbox: one of them sends. May be shared between threads.
 class Client {
  public:
+  /// \throws Failure(InvalidInput) for options that cannot be, Failure(Storage) if the outbox
+  ///         cannot be made, Failure(Unavailable) if DDS cannot start. Needs no server.
   explicit Client(const ClientOptions& options);
   ~Client();
   Client(const Client&) = delete;
@@ -44,6 +47,7 @@ class Client {
     std::size_t pending = 0;   ///< not yet acknowledged
     std::size_t accepted = 0;  ///< since this client started: stored, duplicate or recorded
     std::size_t refused = 0;   ///< since this client started; kept in the rejected folder
+    std::string problem;       ///< why sending does not get on; empty: nothing known
   };
   OutboxState outbox() const;
 
@@ -51,7 +55,8 @@ class Client {
   OutboxState flush(std::chrono::milliseconds deadline);
 
   /// Waits until the reply is final or the request's deadline has passed (then: the last Pending
-  /// or Busy reply, or Unavailable if no server answered).
+  /// or Busy reply, or Unavailable if no server answered). With a deadline of 0 the server answers
+  /// with what is there, and this waits for its answer up to the timeout of register and admin.
   Result<FetchReply> fetch(const FetchRequest& request);
 
   Result<AdminReply> admin(const AdminRequest& request);

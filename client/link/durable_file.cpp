@@ -1,0 +1,121 @@
+#include "client/link/durable_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+#include "proto/types/uuid.hpp"
+
+namespace kinship::link {
+namespace {
+
+constexpr std::string_view kTemporarySuffix = ".tmp";
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
+  throw Failure(ErrorCode::Storage,
+                path.string() + ": " + what + ": " + std::generic_category().message(errno));
+}
+
+/// Owner of one file descriptor.
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& path, int flags)
+      : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0644)), path_(path) {
+    if (descriptor_ < 0)
+      fail(path_, "cannot open");
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { ::close(descriptor_); }
+
+  void write(std::string_view content) const {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno == EINTR)
+        continue;
+      if (written < 0)
+        fail(path_, "cannot write");
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  /// \return bytes read; 0 at the end.
+  std::size_t read(char* buffer, std::size_t size) const {
+    ssize_t count = 0;
+    do
+      count = ::read(descriptor_, buffer, size);
+    while (count < 0 && errno == EINTR);
+    if (count < 0)
+      fail(path_, "cannot read");
+    return static_cast<std::size_t>(count);
+  }
+
+  void sync() const {
+    if (::fsync(descriptor_) != 0)
+      fail(path_, "cannot fsync");
+  }
+
+ private:
+  int descriptor_;
+  std::filesystem::path path_;
+};
+
+/// Removes a file unless it was kept, so that a failed write leaves nothing behind.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!path_.empty())
+      ::unlink(path_.c_str());
+  }
+
+  const std::filesystem::path& path() const noexcept { return path_; }
+  void keep() noexcept { path_.clear(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+void write_durably(const std::filesystem::path& path, std::string_view content) {
+  // A name of its own for every write: two writers of one file do not mix.
+  TemporaryFile temporary(path.parent_path() /
+                          ("." + path.filename().string() + "." + Uuid::random().text() +
+                           std::string(kTemporarySuffix)));
+  {
+    const Descriptor file(temporary.path(), O_WRONLY | O_CREAT | O_EXCL);
+    file.write(content);
+    file.sync();
+  }
+  if (::rename(temporary.path().c_str(), path.c_str()) != 0)
+    fail(path, "cannot rename to");
+  temporary.keep();
+  Descriptor(path.parent_path(), O_RDONLY | O_DIRECTORY).sync();
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t limit) {
+  const Descriptor file(path, O_RDONLY);
+  std::string content;
+  char buffer[16 * 1024];
+  while (const std::size_t count = file.read(buffer, sizeof buffer)) {
+    content.append(buffer, count);
+    if (content.size() > limit)
+      throw Failure(ErrorCode::TooLarge,
+                    path.string() + ": exceeds " + std::to_string(limit) + " bytes");
+  }
+  return content;
+}
+
+bool is_temporary(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with(".") && name.ends_with(kTemporarySuffix);
+}
+
+}  // namespace kinship::link

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+/// Files that survive a power cut once a function has returned.
+namespace kinship::link {
+
+/// Writes a whole file: temporary file beside it, fsync, rename, fsync of the folder. Whoever reads
+/// `path` sees the old content, or none, or all of the new one.
+/// \throws Failure(Storage) naming the file and what the system said.
+void write_durably(const std::filesystem::path& path, std::string_view content);
+
+/// \throws Failure(Storage) if it cannot be read, Failure(TooLarge) above `limit` bytes.
+std::string read_file(const std::filesystem::path& path, std::size_t limit);
+
+/// Name of the temporary files of write_durably(); they begin with a dot.
+bool is_temporary(const std::filesystem::path& path);
+
+}  // namespace kinship::link

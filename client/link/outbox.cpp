@@ -1,0 +1,223 @@
+#include "client/link/outbox.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "client/link/durable_file.hpp"
+#include "proto/json/attempt_json.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::link {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPending = "pending";
+constexpr std::string_view kSent = "sent";
+constexpr std::string_view kRejected = "rejected";
+constexpr std::string_view kSuffix = ".json";
+constexpr std::size_t kMaxReportFileBytes = 16'000'000;
+constexpr std::size_t kUuidTextBytes = 36;
+constexpr std::chrono::hours kKeepSent{7 * 24};
+constexpr std::chrono::hours kKeepTemporary{24};
+
+void require(const std::error_code& error, const fs::path& path, const char* what) {
+  if (error)
+    throw Failure(ErrorCode::Storage, path.string() + ": " + what + ": " + error.message());
+}
+
+/// Calls `visit` with every entry of a folder. Entries that vanish meanwhile are no error.
+template <typename Visit>
+void for_each_entry(const fs::path& folder, const Visit& visit) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    visit(*entry);
+  require(error, folder, "cannot list");
+}
+
+/// The UUID in the name of a report file; empty for any other name.
+std::optional<Uuid> report_uuid_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (!name.ends_with(kSuffix))
+    return std::nullopt;
+  return Uuid::parse(std::string_view(name).substr(0, name.size() - kSuffix.size()));
+}
+
+/// Moves a file. \return false if it was not there.
+bool move_file(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error == std::errc::no_such_file_or_directory)
+    return false;
+  require(error, to, "cannot rename to");
+  return true;
+}
+
+void remove_older_than(const fs::directory_entry& entry, std::chrono::hours age) {
+  std::error_code error;
+  const fs::file_time_type written = entry.last_write_time(error);
+  if (!error && fs::file_time_type::clock::now() - written > age)
+    fs::remove(entry.path(), error);
+  // Whatever failed here is tried again at the next purge.
+}
+
+/// \return TooLarge, as a value, for a file that cannot be a report.
+Result<std::string> read_limited(const fs::path& path) {
+  try {
+    return read_file(path, kMaxReportFileBytes);
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::TooLarge)
+      return failure.error();
+    throw;
+  }
+}
+
+}  // namespace
+
+Outbox::Outbox(fs::path folder) : folder_(std::move(folder)) {
+  for (const std::string_view part : {kPending, kSent, kRejected}) {
+    std::error_code error;
+    fs::create_directories(folder_ / part, error);
+    require(error, folder_ / part, "cannot make the folder");
+  }
+}
+
+fs::path Outbox::file(std::string_view part, const Uuid& report_uuid) const {
+  return folder_ / part / (report_uuid.text() + std::string(kSuffix));
+}
+
+void Outbox::add(const Attempt& attempt) {
+  write_durably(file(kPending, attempt.report_uuid), json::to_json(attempt) + "\n");
+}
+
+std::size_t Outbox::pending_count() const {
+  std::size_t count = 0;
+  for_each_entry(folder_ / kPending, [&](const fs::directory_entry& entry) {
+    if (report_uuid_of(entry.path()))
+      ++count;
+  });
+  return count;
+}
+
+std::vector<Uuid> Outbox::pending() const {
+  std::vector<std::pair<fs::file_time_type, Uuid>> found;
+  for_each_entry(folder_ / kPending, [&](const fs::directory_entry& entry) {
+    const auto uuid = report_uuid_of(entry.path());
+    std::error_code error;
+    const fs::file_time_type written = entry.last_write_time(error);
+    if (uuid && !error)
+      found.emplace_back(written, *uuid);
+  });
+  std::sort(found.begin(), found.end());
+  std::vector<Uuid> uuids;
+  for (const auto& [written, uuid] : found)
+    uuids.push_back(uuid);
+  return uuids;
+}
+
+Result<Attempt> Outbox::read(const Uuid& report_uuid) const {
+  const fs::path path = file(kPending, report_uuid);
+  std::error_code error;
+  if (!fs::exists(path, error))
+    return Error{ErrorCode::NotFound, path.string() + ": is gone"};
+  const auto text = read_limited(path);
+  if (!text)
+    return text.error();
+  auto named = json::attempt_from_json(*text);
+  if (!named)
+    return Error{named.error().code, "damaged file: " + named.error().message};
+  if (!named->label.empty())
+    return Error{ErrorCode::InvalidInput, "damaged file: the robot is not named by digest"};
+  if (named->attempt.report_uuid != report_uuid)
+    return Error{ErrorCode::InvalidInput, "damaged file: report_uuid is not that of its name"};
+  return std::move(named).value().attempt;
+}
+
+void Outbox::mark_sent(const Uuid& report_uuid) {
+  const fs::path from = file(kPending, report_uuid);
+  std::error_code ignored;  // the seven days begin now; if that fails, when it was written
+  fs::last_write_time(from, fs::file_time_type::clock::now(), ignored);
+  // No fsync: a report that is back in pending after a power cut is answered "duplicate".
+  move_file(from, file(kSent, report_uuid));
+}
+
+void Outbox::reject(const Uuid& report_uuid, std::string_view reason) {
+  write_durably(folder_ / kRejected / (report_uuid.text() + ".reason.txt"),
+                std::string(reason) + "\n");
+  move_file(file(kPending, report_uuid), file(kRejected, report_uuid));
+}
+
+void Outbox::note_store_epoch(const Uuid& epoch) {
+  const fs::path path = folder_ / "store_epoch";
+  std::error_code error;
+  std::optional<Uuid> known;
+  if (fs::exists(path, error))
+    known = Uuid::parse(read_file(path, 1024).substr(0, kUuidTextBytes));
+  if (known == epoch)
+    return;
+  if (known)  // else this outbox has never had a receipt
+    for_each_entry(folder_ / kSent, [&](const fs::directory_entry& entry) {
+      if (const auto uuid = report_uuid_of(entry.path()))
+        move_file(entry.path(), file(kPending, *uuid));
+    });
+  write_durably(path, epoch.text() + "\n");  // last: if we die before, it all happens again
+}
+
+void Outbox::purge() {
+  for_each_entry(folder_ / kSent, [](const fs::directory_entry& entry) {
+    if (report_uuid_of(entry.path()))
+      remove_older_than(entry, kKeepSent);
+  });
+  for (const fs::path& folder : {folder_ / kPending, folder_ / kRejected, folder_})
+    for_each_entry(folder, [](const fs::directory_entry& entry) {
+      if (is_temporary(entry.path()))
+        remove_older_than(entry, kKeepTemporary);
+    });
+}
+
+std::optional<SenderLock> SenderLock::try_acquire(const fs::path& folder) {
+  const fs::path path = folder / "sender.lock";
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor < 0)
+    throw Failure(ErrorCode::Storage,
+                  path.string() + ": cannot open: " + std::generic_category().message(errno));
+  SenderLock lock(descriptor);
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+    return std::nullopt;
+  return lock;
+}
+
+SenderLock::SenderLock(SenderLock&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+SenderLock& SenderLock::operator=(SenderLock&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+SenderLock::~SenderLock() {
+  if (descriptor_ >= 0)
+    ::close(descriptor_);  // releases the lock
+}
+
+fs::path default_outbox_folder() {
+  for (const auto& [variable, below] :
+       {std::pair("XDG_STATE_HOME", ""), std::pair("HOME", ".local/state")}) {
+    const char* value = std::getenv(variable);
+    if (value && fs::path(value).is_absolute())  // the XDG specification ignores relative ones
+      return fs::path(value) / below / "kinship" / "outbox";
+  }
+  throw Failure(ErrorCode::InvalidInput,
+                "outbox: neither XDG_STATE_HOME nor HOME is an absolute path; name a folder");
+}
+
+}  // namespace kinship::link

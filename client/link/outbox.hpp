@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/result.hpp"
+#include "proto/types/uuid.hpp"
+
+namespace kinship::link {
+
+/// Reports of a client on disk, one file each, named by report UUID:
+/// `pending/` until the server's receipt, then `sent/` for seven days or `rejected/` for good.
+///
+/// Processes may share one: anybody adds, whoever holds the SenderLock moves. Methods throw
+/// Failure(Storage) naming the file. May be shared between threads.
+class Outbox {
+ public:
+  /// Makes the folders if they are missing.
+  explicit Outbox(std::filesystem::path folder);
+
+  const std::filesystem::path& folder() const noexcept { return folder_; }
+
+  void add(const Attempt& attempt);  ///< into pending; durable on return
+
+  std::size_t pending_count() const;
+  std::vector<Uuid> pending() const;  ///< oldest first
+
+  /// \return a pending attempt; NotFound if it is gone, InvalidInput or TooLarge if its file is
+  ///         damaged.
+  Result<Attempt> read(const Uuid& report_uuid) const;
+
+  void mark_sent(const Uuid& report_uuid);
+  void reject(const Uuid& report_uuid, std::string_view reason);  ///< reason: <uuid>.reason.txt
+
+  /// To be told the store epoch of every receipt. If it differs from the one remembered, the
+  /// server's store was restored or replaced, and what was sent is pending again.
+  void note_store_epoch(const Uuid& epoch);
+
+  /// Deletes what was sent more than seven days ago, and temporary files older than a day.
+  void purge();
+
+ private:
+  std::filesystem::path file(std::string_view part, const Uuid& report_uuid) const;
+
+  std::filesystem::path folder_;
+};
+
+/// The right to send from an outbox; given to one holder on this machine at a time.
+class SenderLock {
+ public:
+  /// \return empty if somebody else has it.
+  /// \throws Failure(Storage) if the lock file cannot be opened.
+  static std::optional<SenderLock> try_acquire(const std::filesystem::path& folder);
+
+  SenderLock(SenderLock&& other) noexcept;
+  SenderLock& operator=(SenderLock&& other) noexcept;
+  SenderLock(const SenderLock&) = delete;
+  SenderLock& operator=(const SenderLock&) = delete;
+  ~SenderLock();
+
+ private:
+  explicit SenderLock(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;  // -1: moved from
+};
+
+/// $XDG_STATE_HOME/kinship/outbox, by default ~/.local/state/kinship/outbox.
+/// \throws Failure(InvalidInput) if neither XDG_STATE_HOME nor HOME is an absolute path.
+std::filesystem::path default_outbox_folder();
+
+}  // namespace kinship::link
