@@ -1,12 +1,23 @@
 #include "proto/codec/rules.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::codec {
+namespace {
+
+/// As short as it can be read: 7, 0.1, -1e+300.
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+}  // namespace
 
 void Rules::breaks(ErrorCode code, std::string message) {
   if (!broken_)
@@ -31,9 +42,9 @@ Rules& Rules::not_empty(std::string_view what, std::string_view value) {
 
 Rules& Rules::between(std::string_view what, double value, double lowest, double highest) {
   if (!(value >= lowest && value <= highest))  // so that NaN breaks it
-    breaks(ErrorCode::InvalidInput, std::string(what) + ": " + std::to_string(value) +
-                                        " is not between " + std::to_string(lowest) + " and " +
-                                        std::to_string(highest));
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": " + number_text(value) +
+                                        " is not between " + number_text(lowest) + " and " +
+                                        number_text(highest));
   return *this;
 }
 
@@ -46,8 +57,7 @@ Rules& Rules::finite(std::string_view what, double value) {
 Rules& Rules::not_negative(std::string_view what, double value) {
   finite(what, value);
   if (value < 0)
-    breaks(ErrorCode::InvalidInput,
-           std::string(what) + ": " + std::to_string(value) + " is negative");
+    breaks(ErrorCode::InvalidInput, std::string(what) + ": " + number_text(value) + " is negative");
   return *this;
 }
 

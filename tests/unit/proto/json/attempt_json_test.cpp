@@ -115,13 +115,15 @@ TEST(AttemptJson, RefusalNamesFieldValueAndLimit) {
 
 TEST(AttemptJson, DofAndLengthAreLimited) {
   std::string wide = "[0";
-  for (int i = 0; i < 32; ++i) wide += ",0";
+  for (int i = 0; i < 32; ++i)
+    wide += ",0";
   wide += "]";
   EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]",
                                 "[" + wide + "," + wide + "]")),
             "waypoints[0]: 33 elements exceed 32");
   std::string many = "[[0]";
-  for (int i = 0; i < 16384; ++i) many += ",[0]";
+  for (int i = 0; i < 16384; ++i)
+    many += ",[0]";
   EXPECT_EQ(message_of(replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", many + "]")),
             "waypoints: 16385 elements exceed 16384");
 }

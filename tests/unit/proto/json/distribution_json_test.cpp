@@ -96,7 +96,8 @@ TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
 
 TEST(DistributionJson, ComponentsAreLimited) {
   std::string weights = "[0";
-  for (int i = 0; i < 1024; ++i) weights += ",0";
+  for (int i = 0; i < 1024; ++i)
+    weights += ",0";
   EXPECT_EQ(message_of(changed("[0.25,0.75]", weights + "]")),
             "weights: 1025 elements exceed 1024");
 }

@@ -25,7 +25,8 @@ TEST(Reader, DeepNestingIsRefusedBeforeItIsParsed) {
 
 TEST(Reader, TooManyValuesAreRefusedBeforeTheyAreParsed) {
   std::string text = "{\"x\":1,\"y\":[0";
-  for (std::size_t i = 0; i < kMaxDocumentValues; ++i) text += ",0";
+  for (std::size_t i = 0; i < kMaxDocumentValues; ++i)
+    text += ",0";
   const auto result = read_x(text + "]}");
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::TooLarge);

@@ -54,7 +54,8 @@ TEST(RobotDescriptionJson, SizesAreLimited) {
   EXPECT_EQ(robot_description_from_json(to_json(description)).error().message,
             "urdf: 1000001 bytes exceed 1000000");
   description = planar_arm();
-  for (int i = 0; i < 64; ++i) description.held_joints["joint_" + std::to_string(i)] = 0;
+  for (int i = 0; i < 64; ++i)
+    description.held_joints["joint_" + std::to_string(i)] = 0;
   EXPECT_EQ(robot_description_from_json(to_json(description)).error().message,
             "held_joints: 66 members exceed 64");
 }

@@ -34,7 +34,8 @@ Eigen::Matrix2Xd limits_of(double lower, double upper, Eigen::Index dimension) {
 Eigen::MatrixXd draw(const Sampler& sampler, Eigen::Index count) {
   std::mt19937_64 generator(kSeed);
   Eigen::MatrixXd samples(sampler.dimension(), count);
-  for (Eigen::Index i = 0; i < count; ++i) samples.col(i) = sampler.sample(generator).value();
+  for (Eigen::Index i = 0; i < count; ++i)
+    samples.col(i) = sampler.sample(generator).value();
   return samples;
 }
 
@@ -88,7 +89,8 @@ TEST(Sampler, TruncatedDrawsMatchARejectionReference) {
     const Eigen::Vector2d noise(normal(generator), normal(generator));
     const Eigen::Vector2d q = mixture.means().col(static_cast<Eigen::Index>(k)) +
                               mixture.covariances()[k].llt().matrixL() * noise;
-    if (q.cwiseAbs().maxCoeff() <= 1.5) reference.col(i++) = q;
+    if (q.cwiseAbs().maxCoeff() <= 1.5)
+      reference.col(i++) = q;
   }
 
   EXPECT_LT((samples.rowwise().mean() - reference.rowwise().mean()).cwiseAbs().maxCoeff(), 0.02);

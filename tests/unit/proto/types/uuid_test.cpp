@@ -16,7 +16,8 @@ TEST(Uuid, RoundTripsThroughText) {
 
 TEST(Uuid, RandomOnesDiffer) {
   std::set<Uuid> seen;
-  for (int i = 0; i < 1000; ++i) seen.insert(Uuid::random());
+  for (int i = 0; i < 1000; ++i)
+    seen.insert(Uuid::random());
   EXPECT_EQ(seen.size(), 1000U);
 }
 

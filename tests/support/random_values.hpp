@@ -1,0 +1,143 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
+#include "proto/types/robot_description.hpp"
+
+namespace kinship::test {
+
+/// Random values that keep the rules of the contract.
+class RandomValues {
+ public:
+  explicit RandomValues(std::uint64_t seed) : generator_(seed) {}
+
+  std::mt19937_64& generator() { return generator_; }
+  int below(int limit) { return std::uniform_int_distribution<int>(0, limit - 1)(generator_); }
+  bool coin() { return below(2) == 1; }
+  double share() { return std::uniform_real_distribution<double>(0, 1)(generator_); }
+  double number() { return std::normal_distribution<double>(0, 10)(generator_); }
+  std::uint64_t count() { return generator_() >> static_cast<unsigned>(below(64)); }
+
+  Digest digest() {
+    Digest digest;
+    for (auto& byte : digest.bytes)
+      byte = static_cast<std::uint8_t>(generator_());
+    return digest;
+  }
+
+  std::string name(int max_size) {
+    std::string text(static_cast<std::size_t>(1 + below(max_size)), 'a');
+    for (char& c : text)
+      c = static_cast<char>('a' + below(26));
+    return text;
+  }
+
+  Eigen::Isometry3d pose() {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() =
+        Eigen::Quaterniond(number(), number(), number(), number()).normalized().toRotationMatrix();
+    T.translation() << number(), number(), number();
+    return T;
+  }
+
+  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [this] { return number(); });
+  }
+
+  Attempt attempt(int max_waypoints = 50) {
+    Attempt attempt;
+    attempt.report_uuid = Uuid::random();
+    attempt.robot = digest();
+    attempt.machine = "Halle Süd " + name(20);
+    attempt.task = name(128);
+    if (coin())
+      attempt.T_task_base = pose();
+    PlanningRecord& record = attempt.record;
+    record.outcome = static_cast<Outcome>(below(3));
+    record.planner = name(128);
+    record.planner_options = name(1024);
+    record.planning_time_s = share();
+    record.collision_checks = count();
+    record.projections = count();
+    record.time_limit_s = 10 * share();
+    record.arm = static_cast<Arm>(below(3));
+    record.share = share();
+    if (coin())
+      record.distribution_id = digest();
+    record.distribution_revision = count();
+    if (record.outcome == Outcome::Solved)
+      attempt.path = Path(matrix(1 + below(32), 2 + below(max_waypoints)));
+    return attempt;
+  }
+
+  RobotDescription robot_description() {
+    RobotDescription robot;
+    robot.label = name(64);
+    robot.urdf = "<robot>\n\t" + name(5000) + "</robot>";
+    robot.base_link = name(128);
+    robot.tip_link = name(128);
+    robot.T_tip_transfer = pose();
+    for (bool& matters : robot.task_axes.matters)
+      matters = coin();
+    for (int i = below(10); i > 0; --i)
+      robot.held_joints[name(100)] = number();
+    for (int i = below(10); i > 0; --i)
+      robot.never_colliding.emplace_back(name(50), name(50));
+    return robot;
+  }
+
+  Mixture mixture(Eigen::Index dof) {
+    const Eigen::Index components = 1 + below(20);
+    Eigen::VectorXd weights =
+        Eigen::VectorXd::NullaryExpr(components, [this] { return 0.01 + share(); });
+    weights /= weights.sum();
+    std::vector<Eigen::MatrixXd> covariances;
+    for (Eigen::Index i = 0; i < components; ++i) {
+      const Eigen::MatrixXd factor = matrix(dof, dof);
+      covariances.emplace_back(factor * factor.transpose());
+    }
+    return {weights, matrix(dof, components), covariances};
+  }
+
+  Distribution distribution() {
+    Distribution distribution;
+    distribution.id = digest();
+    distribution.revision = count();
+    distribution.store_epoch = Uuid::random();
+    distribution.task = name(128);
+    distribution.robot = digest();
+    if (coin())
+      distribution.T_task_base = pose();
+    distribution.profile = "default";
+    distribution.engines = "transfer 1, density 1";
+    distribution.state = coin() ? DistributionState::Ready : DistributionState::Failed;
+    distribution.reason = name(100);
+    for (int i = below(5); i > 0; --i)
+      distribution.sources.push_back({digest(), name(64), count(), count(), count(), count()});
+    distribution.configurations = count();
+    const Eigen::Index dof = 1 + below(32);
+    distribution.limits.resize(2, dof);
+    distribution.limits.row(0) = matrix(1, dof);
+    distribution.limits.row(1) = distribution.limits.row(0).array() + 1;
+    if (distribution.state == DistributionState::Ready)
+      distribution.mixture = mixture(dof);
+    if (coin())
+      distribution.held_out_score = number();
+    distribution.recommended_share = share();
+    distribution.evidence = name(100);
+    distribution.fitted_ms = static_cast<std::int64_t>(count() / 2);
+    distribution.transfer_time_s = share();
+    distribution.fit_time_s = share();
+    return distribution;
+  }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+}  // namespace kinship::test

@@ -1,0 +1,107 @@
+#include "proto/codec/fetch_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/random_values.hpp"
+
+namespace kinship::codec {
+namespace {
+
+constexpr std::uint64_t kSeed = 33;
+
+FetchReply ready_reply() {
+  test::RandomValues values(kSeed);
+  FetchReply reply;
+  reply.status = FetchStatus::Ready;
+  reply.distribution = values.distribution();
+  reply.distribution->state = DistributionState::Ready;
+  reply.distribution->mixture = values.mixture(reply.distribution->limits.cols());
+  return reply;
+}
+
+TEST(FetchCodec, RequestComesBack) {
+  test::RandomValues values(kSeed);
+  FetchRequest written;
+  written.task = "shelf_pick";
+  written.robot = values.digest();
+  written.T_task_base = values.pose();
+  written.profile = "paper";
+  written.minimum_generation = 5;
+  written.deadline = std::chrono::seconds(30);
+  const auto read = decode(encode({}, written)->wire).value_or_throw();
+  EXPECT_EQ(read.task, written.task);
+  EXPECT_EQ(read.robot, written.robot);
+  EXPECT_TRUE(read.T_task_base->isApprox(*written.T_task_base, 1e-12));
+  EXPECT_EQ(read.profile, written.profile);
+  EXPECT_EQ(read.minimum_generation, 5U);
+  EXPECT_EQ(read.deadline, std::chrono::seconds(30));
+}
+
+TEST(FetchCodec, PlacementIsSevenNumbersOrNone) {
+  FetchRequest request;
+  request.task = "t";
+  request.T_task_base = Eigen::Isometry3d::Identity();
+  auto message = encode({}, request).value_or_throw();
+  message.wire.T_task_base._length = 6;
+  EXPECT_EQ(decode(message.wire).error().message, "T_task_base: 6 numbers, must be none or 7");
+  message.wire.T_task_base._length = 0;
+  EXPECT_FALSE(decode(message.wire)->T_task_base);
+}
+
+TEST(FetchCodec, NegativeDeadlineIsRefused) {
+  FetchRequest request;
+  request.task = "t";
+  request.deadline = std::chrono::milliseconds(-1);
+  EXPECT_EQ(encode({}, request).error().code, ErrorCode::InvalidInput);
+}
+
+TEST(FetchCodec, DistributionBelongsToReadyAndFailed) {
+  FetchReply reply = ready_reply();
+  reply.status = FetchStatus::Pending;
+  EXPECT_FALSE(encode({}, reply));
+  reply.distribution.reset();
+  EXPECT_TRUE(encode({}, reply));
+  reply.status = FetchStatus::Ready;
+  EXPECT_EQ(encode({}, reply).error().message, "distribution: missing");
+}
+
+TEST(FetchCodec, MixtureMustFitTheLimits) {
+  auto message = encode({}, ready_reply()).value_or_throw();
+  message.wire.distribution._buffer[0].limits._length -= 2;
+  EXPECT_FALSE(decode(message.wire));
+  FetchReply reply = ready_reply();
+  reply.distribution->limits(0, 0) = reply.distribution->limits(1, 0) + 1;
+  EXPECT_EQ(encode({}, reply).error().message.find("limits: joint 1 from "), 0U);
+}
+
+TEST(FetchCodec, WeightsMustBeProbabilities) {
+  auto message = encode({}, ready_reply()).value_or_throw();
+  message.wire.distribution._buffer[0].mixture._buffer[0].weights._buffer[0] += 0.1;
+  EXPECT_EQ(decode(message.wire).error().message,
+            "Mixture: weights must be >= 0 with sum 1, means finite");
+}
+
+TEST(FetchCodec, MixtureThatDoesNotFitIntoASampleIsTooLarge) {
+  const Eigen::Index dof = 32;
+  const Eigen::Index components = 1024;
+  FetchReply reply = ready_reply();
+  reply.distribution->limits = Eigen::Matrix2Xd::Zero(2, dof);
+  reply.distribution->mixture =
+      Mixture(Eigen::VectorXd::Constant(components, 1.0 / components),
+              Eigen::MatrixXd::Zero(dof, components),
+              std::vector<Eigen::MatrixXd>(components, Eigen::MatrixXd::Identity(dof, dof)));
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
+}
+
+TEST(FetchCodec, StatusOutOfRangeIsRefused) {
+  FetchReply reply;
+  reply.status = FetchStatus::Pending;
+  auto message = encode({}, reply).value_or_throw();
+  message.wire.status = 7;
+  EXPECT_EQ(decode(message.wire).error().message, "status: 7 is not between 0 and 6");
+}
+
+}  // namespace
+}  // namespace kinship::codec

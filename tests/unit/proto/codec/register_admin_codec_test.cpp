@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "proto/codec/admin_codec.hpp"
+#include "proto/codec/register_codec.hpp"
+#include "tests/support/random_values.hpp"
+
+namespace kinship::codec {
+namespace {
+
+constexpr std::uint64_t kSeed = 34;
+
+RobotDescription robot() { return test::RandomValues(kSeed).robot_description(); }
+
+std::string complaint(const RobotDescription& description) {
+  const auto error = check(description);
+  return error ? error->message : "";
+}
+
+TEST(RegisterCodec, NamesTheRuleThatADescriptionBreaks) {
+  RobotDescription bad = robot();
+  EXPECT_EQ(complaint(bad), "");
+  bad.label = "my robot";
+  EXPECT_EQ(complaint(bad), "label: byte 3 is not one of A-Z a-z 0-9 _ . : -");
+  bad = robot();
+  bad.urdf = "\xff";
+  EXPECT_EQ(complaint(bad), "urdf: is not UTF-8");
+  bad = robot();
+  bad.urdf.assign(1'000'001, ' ');
+  EXPECT_EQ(complaint(bad), "urdf (bytes): 1000001 exceeds 1000000");
+  bad = robot();
+  bad.tip_link = "";
+  EXPECT_EQ(complaint(bad), "tip_link: is empty");
+  bad = robot();
+  bad.T_tip_transfer.translation().x() = 1001;
+  EXPECT_EQ(complaint(bad).find("T_tip_transfer: pose: coordinate 1001"), 0U);
+  bad = robot();
+  bad.held_joints["finger"] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(complaint(bad), "position of held joint: is not finite");
+}
+
+TEST(RegisterCodec, UrdfOfTheLargestSizeFitsIntoASample) {
+  RobotDescription description = robot();
+  description.urdf.assign(1'000'000, ' ');
+  EXPECT_TRUE(encode({}, description));
+}
+
+TEST(RegisterCodec, MissingTextReadsAsEmptyAndIsRefused) {
+  auto message = encode({}, robot()).value_or_throw();
+  message.wire.base_link = nullptr;
+  EXPECT_EQ(decode(message.wire).error().message, "base_link: is empty");
+}
+
+TEST(RegisterCodec, JointHeldTwiceIsRefused) {
+  RobotDescription description = robot();
+  description.held_joints = {{"a", 0}, {"b", 0}};
+  auto message = encode({}, description).value_or_throw();
+  message.wire.held_joints._buffer[1].joint = message.wire.held_joints._buffer[0].joint;
+  EXPECT_EQ(decode(message.wire).error().message, "held joint 'a': is there twice");
+}
+
+TEST(RegisterCodec, ReplyComesBack) {
+  const RegisterReply written{RegisterStatus::Known, test::RandomValues(kSeed).digest(), 7,
+                              "numeric", ""};
+  const auto read = decode(encode({}, written)->wire).value_or_throw();
+  EXPECT_EQ(read.status, written.status);
+  EXPECT_EQ(read.robot, written.robot);
+  EXPECT_EQ(read.dof, 7U);
+  EXPECT_EQ(read.solver, "numeric");
+}
+
+TEST(AdminCodec, RequestComesBack) {
+  const AdminRequest written{AdminVerb::ListPaths, "a", "r", "t", "c", 17};
+  const auto read = decode(encode({}, written)->wire).value_or_throw();
+  EXPECT_EQ(read.verb, AdminVerb::ListPaths);
+  EXPECT_EQ(read.argument + read.robot + read.task + read.cursor, "artc");
+  EXPECT_EQ(read.limit, 17U);
+}
+
+TEST(AdminCodec, ReplyComesBack) {
+  const AdminReply written{AdminStatus::Ok, {"{\"a\":1}", "", "{}"}, "next", "ü"};
+  const auto read = decode(encode({}, written)->wire).value_or_throw();
+  EXPECT_EQ(read.status, AdminStatus::Ok);
+  EXPECT_EQ(read.rows, written.rows);
+  EXPECT_EQ(read.next_cursor, "next");
+  EXPECT_EQ(read.message, "ü");
+}
+
+TEST(AdminCodec, PageIsLimited) {
+  AdminReply reply;
+  reply.rows.assign(2, std::string(300'000, 'x'));
+  EXPECT_EQ(encode({}, reply).error().message, "rows (bytes): 600000 exceeds 524288");
+  reply.rows.assign(1001, "x");
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
+}
+
+TEST(Refusal, MessageIsCutBetweenCharacters) {
+  std::string message(kMaxMessageBytes - 1, 'x');
+  message += "üü";
+  const RegisterReply reply = RegisterConversation::refuse({ErrorCode::InvalidInput, message});
+  EXPECT_EQ(reply.message, message.substr(0, kMaxMessageBytes - 1));
+  EXPECT_TRUE(encode({}, reply));
+}
+
+TEST(Refusal, AdminStatusTellsWhoseFaultItIs) {
+  EXPECT_EQ(AdminConversation::refuse({ErrorCode::NotFound, ""}).status, AdminStatus::NotFound);
+  EXPECT_EQ(AdminConversation::refuse({ErrorCode::InvalidInput, ""}).status, AdminStatus::Refused);
+  EXPECT_EQ(AdminConversation::refuse({ErrorCode::Storage, ""}).status, AdminStatus::Failed);
+}
+
+}  // namespace
+}  // namespace kinship::codec
