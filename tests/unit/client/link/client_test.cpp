@@ -1,0 +1,176 @@
+// Client against repliers in this process, over loopback.
+
+#include "client/link/client.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "proto/dds/replier.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/support/random_values.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kinship::link {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+constexpr std::uint64_t kSeed = 37;
+
+FetchRequest request(std::chrono::milliseconds deadline) {
+  FetchRequest request;
+  request.task = "shelf_pick";
+  request.deadline = deadline;
+  return request;
+}
+
+FetchReply status(FetchStatus status, std::chrono::milliseconds retry_after = 0ms) {
+  FetchReply reply;
+  reply.status = status;
+  reply.retry_after = retry_after;
+  return reply;
+}
+
+/// A server that answers fetches by a function and stores every report.
+class Server {
+ public:
+  using Fetch = std::function<FetchReply(const FetchRequest&)>;
+
+  Server(std::uint32_t domain, Fetch fetch)
+      : participant_({.domain = domain, .role = dds::Role::Server}),
+        loop_(participant_),
+        fetch_(participant_, loop_,
+               [fetch = std::move(fetch)](const FetchRequest& wanted, const auto& answer) {
+                 answer(fetch(wanted));
+               }),
+        report_(participant_, loop_,
+                [epoch = Uuid::random()](const ReportRequest& batch, const auto& answer) {
+                  ReportReply reply{epoch, batch.refused};
+                  for (const Attempt& attempt : batch.attempts)
+                    reply.receipts.push_back({attempt.report_uuid, ReceiptStatus::Stored, ""});
+                  answer(reply);
+                }),
+        thread_([this] { loop_.run([] { return Clock::time_point::max(); }); }) {}
+  ~Server() {
+    loop_.stop();
+    thread_.join();
+  }
+
+ private:
+  dds::Participant participant_;
+  dds::WaitLoop loop_;
+  dds::Replier<codec::FetchConversation> fetch_;
+  dds::Replier<codec::ReportConversation> report_;
+  std::thread thread_;
+};
+
+class ClientTest : public testing::Test {
+ protected:
+  ClientOptions options(std::uint32_t domain, std::chrono::milliseconds timeout = 5s) const {
+    return {.domain = domain, .outbox = folder.path(), .timeout = timeout};
+  }
+  test::TemporaryFolder folder;
+};
+
+TEST_F(ClientTest, ReportsReachTheServer) {
+  test::RandomValues values(kSeed);
+  Server server(130, [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client client(options(130));
+  for (int i = 0; i < 20; ++i)
+    client.report(values.attempt());
+  const auto state = client.flush(10s);
+  EXPECT_EQ(state.pending, 0U);
+  EXPECT_EQ(state.accepted, 20U);
+  EXPECT_EQ(state.problem, "");
+}
+
+TEST_F(ClientTest, ReportsWaitForAServerAndSurviveTheClient) {
+  test::RandomValues values(kSeed);
+  {
+    Client client(options(131));
+    client.report(values.attempt());
+    EXPECT_EQ(client.flush(50ms).pending, 1U);
+  }
+  Server server(131, [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client client(options(131));
+  EXPECT_EQ(client.flush(10s).pending, 0U);
+}
+
+TEST_F(ClientTest, ReportThatTheServerWouldRefuseIsNotWritten) {
+  test::RandomValues values(kSeed);
+  Client client(options(132));
+  Attempt attempt = values.attempt();
+  attempt.task = "bin to shelf";
+  EXPECT_THROW(client.report(attempt), Failure);
+  EXPECT_EQ(client.outbox().pending, 0U);
+}
+
+TEST_F(ClientTest, FetchAsksAgainAfterBusyAndPending) {
+  std::atomic<int> calls = 0;
+  Server server(133, [&](const auto&) {
+    const int call = ++calls;
+    return call == 1   ? status(FetchStatus::Busy, 50ms)
+           : call == 2 ? status(FetchStatus::Pending)
+                       : status(FetchStatus::NoExperience);
+  });
+  Client client(options(133));
+  EXPECT_EQ(client.fetch(request(10s))->status, FetchStatus::NoExperience);
+  EXPECT_EQ(calls, 3);
+}
+
+TEST_F(ClientTest, BusyForLongerThanTheDeadlineIsTheReply) {
+  Server server(134, [](const auto&) { return status(FetchStatus::Busy, 60s); });
+  Client client(options(134));
+  const auto start = Clock::now();
+  EXPECT_EQ(client.fetch(request(5s))->status, FetchStatus::Busy);
+  EXPECT_LT(Clock::now() - start, 4s);
+}
+
+TEST_F(ClientTest, FetchWithoutDeadlineTakesTheFirstReply) {
+  std::atomic<int> calls = 0;
+  Server server(135, [&](const FetchRequest& wanted) {
+    ++calls;
+    EXPECT_EQ(wanted.deadline, 0ms);
+    return status(FetchStatus::Pending);
+  });
+  Client client(options(135));
+  EXPECT_EQ(client.fetch(request(0ms))->status, FetchStatus::Pending);
+  EXPECT_EQ(calls, 1);
+}
+
+TEST_F(ClientTest, ServerIsGivenLessThanTheDeadline) {
+  std::atomic<std::int64_t> given = 0;
+  Server server(136, [&](const FetchRequest& wanted) {
+    given = wanted.deadline.count();
+    return status(FetchStatus::NoExperience);
+  });
+  Client client(options(136));
+  ASSERT_TRUE(client.fetch(request(4s)));
+  EXPECT_LE(given, 3800);
+  EXPECT_GT(given, 3000);
+}
+
+TEST_F(ClientTest, WithoutAServerEverythingEndsInTime) {
+  Client client(options(137, 200ms));
+  const auto start = Clock::now();
+  EXPECT_EQ(client.fetch(request(200ms)).error().code, ErrorCode::Unavailable);
+  EXPECT_EQ(client.admin({}).error().code, ErrorCode::Unavailable);
+  EXPECT_EQ(client.register_robot(test::RandomValues(kSeed).robot_description()).error().code,
+            ErrorCode::Unavailable);
+  EXPECT_LT(Clock::now() - start, 3s);
+}
+
+TEST_F(ClientTest, TwoClientsMayShareAnOutbox) {
+  test::RandomValues values(kSeed);
+  Server server(138, [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client one(options(138));
+  Client other(options(138));
+  for (int i = 0; i < 10; ++i)
+    (i % 2 == 0 ? one : other).report(values.attempt());
+  EXPECT_EQ(other.flush(15s).pending, 0U);
+}
+
+}  // namespace
+}  // namespace kinship::link

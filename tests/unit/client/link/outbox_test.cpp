@@ -1,0 +1,225 @@
+#include "client/link/outbox.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+
+#include "client/link/durable_file.hpp"
+#include "proto/json/attempt_json.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/support/random_values.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kinship::link {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::uint64_t kSeed = 35;
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+void write_text(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+void age(const fs::path& path, std::chrono::hours hours) {
+  fs::last_write_time(path, fs::file_time_type::clock::now() - hours);
+}
+
+class OutboxTest : public testing::Test {
+ protected:
+  fs::path report_file(const char* part, const Attempt& attempt) const {
+    return folder.path() / part / (attempt.report_uuid.text() + ".json");
+  }
+
+  test::TemporaryFolder folder;
+  test::RandomValues values{kSeed};
+  Outbox outbox{folder.path()};
+};
+
+TEST_F(OutboxTest, KeepsAnAttemptForTheNextProcess) {
+  Attempt attempt = values.attempt();
+  attempt.T_task_base.reset();  // poses come back within rounding only
+  outbox.add(attempt);
+  const Outbox next(folder.path());
+  ASSERT_EQ(next.pending(), std::vector{attempt.report_uuid});
+  EXPECT_EQ(json::to_json(next.read(attempt.report_uuid).value_or_throw()), json::to_json(attempt));
+}
+
+TEST_F(OutboxTest, ReportSurvivesItsProcess) {
+  const Attempt attempt = values.attempt();
+  const pid_t child = fork();
+  if (child == 0) {
+    outbox.add(attempt);
+    _exit(0);  // no destructors, no flush
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(outbox.read(attempt.report_uuid));
+}
+
+TEST_F(OutboxTest, ProcessKilledWhileItWritesLeavesOnlyWholeReports) {
+  for (int round = 0; round < 5; ++round) {
+    int ready[2];
+    ASSERT_EQ(pipe(ready), 0);
+    const pid_t child = fork();
+    if (child == 0)
+      while (true) {
+        outbox.add(values.attempt(500));
+        if (write(ready[1], "x", 1) != 1)
+          _exit(1);
+      }
+    char count = 0;
+    for (int i = 0; i < 3; ++i)
+      ASSERT_EQ(read(ready[0], &count, 1), 1);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    close(ready[0]);
+    close(ready[1]);
+  }
+  EXPECT_GE(outbox.pending_count(), 15U);
+  for (const Uuid& uuid : outbox.pending())
+    EXPECT_TRUE(outbox.read(uuid)) << uuid.text();
+}
+
+TEST_F(OutboxTest, LeftOverTemporaryFilesAreIgnoredAndPurgedAfterADay) {
+  const fs::path fresh = folder.path() / "pending" / ".a.json.1.tmp";
+  const fs::path old = folder.path() / "pending" / ".b.json.2.tmp";
+  write_text(fresh, "{");
+  write_text(old, "{");
+  age(old, std::chrono::hours(25));
+  EXPECT_EQ(outbox.pending_count(), 0U);
+  outbox.purge();
+  EXPECT_TRUE(fs::exists(fresh));
+  EXPECT_FALSE(fs::exists(old));
+}
+
+TEST_F(OutboxTest, OldestComesFirst) {
+  const Attempt first = values.attempt();
+  const Attempt second = values.attempt();
+  const Attempt third = values.attempt();
+  for (const Attempt* attempt : {&second, &third, &first})
+    outbox.add(*attempt);
+  age(report_file("pending", first), std::chrono::hours(3));
+  age(report_file("pending", second), std::chrono::hours(2));
+  EXPECT_EQ(outbox.pending(),
+            (std::vector{first.report_uuid, second.report_uuid, third.report_uuid}));
+}
+
+TEST_F(OutboxTest, RejectedReportIsKeptWithItsReason) {
+  const Attempt attempt = values.attempt();
+  outbox.add(attempt);
+  outbox.reject(attempt.report_uuid, "robot unknown");
+  EXPECT_EQ(outbox.pending_count(), 0U);
+  EXPECT_TRUE(fs::exists(report_file("rejected", attempt)));
+  EXPECT_EQ(
+      read_file(folder.path() / "rejected" / (attempt.report_uuid.text() + ".reason.txt"), 100),
+      "robot unknown\n");
+}
+
+TEST_F(OutboxTest, DamagedFilesAreNamed) {
+  const Attempt attempt = values.attempt();
+  outbox.add(attempt);
+  const fs::path path = report_file("pending", attempt);
+  const std::string whole = read_file(path, 10'000'000);
+  write_text(path, whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(outbox.read(attempt.report_uuid).error().message.find("damaged file: "), 0U);
+  const Uuid other = Uuid::random();
+  write_text(folder.path() / "pending" / (other.text() + ".json"), whole);
+  EXPECT_EQ(outbox.read(other).error().message,
+            "damaged file: report_uuid is not that of its name");
+  EXPECT_EQ(outbox.read(Uuid::random()).error().code, ErrorCode::NotFound);
+}
+
+TEST_F(OutboxTest, SentReportsAreKeptForSevenDaysAfterTheReceipt) {
+  const Attempt attempt = values.attempt();
+  outbox.add(attempt);
+  age(report_file("pending", attempt), std::chrono::hours(24 * 30));  // waited long for a server
+  outbox.mark_sent(attempt.report_uuid);
+  outbox.purge();
+  EXPECT_TRUE(fs::exists(report_file("sent", attempt)));
+  age(report_file("sent", attempt), std::chrono::hours(24 * 7 + 1));
+  outbox.purge();
+  EXPECT_FALSE(fs::exists(report_file("sent", attempt)));
+}
+
+TEST_F(OutboxTest, ChangedStoreEpochOffersSentReportsAgain) {
+  const Attempt attempt = values.attempt();
+  const Uuid epoch = Uuid::random();
+  outbox.note_store_epoch(epoch);
+  outbox.add(attempt);
+  outbox.mark_sent(attempt.report_uuid);
+  outbox.note_store_epoch(epoch);
+  EXPECT_EQ(outbox.pending_count(), 0U);
+  Outbox(folder.path()).note_store_epoch(Uuid::random());  // remembered across processes
+  EXPECT_EQ(outbox.pending(), std::vector{attempt.report_uuid});
+}
+
+TEST_F(OutboxTest, OneHolderOfTheSenderLockAtATime) {
+  auto lock = SenderLock::try_acquire(folder.path());
+  ASSERT_TRUE(lock);
+  EXPECT_FALSE(SenderLock::try_acquire(folder.path()));
+  lock.reset();
+  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
+}
+
+TEST_F(OutboxTest, SenderLockEndsWithItsProcess) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto lock = SenderLock::try_acquire(folder.path());
+    _exit(lock ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_TRUE(SenderLock::try_acquire(folder.path()));
+}
+
+TEST_F(OutboxTest, DiskErrorIsReportedAndLeavesNothingBehind) {
+  const pid_t child = fork();
+  if (child == 0) {  // a limit on file sizes: write fails as it does on a full disk
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{100, 100};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      outbox.add(values.attempt());
+    } catch (const Failure& failure) {
+      _exit(failure.code() == ErrorCode::Storage ? 3 : 4);
+    }
+    _exit(5);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_EQ(files_in(folder.path() / "pending"), 0U);
+}
+
+TEST_F(OutboxTest, MissingFolderIsReportedByName) {
+  fs::remove_all(folder.path() / "pending");
+  try {
+    outbox.add(values.attempt());
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Storage);
+    EXPECT_NE(std::string(failure.what()).find("pending"), std::string::npos);
+  }
+}
+
+TEST(DefaultOutboxFolder, FollowsTheXdgSpecification) {
+  setenv("HOME", "/home/u", 1);
+  setenv("XDG_STATE_HOME", "/state", 1);
+  EXPECT_EQ(default_outbox_folder(), "/state/kinship/outbox");
+  setenv("XDG_STATE_HOME", "relative", 1);
+  EXPECT_EQ(default_outbox_folder(), "/home/u/.local/state/kinship/outbox");
+  unsetenv("XDG_STATE_HOME");
+  unsetenv("HOME");
+  EXPECT_THROW(default_outbox_folder(), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::link

@@ -1,0 +1,212 @@
+#include "client/link/report_sender.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <future>
+
+#include "client/link/durable_file.hpp"
+#include "proto/types/limits.hpp"
+#include "tests/support/random_values.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kinship::link {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr std::uint64_t kSeed = 36;
+
+std::chrono::steady_clock::time_point in(std::chrono::milliseconds time) {
+  return std::chrono::steady_clock::now() + time;
+}
+
+/// What a server answers that gives every attempt the same status.
+ReportReply answer(const ReportRequest& batch, ReceiptStatus status,
+                   const std::string& message = "", const Uuid& epoch = Uuid{}) {
+  ReportReply reply{epoch, {}};
+  for (const Attempt& attempt : batch.attempts)
+    reply.receipts.push_back({attempt.report_uuid, status, message});
+  return reply;
+}
+
+class ReportSenderTest : public testing::Test {
+ protected:
+  Attempt add() {
+    Attempt attempt = values.attempt(5);
+    outbox.add(attempt);
+    return attempt;
+  }
+  std::filesystem::path rejected(const Uuid& uuid, const std::string& suffix) const {
+    return folder.path() / "rejected" / (uuid.text() + suffix);
+  }
+
+  test::TemporaryFolder folder;
+  test::RandomValues values{kSeed};
+  Outbox outbox{folder.path()};
+};
+
+TEST_F(ReportSenderTest, EverythingPendingIsSentInBatches) {
+  for (int i = 0; i < 300; ++i)
+    add();
+  std::vector<std::size_t> sizes;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    sizes.push_back(batch.attempts.size());
+    return answer(batch, ReceiptStatus::Stored);
+  });
+  sender.wait_until_empty(in(20s));
+  EXPECT_EQ(outbox.pending_count(), 0U);
+  EXPECT_EQ(sender.counts().accepted, 300U);
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{256, 44}));
+}
+
+TEST_F(ReportSenderTest, BatchesKeepTheLimitOfBytes) {
+  for (int i = 0; i < 5; ++i) {
+    Attempt attempt = values.attempt();
+    attempt.record.outcome = Outcome::Solved;
+    attempt.path = Path(Eigen::MatrixXd::Zero(7, 4000));  // 224 000 bytes
+    outbox.add(attempt);
+  }
+  std::vector<std::size_t> sizes;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    sizes.push_back(batch.attempts.size());
+    return answer(batch, ReceiptStatus::Stored);
+  });
+  sender.wait_until_empty(in(20s));
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{2, 2, 1}));
+}
+
+TEST_F(ReportSenderTest, WhatIsAddedLaterIsSentWhenWoken) {
+  std::atomic<int> batches = 0;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    ++batches;
+    return answer(batch, ReceiptStatus::Recorded);
+  });
+  for (int i = 1; i <= 3; ++i) {
+    add();
+    sender.wake();
+    sender.wait_until_empty(in(10s));
+    EXPECT_EQ(outbox.pending_count(), 0U);
+  }
+  EXPECT_EQ(sender.counts().accepted, 3U);
+}
+
+TEST_F(ReportSenderTest, UnansweredAndTryAgainStayPendingUntilTheyAreStored) {
+  add();
+  std::atomic<int> calls = 0;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) -> Result<ReportReply> {
+    switch (++calls) {
+      case 1:
+        return Error{ErrorCode::Unavailable, "no server"};
+      case 2:
+        return answer(batch, ReceiptStatus::TryAgain, "disk full");
+      case 3:
+        return ReportReply{};  // no receipt
+      default:
+        return answer(batch, ReceiptStatus::Duplicate);
+    }
+  });
+  sender.wait_until_empty(in(20s));
+  EXPECT_EQ(calls, 4);
+  EXPECT_EQ(sender.counts().accepted, 1U);
+  EXPECT_EQ(sender.counts().problem, "");
+}
+
+TEST_F(ReportSenderTest, ProblemIsTold) {
+  add();
+  std::promise<void> called_twice;
+  std::atomic<int> calls = 0;
+  ReportSender sender(outbox, [&](const ReportRequest&) -> Result<ReportReply> {
+    if (++calls == 2)
+      called_twice.set_value();
+    return Error{ErrorCode::Unavailable, "no server"};
+  });
+  called_twice.get_future().wait();
+  EXPECT_EQ(sender.counts().problem, "no server");
+  EXPECT_EQ(outbox.pending_count(), 1U);
+}
+
+TEST_F(ReportSenderTest, RefusedAndDamagedReportsDoNotHoldUpOthers) {
+  const Uuid refused = add().report_uuid;
+  const Uuid stored = add().report_uuid;
+  const Uuid damaged = Uuid::random();
+  std::ofstream(folder.path() / "pending" / (damaged.text() + ".json")) << "{\"report_uuid\":";
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    ReportReply reply = answer(batch, ReceiptStatus::Stored);
+    for (Receipt& receipt : reply.receipts)
+      if (receipt.report_uuid == refused)
+        receipt = {refused, ReceiptStatus::Refused, "robot 'ur5e': joint 3 at 3.31 rad"};
+    return reply;
+  });
+  sender.wait_until_empty(in(10s));
+  EXPECT_EQ(sender.counts().accepted, 1U);
+  EXPECT_EQ(sender.counts().refused, 2U);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "sent" / (stored.text() + ".json")));
+  EXPECT_EQ(read_file(rejected(refused, ".reason.txt"), 100),
+            "robot 'ur5e': joint 3 at 3.31 rad\n");
+  EXPECT_TRUE(std::filesystem::exists(rejected(damaged, ".json")));
+}
+
+TEST_F(ReportSenderTest, ReceiptsForOthersAreIgnored) {
+  const Uuid mine = add().report_uuid;
+  std::atomic<int> calls = 0;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    if (++calls > 1)
+      return answer(batch, ReceiptStatus::Stored);
+    return ReportReply{Uuid{}, {{Uuid::random(), ReceiptStatus::Stored, ""}}};
+  });
+  sender.wait_until_empty(in(10s));
+  EXPECT_EQ(calls, 2);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "sent" / (mine.text() + ".json")));
+}
+
+TEST_F(ReportSenderTest, RestoredStoreGetsEverythingAgain) {
+  add();
+  std::atomic<int> sent = 0;
+  std::atomic<bool> is_restored = false;
+  const Uuid before = Uuid::random();
+  const Uuid after = Uuid::random();
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    sent += static_cast<int>(batch.attempts.size());
+    return answer(batch, ReceiptStatus::Stored, "", is_restored ? after : before);
+  });
+  sender.wait_until_empty(in(10s));
+  is_restored = true;
+  add();
+  sender.wake();
+  while (sent < 3) {
+    sender.wake();
+    sender.wait_until_empty(in(1s));
+  }
+  sender.wait_until_empty(in(10s));
+  EXPECT_EQ(sent, 3);
+}
+
+TEST_F(ReportSenderTest, SecondSenderOfAnOutboxLeavesItToTheFirst) {
+  std::atomic<int> calls_of_second = 0;
+  std::promise<void> first_is_sending;
+  std::promise<void> go_on;
+  add();
+  ReportSender first(outbox, [&](const ReportRequest& batch) {
+    first_is_sending.set_value();
+    go_on.get_future().wait();
+    return answer(batch, ReceiptStatus::Stored);
+  });
+  first_is_sending.get_future().wait();
+  {
+    ReportSender second(outbox, [&](const ReportRequest& batch) {
+      ++calls_of_second;
+      return answer(batch, ReceiptStatus::Stored);
+    });
+    second.wait_until_empty(in(300ms));
+    EXPECT_EQ(outbox.pending_count(), 1U);
+    go_on.set_value();
+    second.wait_until_empty(in(10s));
+  }
+  EXPECT_EQ(outbox.pending_count(), 0U);
+  EXPECT_EQ(calls_of_second, 0);
+}
+
+}  // namespace
+}  // namespace kinship::link
