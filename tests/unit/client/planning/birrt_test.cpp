@@ -1,0 +1,154 @@
+#include "client/planning/birrt.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/planar_arm.hpp"
+#include "tests/unit/client/planning/wall_world.hpp"
+
+namespace kinship::planning {
+namespace {
+
+using test_support::at;
+using test_support::square_bounds;
+using test_support::WallWorld;
+
+const Eigen::VectorXd kStart = at(-0.8, -0.5);
+const Eigen::VectorXd kGoal = at(0.8, -0.5);
+
+BirrtOptions options() {
+  BirrtOptions options;
+  options.step = 0.05;
+  return options;
+}
+
+PlanSummary plan(WallWorld& world, const Eigen::MatrixXd& goals, std::uint64_t seed,
+                 const BirrtOptions& with = options(),
+                 const ConfigurationSampler& sampler = ConfigurationSampler(square_bounds())) {
+  std::mt19937_64 generator(seed);
+  return plan_birrt(kStart, goals, world.is_free(), sampler, with, generator);
+}
+
+TEST(Birrt, FindsFreePathsWithTheRightEndsAndStep) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    WallWorld world;
+    const PlanSummary summary = plan(world, kGoal, seed);
+    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    const Eigen::MatrixXd& path = *summary.waypoints;
+    EXPECT_EQ(path.col(0), kStart);
+    EXPECT_EQ(path.rightCols(1), kGoal);
+    EXPECT_TRUE(world.path_is_free(path, options().step));
+    for (Eigen::Index i = 1; i < path.cols(); ++i) {
+      EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), options().step + 1e-9);
+      EXPECT_GT((path.col(i) - path.col(i - 1)).norm(), 0);
+    }
+    EXPECT_EQ(summary.reason, "");
+  }
+}
+
+TEST(Birrt, CountsEveryConfigurationItAsksAbout) {
+  WallWorld world;
+  const PlanSummary summary = plan(world, kGoal, 1);
+  EXPECT_EQ(summary.collision_checks, world.asked);
+  EXPECT_GT(summary.iterations, 0u);
+}
+
+TEST(Birrt, EndsInAnyOfTheGoals) {
+  Eigen::MatrixXd goals(2, 3);
+  goals << at(0, 0), at(0.8, -0.5), at(-0.8, 0.9);  // in the wall, behind it, on this side
+  WallWorld world;
+  const PlanSummary summary = plan(world, goals, 2);
+  ASSERT_TRUE(summary.waypoints);
+  const Eigen::VectorXd end = summary.waypoints->rightCols(1);
+  EXPECT_TRUE(end == goals.col(1) || end == goals.col(2));
+}
+
+TEST(Birrt, SamplesInTheGapMakeItFast) {
+  kinship::test_support::PlanarArm arm;
+  arm.lengths_m = {1, 1};
+  arm.limit = 1;
+  const Mixture gap(Eigen::VectorXd::Ones(1), at(0, 0.7), {Eigen::MatrixXd::Identity(2, 2) * 0.01});
+  const ConfigurationSampler guided(square_bounds(), arm.chain(), gap, 0.9);
+  std::uint64_t uniform_checks = 0, guided_checks = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    WallWorld world;
+    world.gap_upper = 0.66;
+    uniform_checks += plan(world, kGoal, seed).collision_checks;
+    guided_checks += plan(world, kGoal, seed, options(), guided).collision_checks;
+  }
+  EXPECT_LT(2 * guided_checks, uniform_checks);
+}
+
+TEST(Birrt, EqualSeedEqualPath) {
+  WallWorld world;
+  const PlanSummary one = plan(world, kGoal, 3), two = plan(world, kGoal, 3);
+  ASSERT_TRUE(one.waypoints && two.waypoints);
+  EXPECT_EQ(*one.waypoints, *two.waypoints);
+  EXPECT_EQ(one.collision_checks, two.collision_checks);
+}
+
+TEST(Birrt, SaysWhyItDidNotPlan) {
+  WallWorld world;
+  EXPECT_EQ(plan(world, at(0, 0), 0).reason, "every goal collides");
+  EXPECT_EQ(plan(world, Eigen::MatrixXd(2, 0), 0).reason, "no goal");
+  world.half_thickness = 0.9;
+  const PlanSummary blocked = plan(world, kGoal, 0);
+  EXPECT_EQ(blocked.reason, "start collides");
+  EXPECT_FALSE(blocked.waypoints);
+  EXPECT_EQ(blocked.collision_checks, 1u);
+}
+
+TEST(Birrt, StopsAtItsLastCheck) {
+  for (const std::uint64_t limit : {0u, 1u, 2u, 3u, 500u}) {
+    WallWorld world;
+    world.gap_upper = world.gap_lower;  // no gap: never solved
+    BirrtOptions limited = options();
+    limited.max_checks = limit;
+    const PlanSummary summary = plan(world, kGoal, 4, limited);
+    EXPECT_EQ(world.asked, limit);
+    EXPECT_EQ(summary.collision_checks, limit);
+    EXPECT_EQ(summary.reason, "checks");
+    EXPECT_FALSE(summary.waypoints);
+  }
+}
+
+TEST(Birrt, StopsInTime) {
+  WallWorld world;
+  world.gap_upper = world.gap_lower;
+  BirrtOptions limited = options();
+  limited.max_checks = std::numeric_limits<std::uint64_t>::max();
+  limited.time_limit = std::chrono::milliseconds(20);
+  const PlanSummary summary = plan(world, kGoal, 5, limited);
+  EXPECT_EQ(summary.reason, "time");
+  EXPECT_GE(summary.planning_time_s, 0.02);
+  EXPECT_LT(summary.planning_time_s, 1);
+}
+
+TEST(Birrt, StaysWithinItsBounds) {
+  WallWorld world;
+  std::mt19937_64 generator(6);
+  BirrtOptions far = options();
+  far.overshoot = 10;
+  const IsFree is_free = [&](const Eigen::VectorXd& q) {
+    EXPECT_LE(q.cwiseAbs().maxCoeff(), 1 + 1e-9);
+    return world.free_at(q);
+  };
+  const ConfigurationSampler sampler(square_bounds());
+  EXPECT_TRUE(plan_birrt(kStart, kGoal, is_free, sampler, far, generator).waypoints);
+}
+
+TEST(Birrt, RefusesWhatDoesNotFit) {
+  WallWorld world;
+  EXPECT_THROW(plan(world, Eigen::MatrixXd::Zero(3, 1), 0), std::invalid_argument);
+  EXPECT_THROW(plan(world, at(0, NAN), 0), std::invalid_argument);
+  BirrtOptions wrong = options();
+  wrong.step = 0;
+  EXPECT_THROW(plan(world, kGoal, 0, wrong), std::invalid_argument);
+  wrong = options();
+  wrong.overshoot = 0.5;
+  EXPECT_THROW(plan(world, kGoal, 0, wrong), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kinship::planning
