@@ -12,7 +12,8 @@ namespace {
 }
 
 void require_finite(const Eigen::Isometry3d& T, const std::string& what) {
-  if (!T.matrix().allFinite()) refuse(what + ": pose is not finite");
+  if (!T.matrix().allFinite())
+    refuse(what + ": pose is not finite");
 }
 
 Solid make_solid(const Shape& shape, const std::string& what) {
@@ -31,13 +32,15 @@ const kinematics::ChainLink& link_at(const kinematics::Chain& chain, int link) {
 
 void require_link(const kinematics::Chain& chain, const std::string& name,
                   const std::string& what) {
-  if (chain.find_link(name) < 0) refuse(what + ": no link named '" + name + "'");
+  if (chain.find_link(name) < 0)
+    refuse(what + ": no link named '" + name + "'");
 }
 
 Body make_attached(const kinematics::Chain& chain, const AttachedObject& object) {
   const std::string what = "attached object '" + object.name + "'";
   require_link(chain, object.link, what);
-  for (const std::string& name : object.touch_links) require_link(chain, name, what);
+  for (const std::string& name : object.touch_links)
+    require_link(chain, name, what);
   require_finite(object.T_link_object, what);
   const int index = chain.find_link(object.link);
   const kinematics::ChainLink& link = link_at(chain, index);

@@ -11,7 +11,8 @@ namespace {
 class Permissions {
  public:
   explicit Permissions(const Surroundings& surroundings) {
-    for (const auto& [a, b] : surroundings.allowed_collisions) allowed_.insert(std::minmax(a, b));
+    for (const auto& [a, b] : surroundings.allowed_collisions)
+      allowed_.insert(std::minmax(a, b));
   }
 
   bool may_touch(const Body& a, const Body& b) const {
@@ -35,7 +36,8 @@ std::set<std::pair<int, int>> skipped_links(const std::vector<Body>& bodies,
                                             const geometry::RobotShapes& shapes) {
   std::vector<bool> has_shape(chain.links().size(), false);
   for (const Body& body : bodies)
-    if (body.kind == BodyKind::Link) has_shape[static_cast<std::size_t>(body.link)] = true;
+    if (body.kind == BodyKind::Link)
+      has_shape[static_cast<std::size_t>(body.link)] = true;
   const auto neighbours = neighbouring_links(chain, has_shape);
   std::set<std::pair<int, int>> skipped(neighbours.begin(), neighbours.end());
   skipped.insert(shapes.never_colliding.begin(), shapes.never_colliding.end());
@@ -53,9 +55,11 @@ std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const kinema
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const Body &a = bodies[i], &b = bodies[j];
-      if (a.joint == b.joint || permissions.may_touch(a, b)) continue;
+      if (a.joint == b.joint || permissions.may_touch(a, b))
+        continue;
       const bool links = a.kind == BodyKind::Link && b.kind == BodyKind::Link;
-      if (links && skipped.count(std::minmax(a.link, b.link)) > 0) continue;
+      if (links && skipped.count(std::minmax(a.link, b.link)) > 0)
+        continue;
       pairs.emplace_back(i, j);
     }
   const auto last_joint = [&](const BodyPair& pair) {

@@ -25,18 +25,24 @@ class CollisionWorld::Implementation {
       : chain_(chain),
         bodies_(make_bodies(chain, shapes, surroundings)),
         pairs_(moving_pairs(bodies_, chain, shapes, surroundings)) {
-    for (const Body& body : bodies_) T_base_bodies_.push_back(body.T_joint_body);
-    if (shapes.never_colliding.empty()) drop_always_touching();
+    for (const Body& body : bodies_)
+      T_base_bodies_.push_back(body.T_joint_body);
+    if (shapes.never_colliding.empty())
+      drop_always_touching();
     for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
-      if (!standing_contact_ && touching(pair)) standing_contact_ = pair;
+      if (!standing_contact_ && touching(pair))
+        standing_contact_ = pair;
   }
 
   std::optional<BodyPair> first_contact(const Eigen::Ref<const Eigen::VectorXd>& q) {
-    if (!q.allFinite()) throw std::invalid_argument("CollisionWorld: q is not finite");
-    if (standing_contact_) return standing_contact_;
+    if (!q.allFinite())
+      throw std::invalid_argument("CollisionWorld: q is not finite");
+    if (standing_contact_)
+      return standing_contact_;
     place_bodies(q);
     for (const BodyPair& pair : pairs_)
-      if (touching(pair)) return pair;
+      if (touching(pair))
+        return pair;
     return std::nullopt;
   }
 
@@ -80,8 +86,10 @@ class CollisionWorld::Implementation {
       place_bodies(q);
       std::set<std::pair<int, int>> touched;
       for (const BodyPair& pair : pairs_)
-        if (both_links(pair) && touching(pair)) touched.insert(link_pair(pair));
-      for (const auto& links : touched) ++touches[links];
+        if (both_links(pair) && touching(pair))
+          touched.insert(link_pair(pair));
+      for (const auto& links : touched)
+        ++touches[links];
     }
     std::erase_if(pairs_, [&](const BodyPair& pair) {
       return both_links(pair) && touches[link_pair(pair)] >= kAlwaysTouching;
@@ -111,7 +119,8 @@ bool CollisionWorld::collides(const Eigen::Ref<const Eigen::VectorXd>& q) {
 std::optional<std::pair<std::string, std::string>> CollisionWorld::find_contact(
     const Eigen::Ref<const Eigen::VectorXd>& q) {
   const auto pair = implementation_->first_contact(q);
-  if (!pair) return std::nullopt;
+  if (!pair)
+    return std::nullopt;
   return implementation_->names(*pair);
 }
 

@@ -12,7 +12,8 @@ std::vector<std::vector<int>> tree_edges(const std::vector<kinematics::ChainLink
   std::vector<std::vector<int>> edges(links.size());
   for (std::size_t child = 0; child < links.size(); ++child) {
     const int parent = links[child].parent;
-    if (parent < 0) continue;
+    if (parent < 0)
+      continue;
     edges[child].push_back(parent);
     edges[static_cast<std::size_t>(parent)].push_back(static_cast<int>(child));
   }
@@ -28,14 +29,16 @@ std::vector<std::pair<int, int>> neighbouring_links(const kinematics::Chain& cha
   const std::vector<std::vector<int>> edges = tree_edges(links);
   std::vector<std::pair<int, int>> pairs;
   for (int first = 0; first < static_cast<int>(links.size()); ++first) {
-    if (!has_shape[static_cast<std::size_t>(first)]) continue;
+    if (!has_shape[static_cast<std::size_t>(first)])
+      continue;
     // Walk outwards through links without a shape; a tree needs no memory but where we came from.
     std::vector<std::pair<int, int>> frontier = {{first, -1}};  // link, link before it
     while (!frontier.empty()) {
       const auto [link, before] = frontier.back();
       frontier.pop_back();
       for (const int next : edges[static_cast<std::size_t>(link)]) {
-        if (next == before) continue;
+        if (next == before)
+          continue;
         if (!has_shape[static_cast<std::size_t>(next)])
           frontier.emplace_back(next, link);
         else if (first < next && std::abs(joint(first) - joint(next)) == 1)

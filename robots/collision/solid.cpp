@@ -30,7 +30,8 @@ std::shared_ptr<const fcl::CollisionGeometry<double>> make_geometry(const Shape&
 }
 
 Eigen::Vector3d half_extents(const Shape& shape) {
-  if (const auto* box = std::get_if<BoxShape>(&shape)) return box->size / 2;
+  if (const auto* box = std::get_if<BoxShape>(&shape))
+    return box->size / 2;
   if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
     return {cylinder->radius_m, cylinder->radius_m, cylinder->length_m / 2};
   if (const auto* sphere = std::get_if<SphereShape>(&shape))
@@ -52,11 +53,13 @@ double cross_radius(const Shape& shape, const Eigen::Vector3d& half, Eigen::Inde
 }  // namespace
 
 Solid::Solid(const Shape& shape) {
-  if (const auto why = geometry::broken_rule(shape)) throw Failure(ErrorCode::InvalidInput, *why);
+  if (const auto why = geometry::broken_rule(shape))
+    throw Failure(ErrorCode::InvalidInput, *why);
   geometry_ = make_geometry(shape);
   half_extents_m_ = half_extents(shape);
   Eigen::Index axis = 2;
-  if (!std::holds_alternative<SphereShape>(shape)) half_extents_m_.maxCoeff(&axis);
+  if (!std::holds_alternative<SphereShape>(shape))
+    half_extents_m_.maxCoeff(&axis);
   const double half_length = half_extents_m_[axis];
   const double cross = cross_radius(shape, half_extents_m_, axis);
   const bool round_ends =
@@ -86,10 +89,13 @@ bool Solid::cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_o
 bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
            const Eigen::Isometry3d& T_base_b) {
   const double reach = a.radius_m_ + b.radius_m_;
-  if ((T_base_a.translation() - T_base_b.translation()).squaredNorm() > reach * reach) return false;
+  if ((T_base_a.translation() - T_base_b.translation()).squaredNorm() > reach * reach)
+    return false;
   const Eigen::Isometry3d T_a_b = T_base_a.inverse(Eigen::Isometry) * T_base_b;
-  if (b.cover_misses_box_of(a, T_a_b)) return false;
-  if (a.cover_misses_box_of(b, T_a_b.inverse(Eigen::Isometry))) return false;
+  if (b.cover_misses_box_of(a, T_a_b))
+    return false;
+  if (a.cover_misses_box_of(b, T_a_b.inverse(Eigen::Isometry)))
+    return false;
 
   static const fcl::CollisionRequest<double> kRequest = [] {
     fcl::CollisionRequest<double> request(1, /*enable_contact_=*/false);

@@ -22,7 +22,8 @@ struct Projection {
   Eigen::Vector3d operator()(const CylinderShape& cylinder) const {
     Eigen::Vector3d nearest = p;
     const double distance = p.head<2>().norm();
-    if (distance > cylinder.radius_m) nearest.head<2>() *= cylinder.radius_m / distance;
+    if (distance > cylinder.radius_m)
+      nearest.head<2>() *= cylinder.radius_m / distance;
     nearest.z() = std::clamp(p.z(), -cylinder.length_m / 2, cylinder.length_m / 2);
     return nearest;
   }
@@ -49,8 +50,10 @@ inline double distance_m(const Shape& a, const Eigen::Isometry3d& T_base_a, cons
         T_base_b * std::visit(Projection{T_base_b.inverse(Eigen::Isometry) * on_a}, b);
     on_a = T_base_a * std::visit(Projection{T_base_a.inverse(Eigen::Isometry) * on_b}, a);
     distance = (on_a - on_b).norm();
-    if (i % 50 != 49) continue;
-    if (before - distance < 1e-9 * distance) break;
+    if (i % 50 != 49)
+      continue;
+    if (before - distance < 1e-9 * distance)
+      break;
     before = distance;
   }
   return distance;

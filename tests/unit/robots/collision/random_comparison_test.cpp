@@ -60,7 +60,8 @@ TEST(Touch, AgreesWithAlternatingProjections) {
     const Shape a = random.shape(), b = random.shape();
     const Eigen::Isometry3d T_base_a = random.pose(0.2), T_base_b = random.pose(0.2);
     const double distance = distance_m(a, T_base_a, b, T_base_b);
-    if (distance > kTouching_m && distance < kApart_m) continue;
+    if (distance > kTouching_m && distance < kApart_m)
+      continue;
     const bool expected = distance <= kTouching_m;
     (expected ? touching : apart) += 1;
     ASSERT_EQ(touch(Solid(a), T_base_a, Solid(b), T_base_b), expected)
@@ -113,7 +114,8 @@ TEST(CollisionWorld, AgreesWithDistancesOfAPlanarArm) {
         nearest = std::min(nearest, distance_m(shapes.shapes[a].shape, poses[a],
                                                shapes.shapes[b].shape, poses[b]));
     }
-    if (nearest > kTouching_m && nearest < kApart_m) continue;
+    if (nearest > kTouching_m && nearest < kApart_m)
+      continue;
     collisions += nearest <= kTouching_m;
     ASSERT_EQ(world.collides(q), nearest <= kTouching_m) << q.transpose();
   }

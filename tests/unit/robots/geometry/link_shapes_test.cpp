@@ -45,7 +45,8 @@ TEST(ReadShapes, ReadsBoxCylinderAndSphereWithTheirPlaces) {
                   .isApprox(Eigen::Vector3d(2, 0, 0), 1e-12));
   EXPECT_EQ(std::get<CylinderShape>(shapes->shapes[1].shape).length_m, 0.5);
   EXPECT_EQ(std::get<SphereShape>(shapes->shapes[2].shape).radius_m, 0.2);
-  for (const LinkShape& shape : shapes->shapes) EXPECT_EQ(shape.link, 1);
+  for (const LinkShape& shape : shapes->shapes)
+    EXPECT_EQ(shape.link, 1);
 }
 
 TEST(ReadShapes, FusesCapsules) {
