@@ -1,0 +1,63 @@
+#include "server/service/distribution_key.hpp"
+
+#include <string_view>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+#include "proto/types/pose.hpp"
+#include "proto/types/sha256.hpp"
+#include "robots/inverse/inverse.hpp"
+#include "server/density/fit.hpp"
+#include "server/transfer/transfer.hpp"
+
+namespace kinship::service {
+namespace {
+
+std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{value}); }
+
+}  // namespace
+
+Result<DistributionKey> make_key(const FetchRequest& request) {
+  if (const auto error = check_task(request.task)) return *error;
+  const std::optional<Profile> profile = find_profile(request.profile);
+  if (!profile)
+    return Error{ErrorCode::InvalidInput,
+                 "profile '" + request.profile + "' is not one of default, paper"};
+  DistributionKey key{request.task, request.robot, std::nullopt, *profile};
+  if (!request.T_task_base) return key;
+  const Eigen::Isometry3d& T_task_base = *request.T_task_base;
+  if (!T_task_base.matrix().allFinite() ||
+      T_task_base.translation().cwiseAbs().maxCoeff() > kMaxPlacement_m)
+    return Error{ErrorCode::InvalidInput, "placement: a coordinate is not finite or exceeds " +
+                                              std::to_string(kMaxPlacement_m) + " m"};
+  key.T_task_base = snapped(T_task_base);
+  return key;
+}
+
+Digest identify(const DistributionKey& key) {
+  Sha256 sha;
+  sha.add(std::string_view("distribution")).add(std::string_view(key.task)).add(key.robot);
+  sha.add(std::uint64_t{key.T_task_base ? 1U : 0U});
+  if (key.T_task_base) {
+    const Eigen::MatrixXd placement = key.T_task_base->matrix().topRows<3>();  // 3 x 4
+    sha.add(placement);
+  }
+  const TransferParameters& transfer = key.profile.transfer;
+  sha.add(transfer.pose_spacing).add(bits(transfer.max_poses_per_path));
+  sha.add(bits(transfer.max_solutions)).add(transfer.min_distance).add(transfer.dropped_end_share);
+  const DensityParameters& density = key.profile.density;
+  sha.add(bits(density.components)).add(density.covariance_floor);
+  sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
+  sha.add(key.profile.recommended_share).add(key.profile.seed);
+  sha.add(bits(transfer::kTransferVersion)).add(bits(inverse::kInverseVersion));
+  sha.add(bits(density::kDensityVersion));
+  return sha.finish();
+}
+
+std::string engines() {
+  return "transfer " + std::to_string(transfer::kTransferVersion) + ", inverse " +
+         std::to_string(inverse::kInverseVersion) + ", density " +
+         std::to_string(density::kDensityVersion);
+}
+
+}  // namespace kinship::service

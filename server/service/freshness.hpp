@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/distribution.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::service {
+
+/// A distribution is fitted again at most this often, unless somebody waits for a generation.
+inline constexpr std::chrono::milliseconds kRefitInterval{10'000};
+
+/// Whether the paths of a task grew by max(5, 5 %) since the distribution was fitted.
+bool has_grown(const Distribution& distribution,
+               const std::vector<store::ExperienceSummary>& experience);
+
+/// Whether any source's experience is another than the one the distribution was made of.
+bool has_changed(const Distribution& distribution,
+                 const std::vector<store::ExperienceSummary>& experience);
+
+/// Whether kRefitInterval has passed since the fit; a clock that was set back counts as passed.
+bool may_refit(const Distribution& distribution, std::int64_t now_ms);
+
+/// Generation of a robot's own experience: in the store now, and when a distribution was fitted.
+/// 0: it had none.
+std::uint64_t generation_of(const Digest& robot,
+                            const std::vector<store::ExperienceSummary>& experience);
+std::uint64_t own_generation(const Distribution& distribution);
+
+}  // namespace kinship::service

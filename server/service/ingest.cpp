@@ -1,0 +1,134 @@
+#include "server/service/ingest.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "server/service/check_attempt.hpp"
+
+namespace kinship::service {
+
+/// A batch on its way. Shared by the callbacks of one submission, never used by two at a time.
+struct Ingest::Batch {
+  std::vector<Attempt> attempts;  // until they are handed to the store
+  std::vector<std::string> tasks;
+  std::vector<Receipt> receipts;
+  std::vector<std::size_t> accepted;  // positions of what the store was given
+  std::size_t bytes = 0;
+  bool counted = false;  // among attempts_ and bytes_
+  Done done;
+};
+
+Ingest::Ingest(store::Store& store, RobotRegistry& robots, WorkerPool& desk, Options options)
+    : store_(store), robots_(robots), desk_(desk), options_(std::move(options)) {}
+
+void Ingest::submit(std::vector<Attempt> attempts, Done done) {
+  const auto batch = std::make_shared<Batch>();
+  batch->done = std::move(done);
+  for (const Attempt& attempt : attempts) {
+    batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
+    batch->tasks.push_back(attempt.task);
+    if (attempt.path)
+      batch->bytes += sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
+  }
+  batch->attempts = std::move(attempts);
+  received_ += batch->receipts.size();
+
+  if (!take_in(*batch)) return answer_try_again(*batch, "the server is busy or stopping");
+  const bool in_memory = std::all_of(
+      batch->attempts.begin(), batch->attempts.end(),
+      [this](const Attempt& attempt) { return robots_.find_in_memory(attempt.robot) != nullptr; });
+  if (in_memory) return check_and_commit(batch);
+  const bool accepted = desk_.submit(
+      WorkerPool::Priority::Interactive,
+      {.run = [this, batch] { check_and_commit(batch); },
+       .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); }});
+  if (!accepted) answer_try_again(*batch, "the server is busy");
+}
+
+bool Ingest::take_in(Batch& batch) {
+  const std::lock_guard lock(mutex_);
+  if (draining_ || attempts_ + batch.receipts.size() > options_.max_attempts ||
+      bytes_ + batch.bytes > options_.max_bytes)
+    return false;
+  attempts_ += batch.receipts.size();
+  bytes_ += batch.bytes;
+  batch.counted = true;
+  return true;
+}
+
+void Ingest::check_and_commit(const BatchPointer& batch) {
+  try {
+    check(*batch);
+  } catch (const std::exception& exception) {  // the store cannot be read
+    return answer_try_again(*batch, exception.what());
+  }
+  if (batch->accepted.empty()) return answer(*batch);
+  std::vector<Attempt> good;
+  good.reserve(batch->accepted.size());
+  for (const std::size_t i : batch->accepted) good.push_back(std::move(batch->attempts[i]));
+  batch->attempts.clear();
+  store_.commit_reports(std::move(good), [this, batch](const std::vector<Receipt>& receipts) {
+    committed(*batch, receipts);
+  });
+}
+
+void Ingest::check(Batch& batch) {
+  for (std::size_t i = 0; i < batch.attempts.size(); ++i) {
+    const Attempt& attempt = batch.attempts[i];
+    const Result<RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
+    const std::optional<Error> error =
+        robot ? check_attempt(attempt, *robot.value()) : robot.error();
+    if (error) {
+      batch.receipts[i] = {attempt.report_uuid, ReceiptStatus::Refused, error->message};
+    } else {
+      batch.accepted.push_back(i);
+    }
+  }
+}
+
+void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
+  std::set<std::string_view> grown;
+  for (std::size_t i = 0; i < batch.accepted.size() && i < receipts.size(); ++i) {
+    const std::size_t position = batch.accepted[i];
+    batch.receipts[position] = receipts[i];
+    if (receipts[i].status == ReceiptStatus::Stored) grown.insert(batch.tasks[position]);
+  }
+  for (const std::string_view task : grown) options_.on_new_experience(task);
+  answer(batch);
+}
+
+void Ingest::answer(Batch& batch) {
+  refused_ += static_cast<std::uint64_t>(std::count_if(
+      batch.receipts.begin(), batch.receipts.end(),
+      [](const Receipt& receipt) { return receipt.status == ReceiptStatus::Refused; }));
+  batch.done(batch.receipts);
+  if (!batch.counted) return;
+  const std::lock_guard lock(mutex_);
+  attempts_ -= batch.receipts.size();
+  bytes_ -= batch.bytes;
+  answered_.notify_all();
+}
+
+void Ingest::answer_try_again(Batch& batch, std::string_view message) {
+  for (Receipt& receipt : batch.receipts) {
+    receipt.status = ReceiptStatus::TryAgain;
+    receipt.message = message;
+  }
+  answer(batch);
+}
+
+void Ingest::drain() {
+  std::unique_lock lock(mutex_);
+  draining_ = true;
+  answered_.wait(lock, [this] { return attempts_ == 0; });
+}
+
+std::size_t Ingest::queued() const {
+  const std::lock_guard lock(mutex_);
+  return attempts_;
+}
+
+}  // namespace kinship::service

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
+#include "server/service/robot_registry.hpp"
+#include "server/service/worker_pool.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::service {
+
+/// Takes reports in: checks each attempt against its robot, hands the good ones to the store and
+/// answers a batch once, in its order, when all of it is decided. May be shared between threads.
+class Ingest {
+ public:
+  struct Options {
+    std::size_t max_attempts = 4096;  ///< taken in and not yet answered; more are asked to wait
+    std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints
+    /// Called on the store's writer thread for each task that has a new path, before the reply.
+    std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
+  };
+
+  /// \param store, robots, desk  outlive the ingest; `desk` reads robots that are not in memory.
+  Ingest(store::Store& store, RobotRegistry& robots, WorkerPool& desk, Options options);
+
+  using Done = std::function<void(const std::vector<Receipt>&)>;
+
+  /// `done` is called once, on this thread, a worker of `desk` or the store's writer thread; it
+  /// must not throw or block. TryAgain for all of them if too much waits already.
+  void submit(std::vector<Attempt> attempts, Done done);
+
+  /// From now on everything is answered TryAgain; returns when everything before is answered.
+  void drain();
+
+  std::uint64_t received() const noexcept { return received_; }  ///< attempts, since construction
+  std::uint64_t refused() const noexcept { return refused_; }
+  std::size_t queued() const;  ///< attempts taken in and not yet answered
+
+ private:
+  struct Batch;
+  using BatchPointer = std::shared_ptr<Batch>;
+
+  bool take_in(Batch& batch);
+  void check_and_commit(const BatchPointer& batch);
+  void check(Batch& batch);
+  void committed(Batch& batch, const std::vector<Receipt>& receipts);
+  void answer(Batch& batch);
+  void answer_try_again(Batch& batch, std::string_view message);
+
+  store::Store& store_;
+  RobotRegistry& robots_;
+  WorkerPool& desk_;
+  const Options options_;
+  std::atomic<std::uint64_t> received_{0}, refused_{0};
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable answered_;
+  std::size_t attempts_ = 0, bytes_ = 0;  // taken in and not yet answered
+  bool draining_ = false;
+};
+
+}  // namespace kinship::service

@@ -1,0 +1,149 @@
+#include "server/service/service.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace kinship::service {
+namespace {
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", value);
+  return text;
+}
+
+}  // namespace
+
+Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
+    : options_(std::move(options)),
+      started_(options_.clock.now()),
+      store_(std::move(store)),
+      epoch_(store_->epoch()),
+      robots_(*store_),
+      desk_({.threads = 1, .queue_limit = options_.desk_queue, .niceness = 0}),
+      fitters_({.threads = options_.fit_threads,
+                .queue_limit = options_.fit_queue,
+                .niceness = options_.fit_niceness}),
+      catalog_({*store_, robots_, desk_, fitters_, options_.clock}, catalog_options(options_)),
+      ingest_(
+          *store_, robots_, desk_,
+          {.max_attempts = options_.max_queued_attempts,
+           .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); }}),
+      administration_(*store_, robots_, [this] { return status(); }) {}
+
+Service::~Service() { shutdown(); }
+
+Catalog::Options Service::catalog_options(const ServiceOptions& options) {
+  Catalog::Options catalog;
+  catalog.memory = options.memory;
+  catalog.fit = options.fit;
+  catalog.on_fit = [this](const Distribution& distribution) { log_fit(distribution); };
+  return catalog;
+}
+
+void Service::register_robot(RobotDescription description,
+                             std::function<void(const RegisterReply&)> done) {
+  auto run = [this, description = std::move(description), done = std::move(done)] {
+    RegisterReply reply;
+    try {
+      reply = robots_.register_robot(description, options_.clock.unix_ms());
+    } catch (const std::exception& exception) {
+      reply.status = RegisterStatus::Refused;
+      reply.message = exception.what();
+    }
+    options_.log("register '" + description.label + "': " +
+                 (reply.status == RegisterStatus::Registered ? "robot " + reply.robot.short_hex()
+                  : reply.status == RegisterStatus::Known
+                      ? "known as robot " + reply.robot.short_hex()
+                      : "refused: " + reply.message));
+    done(reply);
+  };
+  if (!desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
+    options_.log("register: not answered, busy or stopping");
+}
+
+void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done) {
+  refused_before_ += request.refused.size();
+  ingest_.submit(std::move(request.attempts),
+                 [this, refused = std::move(request.refused),
+                  done = std::move(done)](const std::vector<Receipt>& receipts) {
+                   ReportReply reply{epoch_, receipts};
+                   reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
+                   log_refused(reply.receipts);
+                   done(reply);
+                 });
+}
+
+void Service::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
+  catalog_.fetch(request, waiter, std::move(done));
+}
+
+void Service::administer(AdminRequest request, std::function<void(const AdminPage&)> done) {
+  auto run = [this, request = std::move(request), done] { done(administration_.answer(request)); };
+  if (desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
+    return;
+  AdminPage page;
+  page.message = "the server is busy or stopping";
+  done(page);
+}
+
+ServerStatus Service::status() const {
+  const store::StoreStatus store = store_->status();
+  ServerStatus status;
+  status.version = options_.version;
+  status.store_file = store.file;
+  status.store_epoch = store.epoch;
+  status.schema_version = store.schema_version;
+  status.uptime_s = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::seconds>(options_.clock.now() - started_).count());
+  status.robots = store.robots;
+  status.tasks = store.tasks;
+  status.paths = store.paths;
+  status.attempts = store.attempts;
+  status.distributions = store.distributions;
+  status.reports_received = ingest_.received() + refused_before_;
+  status.reports_refused = ingest_.refused() + refused_before_;
+  status.fetches = catalog_.fetches();
+  status.fetches_from_memory = catalog_.fetches_from_memory();
+  status.fits = catalog_.fits();
+  status.queued_reports = ingest_.queued();
+  status.queued_fits = fitters_.queued();
+  status.store_bytes = store.bytes;
+  status.writable = store.writable;
+  status.storage_message = store.message;
+  return status;
+}
+
+void Service::log_refused(const std::vector<Receipt>& receipts) const {
+  const auto is_refused = [](const Receipt& receipt) {
+    return receipt.status == ReceiptStatus::Refused;
+  };
+  const auto first = std::find_if(receipts.begin(), receipts.end(), is_refused);
+  if (first == receipts.end()) return;
+  options_.log("report: " + std::to_string(std::count_if(first, receipts.end(), is_refused)) +
+               " of " + std::to_string(receipts.size()) +
+               " attempts refused, first: " + first->message);
+}
+
+void Service::log_fit(const Distribution& distribution) const {
+  std::uint64_t paths = 0;
+  for (const Source& source : distribution.sources) paths += source.paths;
+  const bool ready = distribution.state == DistributionState::Ready;
+  options_.log("fit " + distribution.id.short_hex() + " revision " +
+               std::to_string(distribution.revision) + " for robot " +
+               distribution.robot.short_hex() + ", task '" + distribution.task +
+               "': " + std::to_string(distribution.configurations) + " configurations from " +
+               std::to_string(paths) + " paths, transfer " + seconds(distribution.transfer_time_s) +
+               ", fit " + seconds(distribution.fit_time_s) + (ready ? "" : ", failed") +
+               (distribution.reason.empty() ? "" : ": " + distribution.reason));
+}
+
+void Service::shutdown() {
+  catalog_.stop();
+  desk_.stop(WorkerPool::Leftovers::Run);
+  fitters_.stop(WorkerPool::Leftovers::Abandon);
+  ingest_.drain();
+}
+
+}  // namespace kinship::service

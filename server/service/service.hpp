@@ -1,0 +1,84 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/types/conversations.hpp"
+#include "server/service/administration.hpp"
+#include "server/service/catalog.hpp"
+#include "server/service/clock.hpp"
+#include "server/service/ingest.hpp"
+#include "server/service/robot_registry.hpp"
+#include "server/service/worker_pool.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::service {
+
+struct ServiceOptions {
+  std::string version;
+  std::size_t fit_threads = 1;
+  std::size_t fit_queue = 256;    ///< fits that wait; more are answered Busy
+  int fit_niceness = 10;          ///< so that planners on the same machine come first
+  std::size_t desk_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
+  std::size_t max_queued_attempts = 4096;
+  DistributionCache::Limits memory;
+  Clock clock;
+  Catalog::Fit fit;  ///< empty: fit_distribution
+  /// A line for people, without a line feed. Called from any thread, must not block for long.
+  std::function<void(std::string_view)> log = [](std::string_view) {};
+};
+
+/// The use cases of kinshipd: register, report, fetch, administer. Knows neither DDS nor SQL. May
+/// be shared between threads.
+///
+/// Every `done` is called at most once, on any thread, also during the call itself; it must not
+/// throw or block. None is called after shutdown() has returned.
+class Service {
+ public:
+  Service(std::unique_ptr<store::Store> store, ServiceOptions options);
+  ~Service();  ///< shutdown()
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// `done` is not called if the server is busy or stopping: the client asks again.
+  void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done);
+  void report(ReportRequest request, std::function<void(const ReportReply&)> done);
+  /// \param waiter  who asks; see Catalog::fetch.
+  void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
+  void administer(AdminRequest request, std::function<void(const AdminPage&)> done);
+
+  /// For the loop that waits: when to call expire(), and with what time.
+  std::optional<Catalog::TimePoint> next_deadline() const { return catalog_.next_deadline(); }
+  void expire(Catalog::TimePoint now) { catalog_.expire(now); }
+
+  ServerStatus status() const;
+
+  /// Accepts nothing more, makes what was reported durable and answers it, answers waiting
+  /// fetches Busy, gives up fits, and returns when all of that is done. A second call returns at
+  /// once. Not to be called from a `done`.
+  void shutdown();
+
+ private:
+  Catalog::Options catalog_options(const ServiceOptions& options);
+  void log_refused(const std::vector<Receipt>& receipts) const;
+  void log_fit(const Distribution& distribution) const;
+
+  const ServiceOptions options_;
+  const Catalog::TimePoint started_;
+  const std::unique_ptr<store::Store> store_;
+  const Uuid epoch_;
+  RobotRegistry robots_;
+  std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
+  WorkerPool desk_;
+  WorkerPool fitters_;
+  Catalog catalog_;
+  Ingest ingest_;
+  Administration administration_;
+};
+
+}  // namespace kinship::service

@@ -1,0 +1,295 @@
+#include "server/service/catalog.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "server/service/freshness.hpp"
+#include "tests/unit/server/service/service_fixture.hpp"
+
+namespace kinship::service {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+class CatalogTest : public ServiceFixture {
+ protected:
+  void teach(int paths, std::uint64_t first_seed = 1) {
+    report(fleet::solved(teacher_, "shelf", paths, first_seed));
+  }
+  /// Another distribution of the same robot.
+  static FetchRequest elsewhere(FetchRequest request, double x_m) {
+    request.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
+    return request;
+  }
+  static FetchRequest at_once(FetchRequest request) {
+    request.deadline = milliseconds(0);
+    return request;
+  }
+  static FetchRequest with_generation(FetchRequest request, std::uint64_t generation) {
+    request.minimum_generation = generation;
+    return request;
+  }
+  /// Returns when the desk has done what it was given before.
+  void wait_for_desk() { administer(fleet::question(AdminVerb::Status)); }
+};
+
+TEST_F(CatalogTest, SaysWhyThereIsNothing) {
+  FetchReply reply = fetch(request_for(teacher_));
+  EXPECT_EQ(reply.status, FetchStatus::NoExperience);
+  EXPECT_EQ(reply.message, "no paths of task 'shelf'");
+  FetchRequest request = request_for(teacher_);
+  request.robot.bytes[0] ^= 1U;
+  reply = fetch(request);
+  EXPECT_EQ(reply.status, FetchStatus::UnknownRobot);
+  EXPECT_EQ(reply.message,
+            "robot " + request.robot.short_hex() + " is not known here; register it first");
+  request.profile = "best";
+  reply = fetch(request);
+  EXPECT_EQ(reply.status, FetchStatus::Refused);
+  EXPECT_EQ(reply.message, "profile 'best' is not one of default, paper");
+  EXPECT_EQ(gate_.calls(), 0);
+}
+
+TEST_F(CatalogTest, HoweverManyAskThereIsOneFit) {
+  teach(6);
+  gate_.close();
+  constexpr int kAskers = 16;
+  std::vector<std::future<FetchReply>> replies(kAskers);
+  std::vector<std::thread> askers;
+  for (std::size_t i = 0; i < replies.size(); ++i)
+    askers.emplace_back(
+        [&, i] { replies[i] = begin_fetch(request_for(pupil_), "asker " + std::to_string(i)); });
+  for (std::thread& asker : askers)
+    asker.join();
+  gate_.open();
+  for (std::future<FetchReply>& reply : replies) {
+    const FetchReply got = reply.get();
+    ASSERT_EQ(got.status, FetchStatus::Ready) << got.message;
+    EXPECT_EQ(got.distribution->revision, 1U);
+  }
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, TheSecondFetchIsAnsweredFromMemoryDuringTheCall) {
+  teach(6);
+  const FetchReply first = fetch(request_for(pupil_));
+  std::future<FetchReply> second = begin_fetch(at_once(request_for(pupil_)), "two");
+  ASSERT_EQ(second.wait_for(seconds(0)), std::future_status::ready);
+  EXPECT_EQ(second.get().distribution->id, first.distribution->id);
+  const ServerStatus status = service_->status();
+  EXPECT_EQ(status.fetches, 2U);
+  EXPECT_EQ(status.fetches_from_memory, 1U);
+  EXPECT_EQ(status.fits, 1U);
+}
+
+TEST_F(CatalogTest, DistributionsSurviveARestartWithoutAFit) {
+  teach(6);
+  const FetchReply before = fetch(request_for(pupil_));
+  start();
+  const FetchReply after = fetch(at_once(request_for(pupil_)));
+  ASSERT_EQ(after.status, FetchStatus::Ready);
+  EXPECT_EQ(after.distribution->id, before.distribution->id);
+  EXPECT_EQ(after.distribution->revision, 1U);
+  EXPECT_EQ(after.distribution->mixture->means(), before.distribution->mixture->means());
+  EXPECT_EQ(service_->status().fits, 0U);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, AGrownExperienceIsServedAsItWasAndFittedBehind) {
+  teach(6);
+  fetch(request_for(teacher_));
+  teach(5, 100);
+  EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
+  wait_for_desk();
+  EXPECT_EQ(gate_.calls(), 1) << "10 s have not passed since the fit";
+
+  advance(kRefitInterval);
+  EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
+  gate_.wait_for_calls(2);
+  EXPECT_EQ(fetch(with_generation(request_for(teacher_), 2)).distribution->revision, 2U);
+  EXPECT_EQ(fetch(request_for(teacher_)).distribution->sources[0].paths, 11U);
+  EXPECT_EQ(gate_.calls(), 2);
+}
+
+TEST_F(CatalogTest, GrowthIsSeenAfterARestartToo) {
+  teach(6);
+  fetch(request_for(teacher_));
+  teach(5, 100);
+  advance(kRefitInterval);
+  start();
+  EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
+  gate_.wait_for_calls(2);
+}
+
+TEST_F(CatalogTest, FourNewPathsAreNoReasonForAFit) {
+  teach(6);
+  fetch(request_for(teacher_));
+  teach(4, 100);
+  advance(kRefitInterval);
+  fetch(request_for(teacher_));
+  wait_for_desk();
+  EXPECT_EQ(service_->status().queued_fits, 0U);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, AMinimumGenerationForcesAFitThatKnowsIt) {
+  teach(6);
+  fetch(request_for(teacher_));
+  teach(1, 100);
+  const FetchReply reply = fetch(with_generation(request_for(teacher_), 2));
+  ASSERT_EQ(reply.status, FetchStatus::Ready);
+  EXPECT_EQ(reply.distribution->revision, 2U);
+  EXPECT_EQ(reply.distribution->sources[0].generation, 2U);
+}
+
+TEST_F(CatalogTest, AGenerationThatHasNotArrivedIsWaitedFor) {
+  teach(6);
+  fetch(request_for(teacher_));
+  std::future<FetchReply> reply = begin_fetch(with_generation(request_for(teacher_), 2), "early");
+  wait_for_desk();
+  EXPECT_NE(reply.wait_for(seconds(0)), std::future_status::ready);
+  teach(1, 100);
+  EXPECT_EQ(reply.get().distribution->sources[0].generation, 2U);
+}
+
+TEST_F(CatalogTest, PastItsDeadlineAFetchIsPendingAndTheFitGoesOn) {
+  teach(6);
+  gate_.close();
+  FetchRequest request = request_for(pupil_);
+  request.deadline = seconds(1);
+  const auto now = clock_.now();
+  std::future<FetchReply> reply = begin_fetch(request, "one");
+  gate_.wait_for_calls(1);
+  EXPECT_EQ(service_->next_deadline(), now + seconds(1));
+  service_->expire(now + milliseconds(999));
+  EXPECT_NE(reply.wait_for(seconds(0)), std::future_status::ready);
+  service_->expire(now + seconds(1));
+  EXPECT_EQ(reply.get().status, FetchStatus::Pending);
+  EXPECT_EQ(service_->next_deadline(), std::nullopt);
+  gate_.open();
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, WithoutADeadlineTheFitIsBegunAndTheReplyIsPending) {
+  teach(6);
+  gate_.close();
+  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
+  gate_.wait_for_calls(1);
+  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
+  gate_.open();
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, MoreFitsThanMayWaitAreBusyWithATimeToRetry) {
+  fit_threads_ = 1;
+  fit_queue_ = 1;
+  start();
+  teach(6);
+  gate_.close();
+  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
+  gate_.wait_for_calls(1);
+  EXPECT_EQ(fetch(at_once(elsewhere(request_for(pupil_), 0.1))).status, FetchStatus::Pending);
+  const FetchReply reply = fetch(elsewhere(request_for(pupil_), 0.2));
+  EXPECT_EQ(reply.status, FetchStatus::Busy);
+  EXPECT_GT(reply.retry_after, milliseconds(0));
+  gate_.open();
+  EXPECT_EQ(fetch(elsewhere(request_for(pupil_), 0.1)).status, FetchStatus::Ready);
+  EXPECT_EQ(fetch(elsewhere(request_for(pupil_), 0.2)).status, FetchStatus::Ready);
+}
+
+TEST_F(CatalogTest, AFailureIsKeptWithItsReasonUntilTheExperienceChanges) {
+  teach(3);
+  const FetchReply reply = fetch(request_for(dwarf_));
+  ASSERT_EQ(reply.status, FetchStatus::Failed);
+  ASSERT_TRUE(reply.distribution);
+  EXPECT_EQ(reply.message, reply.distribution->reason);
+  EXPECT_NE(reply.message.find("out of reach"), std::string::npos) << reply.message;
+  EXPECT_EQ(fetch(request_for(dwarf_)).status, FetchStatus::Failed);
+  start();
+  EXPECT_EQ(fetch(request_for(dwarf_)).status, FetchStatus::Failed);
+  EXPECT_EQ(gate_.calls(), 1);
+
+  report(fleet::solved(dwarf_, "shelf", 5, 7));
+  EXPECT_EQ(fetch(request_for(dwarf_)).status, FetchStatus::Failed) << "10 s have not passed";
+  advance(kRefitInterval);
+  const FetchReply later = fetch(request_for(dwarf_));
+  EXPECT_EQ(later.status, FetchStatus::Ready) << later.message;
+  EXPECT_EQ(later.distribution->revision, 2U);
+}
+
+TEST_F(CatalogTest, AWaiterThatAsksAgainTakesItsOwnPlace) {
+  teach(6);
+  gate_.close();
+  std::future<FetchReply> first = begin_fetch(request_for(pupil_), "one");
+  const auto deadline = service_->next_deadline();
+  advance(seconds(5));
+  std::future<FetchReply> again = begin_fetch(request_for(pupil_), "one");
+  EXPECT_EQ(service_->next_deadline(), deadline) << "the deadline counts from the first time";
+  gate_.open();
+  EXPECT_EQ(again.get().status, FetchStatus::Ready);
+  EXPECT_THROW(first.get(), std::future_error);  // its callback was dropped
+}
+
+TEST_F(CatalogTest, ABackgroundFitThatSomebodyWaitsForIsDoneOnce) {
+  fit_threads_ = 1;
+  start();
+  teach(6);
+  fetch(request_for(teacher_));
+  teach(5, 100);
+  advance(kRefitInterval);
+  gate_.close();
+  fetch(at_once(request_for(pupil_)));  // holds the only worker
+  gate_.wait_for_calls(2);
+  fetch(request_for(teacher_));  // queues the background fit
+  wait_for_desk();
+  std::future<FetchReply> urgent = begin_fetch(with_generation(request_for(teacher_), 2), "now");
+  gate_.open();
+  EXPECT_EQ(urgent.get().distribution->revision, 2U);
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+  EXPECT_EQ(gate_.calls(), 3);
+}
+
+TEST_F(CatalogTest, StoppingAnswersThoseWhoWait) {
+  teach(6);
+  gate_.close();
+  std::future<FetchReply> reply = begin_fetch(request_for(pupil_), "one");
+  gate_.wait_for_calls(1);
+  std::thread stopper([this] { service_->shutdown(); });
+  const FetchReply got = reply.get();
+  EXPECT_EQ(got.status, FetchStatus::Busy);
+  EXPECT_EQ(got.message, "the server is stopping");
+  gate_.open();
+  stopper.join();
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Busy);
+}
+
+TEST_F(CatalogTest, ManyClientsReportingAndFetchingAtOnceAllGetTheirAnswers) {
+  teach(6);
+  constexpr int kClients = 4, kRounds = 3;
+  std::vector<std::thread> clients;
+  std::atomic<int> ready = 0;
+  for (int client = 0; client < kClients; ++client)
+    clients.emplace_back([&, client] {
+      for (int round = 0; round < kRounds; ++round) {
+        const auto seed = static_cast<std::uint64_t>(1000 * (client + 1) + 10 * round);
+        report(fleet::solved(teacher_, "shelf", 2, seed));
+        advance(seconds(4));
+        const FetchRequest request =
+            elsewhere(request_for(client % 2 == 0 ? teacher_ : pupil_), 0.01 * (client % 2));
+        if (begin_fetch(request, std::to_string(client)).get().status == FetchStatus::Ready)
+          ++ready;
+        service_->expire(clock_.now() - seconds(60));
+        administer(fleet::question(AdminVerb::ListDistributions));
+      }
+    });
+  for (std::thread& client : clients)
+    client.join();
+  EXPECT_EQ(ready, kClients * kRounds);
+}
+
+}  // namespace
+}  // namespace kinship::service

@@ -1,0 +1,86 @@
+#include "server/service/distribution_key.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace kinship::service {
+namespace {
+
+FetchRequest request() {
+  FetchRequest request;
+  request.task = "shelf";
+  request.robot.bytes[3] = 7;
+  request.T_task_base = Eigen::Isometry3d::Identity();
+  return request;
+}
+
+TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
+  const DistributionKey key = make_key(request()).value_or_throw();
+  const std::vector<std::function<void(DistributionKey&)>> changes = {
+      [](DistributionKey&) {},
+      [](DistributionKey& k) { k.task = "shelf2"; },
+      [](DistributionKey& k) { k.robot.bytes[0] = 1; },
+      [](DistributionKey& k) { k.T_task_base.reset(); },
+      [](DistributionKey& k) { k.T_task_base->translation().z() = 0.001; },
+      [](DistributionKey& k) { k.profile.transfer.pose_spacing = 0.2; },
+      [](DistributionKey& k) { k.profile.transfer.max_poses_per_path = 3; },
+      [](DistributionKey& k) { k.profile.transfer.max_solutions = 3; },
+      [](DistributionKey& k) { k.profile.transfer.min_distance = 0.3; },
+      [](DistributionKey& k) { k.profile.transfer.dropped_end_share = 0; },
+      [](DistributionKey& k) { k.profile.density.components = 7; },
+      [](DistributionKey& k) { k.profile.density.covariance_floor = 1e-3; },
+      [](DistributionKey& k) { k.profile.density.equal_path_weights = false; },
+      [](DistributionKey& k) { k.profile.recommended_share = 0.5; },
+      [](DistributionKey& k) { k.profile.seed = 9; }};
+  std::set<Digest> ids;
+  for (const auto& change : changes) {
+    DistributionKey changed = key;
+    change(changed);
+    ids.insert(identify(changed));
+  }
+  EXPECT_EQ(ids.size(), changes.size());
+}
+
+TEST(DistributionKey, TheNameOfAProfileIsNotPartOfIt) {
+  DistributionKey key = make_key(request()).value_or_throw();
+  const Digest id = identify(key);
+  key.profile.name = "mine";
+  EXPECT_EQ(identify(key), id);
+}
+
+TEST(DistributionKey, PlacementsWithinTheGridAreOne) {
+  FetchRequest near = request();
+  near.T_task_base->translation().x() = 0.0003;
+  near.T_task_base->rotate(Eigen::AngleAxisd(0.0003, Eigen::Vector3d::UnitZ()));
+  EXPECT_EQ(identify(make_key(near).value_or_throw()),
+            identify(make_key(request()).value_or_throw()));
+}
+
+TEST(DistributionKey, WantsAndDeadlinesAreNotPartOfIt) {
+  FetchRequest other = request();
+  other.minimum_generation = 5;
+  other.deadline = std::chrono::seconds(3);
+  EXPECT_EQ(identify(make_key(other).value_or_throw()),
+            identify(make_key(request()).value_or_throw()));
+}
+
+TEST(DistributionKey, RequestsThatBreakARuleAreRefused) {
+  FetchRequest bad = request();
+  bad.task = "";
+  EXPECT_EQ(make_key(bad).error().message, "task: is empty");
+  bad = request();
+  bad.profile = "best";
+  EXPECT_EQ(make_key(bad).error().message, "profile 'best' is not one of default, paper");
+  bad = request();
+  bad.T_task_base->translation().y() = 2000;
+  EXPECT_EQ(make_key(bad).error().code, ErrorCode::InvalidInput);
+  bad.T_task_base->translation().y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(make_key(bad).error().code, ErrorCode::InvalidInput);
+}
+
+}  // namespace
+}  // namespace kinship::service

@@ -1,0 +1,234 @@
+#include "server/service/fit_distribution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <random>
+
+#include "proto/mixture/sampler.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/service/fleet.hpp"
+
+namespace kinship::service {
+namespace {
+
+constexpr std::uint64_t kSeed = 21;
+
+class FitDistribution : public testing::Test {
+ protected:
+  FitDistribution() {
+    for (const RobotDescription& robot : {fleet::teacher(), fleet::pupil(), fleet::dwarf()})
+      registry_.register_robot(robot, 1);
+  }
+
+  void report(const std::vector<Attempt>& attempts) {
+    std::promise<void> done;
+    store_->commit_reports(attempts, [&](const std::vector<Receipt>&) { done.set_value(); });
+    done.get_future().wait();
+  }
+  static DistributionKey key_of(const Robot& robot) {
+    return {.task = "shelf",
+            .robot = robot.digest,
+            .T_task_base = std::nullopt,
+            .profile = *find_profile("default")};
+  }
+  FitOutcome fit(const DistributionKey& key) {
+    return fit_distribution(key, context_, std::stop_token());
+  }
+  Distribution fitted(const DistributionKey& key) { return fit(key).distribution.value(); }
+
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
+  RobotRegistry registry_{*store_};
+  Clock clock_;
+  FitContext context_{.store = *store_, .robots = registry_, .clock = clock_};
+  const Robot teacher_ = fleet::robot_of(fleet::teacher());
+  const Robot pupil_ = fleet::robot_of(fleet::pupil());
+  const Robot dwarf_ = fleet::robot_of(fleet::dwarf());
+};
+
+TEST_F(FitDistribution, WithoutPathsThereIsNothingToFit) {
+  EXPECT_EQ(fit(key_of(pupil_)).kind, FitOutcome::Kind::NoExperience);
+  report({fleet::unsolved(teacher_.digest, "shelf")});
+  report(fleet::solved(teacher_, "bin", 3, 1));
+  EXPECT_EQ(fit(key_of(pupil_)).kind, FitOutcome::Kind::NoExperience);
+}
+
+TEST_F(FitDistribution, AnotherRobotsPathsGuideTheHandAlongThem) {
+  report(fleet::solved(teacher_, "shelf", 20, 1));
+  const Distribution distribution = fitted(key_of(pupil_));
+  ASSERT_EQ(distribution.state, DistributionState::Ready) << distribution.reason;
+  EXPECT_EQ(distribution.mixture->dimension(), 4);
+  EXPECT_EQ(distribution.limits.cols(), 4);
+
+  // The distance of a sample's hand from the nearest hand of the source paths.
+  std::vector<Eigen::Vector3d> hands;
+  for (const store::StoredPath& stored : store_->read_paths(teacher_.digest, "shelf", 0, 100))
+    for (Eigen::Index i = 0; i + 1 < stored.path.size(); ++i)
+      for (double s = 0; s < 1; s += 0.1)
+        hands.push_back(
+            kinematics::T_base_transfer(teacher_.chain, (1 - s) * stored.path.waypoints().col(i) +
+                                                            s * stored.path.waypoints().col(i + 1))
+                .translation());
+  const mixture::Sampler sampler(*distribution.mixture, distribution.limits);
+  std::mt19937_64 generator(kSeed);
+  std::vector<double> distances_m;
+  for (int i = 0; i < 501; ++i) {
+    const auto q = sampler.sample(generator);
+    ASSERT_TRUE(q);
+    const Eigen::Vector3d hand = kinematics::T_base_transfer(pupil_.chain, *q).translation();
+    double nearest_m = 10;
+    for (const Eigen::Vector3d& other : hands)
+      nearest_m = std::min(nearest_m, (other - hand).norm());
+    distances_m.push_back(nearest_m);
+  }
+  std::nth_element(distances_m.begin(), distances_m.begin() + 250, distances_m.end());
+  EXPECT_LT(distances_m[250], 0.05);
+}
+
+TEST_F(FitDistribution, NamesItsSourcesAndTheirGenerations) {
+  report(fleet::solved(teacher_, "shelf", 4, 1));
+  report(fleet::solved(pupil_, "shelf", 3, 50));
+  report(fleet::solved(pupil_, "shelf", 2, 60));
+  const Distribution distribution = fitted(key_of(pupil_));
+  EXPECT_EQ(distribution.id, identify(key_of(pupil_)));
+  EXPECT_EQ(distribution.store_epoch, store_->epoch());
+  EXPECT_EQ(distribution.engines, engines());
+  ASSERT_EQ(distribution.sources.size(), 2U);
+  for (const Source& source : distribution.sources) {
+    const bool own = source.robot == pupil_.digest;
+    EXPECT_EQ(source.label, own ? "pupil" : "teacher");
+    EXPECT_EQ(source.paths, own ? 5U : 4U);
+    EXPECT_EQ(source.generation, store_->generation(source.robot, "shelf"));
+    EXPECT_GT(source.poses, 0U);
+    EXPECT_GE(source.poses, source.poses_solved);
+  }
+  EXPECT_DOUBLE_EQ(distribution.recommended_share, 0.9);
+  EXPECT_EQ(distribution.evidence, "share of profile 'default'; no attempts compared yet");
+}
+
+TEST_F(FitDistribution, OwnPathsAtTheOwnPlaceAreTakenOverAsTheyAre) {
+  DistributionKey key = key_of(teacher_);
+  key.T_task_base = snapped(Eigen::Isometry3d(Eigen::Translation3d(0.1234, 0.2, 0)));
+  std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 10, 1);
+  for (Attempt& attempt : attempts)
+    attempt.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.1232, 0.2, 0));
+  report(attempts);
+  const Distribution distribution = fitted(key);
+  EXPECT_EQ(distribution.sources[0].poses_solved, distribution.sources[0].poses);
+  // One configuration a pose: inverse kinematics would have found the other elbow too.
+  EXPECT_EQ(distribution.configurations, distribution.sources[0].poses);
+  EXPECT_EQ(distribution.reason, "");
+}
+
+TEST_F(FitDistribution, EqualContentGivesEqualMixtures) {
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  const Distribution a = fitted(key_of(pupil_));
+  const Distribution b = fitted(key_of(pupil_));
+  EXPECT_EQ(a.mixture->means(), b.mixture->means());
+  EXPECT_EQ(a.mixture->weights(), b.mixture->weights());
+}
+
+TEST_F(FitDistribution, WhatNothingReachesFailsWithTheReasonOfEachSource) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  report(fleet::solved(pupil_, "shelf", 2, 9));
+  const Distribution distribution = fitted(key_of(dwarf_));
+  EXPECT_EQ(distribution.state, DistributionState::Failed);
+  EXPECT_FALSE(distribution.mixture);
+  EXPECT_EQ(distribution.configurations, 0U);
+  for (const char* part : {"nothing could be transferred to 'dwarf'", "'teacher': 3 paths, ",
+                           "'pupil': 2 paths, ", " 0 solved, ", " out of reach, "})
+    EXPECT_NE(distribution.reason.find(part), std::string::npos) << distribution.reason;
+}
+
+TEST_F(FitDistribution, TooFewConfigurationsFailWithTheReasonOfTheFit) {
+  Attempt attempt = fleet::solved(teacher_, "shelf", 1);
+  attempt.path = Path(Eigen::MatrixXd::Constant(3, 2, 0.5));
+  report({attempt});
+  const Distribution distribution = fitted(key_of(teacher_));
+  EXPECT_EQ(distribution.state, DistributionState::Failed);
+  EXPECT_NE(distribution.reason.find("1 configurations for 'teacher' could not be fitted"),
+            std::string::npos)
+      << distribution.reason;
+}
+
+TEST_F(FitDistribution, WarnsWhenGivenAndMissingPlacementsArePooled) {
+  std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 5, 1);
+  report(attempts);
+  EXPECT_EQ(fitted(key_of(teacher_)).reason, "");
+  DistributionKey placed = key_of(teacher_);
+  placed.T_task_base = Eigen::Isometry3d::Identity();
+  EXPECT_EQ(fitted(placed).reason, "some placements are missing and were taken as the identity");
+}
+
+TEST_F(FitDistribution, PlacementsMoveTheHandInTheTask) {
+  // The teacher stands 0.15 m behind the task's origin; the pupil in it, then beside the teacher.
+  const Eigen::Vector3d offset(-0.15, 0, 0);
+  std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 10, 1);
+  for (Attempt& attempt : attempts)
+    attempt.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(offset));
+  report(attempts);
+  DistributionKey key = key_of(pupil_);
+  key.T_task_base = Eigen::Isometry3d::Identity();
+  const Distribution moved = fitted(key);
+  key.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(offset));
+  const Distribution beside = fitted(key);
+  ASSERT_TRUE(moved.mixture) << moved.reason;
+  ASSERT_TRUE(beside.mixture) << beside.reason;
+  const auto mean_hand = [this](const Mixture& mixture) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < mixture.size(); ++k)
+      mean += mixture.weights()[k] *
+              kinematics::T_base_transfer(pupil_.chain, mixture.means().col(k)).translation();
+    return mean;
+  };
+  EXPECT_NEAR((mean_hand(*moved.mixture) - mean_hand(*beside.mixture)).x(), offset.x(), 0.05);
+}
+
+TEST_F(FitDistribution, RobotsThatCannotBeReadAreLeftOutAndNamed) {
+  Digest wrong;
+  wrong.bytes[0] = 0xAB;
+  RobotDescription other = fleet::planar("stranger", {0.1, 0.1, 0.1});
+  ASSERT_TRUE(store_->register_robot(
+      {.digest = wrong, .description = other, .dof = 3, .registered_ms = 1}));
+  Attempt strange = fleet::solved(teacher_, "shelf", 70);
+  strange.robot = wrong;
+  report({strange});
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  const Distribution distribution = fitted(key_of(teacher_));
+  EXPECT_EQ(distribution.state, DistributionState::Ready);
+  EXPECT_NE(distribution.reason.find("left out, robot 'stranger'"), std::string::npos)
+      << distribution.reason;
+}
+
+TEST_F(FitDistribution, MorePathsThanItMayReadAreThinnedOutEvenly) {
+  report(fleet::solved(teacher_, "shelf", 90, 1));
+  report(fleet::solved(pupil_, "shelf", 10, 200));
+  context_.max_paths = 50;
+  const Distribution distribution = fitted(key_of(pupil_));
+  EXPECT_NE(distribution.reason.find("'teacher': 45 of 90 paths read"), std::string::npos)
+      << distribution.reason;
+  EXPECT_NE(distribution.reason.find("'pupil': 5 of 10 paths read"), std::string::npos)
+      << distribution.reason;
+  EXPECT_EQ(distribution.sources[0].paths + distribution.sources[1].paths, 100U);
+}
+
+TEST_F(FitDistribution, GivesUpWhenAskedTo) {
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(fit_distribution(key_of(pupil_), context_, stop.get_token()).kind,
+            FitOutcome::Kind::Abandoned);
+}
+
+TEST_F(FitDistribution, AnUnknownTargetEndsTheRequest) {
+  DistributionKey key = key_of(pupil_);
+  key.robot.bytes[0] ^= 1U;
+  EXPECT_THROW(fit(key), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::service

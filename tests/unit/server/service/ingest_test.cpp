@@ -1,0 +1,138 @@
+#include "server/service/ingest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <mutex>
+#include <string>
+
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/service/fleet.hpp"
+
+namespace kinship::service {
+namespace {
+
+class IngestTest : public testing::Test {
+ protected:
+  IngestTest() { registry_.register_robot(fleet::teacher(), 1); }
+
+  std::future<std::vector<Receipt>> submit(std::vector<Attempt> attempts) {
+    const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
+    ingest_.submit(std::move(attempts), [promise](const std::vector<Receipt>& receipts) {
+      promise->set_value(receipts);
+    });
+    return promise->get_future();
+  }
+  static std::vector<ReceiptStatus> statuses(const std::vector<Receipt>& receipts) {
+    std::vector<ReceiptStatus> found;
+    for (const Receipt& receipt : receipts)
+      found.push_back(receipt.status);
+    return found;
+  }
+
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
+  RobotRegistry registry_{*store_};
+  WorkerPool desk_{{.threads = 1, .queue_limit = 8, .niceness = 0}};
+  std::mutex mutex_;
+  std::vector<std::string> grown_;  // guarded by mutex_
+  Ingest ingest_{*store_,
+                 registry_,
+                 desk_,
+                 {.max_attempts = 16, .on_new_experience = [this](std::string_view task) {
+                    const std::lock_guard lock(mutex_);
+                    grown_.emplace_back(task);
+                  }}};
+  const Robot robot_ = fleet::robot_of(fleet::teacher());
+};
+
+TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
+  Attempt unknown = fleet::solved(robot_, "shelf", 1);
+  unknown.robot.bytes[0] ^= 1U;
+  Attempt bad = fleet::solved(robot_, "shelf", 2);
+  bad.record.share = 2;
+  const std::vector<Attempt> batch = {bad, fleet::solved(robot_, "shelf", 3), unknown,
+                                      fleet::unsolved(robot_.digest, "shelf")};
+  const std::vector<Receipt> receipts = submit(batch).get();
+  EXPECT_EQ(statuses(receipts), (std::vector{ReceiptStatus::Refused, ReceiptStatus::Stored,
+                                             ReceiptStatus::Refused, ReceiptStatus::Recorded}));
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    EXPECT_EQ(receipts[i].report_uuid, batch[i].report_uuid);
+  EXPECT_EQ(receipts[0].message, "share: 2 is not within 0 to 1");
+  EXPECT_EQ(receipts[2].message,
+            "robot " + unknown.robot.short_hex() + " is not known here; register it first");
+  EXPECT_EQ(ingest_.received(), 4U);
+  EXPECT_EQ(ingest_.refused(), 2U);
+}
+
+TEST_F(IngestTest, WhatIsAcknowledgedIsInTheStore) {
+  const Attempt attempt = fleet::solved(robot_, "shelf", 1);
+  ASSERT_EQ(submit({attempt}).get()[0].status, ReceiptStatus::Stored);
+  const auto stored = store_->find_attempt(attempt.report_uuid);
+  ASSERT_TRUE(stored && stored->path);
+  EXPECT_EQ(stored->path->waypoints(), attempt.path->waypoints());
+  EXPECT_EQ(submit({attempt}).get()[0].status, ReceiptStatus::Duplicate);
+}
+
+TEST_F(IngestTest, RefusedAttemptsLeaveNothingBehind) {
+  Attempt bad = fleet::solved(robot_, "shelf", 1);
+  bad.path = fleet::path(4, 1);
+  ASSERT_EQ(submit({bad}).get()[0].status, ReceiptStatus::Refused);
+  EXPECT_FALSE(store_->find_attempt(bad.report_uuid));
+  EXPECT_EQ(store_->status().attempts, 0U);
+}
+
+TEST_F(IngestTest, TellsOfTasksThatHaveANewPathAndOfNoOthers) {
+  const Attempt path = fleet::solved(robot_, "shelf", 1);
+  submit({path, fleet::solved(robot_, "shelf", 2), fleet::unsolved(robot_.digest, "bin")}).get();
+  submit({path}).get();
+  const std::lock_guard lock(mutex_);
+  EXPECT_EQ(grown_, std::vector<std::string>{"shelf"});
+}
+
+TEST_F(IngestTest, MoreThanItMayHoldIsAskedToTryAgain) {
+  const std::vector<Receipt> receipts = submit(fleet::solved(robot_, "shelf", 17, 1)).get();
+  EXPECT_EQ(receipts.size(), 17U);
+  for (const Receipt& receipt : receipts)
+    EXPECT_EQ(receipt.status, ReceiptStatus::TryAgain);
+  EXPECT_EQ(store_->status().attempts, 0U);
+  EXPECT_EQ(submit(fleet::solved(robot_, "shelf", 16, 1)).get()[0].status, ReceiptStatus::Stored);
+}
+
+TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
+  RobotRegistry cold(*store_);
+  Ingest ingest(*store_, cold, desk_, {});
+  std::promise<std::vector<Receipt>> done;
+  ingest.submit({fleet::solved(robot_, "shelf", 1)},
+                [&](const std::vector<Receipt>& receipts) { done.set_value(receipts); });
+  EXPECT_EQ(done.get_future().get()[0].status, ReceiptStatus::Stored);
+  ingest.drain();
+}
+
+TEST_F(IngestTest, ABusyDeskIsAReasonToTryAgain) {
+  desk_.stop(WorkerPool::Leftovers::Run);
+  Attempt unknown = fleet::solved(robot_, "shelf", 1);
+  unknown.robot.bytes[0] ^= 1U;
+  const std::vector<Receipt> receipts = submit({unknown}).get();
+  EXPECT_EQ(receipts[0].status, ReceiptStatus::TryAgain);
+  EXPECT_EQ(receipts[0].message, "the server is busy");
+}
+
+TEST_F(IngestTest, DrainingAnswersWhatWasTakenInAndTakesInNothingMore) {
+  std::vector<std::future<std::vector<Receipt>>> answers;
+  for (std::uint64_t i = 0; i < 10; ++i)
+    answers.push_back(submit({fleet::solved(robot_, "shelf", i)}));
+  ingest_.drain();
+  EXPECT_EQ(ingest_.queued(), 0U);
+  for (auto& answer : answers) {
+    ASSERT_EQ(answer.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+    EXPECT_EQ(answer.get()[0].status, ReceiptStatus::Stored);
+  }
+  EXPECT_EQ(submit({fleet::solved(robot_, "shelf", 99)}).get()[0].status, ReceiptStatus::TryAgain);
+}
+
+TEST_F(IngestTest, AnEmptyBatchIsAnsweredToo) { EXPECT_TRUE(submit({}).get().empty()); }
+
+}  // namespace
+}  // namespace kinship::service

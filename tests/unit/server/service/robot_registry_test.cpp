@@ -1,0 +1,89 @@
+#include "server/service/robot_registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/service/fleet.hpp"
+
+namespace kinship::service {
+namespace {
+
+class Registry : public testing::Test {
+ protected:
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
+  RobotRegistry registry_{*store_};
+};
+
+TEST_F(Registry, ANewRobotIsIdentifiedStoredAndKept) {
+  const RegisterReply reply = registry_.register_robot(fleet::teacher(), 1234);
+  EXPECT_EQ(reply.status, RegisterStatus::Registered);
+  EXPECT_EQ(reply.robot, fleet::chain_of(fleet::teacher()).digest());
+  EXPECT_EQ(reply.dof, 3U);
+  EXPECT_FALSE(reply.solver.empty());
+  ASSERT_NE(registry_.find_in_memory(reply.robot), nullptr);
+  const auto record = store_->find_robot(reply.robot);
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->registered_ms, 1234);
+}
+
+TEST_F(Registry, TheSameRobotIsKnownByItsFirstLabel) {
+  registry_.register_robot(fleet::teacher(), 1);
+  RobotDescription again = fleet::teacher();
+  EXPECT_EQ(registry_.register_robot(again, 2).status, RegisterStatus::Known);
+  again.label = "other";
+  const RegisterReply reply = registry_.register_robot(again, 3);
+  EXPECT_EQ(reply.status, RegisterStatus::Known);
+  EXPECT_EQ(reply.message, "known already, as 'teacher'");
+}
+
+TEST_F(Registry, ALabelBelongsToOneRobot) {
+  registry_.register_robot(fleet::teacher(), 1);
+  RobotDescription other = fleet::pupil();
+  other.label = "teacher";
+  const RegisterReply reply = registry_.register_robot(other, 2);
+  EXPECT_EQ(reply.status, RegisterStatus::Refused);
+  EXPECT_NE(reply.message.find("teacher"), std::string::npos) << reply.message;
+}
+
+TEST_F(Registry, BadDescriptionsAreRefusedWithTheReason) {
+  RobotDescription description = fleet::teacher();
+  description.label = "two words";
+  EXPECT_EQ(registry_.register_robot(description, 1).message,
+            "label: byte 4 is not one of A-Z a-z 0-9 _ . : -");
+  description = fleet::teacher();
+  description.tip_link = "hand";
+  const RegisterReply reply = registry_.register_robot(description, 1);
+  EXPECT_EQ(reply.status, RegisterStatus::Refused);
+  EXPECT_EQ(reply.message, "tip link 'hand': not in the URDF");
+  EXPECT_TRUE(store_->robots().empty());
+}
+
+TEST_F(Registry, RobotsOfTheStoreAreReadWhenAskedFor) {
+  const Digest robot = RobotRegistry(*store_).register_robot(fleet::teacher(), 1).robot;
+  EXPECT_EQ(registry_.find_in_memory(robot), nullptr);
+  const auto found = registry_.find(robot);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found.value()->label, "teacher");
+  EXPECT_EQ(registry_.find_in_memory(robot), found.value());
+}
+
+TEST_F(Registry, UnknownRobotsAreNotFound) {
+  const auto found = registry_.find(Digest{});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(found.error().message, "robot 000000000000 is not known here; register it first");
+}
+
+TEST_F(Registry, ADescriptionThatReadsAsAnotherRobotIsNotUsed) {
+  const Digest wrong = fleet::chain_of(fleet::pupil()).digest();
+  ASSERT_TRUE(store_->register_robot(
+      {.digest = wrong, .description = fleet::teacher(), .dof = 3, .registered_ms = 1}));
+  const auto found = registry_.find(wrong);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::InvalidInput);
+}
+
+}  // namespace
+}  // namespace kinship::service

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/service/service.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/service/fleet.hpp"
+
+namespace kinship::service {
+
+/// The real fit behind a gate, so that a test decides when it goes on; counts calls.
+class GatedFit {
+ public:
+  void close() {
+    const std::lock_guard lock(mutex_);
+    is_open_ = false;
+  }
+  void open() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_open_ = true;
+    }
+    changed_.notify_all();
+  }
+  void wait_for_calls(int calls) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return calls_ >= calls; });
+  }
+  int calls() const {
+    const std::lock_guard lock(mutex_);
+    return calls_;
+  }
+  FitOutcome operator()(const DistributionKey& key, const FitContext& context,
+                        const std::stop_token& stop) {
+    {
+      std::unique_lock lock(mutex_);
+      ++calls_;
+      changed_.notify_all();
+      changed_.wait(lock, [this] { return is_open_; });
+    }
+    return fit_distribution(key, context, stop);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_open_ = true;
+  int calls_ = 0;
+};
+
+/// A service on a real store in a folder of its own, with a clock that the test sets and calls
+/// that wait for their answer. Teacher, pupil and dwarf are registered.
+class ServiceFixture : public testing::Test {
+ protected:
+  ServiceFixture() { start(); }
+  ~ServiceFixture() override { gate_.open(); }
+
+  /// Starts the service, again if it runs already.
+  void start() {
+    service_.reset();
+    context_.reset();
+    std::unique_ptr<store::Store> store = store::open_sqlite_store(directory_ / "fleet.db");
+    registry_ = std::make_unique<RobotRegistry>(*store);
+    context_ = std::make_unique<FitContext>(
+        FitContext{.store = *store, .robots = *registry_, .clock = clock_});
+    ServiceOptions options;
+    options.version = "1.2.3";
+    options.fit_threads = fit_threads_;
+    options.fit_queue = fit_queue_;
+    options.clock = clock_;
+    options.fit = [this](const DistributionKey& key, const std::stop_token& stop) {
+      return gate_(key, *context_, stop);
+    };
+    options.log = [this](std::string_view line) {
+      const std::lock_guard lock(log_mutex_);
+      log_.emplace_back(line);
+    };
+    service_ = std::make_unique<Service>(std::move(store), std::move(options));
+    for (const RobotDescription& robot : {fleet::teacher(), fleet::pupil(), fleet::dwarf()})
+      register_robot(robot);
+  }
+
+  void advance(std::chrono::milliseconds time) { time_ms_ += time.count(); }
+
+  RegisterReply register_robot(const RobotDescription& description) {
+    std::promise<RegisterReply> reply;
+    service_->register_robot(description, [&](const RegisterReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+  ReportReply report(const std::vector<Attempt>& attempts) {
+    std::promise<ReportReply> reply;
+    service_->report({attempts, {}}, [&](const ReportReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+  std::future<FetchReply> begin_fetch(const FetchRequest& request, const std::string& waiter) {
+    const auto reply = std::make_shared<std::promise<FetchReply>>();
+    std::future<FetchReply> future = reply->get_future();
+    service_->fetch(request, waiter, [reply](const FetchReply& r) { reply->set_value(r); });
+    return future;
+  }
+  FetchReply fetch(const FetchRequest& request) { return begin_fetch(request, "one").get(); }
+  AdminPage administer(AdminRequest request) {
+    std::promise<AdminPage> page;
+    service_->administer(std::move(request), [&](const AdminPage& p) { page.set_value(p); });
+    return page.get_future().get();
+  }
+
+  static FetchRequest request_for(const Robot& robot) {
+    FetchRequest request;
+    request.task = "shelf";
+    request.robot = robot.digest;
+    request.deadline = std::chrono::seconds(30);  // of the clock that stands still
+    return request;
+  }
+  std::string log() {
+    const std::lock_guard lock(log_mutex_);
+    std::string all;
+    for (const std::string& line : log_)
+      all += line + '\n';
+    return all;
+  }
+
+  test::TemporaryDirectory directory_;
+  std::atomic<std::int64_t> time_ms_{1'700'000'000'000};
+  Clock clock_{
+      .now =
+          [this] {
+            return std::chrono::steady_clock::time_point(std::chrono::milliseconds(time_ms_));
+          },
+      .unix_ms = [this] { return time_ms_.load(); }};
+  std::size_t fit_threads_ = 2, fit_queue_ = 64;
+  GatedFit gate_;
+  std::mutex log_mutex_;
+  std::vector<std::string> log_;  // guarded by log_mutex_
+  std::unique_ptr<RobotRegistry> registry_;
+  std::unique_ptr<FitContext> context_;
+  const Robot teacher_ = fleet::robot_of(fleet::teacher());
+  const Robot pupil_ = fleet::robot_of(fleet::pupil());
+  const Robot dwarf_ = fleet::robot_of(fleet::dwarf());
+  std::unique_ptr<Service> service_;  // last: its threads use all of the above
+};
+
+}  // namespace kinship::service
