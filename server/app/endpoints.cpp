@@ -1,0 +1,74 @@
+#include "server/app/endpoints.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "proto/codec/conversation.hpp"
+#include "proto/dds/replier.hpp"
+#include "server/app/admin_reply.hpp"
+
+namespace kinship::app {
+namespace {
+
+using codec::AdminConversation;
+using codec::FetchConversation;
+using codec::RegisterConversation;
+using codec::ReportConversation;
+
+std::string waiter_of(const codec::Head& head) {
+  return head.client_id.text() + ' ' + std::to_string(head.sequence_number);
+}
+
+/// Rows of one page can exceed what one message may carry: then it is asked for with fewer.
+void administer(service::Service& service, const AdminRequest& request,
+                const dds::Answer<AdminConversation>& answer) {
+  service.administer(request, [&service, request, answer](const service::AdminPage& page) {
+    const AdminReply reply = to_reply(page);
+    if (fits_page(reply) || page.rows.size() < 2) return answer(reply);
+    AdminRequest smaller = request;
+    smaller.limit = static_cast<std::uint32_t>(page.rows.size() / 2);
+    administer(service, smaller, answer);
+  });
+}
+
+}  // namespace
+
+class Endpoints::Implementation {
+ public:
+  Implementation(const dds::Participant& participant, dds::WaitLoop& loop,
+                 service::Service& service)
+      : register_(participant, loop,
+                  [&service](RobotDescription description,
+                             const dds::Answer<RegisterConversation>& answer) {
+                    service.register_robot(std::move(description), answer);
+                  }),
+        report_(participant, loop,
+                [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
+                  service.report(std::move(request), answer);
+                }),
+        fetch_(
+            participant, loop,
+            [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
+              service.fetch(request, waiter_of(answer.head()), answer);
+            }),
+        admin_(
+            participant, loop,
+            [&service](const AdminRequest& request, const dds::Answer<AdminConversation>& answer) {
+              administer(service, request, answer);
+            }) {}
+
+ private:
+  dds::Replier<RegisterConversation> register_;
+  dds::Replier<ReportConversation> report_;
+  dds::Replier<FetchConversation> fetch_;
+  dds::Replier<AdminConversation> admin_;
+};
+
+Endpoints::Endpoints(const dds::Participant& participant, dds::WaitLoop& loop,
+                     service::Service& service)
+    : implementation_(std::make_unique<Implementation>(participant, loop, service)) {}
+
+Endpoints::~Endpoints() = default;
+
+}  // namespace kinship::app

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "proto/dds/participant.hpp"
+#include "proto/dds/wait_loop.hpp"
+#include "server/service/service.hpp"
+
+namespace kinship::app {
+
+/// The four conversations as kinshipd offers them: decoded requests go to the service, what it
+/// says goes back. Everything that takes long happens on threads of the service.
+class Endpoints {
+ public:
+  /// \param participant, loop, service  outlive the endpoints.
+  /// \throws Failure(Internal) if a DDS entity cannot be created.
+  Endpoints(const dds::Participant& participant, dds::WaitLoop& loop, service::Service& service);
+  ~Endpoints();
+  Endpoints(const Endpoints&) = delete;
+  Endpoints& operator=(const Endpoints&) = delete;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kinship::app

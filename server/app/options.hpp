@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace kinship::app {
+
+/// What kinshipd was asked to do.
+struct ServerOptions {
+  std::filesystem::path store;
+  std::uint32_t domain = 0;
+  std::string network_interface;  ///< empty: loopback
+  std::size_t workers = 1;        ///< threads that transfer and fit
+  std::string log_level = "info";
+};
+
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kWrongUsage = 2;
+
+/// Options from the command line, then the environment (KINSHIP_DOMAIN), then the file of
+/// --config.
+/// \return the options, or an exit code after help or a message was written.
+std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* argv,
+                                                 std::ostream& out, std::ostream& err);
+
+/// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither
+/// variable says where that is.
+std::filesystem::path default_store();
+
+}  // namespace kinship::app

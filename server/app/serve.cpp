@@ -1,0 +1,78 @@
+#include "server/app/serve.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <memory>
+#include <ostream>
+#include <string_view>
+
+#include "proto/dds/log.hpp"
+#include "proto/dds/participant.hpp"
+#include "proto/dds/wait_loop.hpp"
+#include "server/app/endpoints.hpp"
+#include "server/app/service_manager.hpp"
+#include "server/app/signal_watcher.hpp"
+#include "server/service/service.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+
+namespace kinship::app {
+namespace {
+
+using WaitClock = dds::WaitLoop::Clock;
+
+void start_log(const std::string& level) {
+  const auto logger = std::make_shared<spdlog::logger>(
+      "kinshipd", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(logger);
+  dds::set_log_sink([](std::string_view line) { spdlog::warn("dds: {}", line); });
+}
+
+service::ServiceOptions service_options(const ServerOptions& options) {
+  service::ServiceOptions service;
+  service.version = KINSHIP_VERSION;
+  service.fit_threads = options.workers;
+  service.log = [](std::string_view line) { spdlog::info("{}", line); };
+  return service;
+}
+
+}  // namespace
+
+int serve(const ServerOptions& options, std::ostream& out) {
+  start_log(options.log_level);
+  std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
+
+  hold_termination_signals();
+
+  service::Service service(store::open_sqlite_store(options.store), service_options(options));
+  const dds::Participant participant({.domain = options.domain,
+                                      .role = dds::Role::Server,
+                                      .network_interface = options.network_interface});
+  dds::WaitLoop loop(participant);
+  const Endpoints endpoints(participant, loop, service);
+  const SignalWatcher signals([&loop](int signal) {
+    spdlog::info("signal {}: draining", signal);
+    loop.stop();
+  });
+
+  const ServerStatus status = service.status();
+  spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
+               status.version, options.domain, options.store.string(), status.robots, status.paths,
+               status.distributions);
+  out << "ready domain=" << options.domain << " store=" << options.store.string() << std::endl;
+  notify_service_manager("READY=1");
+  loop.run([&service] {
+    service.expire(WaitClock::now());
+    return service.next_deadline().value_or(WaitClock::time_point::max());
+  });
+
+  notify_service_manager("STOPPING=1");
+  service.shutdown();
+  spdlog::info("ended");
+  return kDone;
+}
+
+}  // namespace kinship::app
