@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/store_values.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+/// A disk that stops taking writes and takes them again later.
+namespace kinship::store {
+namespace {
+
+/// While it lives, this process cannot write to any file beyond a size (EFBIG).
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    previous_handler_ = signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &previous_);
+    rlimit limit = previous_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &previous_);
+    signal(SIGXFSZ, previous_handler_);
+  }
+
+ private:
+  rlimit previous_{};
+  void (*previous_handler_)(int) = nullptr;
+};
+
+class StoreDisk : public testing::Test {
+ protected:
+  StoreDisk() {
+    static_cast<void>(store_->register_robot(robot_));
+    for (std::uint64_t i = 0; i < kBefore; ++i)
+      report(i);
+  }
+
+  Receipt report(std::uint64_t number) {
+    Attempt attempt = test::make_attempt(robot_.digest, "shelf", number);
+    attempt.path = test::make_path(number, test::kDof, 300);
+    return test::report(*store_, {attempt}).at(0);
+  }
+
+  static constexpr std::uint64_t kBefore = 50;
+  // Room for the shared-memory file of SQLite, none for another frame of the WAL.
+  static constexpr rlim_t kNoRoom = 40'000;
+
+  const test::TemporaryDirectory directory_;
+  const RobotRecord robot_ = test::make_robot("panda", 1);
+  const std::unique_ptr<Store> store_ = open_sqlite_store(directory_ / "s.db");
+};
+
+TEST_F(StoreDisk, AnswersTryAgainWhileItCannotWriteAndStoresAfterwards) {
+  Receipt during;
+  StoreStatus status;
+  std::size_t readable = 0;
+  {
+    const FileSizeLimit full(kNoRoom);
+    during = report(1000);
+    status = store_->status();
+    readable = store_->read_paths(robot_.digest, "shelf", 0, 1000).size();
+  }
+  EXPECT_EQ(during.status, ReceiptStatus::TryAgain);
+  EXPECT_FALSE(during.message.empty());
+  EXPECT_FALSE(status.writable);
+  EXPECT_NE(status.message.find("not writable"), std::string::npos) << status.message;
+  EXPECT_EQ(readable, kBefore);
+
+  EXPECT_EQ(report(1000).status, ReceiptStatus::Stored);
+  EXPECT_TRUE(store_->status().writable);
+  EXPECT_EQ(store_->status().paths, kBefore + 1);
+  EXPECT_EQ(report(0).status, ReceiptStatus::Duplicate);  // what was acknowledged before is there
+}
+
+TEST_F(StoreDisk, WhoWaitsForAResultIsToldOfTheFailure) {
+  std::string said;
+  {
+    const FileSizeLimit full(kNoRoom);
+    try {
+      store_->put_distribution(test::make_distribution(robot_.digest, "shelf", 1));
+    } catch (const Failure& failure) {
+      said = failure.code() == ErrorCode::Storage ? failure.what() : "another failure";
+    }
+  }
+  EXPECT_NE(said.find("SQLite"), std::string::npos) << said;
+  EXPECT_EQ(store_->put_distribution(test::make_distribution(robot_.digest, "shelf", 1)), 1U);
+}
+
+TEST_F(StoreDisk, SurvivesARowOfFailures) {
+  for (std::uint64_t round = 0; round < 5; ++round) {
+    ReceiptStatus during{};
+    {
+      const FileSizeLimit full(kNoRoom);
+      during = report(1000 + round).status;
+    }
+    EXPECT_EQ(during, ReceiptStatus::TryAgain);
+    EXPECT_EQ(report(1000 + round).status, ReceiptStatus::Stored);
+  }
+  EXPECT_EQ(store_->status().paths, kBefore + 5);
+  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 1000).size(), kBefore + 5);
+}
+
+}  // namespace
+}  // namespace kinship::store
