@@ -92,7 +92,7 @@ Eigen::MatrixXd ByteReader::matrix(std::size_t max_rows, std::size_t max_cols) {
 
 std::optional<Eigen::Isometry3d> ByteReader::pose() {
   if (integer() == 0) return std::nullopt;
-  const std::optional<Eigen::Isometry3d> T_a_b = pose_from_blob(take(sizeof(PoseArray)));
+  std::optional<Eigen::Isometry3d> T_a_b = pose_from_blob(take(sizeof(PoseArray)));
   if (!T_a_b) throw std::out_of_range("blob: seven numbers that are no pose");
   return T_a_b;
 }
