@@ -75,6 +75,8 @@ Reader Document::root() const {
   return {*json_, ""};
 }
 
+Reader Document::any_root() const { return {*json_, what_}; }
+
 void Reader::refuse(const std::string& problem) const {
   throw Failure(ErrorCode::InvalidInput, name_ + ": " + problem);
 }

@@ -72,7 +72,8 @@ class Document {
   Document& operator=(const Document&) = delete;
   ~Document();
 
-  Reader root() const;
+  Reader root() const;      ///< \throws Failure(InvalidInput) if it is no object
+  Reader any_root() const;  ///< a value of any type
 
  private:
   std::unique_ptr<nlohmann::json> json_;

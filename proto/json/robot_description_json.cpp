@@ -1,8 +1,8 @@
 #include "proto/json/robot_description_json.hpp"
 
-#include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "proto/json/name_pairs_json.hpp"
 #include "proto/json/reader.hpp"
@@ -13,31 +13,28 @@
 namespace kinship::json {
 namespace {
 
-constexpr std::array<std::string_view, 6> kAxisNames = {"x", "y", "z", "roll", "pitch", "yaw"};
-
 TaskAxes read_axes(const Reader& reader) {
-  TaskAxes axes;
-  axes.matters.fill(false);
-  for (const Reader& element : reader.elements(kAxisNames.size())) {
-    const std::string name = element.text(kMaxLabelBytes);
-    const auto found = std::find(kAxisNames.begin(), kAxisNames.end(), name);
-    if (found == kAxisNames.end())
-      element.refuse("'" + name + "' is not one of x, y, z, roll, pitch, yaw");
-    axes.matters[static_cast<std::size_t>(found - kAxisNames.begin())] = true;
-  }
-  return axes;
+  std::vector<std::string> words;
+  for (const Reader& element : reader.elements(kTaskAxisNames.size()))
+    words.push_back(element.text(kMaxLabelBytes));
+  const auto axes = parse_task_axes({words.begin(), words.end()});
+  if (!axes)
+    reader.refuse(axes.error().message);
+  return *axes;
 }
 
 RobotDescription read_description(const Reader& reader) {
   RobotDescription description;
   description.label = reader.at("label").text(kMaxLabelBytes);
-  if (const auto error = check_label(description.label)) throw Failure(*error);
+  if (const auto error = check_label(description.label))
+    throw Failure(*error);
   description.urdf = reader.at("urdf").text(kMaxUrdfBytes);
   description.base_link = reader.at("base_link").text(kMaxLinkNameBytes);
   description.tip_link = reader.at("tip_link").text(kMaxLinkNameBytes);
   if (const auto transfer = reader.find("T_tip_transfer"))
     description.T_tip_transfer = transfer->pose();
-  if (const auto axes = reader.find("task_axes")) description.task_axes = read_axes(*axes);
+  if (const auto axes = reader.find("task_axes"))
+    description.task_axes = read_axes(*axes);
   if (const auto held = reader.find("held_joints"))
     for (const std::string& joint : held->keys(kMaxHeldJoints)) {
       if (joint.empty() || joint.size() > kMaxLinkNameBytes)
@@ -60,11 +57,13 @@ std::string to_json(const RobotDescription& description) {
   object["tip_link"] = description.tip_link;
   object["T_tip_transfer"] = pose_list(description.T_tip_transfer);
   OrderedJson axes = OrderedJson::array();
-  for (std::size_t i = 0; i < kAxisNames.size(); ++i)
-    if (description.task_axes.matters[i]) axes.push_back(kAxisNames[i]);
+  for (std::size_t i = 0; i < kTaskAxisNames.size(); ++i)
+    if (description.task_axes.matters[i])
+      axes.push_back(kTaskAxisNames[i]);
   object["task_axes"] = std::move(axes);
   object["held_joints"] = OrderedJson::object();
-  for (const auto& [joint, value] : description.held_joints) object["held_joints"][joint] = value;
+  for (const auto& [joint, value] : description.held_joints)
+    object["held_joints"][joint] = value;
   object["never_colliding"] = pair_list(description.never_colliding);
   return write(object);
 }

@@ -2,6 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/result.hpp"
 
 namespace kinship {
 
@@ -14,9 +18,17 @@ struct TaskAxes {
 
   bool all() const {
     for (const bool axis : matters)
-      if (!axis) return false;
+      if (!axis)
+        return false;
     return true;
   }
 };
+
+inline constexpr std::array<std::string_view, 6> kTaskAxisNames = {"x",    "y",     "z",
+                                                                   "roll", "pitch", "yaw"};
+
+/// The axes that `names` lists.
+/// \return InvalidInput that names the word if one is no axis, or if there are none.
+Result<TaskAxes> parse_task_axes(const std::vector<std::string_view>& names);
 
 }  // namespace kinship

@@ -10,28 +10,12 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/models/text_file.hpp"
 
 namespace kinship::models {
 namespace {
 
 constexpr std::size_t kMaxChainFileBytes = 256 * 1024;
-constexpr std::array<std::string_view, 6> kAxisNames = {"x", "y", "z", "roll", "pitch", "yaw"};
-
-std::string read_text(const std::filesystem::path& file, std::size_t max_bytes) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw Failure(ErrorCode::NotFound, file.string() + ": no such file");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(max_bytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad() || (stream.fail() && !stream.eof()))
-    throw Failure(ErrorCode::InvalidInput, file.string() + ": cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > max_bytes)
-    throw Failure(ErrorCode::TooLarge,
-                  file.string() + ": exceeds " + std::to_string(max_bytes) + " bytes");
-  return text;
-}
 
 /// The fields of one chain.toml. Every method throws Failure that names file and field.
 class ChainFile {
@@ -75,16 +59,13 @@ class ChainFile {
     const toml::array* names = array("axes");
     if (names == nullptr)
       return {};
-    TaskAxes axes;
-    axes.matters.fill(false);
-    for (const toml::node& node : *names) {
-      const std::string axis = node.value<std::string>().value_or("");
-      const auto known = std::find(kAxisNames.begin(), kAxisNames.end(), axis);
-      if (known == kAxisNames.end())
-        refuse("axes", "'" + axis + "' is not one of x, y, z, roll, pitch, yaw");
-      axes.matters.at(static_cast<std::size_t>(known - kAxisNames.begin())) = true;
-    }
-    return axes;
+    std::vector<std::string> words;
+    for (const toml::node& node : *names)
+      words.push_back(node.value<std::string>().value_or(""));
+    const auto axes = parse_task_axes({words.begin(), words.end()});
+    if (!axes)
+      refuse("axes", axes.error().message);
+    return *axes;
   }
 
   std::map<std::string, double> hold() const {

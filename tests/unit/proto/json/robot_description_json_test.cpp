@@ -38,7 +38,7 @@ TEST(RobotDescriptionJson, AxesAreWrittenByName) {
   const auto refused = robot_description_from_json(
       R"({"label": "a", "urdf": "", "base_link": "b", "tip_link": "t", "task_axes": ["w"]})");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "task_axes[0]: 'w' is not one of x, y, z, roll, pitch, yaw");
+  EXPECT_EQ(refused.error().message, "task_axes: 'w' is not one of x, y, z, roll, pitch, yaw");
 }
 
 TEST(RobotDescriptionJson, AllAxesMatterIfNothingIsSaid) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+#include "client/link/client.hpp"
+
+namespace kinship::cli {
+
+struct FetchOptions {
+  std::string task;
+  std::string robot;      ///< a label, or the beginning of a digest
+  std::string placement;  ///< T_task_base, "x y z qx qy qz qw"; empty: missing
+  std::string profile = "default";
+  std::chrono::milliseconds wait{30000};
+  std::uint64_t samples = 0;  ///< configurations to draw and print as CSV, instead of the rest
+  std::uint64_t seed = 0;     ///< of these samples
+  bool json = false;
+};
+
+/// `distributions fetch`: a robot's distribution for a task, made if need be.
+/// \return kNotFound without experience, kFailed if it is still pending after `wait`.
+int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,
+                       std::ostream& err);
+
+/// A distribution for people: where it is from, what is in it.
+void print_distribution(const Distribution& distribution, std::ostream& out);
+
+}  // namespace kinship::cli

@@ -1,0 +1,187 @@
+#include "client/cli/inverse_commands.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <ostream>
+#include <random>
+
+#include "client/cli/exit_code.hpp"
+#include "client/cli/table.hpp"
+#include "proto/json/robot_answers_json.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/inverse/inverse.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr int kJointDigits = 4;
+
+double cpu_time_s() {
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+Result<kinematics::Chain> read_robot(const models::RobotArguments& arguments) {
+  const auto description = models::describe_robot(arguments);
+  if (!description)
+    return description.error();
+  return kinematics::read_chain(*description);
+}
+
+const char* reason_text(inverse::NoSolution reason) {
+  switch (reason) {
+    case inverse::NoSolution::OutOfReach:
+      return "out_of_reach";
+    case inverse::NoSolution::Limits:
+      return "limits";
+    case inverse::NoSolution::NotConverged:
+      return "not_converged";
+    default:
+      return "";
+  }
+}
+
+const char* type_text(kinematics::JointType type) {
+  switch (type) {
+    case kinematics::JointType::Revolute:
+      return "revolute";
+    case kinematics::JointType::Continuous:
+      return "continuous";
+    default:
+      return "prismatic";
+  }
+}
+
+InverseAnswer solve(const kinematics::Chain& chain, const Eigen::Isometry3d& T_base_tip,
+                    const inverse::InverseOptions& options) {
+  InverseAnswer answer;
+  answer.solver = inverse::solver_name(chain);
+  const double start_s = cpu_time_s();
+  const inverse::InverseSolutions solutions = inverse::inverse(chain, T_base_tip, options);
+  answer.time_us = 1e6 * (cpu_time_s() - start_s);
+  answer.solutions = solutions.configurations;
+  answer.reason = reason_text(solutions.reason);
+  return answer;
+}
+
+void print_answer(const InverseAnswer& answer, bool json, std::ostream& out) {
+  if (json) {
+    out << json::to_json(answer) << '\n';
+    return;
+  }
+  out << answer.solver << ": " << answer.solutions.cols() << " solutions in "
+      << number_text(answer.time_us, 0) << " us";
+  if (!answer.reason.empty())
+    out << " (" << answer.reason << ')';
+  out << '\n';
+  for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column) {
+    for (Eigen::Index joint = 0; joint < answer.solutions.rows(); ++joint)
+      out << (joint == 0 ? "  " : " ")
+          << number_text(answer.solutions(joint, column), kJointDigits);
+    out << '\n';
+  }
+}
+
+/// Solves poses that random configurations reach.
+void measure(const CheckOptions& options, const kinematics::Chain& chain, RobotCheck& check) {
+  std::mt19937_64 generator(options.seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double time_us = 0;
+  for (int i = 0; i < options.poses; ++i) {
+    Eigen::VectorXd q(chain.dof());
+    for (Eigen::Index joint = 0; joint < chain.dof(); ++joint)
+      q(joint) =
+          chain.lower()(joint) + unit(generator) * (chain.upper()(joint) - chain.lower()(joint));
+    const InverseAnswer answer = solve(chain, kinematics::T_base_tip(chain, q),
+                                       {.max_solutions = options.max_solutions,
+                                        .min_distance = options.min_distance,
+                                        .seed = options.seed + static_cast<std::uint64_t>(i)});
+    time_us += answer.time_us;
+    check.solutions_per_pose += static_cast<double>(answer.solutions.cols());
+    if (answer.solutions.cols() == 0)
+      ++check.poses_without_solution;
+  }
+  check.poses = static_cast<std::uint64_t>(options.poses);
+  check.solutions_per_pose /= std::max(1, options.poses);
+  check.time_per_pose_us = time_us / std::max(1, options.poses);
+}
+
+void print_check(const RobotCheck& check, std::ostream& out) {
+  out << "robot     " << check.robot.hex() << '\n'
+      << "chain     " << check.base_link << " -> " << check.tip_link << ", " << check.joints.size()
+      << " joints\n"
+      << "solver    " << check.solver << '\n'
+      << "inverse   " << number_text(check.solutions_per_pose, 2) << " solutions and "
+      << number_text(check.time_per_pose_us, 1) << " us (CPU) per reachable pose; "
+      << check.poses_without_solution << " of " << check.poses << " poses without a solution\n\n";
+  Table table({"JOINT", "TYPE", "LOWER", "UPPER"});
+  for (const CheckedJoint& joint : check.joints)
+    table.add_row({joint.name, joint.type, number_text(joint.lower, kJointDigits),
+                   number_text(joint.upper, kJointDigits)});
+  table.print(out);
+}
+
+int refuse(const char* command, const Error& error, std::ostream& err) {
+  err << command << ": " << error.message << '\n';
+  return exit_code(error.code);
+}
+
+}  // namespace
+
+int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err) {
+  const auto chain = read_robot(options.robot);
+  if (!chain)
+    return refuse("robots check", chain.error(), err);
+  RobotCheck check;
+  check.robot = chain->digest();
+  check.base_link = chain->base_link();
+  check.tip_link = chain->tip_link();
+  check.solver = inverse::solver_name(*chain);
+  for (const kinematics::Joint& joint : chain->joints())
+    check.joints.push_back({joint.name, type_text(joint.type), joint.lower, joint.upper});
+  measure(options, *chain, check);
+  if (options.json)
+    out << json::to_json(check) << '\n';
+  else
+    print_check(check, out);
+  return kDone;
+}
+
+int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "robots ik";
+  const auto chain = read_robot(options.robot);
+  if (!chain)
+    return refuse(kCommand, chain.error(), err);
+  const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
+                                                   .min_distance = options.min_distance,
+                                                   .seed = options.seed};
+  if (options.poses.empty()) {
+    const auto T_base_tip = models::parse_pose(options.pose);
+    if (!T_base_tip)
+      return refuse(kCommand, T_base_tip.error(), err);
+    print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
+    return kDone;
+  }
+  std::ifstream stream(options.poses);
+  if (!stream)
+    return refuse(kCommand, {ErrorCode::NotFound, "cannot read '" + options.poses.string() + "'"},
+                  err);
+  std::string line;
+  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    const auto T_base_tip = json::pose_from_json(line);
+    if (!T_base_tip)
+      return refuse(
+          kCommand,
+          {T_base_tip.error().code, "'" + options.poses.string() + "' line " +
+                                        std::to_string(number) + ": " + T_base_tip.error().message},
+          err);
+    print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
+  }
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,35 @@
+#include "client/cli/register_command.hpp"
+
+#include <ostream>
+
+#include "client/cli/exit_code.hpp"
+#include "proto/json/robot_answers_json.hpp"
+
+namespace kinship::cli {
+
+int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
+                   std::ostream& out, std::ostream& err) {
+  const auto description = models::describe_robot(arguments);
+  if (!description) {
+    err << "robots register: " << description.error().message << '\n';
+    return exit_code(description.error().code);
+  }
+  const auto reply = server.register_robot(*description);
+  if (!reply) {
+    err << "robots register: " << reply.error().message << '\n';
+    return exit_code(reply.error().code);
+  }
+  if (reply->status == RegisterStatus::Refused) {
+    err << "robots register: refused: " << reply->message << '\n';
+    return kFailed;
+  }
+  if (json)
+    out << json::to_json(*reply, description->label) << '\n';
+  else
+    out << description->label << " is robot " << reply->robot.short_hex() << ": " << reply->dof
+        << " joints, " << reply->solver
+        << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,140 @@
+#include <ostream>
+#include <vector>
+
+#include "client/cli/exit_code.hpp"
+#include "client/cli/fetch_command.hpp"
+#include "client/cli/listings.hpp"
+#include "client/cli/table.hpp"
+#include "proto/json/attempt_json.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "proto/types/enum_text.hpp"
+#include "proto/types/pose.hpp"
+
+namespace kinship::cli {
+namespace {
+
+/// Asks for one thing and prints it: its document as it came, or through `print`.
+/// \param parse  row text -> Result<Value>.
+/// \param print  Value -> nothing; writes to `out`.
+template <typename Parse, typename Print>
+int show(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
+         const std::string& command, std::ostream& out, std::ostream& err, Parse parse,
+         Print print) {
+  int code = kDone;
+  const auto rows = show_rows(server, verb, argument, command, err, code);
+  if (rows.empty())
+    return code;
+  if (json) {
+    out << rows.front() << '\n';
+    return kDone;
+  }
+  const auto value = parse(rows.front());
+  if (!value) {
+    err << command << ": cannot read the server's row: " << value.error().message << '\n';
+    return kFailed;
+  }
+  print(*value);
+  return kDone;
+}
+
+void print_robot(const RobotSummary& robot, std::ostream& out) {
+  out << "robot       " << robot.robot.hex() << '\n'
+      << "label       " << robot.label << '\n'
+      << "chain       " << robot.base_link << " -> " << robot.tip_link << ", " << robot.dof
+      << " joints\n"
+      << "solver      " << robot.solver << '\n'
+      << "experience  " << robot.paths << " paths, " << robot.attempts << " attempts\n"
+      << "registered  " << time_text(robot.registered_ms) << '\n';
+}
+
+void print_task(const TaskSummary& task, std::ostream& out) {
+  out << "task        " << task.task << '\n'
+      << "experience  " << task.paths << " paths, " << task.attempts << " attempts\n\n";
+  Table table({"ROBOT", "LABEL", "PATHS", "ATTEMPTS", "GENERATION"});
+  for (const TaskRobotSummary& robot : task.robots)
+    table.add_row({robot.robot.short_hex(), robot.label, std::to_string(robot.paths),
+                   std::to_string(robot.attempts), std::to_string(robot.generation)});
+  table.print(out);
+}
+
+void print_attempt(const Attempt& attempt, std::ostream& out) {
+  const PlanningRecord& record = attempt.record;
+  out << "report      " << attempt.report_uuid.text() << '\n'
+      << "robot       " << attempt.robot.short_hex() << '\n'
+      << "task        " << attempt.task << '\n'
+      << "machine     " << attempt.machine << '\n'
+      << "outcome     " << to_text(record.outcome) << " after " << record.collision_checks
+      << " collision checks, " << number_text(record.planning_time_s, 3) << " s of "
+      << number_text(record.time_limit_s, 1) << " s\n"
+      << "planner     " << record.planner << ' ' << record.planner_options << '\n'
+      << "arm         " << to_text(record.arm) << ", share " << number_text(record.share, 2);
+  if (record.distribution_id)
+    out << ", distribution " << record.distribution_id->short_hex() << " revision "
+        << record.distribution_revision;
+  out << '\n';
+  if (!attempt.path)
+    return;
+  out << "waypoints   " << attempt.path->size() << '\n';
+  constexpr int kDigits = 4;
+  for (Eigen::Index waypoint = 0; waypoint < attempt.path->size(); ++waypoint) {
+    for (Eigen::Index joint = 0; joint < attempt.path->dof(); ++joint)
+      out << (joint == 0 ? "  " : " ")
+          << number_text(attempt.path->waypoints()(joint, waypoint), kDigits);
+    out << '\n';
+  }
+}
+
+void print_status(const ServerStatus& status, std::ostream& out) {
+  out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
+      << "store          " << status.store_file << ", " << status.store_bytes << " bytes, schema "
+      << status.schema_version << ", epoch " << status.store_epoch.text() << '\n'
+      << "writable       " << (status.writable ? "yes" : "no")
+      << (status.storage_message.empty() ? "" : ": ") << status.storage_message << '\n'
+      << "holds          " << status.robots << " robots, " << status.tasks << " tasks, "
+      << status.paths << " paths, " << status.attempts << " attempts, " << status.distributions
+      << " distributions\n"
+      << "since start    " << status.reports_received << " reports (" << status.reports_refused
+      << " refused), " << status.fetches << " fetches (" << status.fetches_from_memory
+      << " from memory), " << status.fits << " fits\n"
+      << "queued         " << status.queued_reports << " reports, " << status.queued_fits
+      << " fits\n";
+}
+
+}  // namespace
+
+int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
+  return show(server, AdminVerb::Status, "", json, "status", out, err,
+              json::server_status_from_json,
+              [&](const ServerStatus& status) { print_status(status, out); });
+}
+
+int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,
+               std::ostream& err) {
+  return show(server, AdminVerb::ShowRobot, name, json, "robots show", out, err,
+              json::robot_summary_from_json,
+              [&](const RobotSummary& robot) { print_robot(robot, out); });
+}
+
+int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
+              std::ostream& err) {
+  return show(server, AdminVerb::ShowTask, task, json, "tasks show", out, err,
+              json::task_summary_from_json,
+              [&](const TaskSummary& summary) { print_task(summary, out); });
+}
+
+int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
+              std::ostream& err) {
+  return show(server, AdminVerb::ShowPath, id, json, "paths show", out, err,
+              json::attempt_from_json,
+              [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
+}
+
+int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                      std::ostream& err) {
+  return show(server, AdminVerb::ShowDistribution, id, json, "distributions show", out, err,
+              json::distribution_from_json,
+              [&](const Distribution& distribution) { print_distribution(distribution, out); });
+}
+
+}  // namespace kinship::cli

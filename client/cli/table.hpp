@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace kinship::cli {
+
+/// Text in aligned columns, two spaces apart; numbers to the right.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> headings);
+
+  /// \throws std::invalid_argument unless there is one cell per heading.
+  void add_row(std::vector<std::string> cells);
+
+  /// Headings and rows; nothing but `(none)` if there are no rows.
+  void print(std::ostream& out) const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;  // headings first
+};
+
+/// ISO 8601 in UTC to the second, e.g. 2026-11-21T14:03:07Z.
+std::string time_text(std::int64_t unix_ms);
+
+/// With `digits` behind the point.
+std::string number_text(double value, int digits);
+
+}  // namespace kinship::cli

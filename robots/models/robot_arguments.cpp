@@ -1,0 +1,123 @@
+#include "robots/models/robot_arguments.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/models/model_folder.hpp"
+#include "robots/models/text_file.hpp"
+
+namespace kinship::models {
+namespace {
+
+Error wrong(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  while (!text.empty()) {
+    const std::size_t begin = text.find_first_not_of(separators);
+    if (begin == std::string_view::npos)
+      break;
+    text.remove_prefix(begin);
+    const std::size_t end = std::min(text.find_first_of(separators), text.size());
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return parts;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+RobotDescription read_urdf_file(const std::filesystem::path& file) {
+  RobotDescription description;
+  description.urdf = read_text(file, kMaxUrdfBytes);
+  description.label = file.stem().string();
+  return description;
+}
+
+/// \throws Failure with what is wrong.
+void add_held_joint(std::string_view text, RobotDescription& description) {
+  const std::size_t equals = text.rfind('=');
+  const auto value =
+      equals == std::string_view::npos ? std::nullopt : parse_number(text.substr(equals + 1));
+  if (equals == 0 || !value)
+    throw Failure(ErrorCode::InvalidInput,
+                  "--hold '" + std::string(text) + "': must be JOINT=VALUE");
+  description.held_joints[std::string(text.substr(0, equals))] = *value;
+}
+
+/// \throws Failure with what is wrong.
+void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& description) {
+  if (!arguments.transfer.empty()) {
+    const auto pose = parse_pose(arguments.transfer);
+    if (!pose)
+      throw Failure(pose.error().code, "--transfer: " + pose.error().message);
+    description.T_tip_transfer = *pose;
+  }
+  if (!arguments.axes.empty()) {
+    const auto axes = parse_task_axes(split(arguments.axes, " ,"));
+    if (!axes)
+      throw Failure(axes.error().code, "--axes: " + axes.error().message);
+    description.task_axes = *axes;
+  }
+}
+
+/// \throws Failure with what is wrong.
+RobotDescription put_together(const RobotArguments& arguments) {
+  const bool is_folder = std::filesystem::is_directory(arguments.source);
+  RobotDescription description = is_folder ? read_model_folder(arguments.source).value_or_throw()
+                                           : read_urdf_file(arguments.source);
+  if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))
+    throw Failure(
+        ErrorCode::InvalidInput,
+        "'" + arguments.source.string() +
+            "' is a URDF file: needs --base LINK and --tip LINK (or give a model folder)");
+  if (!arguments.base_link.empty())
+    description.base_link = arguments.base_link;
+  if (!arguments.tip_link.empty())
+    description.tip_link = arguments.tip_link;
+  if (!arguments.label.empty())
+    description.label = arguments.label;
+  replace_frame_and_axes(arguments, description);
+  for (const std::string& held : arguments.held)
+    add_held_joint(held, description);
+  return description;
+}
+
+}  // namespace
+
+Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
+  const auto parts = split(text, " ,\t");
+  PoseArray pose{};
+  if (parts.size() != pose.size())
+    return wrong("pose '" + std::string(text) + "': has " + std::to_string(parts.size()) +
+                 " numbers, must be 7: x y z qx qy qz qw");
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const auto value = parse_number(parts[i]);
+    if (!value)
+      return wrong("pose '" + std::string(text) + "': '" + std::string(parts[i]) +
+                   "' is no number");
+    pose[i] = *value;
+  }
+  return from_pose_array(pose);
+}
+
+Result<RobotDescription> describe_robot(const RobotArguments& arguments) {
+  try {
+    return put_together(arguments);
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
+
+}  // namespace kinship::models

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
+
+namespace kinship::models {
+
+/// A robot as a command line names it: a model folder, or a URDF file with what it does not say.
+/// What is given beside a model folder replaces what its chain.toml says.
+struct RobotArguments {
+  std::filesystem::path source = {};  ///< a folder with chain.toml and robot.urdf, or a URDF file
+  std::string base_link = {};         ///< required for a URDF file
+  std::string tip_link = {};          ///< required for a URDF file
+  std::string label = {};  ///< empty: the folder's, or the URDF file's name without ending
+  std::string transfer =
+      {};                 ///< T_tip_transfer, "x y z qx qy qz qw"; empty: the folder's or identity
+  std::string axes = {};  ///< e.g. "x,y,yaw"; empty: the folder's or all six
+  std::vector<std::string> held = {};  ///< "JOINT=VALUE" each
+};
+
+/// Reads the files and puts the description together.
+/// \return InvalidInput, NotFound or TooLarge with the argument or file named.
+Result<RobotDescription> describe_robot(const RobotArguments& arguments);
+
+/// "x y z qx qy qz qw" (spaces or commas) as a pose.
+Result<Eigen::Isometry3d> parse_pose(std::string_view text);
+
+}  // namespace kinship::models

@@ -1,0 +1,99 @@
+#include "client/cli/commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "client/cli/exit_code.hpp"
+
+namespace kinship::cli {
+namespace {
+
+const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+
+struct Answer {
+  int code = -1;
+  std::string out, err;
+};
+
+Answer run_command(const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv = {"kinship"};
+  for (const std::string& argument : arguments)
+    argv.push_back(argument.c_str());
+  std::ostringstream out;
+  std::ostringstream err;
+  const int code = run(static_cast<int>(argv.size()), argv.data(), out, err);
+  return {code, out.str(), err.str()};
+}
+
+TEST(Commands, HelpIsAnAnswer) {
+  for (const std::string group : {"robots", "tasks", "paths", "distributions"}) {
+    const Answer answer = run_command({group, "list", "--help"});
+    EXPECT_EQ(answer.code, kDone);
+    EXPECT_NE(answer.out.find("Example:"), std::string::npos) << answer.out;
+  }
+}
+
+TEST(Commands, WrongUsageIsCodeTwo) {
+  EXPECT_EQ(run_command({}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"paths"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"paths", "lsit"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "fetch", "--task", "pick"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"--domain", "300", "status"}).code, kWrongUsage);
+}
+
+TEST(Commands, WithoutAServerIsCodeFour) {
+  const Answer answer = run_command({"--domain", "198", "--timeout", "0.3", "status"});
+  EXPECT_EQ(answer.code, kNoServer);
+  EXPECT_NE(answer.err.find("status: "), std::string::npos) << answer.err;
+}
+
+TEST(RobotsCheck, TellsChainSolverAndYield) {
+  const Answer answer = run_command({"robots", "check", kModels + "ur10e", "--poses", "20"});
+  EXPECT_EQ(answer.code, kDone) << answer.err;
+  EXPECT_NE(answer.out.find("6 joints"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("Levenberg-Marquardt"), std::string::npos) << answer.out;
+}
+
+TEST(RobotsCheck, NamesAMissingFile) {
+  const Answer answer =
+      run_command({"robots", "check", "/nowhere/arm.urdf", "--base", "a", "--tip", "b"});
+  EXPECT_EQ(answer.code, kNotFound);
+  EXPECT_NE(answer.err.find("/nowhere/arm.urdf"), std::string::npos) << answer.err;
+}
+
+TEST(RobotsCheck, WantsBaseAndTipForAUrdfFile) {
+  const Answer answer = run_command({"robots", "check", kModels + "ur10e/robot.urdf"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("--base"), std::string::npos) << answer.err;
+}
+
+TEST(RobotsIk, AnswersAPoseAsJson) {
+  const Answer answer = run_command({"robots", "ik", kModels + "panda", "--pose",
+                                     "0.4 0.1 0.5 1 0 0 0", "--max-solutions", "2", "--json"});
+  EXPECT_EQ(answer.code, kDone) << answer.err;
+  EXPECT_TRUE(answer.out.starts_with("{\"solver\":")) << answer.out;
+  EXPECT_NE(answer.out.find("\"reason\":null"), std::string::npos) << answer.out;
+}
+
+TEST(RobotsIk, AnUnreachablePoseIsAnAnswer) {
+  const Answer answer =
+      run_command({"robots", "ik", kModels + "panda", "--pose", "5 0 0 0 0 0 1", "--json"});
+  EXPECT_EQ(answer.code, kDone) << answer.err;
+  EXPECT_NE(answer.out.find("\"reason\":\"out_of_reach\""), std::string::npos) << answer.out;
+}
+
+TEST(RobotsIk, AnswersAFileLineByLineAndNamesABrokenLine) {
+  const std::string file = testing::TempDir() + "kinship_poses.jsonl";
+  std::ofstream(file) << "[0.4, 0.1, 0.5, 1, 0, 0, 0]\n[5, 0, 0, 0, 0, 0, 1]\n[1, 2]\n";
+  const Answer answer = run_command({"robots", "ik", kModels + "panda", "--poses", file, "--json"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_EQ(std::count(answer.out.begin(), answer.out.end(), '\n'), 2) << answer.out;
+  EXPECT_NE(answer.err.find("line 3"), std::string::npos) << answer.err;
+}
+
+}  // namespace
+}  // namespace kinship::cli
