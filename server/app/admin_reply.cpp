@@ -34,7 +34,8 @@ AdminReply to_reply(const service::AdminPage& page) {
 
 bool fits_page(const AdminReply& reply) {
   std::size_t bytes = 0;
-  for (const std::string& row : reply.rows) bytes += row.size();
+  for (const std::string& row : reply.rows)
+    bytes += row.size();
   return bytes <= kMaxPageBytes;
 }
 

@@ -25,7 +25,8 @@ void administer(service::Service& service, const AdminRequest& request,
                 const dds::Answer<AdminConversation>& answer) {
   service.administer(request, [&service, request, answer](const service::AdminPage& page) {
     const AdminReply reply = to_reply(page);
-    if (fits_page(reply) || page.rows.size() < 2) return answer(reply);
+    if (fits_page(reply) || page.rows.size() < 2)
+      return answer(reply);
     AdminRequest smaller = request;
     smaller.limit = static_cast<std::uint32_t>(page.rows.size() / 2);
     administer(service, smaller, answer);

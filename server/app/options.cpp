@@ -37,7 +37,8 @@ std::filesystem::path default_store() {
   std::filesystem::path state = variable("XDG_STATE_HOME");
   if (!state.is_absolute()) {  // the XDG specification has relative ones ignored
     const std::filesystem::path home = variable("HOME");
-    if (home.empty()) return {};
+    if (home.empty())
+      return {};
     state = home / ".local" / "state";
   }
   return state / "kinship" / "experience.db";

@@ -23,8 +23,8 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongUsage = 2;
 
-/// Options from the command line, then the environment (KINSHIP_DOMAIN), then the file of
-/// --config.
+/// Options from the command line; what is not there from the file of --config; the domain then
+/// from the environment (KINSHIP_DOMAIN).
 /// \return the options, or an exit code after help or a message was written.
 std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* argv,
                                                  std::ostream& out, std::ostream& err);

@@ -18,10 +18,12 @@ bool notify_service_manager(std::string_view state) {
   address.sun_family = AF_UNIX;
   if (path.empty() || (path[0] != '/' && path[0] != '@') || path.size() >= sizeof address.sun_path)
     return false;
-  if (path[0] == '@') path[0] = '\0';  // a name in Linux's abstract namespace
+  if (path[0] == '@')
+    path[0] = '\0';  // a name in Linux's abstract namespace
   std::memcpy(static_cast<void*>(address.sun_path), path.data(), path.size());
   const int handle = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (handle < 0) return false;
+  if (handle < 0)
+    return false;
   const ssize_t sent = sendto(
       handle, state.data(), state.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&address),
       static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size()));

@@ -43,8 +43,10 @@ SignalWatcher::SignalWatcher(std::function<void(int)> on_signal)
   end_ = eventfd(0, EFD_CLOEXEC);
   if (signals_ < 0 || end_ < 0) {
     const std::string reason = std::system_category().message(errno);
-    if (signals_ >= 0) close(signals_);
-    if (end_ >= 0) close(end_);
+    if (signals_ >= 0)
+      close(signals_);
+    if (end_ >= 0)
+      close(end_);
     throw Failure(ErrorCode::Internal, "cannot watch for signals: " + reason);
   }
   thread_ = std::thread([this] { watch(); });
@@ -60,8 +62,10 @@ SignalWatcher::~SignalWatcher() {
 void SignalWatcher::watch() const {
   std::array<pollfd, 2> files = {pollfd{signals_, POLLIN, 0}, pollfd{end_, POLLIN, 0}};
   for (;;) {
-    if (poll(files.data(), files.size(), -1) < 0 && errno != EINTR) return;
-    if ((files[1].revents & POLLIN) != 0) return;
+    if (poll(files.data(), files.size(), -1) < 0 && errno != EINTR)
+      return;
+    if ((files[1].revents & POLLIN) != 0)
+      return;
     signalfd_siginfo information{};
     if ((files[0].revents & POLLIN) != 0 &&
         read(signals_, &information, sizeof information) == ssize_t{sizeof information})

@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <future>
+#include <limits>
 #include <random>
 
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/panda_experience.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/service/fleet.hpp"
 
@@ -16,6 +20,33 @@ namespace kinship::service {
 namespace {
 
 constexpr std::uint64_t kSeed = 21;
+
+/// Median over samples of the distance of the hand from the nearest hand of the source's paths.
+double median_distance_m(const Distribution& distribution, const kinematics::Chain& chain,
+                         const std::vector<Path>& paths, const kinematics::Chain& source) {
+  std::vector<Eigen::Vector3d> hands;
+  for (const Path& path : paths)
+    for (Eigen::Index i = 0; i + 1 < path.size(); ++i)
+      for (int step = 0; step < 20; ++step) {
+        const double s = step / 20.0;
+        const Eigen::VectorXd q =
+            (1 - s) * path.waypoints().col(i) + s * path.waypoints().col(i + 1);
+        hands.push_back(kinematics::T_base_transfer(source, q).translation());
+      }
+  const mixture::Sampler sampler(*distribution.mixture, distribution.limits);
+  std::mt19937_64 generator(kSeed);
+  std::vector<double> distances_m;
+  for (int i = 0; i < 501; ++i) {
+    const Eigen::VectorXd q = sampler.sample(generator).value();
+    const Eigen::Vector3d hand = kinematics::T_base_transfer(chain, q).translation();
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& other : hands)
+      nearest_m = std::min(nearest_m, (other - hand).norm());
+    distances_m.push_back(nearest_m);
+  }
+  std::nth_element(distances_m.begin(), distances_m.begin() + 250, distances_m.end());
+  return distances_m[250];
+}
 
 class FitDistribution : public testing::Test {
  protected:
@@ -64,29 +95,31 @@ TEST_F(FitDistribution, AnotherRobotsPathsGuideTheHandAlongThem) {
   EXPECT_EQ(distribution.mixture->dimension(), 4);
   EXPECT_EQ(distribution.limits.cols(), 4);
 
-  // The distance of a sample's hand from the nearest hand of the source paths.
-  std::vector<Eigen::Vector3d> hands;
+  std::vector<Path> paths;
   for (const store::StoredPath& stored : store_->read_paths(teacher_.digest, "shelf", 0, 100))
-    for (Eigen::Index i = 0; i + 1 < stored.path.size(); ++i)
-      for (double s = 0; s < 1; s += 0.1)
-        hands.push_back(
-            kinematics::T_base_transfer(teacher_.chain, (1 - s) * stored.path.waypoints().col(i) +
-                                                            s * stored.path.waypoints().col(i + 1))
-                .translation());
-  const mixture::Sampler sampler(*distribution.mixture, distribution.limits);
-  std::mt19937_64 generator(kSeed);
-  std::vector<double> distances_m;
-  for (int i = 0; i < 501; ++i) {
-    const auto q = sampler.sample(generator);
-    ASSERT_TRUE(q);
-    const Eigen::Vector3d hand = kinematics::T_base_transfer(pupil_.chain, *q).translation();
-    double nearest_m = 10;
-    for (const Eigen::Vector3d& other : hands)
-      nearest_m = std::min(nearest_m, (other - hand).norm());
-    distances_m.push_back(nearest_m);
+    paths.push_back(stored.path);
+  EXPECT_LT(median_distance_m(distribution, pupil_.chain, paths, teacher_.chain), 0.05);
+}
+
+TEST_F(FitDistribution, APandasSweepsGuideAUr10eThatHasNeverMoved) {
+  const Digest panda = registry_.register_robot(test::model_description("panda"), 1).robot;
+  const Digest ur10e = registry_.register_robot(test::model_description("ur10e"), 1).robot;
+  std::vector<Attempt> attempts;
+  std::vector<Path> paths;
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    attempts.push_back(test::panda_attempt(panda, "shelf", i));
+    paths.push_back(*attempts.back().path);
   }
-  std::nth_element(distances_m.begin(), distances_m.begin() + 250, distances_m.end());
-  EXPECT_LT(distances_m[250], 0.05);
+  report(attempts);
+  DistributionKey key = key_of(pupil_);
+  key.robot = ur10e;
+  const Distribution distribution = fitted(key);
+  ASSERT_EQ(distribution.state, DistributionState::Ready) << distribution.reason;
+  EXPECT_EQ(distribution.mixture->dimension(), 6);
+  EXPECT_GE(distribution.sources[0].poses_solved * 10, distribution.sources[0].poses * 9);
+  EXPECT_LT(median_distance_m(distribution, test::model_chain("ur10e"), paths,
+                              test::model_chain("panda")),
+            0.15);
 }
 
 TEST_F(FitDistribution, NamesItsSourcesAndTheirGenerations) {

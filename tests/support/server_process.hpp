@@ -1,0 +1,83 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kinship::test {
+
+/// A DDS domain from 200 to 219 that no other test on this machine has while this object lives:
+/// tests run side by side, each with a server of its own.
+class ReservedDomain {
+ public:
+  ReservedDomain();  ///< waits if all are taken
+  ~ReservedDomain();
+  ReservedDomain(const ReservedDomain&) = delete;
+  ReservedDomain& operator=(const ReservedDomain&) = delete;
+
+  std::uint32_t number() const noexcept { return number_; }
+
+ private:
+  std::uint32_t number_ = 0;
+  int lock_ = -1;
+};
+
+/// A program of Kinship, from the folder of the build, that runs beside the test: its standard
+/// output is read here, its standard error goes into a file. Killed on destruction.
+class Program {
+ public:
+  /// \param arguments    without the program's name.
+  /// \param error_file   appended to; empty: the test's own standard error.
+  /// \throws std::runtime_error if it cannot be started.
+  Program(const std::string& name, const std::vector<std::string>& arguments,
+          const std::filesystem::path& error_file = {});
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  pid_t pid() const noexcept { return pid_; }
+  std::string read_line();  ///< next line of its output; empty at the end of it
+  std::string read_all();   ///< what is left of its output, up to its end
+  void signal(int number) const;
+
+  /// Waits for its end. \return exit code, or 128 + the signal that ended it.
+  int wait();
+
+ private:
+  pid_t pid_ = -1;
+  int output_ = -1;
+  int status_ = 0;
+  bool is_running_ = true;
+};
+
+/// kinshipd as a process, from its readiness line on.
+class ServerProcess {
+ public:
+  struct Options {
+    std::filesystem::path store;  ///< its log goes beside it, into <store>.log
+    std::uint32_t domain = 0;
+    std::vector<std::string> arguments;  ///< further ones
+  };
+
+  /// Returns when it serves.
+  /// \throws std::runtime_error with its log if it ends before that.
+  explicit ServerProcess(const Options& options);
+
+  const std::string& ready_line() const noexcept { return ready_line_; }
+  pid_t pid() const noexcept { return program_.pid(); }
+
+  int terminate();  ///< SIGTERM; \return exit code
+  void kill();      ///< SIGKILL; returns when it is gone
+
+ private:
+  Program program_;
+  std::string ready_line_;
+};
+
+/// The text of a file; empty if there is none.
+std::string read_text(const std::filesystem::path& file);
+
+}  // namespace kinship::test

@@ -1,0 +1,73 @@
+#include "server/app/admin_reply.hpp"
+
+#include <gtest/gtest.h>
+
+#include "proto/json/distribution_json.hpp"
+#include "proto/json/robot_description_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship::app {
+namespace {
+
+TaskSummary task(const std::string& name) {
+  TaskSummary summary;
+  summary.task = name;
+  return summary;
+}
+
+TEST(AdminReply, RowsAreTheDocumentsThatClientsRead) {
+  service::AdminPage page;
+  page.status = AdminStatus::Ok;
+  page.next_cursor = "17";
+  page.rows.emplace_back(task("shelf"));
+  page.rows.emplace_back(task("bin"));
+  const AdminReply reply = to_reply(page);
+  EXPECT_EQ(reply.status, AdminStatus::Ok);
+  EXPECT_EQ(reply.next_cursor, "17");
+  ASSERT_EQ(reply.rows.size(), 2U);
+  EXPECT_EQ(json::task_summary_from_json(reply.rows[1]).value_or_throw().task, "bin");
+}
+
+TEST(AdminReply, EveryKindOfRowIsItsOwnDocument) {
+  RobotDescription robot;
+  robot.label = "panda";
+  EXPECT_EQ(to_json(robot), json::to_json(robot));
+  EXPECT_EQ(to_json(ServerStatus{}), json::to_json(ServerStatus{}));
+  Distribution distribution;
+  distribution.state = DistributionState::Failed;
+  distribution.limits = Eigen::Matrix2Xd::Zero(2, 3);
+  EXPECT_EQ(to_json(distribution), json::to_json(distribution));
+}
+
+TEST(AdminReply, MessagesOfFailuresArePassedOn) {
+  service::AdminPage page;
+  page.status = AdminStatus::NotFound;
+  page.message = "no task 'bin'";
+  const AdminReply reply = to_reply(page);
+  EXPECT_EQ(reply.status, AdminStatus::NotFound);
+  EXPECT_EQ(reply.message, "no task 'bin'");
+}
+
+TEST(AdminReply, ARowThatNoPageCanCarryFailsWithItsSize) {
+  RobotDescription robot;
+  robot.urdf = std::string(kMaxPageBytes, 'x');
+  service::AdminPage page;
+  page.status = AdminStatus::Ok;
+  page.rows.emplace_back(robot);
+  const AdminReply reply = to_reply(page);
+  EXPECT_EQ(reply.status, AdminStatus::Failed);
+  EXPECT_TRUE(reply.rows.empty());
+  EXPECT_NE(reply.message.find("exceeds a page of"), std::string::npos) << reply.message;
+}
+
+TEST(AdminReply, TheRowsOfAPageHaveALimitTogether) {
+  AdminReply reply;
+  reply.rows = {std::string(kMaxPageBytes - 1, 'x'), "y"};
+  EXPECT_TRUE(fits_page(reply));
+  reply.rows.emplace_back("z");
+  EXPECT_FALSE(fits_page(reply));
+}
+
+}  // namespace
+}  // namespace kinship::app

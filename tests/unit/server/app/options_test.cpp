@@ -1,0 +1,96 @@
+#include "server/app/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::app {
+namespace {
+
+class Options : public testing::Test {
+ protected:
+  Options() {
+    unsetenv("KINSHIP_DOMAIN");
+    setenv("XDG_STATE_HOME", "/state", 1);
+  }
+
+  std::variant<ServerOptions, int> parse(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "kinshipd");
+    out_.str("");
+    err_.str("");
+    return parse_arguments(static_cast<int>(arguments.size()), arguments.data(), out_, err_);
+  }
+  ServerOptions good(const std::vector<const char*>& arguments) {
+    return std::get<ServerOptions>(parse(arguments));
+  }
+  int code(const std::vector<const char*>& arguments) { return std::get<int>(parse(arguments)); }
+
+  std::ostringstream out_, err_;
+};
+
+TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
+  const ServerOptions options = good({});
+  EXPECT_EQ(options.store, "/state/kinship/experience.db");
+  EXPECT_EQ(options.domain, 0U);
+  EXPECT_GE(options.workers, 1U);
+  EXPECT_EQ(options.log_level, "info");
+}
+
+TEST_F(Options, TheStoreIsUnderHomeIfXdgSaysNothingUsable) {
+  setenv("HOME", "/home/someone", 1);
+  setenv("XDG_STATE_HOME", "relative", 1);
+  EXPECT_EQ(default_store(), "/home/someone/.local/state/kinship/experience.db");
+  unsetenv("XDG_STATE_HOME");
+  EXPECT_EQ(default_store(), "/home/someone/.local/state/kinship/experience.db");
+}
+
+TEST_F(Options, ArgumentsAreTaken) {
+  const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
+                                      "--interface", "eth0", "--log-level", "error"});
+  EXPECT_EQ(options.store, "fleet.db");
+  EXPECT_EQ(options.domain, 7U);
+  EXPECT_EQ(options.workers, 4U);
+  EXPECT_EQ(options.network_interface, "eth0");
+  EXPECT_EQ(options.log_level, "error");
+}
+
+TEST_F(Options, TheCommandLineGoesBeforeTheFileAndThatBeforeTheEnvironment) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.ini").string();
+  std::ofstream(file) << "domain=3\nworkers=5\n";
+  EXPECT_EQ(good({"--config", file.c_str()}).domain, 3U);
+  EXPECT_EQ(good({"--config", file.c_str()}).workers, 5U);
+  setenv("KINSHIP_DOMAIN", "4", 1);
+  EXPECT_EQ(good({"--config", file.c_str(), "--domain", "9"}).domain, 9U);
+  EXPECT_EQ(good({"--config", file.c_str()}).domain, 3U);
+  EXPECT_EQ(good({}).domain, 4U);
+}
+
+TEST_F(Options, WrongUsageIsSaidOnTheErrorStream) {
+  for (const std::vector<const char*>& arguments :
+       std::vector<std::vector<const char*>>{{"--domain", "231"},
+                                             {"--workers", "0"},
+                                             {"--nonsense"},
+                                             {"--log-level", "loud"},
+                                             {"--config", "/no/such/file"},
+                                             {"serve"}}) {
+    EXPECT_EQ(code(arguments), kWrongUsage);
+    EXPECT_EQ(out_.str(), "");
+    EXPECT_NE(err_.str(), "");
+  }
+}
+
+TEST_F(Options, HelpAndVersionGoToTheOutput) {
+  EXPECT_EQ(code({"--help"}), kDone);
+  EXPECT_NE(out_.str().find("Examples:"), std::string::npos);
+  EXPECT_EQ(code({"--version"}), kDone);
+  EXPECT_EQ(out_.str().find("kinshipd "), 0U);
+}
+
+}  // namespace
+}  // namespace kinship::app

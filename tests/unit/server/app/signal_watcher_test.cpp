@@ -1,0 +1,29 @@
+#include "server/app/signal_watcher.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <future>
+
+namespace kinship::app {
+namespace {
+
+TEST(SignalWatcher, PassesOnSignalsAlsoThoseHeldBefore) {
+  hold_termination_signals();
+  kill(getpid(), SIGTERM);  // would end the test
+  std::promise<int> first, second;
+  int calls = 0;
+  const SignalWatcher watcher(
+      [&](int signal) { (++calls == 1 ? first : second).set_value(signal); });
+  EXPECT_EQ(first.get_future().get(), SIGTERM);
+  kill(getpid(), SIGINT);
+  EXPECT_EQ(second.get_future().get(), SIGINT);
+}
+
+TEST(SignalWatcher, EndsWithoutASignal) {
+  const SignalWatcher watcher([](int) { FAIL(); });
+}
+
+}  // namespace
+}  // namespace kinship::app
