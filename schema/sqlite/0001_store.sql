@@ -69,7 +69,7 @@ CREATE TABLE path (
   id              INTEGER PRIMARY KEY,
   task_id         INTEGER NOT NULL,
   robot_id        INTEGER NOT NULL,
-  report_uuid     BLOB NOT NULL UNIQUE CHECK (length(report_uuid) = 16),  -- of the attempt that brought it
+  report_uuid     BLOB NOT NULL CHECK (length(report_uuid) = 16),  -- of the attempt that brought it
   content_sha256  BLOB NOT NULL CHECK (length(content_sha256) = 32),  -- of dof, n and the waypoints
   waypoint_count  INTEGER NOT NULL CHECK (waypoint_count BETWEEN 2 AND 16384),
   dof             INTEGER NOT NULL CHECK (dof BETWEEN 1 AND 32),
@@ -117,7 +117,6 @@ CREATE TABLE attempt (
   FOREIGN KEY (task_id, robot_id) REFERENCES experience (task_id, robot_id),
   CHECK ((outcome = 1) = (status IN (1, 2)))
 ) STRICT;
-CREATE INDEX attempt_by_path ON attempt (path_id) WHERE path_id IS NOT NULL;
 
 -- The newest revision of each distribution. Everything but the payload is there to be listed.
 CREATE TABLE distribution (

@@ -47,7 +47,7 @@ struct StoreStatus {
   std::uint64_t bytes = 0;
   std::uint64_t queued = 0;
   bool writable = true;
-  std::string message;
+  std::string message;  ///< why not writable, what is damaged, warnings; mostly one warning or none
 };
 
 /// One page of a listing; `next_cursor` is empty on the last one.
@@ -70,13 +70,16 @@ class Store {
   /// \return Conflict if another robot has the label.
   virtual Result<RegisterStatus> register_robot(const RobotRecord& robot) = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
+  /// By label. A robot whose row is damaged is left out and counted in status().message;
+  /// find_robot() throws for it.
   virtual std::vector<RobotRecord> robots() const = 0;
 
   using ReportsDone = std::function<void(const std::vector<Receipt>&)>;
 
   /// Queues checked attempts; `done` is called on the writer thread after the commit is durable
-  /// (or failed: TryAgain), one receipt per attempt in order. What waits together is committed
-  /// together. `done` must not throw or block. Never throws Storage.
+  /// (or failed, or there is no room to wait: TryAgain), one receipt per attempt in order. What
+  /// waits together is committed together. `done` must not throw, block or wait for a write. Never
+  /// throws Storage.
   ///
   /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content the
   /// (robot, task) has already is recorded as an attempt and answered Duplicate.
@@ -94,16 +97,22 @@ class Store {
 
   /// Stores a distribution under its id with the next revision, durable on return.
   /// \return the revision given.
+  /// \throws Failure(NotFound) if its robot is not registered.
   virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
+  /// The newest revision; nothing if its payload fails its CRC.
   virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;
 
+  /// Listings: at most `limit` rows after `cursor`, which is empty for the first page. What comes
+  /// or goes between two pages neither repeats nor hides other rows. `solver` of a robot is left
+  /// empty. \throws Failure(InvalidInput) for a cursor of another listing.
   virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
   /// Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
-  /// An attempt with its path, by report UUID; unsolved ones too.
+  /// An attempt with its path, by report UUID; unsolved ones too. Without its path if that one is
+  /// damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
   virtual Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
                                                        std::string_view task,

@@ -18,7 +18,8 @@ Receipt refused(const Uuid& report_uuid, const std::string& why) {
 std::optional<Receipt> earlier_receipt(Database& database, const PreparedAttempt& prepared) {
   const Uuid& uuid = prepared.attempt.report_uuid;
   const auto query = database.cached("SELECT body_sha256 FROM attempt WHERE report_uuid = ?");
-  if (!query->bind(1, Bytes(uuid.bytes)).step()) return std::nullopt;
+  if (!query->bind(1, Bytes(uuid.bytes)).step())
+    return std::nullopt;
   if (id_of<Digest>(query->column_blob(0)) == prepared.body)
     return Receipt{uuid, ReceiptStatus::Duplicate, ""};
   return refused(uuid, "this UUID was used for another report");
@@ -31,7 +32,8 @@ struct RobotRow {
 
 std::optional<RobotRow> find_robot_row(Database& database, const Digest& robot) {
   const auto query = database.cached("SELECT id, dof FROM robot WHERE digest = ?");
-  if (!query->bind(1, Bytes(robot.bytes)).step()) return std::nullopt;
+  if (!query->bind(1, Bytes(robot.bytes)).step())
+    return std::nullopt;
   return RobotRow{query->column_integer(0), query->column_integer(1)};
 }
 
@@ -41,7 +43,8 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
   const PlanningRecord& record = attempt.record;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
   std::optional<Bytes> distribution;
-  if (record.distribution_id) distribution = Bytes(record.distribution_id->bytes);
+  if (record.distribution_id)
+    distribution = Bytes(record.distribution_id->bytes);
   database
       .cached(
           "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
@@ -66,7 +69,8 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
 std::int64_t ensure_task(Database& database, std::string_view task) {
   {
     const auto query = database.cached("SELECT id FROM task WHERE name = ?");
-    if (query->bind(1, task).step()) return query->column_integer(0);
+    if (query->bind(1, task).step())
+      return query->column_integer(0);
   }
   database.cached("INSERT INTO task (name) VALUES (?)")->bind(1, task).run();
   return database.last_insert_id();
@@ -75,7 +79,8 @@ std::int64_t ensure_task(Database& database, std::string_view task) {
 Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
   Database& database = batch.database();
   const Attempt& attempt = prepared.attempt;
-  if (std::optional<Receipt> earlier = earlier_receipt(database, prepared)) return *earlier;
+  if (std::optional<Receipt> earlier = earlier_receipt(database, prepared))
+    return *earlier;
   const std::optional<RobotRow> robot = find_robot_row(database, attempt.robot);
   if (!robot)
     return refused(attempt.report_uuid,
@@ -95,7 +100,8 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
   if (prepared.path) {
     path_id = find_path(database, key, prepared.path->content);
     status = path_id ? AttemptStatus::DuplicateContent : AttemptStatus::Stored;
-    if (!path_id) path_id = insert_path(database, key, prepared);
+    if (!path_id)
+      path_id = insert_path(database, key, prepared);
   }
   insert_row(database, prepared, key, status, path_id);
   const bool stored = status == AttemptStatus::Stored;
@@ -119,13 +125,15 @@ std::optional<ExperienceKey> find_experience(Database& database, const Digest& r
       "SELECT experience.task_id, experience.robot_id FROM experience "
       "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
       "WHERE task.name = ? AND robot.digest = ?");
-  if (!query->bind_all(task, Bytes(robot.bytes)).step()) return std::nullopt;
+  if (!query->bind_all(task, Bytes(robot.bytes)).step())
+    return std::nullopt;
   return ExperienceKey{query->column_integer(0), query->column_integer(1)};
 }
 
 std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task) {
   const std::optional<ExperienceKey> key = find_experience(database, robot, task);
-  if (!key) return 0;
+  if (!key)
+    return 0;
   const auto query =
       database.cached("SELECT generation FROM experience WHERE task_id = ? AND robot_id = ?");
   return query->bind_all(key->task_id, key->robot_id).step() ? count_of(*query, 0) : 0;
@@ -155,14 +163,16 @@ std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_
       std::string(kRecordColumns) +
       "FROM attempt JOIN robot ON robot.id = attempt.robot_id "
       "JOIN task ON task.id = attempt.task_id WHERE attempt.report_uuid = ?");
-  if (!query->bind(1, Bytes(report_uuid.bytes)).step()) return std::nullopt;
+  if (!query->bind(1, Bytes(report_uuid.bytes)).step())
+    return std::nullopt;
   AttemptRow row;
   row.attempt.report_uuid = report_uuid;
   row.attempt.robot = id_of<Digest>(query->column_blob(0));
   row.attempt.task = query->column_text(1);
   row.attempt.machine = query->column_text(2);
   row.attempt.T_task_base = pose_from_blob(query->column_blob(3));
-  if (!query->column_is_null(4)) row.path_id = query->column_integer(4);
+  if (!query->column_is_null(4))
+    row.path_id = query->column_integer(4);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;
 }

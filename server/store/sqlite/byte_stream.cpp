@@ -68,7 +68,8 @@ double ByteReader::real() {
 
 std::string ByteReader::text(std::size_t max_size) {
   const std::uint64_t size = integer();
-  if (size > max_size) throw std::out_of_range("blob: text of " + std::to_string(size) + " bytes");
+  if (size > max_size)
+    throw std::out_of_range("blob: text of " + std::to_string(size) + " bytes");
   const std::span<const std::uint8_t> taken = take(size);
   return {taken.begin(), taken.end()};
 }
@@ -86,14 +87,17 @@ Eigen::MatrixXd ByteReader::matrix(std::size_t max_rows, std::size_t max_cols) {
                             std::to_string(cols));
   const std::span<const std::uint8_t> taken = take(rows * cols * sizeof(double));
   Eigen::MatrixXd values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
-  if (!taken.empty()) std::memcpy(values.data(), taken.data(), taken.size());
+  if (!taken.empty())
+    std::memcpy(values.data(), taken.data(), taken.size());
   return values;
 }
 
 std::optional<Eigen::Isometry3d> ByteReader::pose() {
-  if (integer() == 0) return std::nullopt;
+  if (integer() == 0)
+    return std::nullopt;
   std::optional<Eigen::Isometry3d> T_a_b = pose_from_blob(take(sizeof(PoseArray)));
-  if (!T_a_b) throw std::out_of_range("blob: seven numbers that are no pose");
+  if (!T_a_b)
+    throw std::out_of_range("blob: seven numbers that are no pose");
   return T_a_b;
 }
 
@@ -105,10 +109,12 @@ std::vector<std::uint8_t> pose_blob(const Eigen::Isometry3d& T_a_b) {
 
 std::optional<Eigen::Isometry3d> pose_from_blob(std::span<const std::uint8_t> blob) {
   PoseArray pose{};
-  if (blob.size() != sizeof pose) return std::nullopt;
+  if (blob.size() != sizeof pose)
+    return std::nullopt;
   std::memcpy(pose.data(), blob.data(), sizeof pose);
   const Result<Eigen::Isometry3d> T_a_b = from_pose_array(pose);
-  if (!T_a_b) return std::nullopt;
+  if (!T_a_b)
+    return std::nullopt;
   return *T_a_b;
 }
 

@@ -30,7 +30,8 @@ Source read_source(ByteReader& in) {
 
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
   out.add(mixture.weights()).add(mixture.means());
-  for (const Eigen::MatrixXd& covariance : mixture.covariances()) out.add(covariance);
+  for (const Eigen::MatrixXd& covariance : mixture.covariances())
+    out.add(covariance);
 }
 
 Mixture read_mixture(ByteReader& in) {
@@ -43,7 +44,8 @@ Mixture read_mixture(ByteReader& in) {
 }
 
 Distribution read_distribution(ByteReader& in) {
-  if (in.integer() != kFormat) throw std::out_of_range("distribution: another format");
+  if (in.integer() != kFormat)
+    throw std::out_of_range("distribution: another format");
   Distribution distribution;
   in.bytes(distribution.id.bytes);
   distribution.task = in.text(kMaxTextBytes);
@@ -55,17 +57,22 @@ Distribution read_distribution(ByteReader& in) {
   distribution.reason = in.text(kMaxTextBytes);
   distribution.configurations = in.integer();
   distribution.limits = in.matrix(2, kMaxDof);
-  if (in.integer() != 0) distribution.held_out_score = in.real();
+  if (in.integer() != 0)
+    distribution.held_out_score = in.real();
   distribution.recommended_share = in.real();
   distribution.evidence = in.text(kMaxTextBytes);
   distribution.fitted_ms = static_cast<std::int64_t>(in.integer());
   distribution.transfer_time_s = in.real();
   distribution.fit_time_s = in.real();
   const std::uint64_t sources = in.integer();
-  if (sources > kMaxSources) throw std::out_of_range("distribution: too many sources");
-  for (std::uint64_t i = 0; i < sources; ++i) distribution.sources.push_back(read_source(in));
-  if (in.integer() != 0) distribution.mixture = read_mixture(in);
-  if (!in.at_end()) throw std::out_of_range("distribution: bytes left over");
+  if (sources > kMaxSources)
+    throw std::out_of_range("distribution: too many sources");
+  for (std::uint64_t i = 0; i < sources; ++i)
+    distribution.sources.push_back(read_source(in));
+  if (in.integer() != 0)
+    distribution.mixture = read_mixture(in);
+  if (!in.at_end())
+    throw std::out_of_range("distribution: bytes left over");
   return distribution;
 }
 
@@ -80,14 +87,17 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   out.add(distribution.reason).add(distribution.configurations);
   out.add(Eigen::MatrixXd(distribution.limits));
   out.add(std::uint64_t{distribution.held_out_score ? 1U : 0U});
-  if (distribution.held_out_score) out.add(*distribution.held_out_score);
+  if (distribution.held_out_score)
+    out.add(*distribution.held_out_score);
   out.add(distribution.recommended_share).add(distribution.evidence);
   out.add(static_cast<std::uint64_t>(distribution.fitted_ms));
   out.add(distribution.transfer_time_s).add(distribution.fit_time_s);
   out.add(std::uint64_t{distribution.sources.size()});
-  for (const Source& source : distribution.sources) add_source(out, source);
+  for (const Source& source : distribution.sources)
+    add_source(out, source);
   out.add(std::uint64_t{distribution.mixture ? 1U : 0U});
-  if (distribution.mixture) add_mixture(out, *distribution.mixture);
+  if (distribution.mixture)
+    add_mixture(out, *distribution.mixture);
   return out.bytes();
 }
 

@@ -20,7 +20,8 @@ std::uint64_t upsert_distribution(Database& database, const Distribution& distri
     robot_id = query->column_integer(0);
   }
   std::uint64_t paths = 0;
-  for (const Source& source : distribution.sources) paths += source.paths;
+  for (const Source& source : distribution.sources)
+    paths += source.paths;
   const std::vector<std::uint8_t> payload = encode_distribution(distribution);
   const auto components = distribution.mixture ? distribution.mixture->size() : 0;
   const auto insert = database.cached(
@@ -48,11 +49,14 @@ std::uint64_t upsert_distribution(Database& database, const Distribution& distri
 DistributionRead select_distribution(Database& database, const Digest& id) {
   const auto query =
       database.cached("SELECT revision, crc32c, payload FROM distribution WHERE digest = ?");
-  if (!query->bind(1, Bytes(id.bytes)).step()) return {};
+  if (!query->bind(1, Bytes(id.bytes)).step())
+    return {};
   const Bytes payload = query->column_blob(2);
-  if (crc32c(payload) != query->column_integer(1)) return {std::nullopt, true};
+  if (crc32c(payload) != query->column_integer(1))
+    return {std::nullopt, true};
   std::optional<Distribution> distribution = decode_distribution(payload);
-  if (!distribution || distribution->id != id) return {std::nullopt, true};
+  if (!distribution || distribution->id != id)
+    return {std::nullopt, true};
   distribution->revision = count_of(*query, 0);
   return {std::move(distribution), false};
 }

@@ -43,7 +43,8 @@ Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cur
 /// "12.3.4567": task, robot and path of the last row shown; zeros at the beginning.
 std::array<std::int64_t, 3> parse_path_cursor(std::string_view cursor) {
   std::array<std::int64_t, 3> key{};
-  if (cursor.empty()) return key;
+  if (cursor.empty())
+    return key;
   const char* position = cursor.data();
   const char* const end = cursor.data() + cursor.size();
   for (std::size_t i = 0; i < key.size(); ++i) {
@@ -118,14 +119,18 @@ DistributionSummary read_distribution_summary(const Statement& row) {
 /// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
 std::string filters(const std::optional<Digest>& robot, std::string_view task) {
   std::string sql;
-  if (robot) sql += " AND robot.digest = ?1";
-  if (!task.empty()) sql += " AND task.name = ?2";
+  if (robot)
+    sql += " AND robot.digest = ?1";
+  if (!task.empty())
+    sql += " AND task.name = ?2";
   return sql;
 }
 
 void bind_filters(Statement& query, const std::optional<Digest>& robot, std::string_view task) {
-  if (robot) query.bind(1, Bytes(robot->bytes));
-  if (!task.empty()) query.bind(2, task);
+  if (robot)
+    query.bind(1, Bytes(robot->bytes));
+  if (!task.empty())
+    query.bind(2, task);
 }
 
 }  // namespace
@@ -166,7 +171,8 @@ Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std
 
 std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task) {
   const auto query = database.cached("SELECT id, name FROM task WHERE name = ?");
-  if (!query->bind(1, task).step()) return std::nullopt;
+  if (!query->bind(1, task).step())
+    return std::nullopt;
   return read_task(database, *query);
 }
 
@@ -199,7 +205,8 @@ Page<DistributionSummary> page_of_distributions(Database& database,
   Digest after;
   if (!cursor.empty()) {
     const std::optional<Digest> parsed = Digest::from_hex(cursor);
-    if (!parsed) refuse_cursor(cursor);
+    if (!parsed)
+      refuse_cursor(cursor);
     after = *parsed;
   }
   const auto query = database.cached(

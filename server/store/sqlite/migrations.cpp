@@ -34,11 +34,14 @@ std::int64_t checked_version(Database& database, const std::filesystem::path& fi
   try {
     application = database.integer("PRAGMA application_id");
   } catch (const SqliteError& error) {
-    if ((error.sqlite_code() & 0xFF) == SQLITE_NOTADB) refuse(file, "is no SQLite database");
+    if ((error.sqlite_code() & 0xFF) == SQLITE_NOTADB)
+      refuse(file, "is no SQLite database");
     throw;
   }
-  if (application == 0 && database.integer("SELECT count(*) FROM sqlite_master") == 0) return 0;
-  if (application != kApplicationId) refuse(file, "is a database, but no Kinship store");
+  if (application == 0 && database.integer("SELECT count(*) FROM sqlite_master") == 0)
+    return 0;
+  if (application != kApplicationId)
+    refuse(file, "is a database, but no Kinship store");
   const std::int64_t version = database.integer("PRAGMA user_version");
   const auto newest = static_cast<std::int64_t>(migrations.size());
   if (version > newest)
@@ -54,7 +57,8 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
   std::int64_t expected = 0;
   while (applied.step()) {
     ++expected;
-    if (applied.column_integer(0) != expected || expected > version) break;
+    if (applied.column_integer(0) != expected || expected > version)
+      break;
     const Digest known = text_digest(migrations[static_cast<std::size_t>(expected - 1)]);
     const Bytes stored = applied.column_blob(1);
     if (!std::equal(stored.begin(), stored.end(), known.bytes.begin(), known.bytes.end()))
@@ -70,7 +74,8 @@ void sync_file(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
   const int reason = errno;
-  if (descriptor >= 0) close(descriptor);
+  if (descriptor >= 0)
+    close(descriptor);
   if (!synced)
     throw Failure(ErrorCode::Storage, "backup '" + file.string() + "': " + std::strerror(reason));
 }
@@ -102,10 +107,13 @@ void apply(Database& database, const Migration& migration) {
 void migrate(Database& database, const std::filesystem::path& file,
              std::span<const Migration> migrations) {
   const std::int64_t version = checked_version(database, file, migrations);
-  if (version > 0) check_history(database, file, version, migrations);
+  if (version > 0)
+    check_history(database, file, version, migrations);
   const auto done = static_cast<std::size_t>(version);
-  if (version > 0 && done < migrations.size()) back_up(database, file, version);
-  for (const Migration& migration : migrations.subspan(done)) apply(database, migration);
+  if (version > 0 && done < migrations.size())
+    back_up(database, file, version);
+  for (const Migration& migration : migrations.subspan(done))
+    apply(database, migration);
 }
 
 void check_schema(Database& database, const std::filesystem::path& file,

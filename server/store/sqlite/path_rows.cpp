@@ -35,14 +35,17 @@ struct PathContent {
 std::optional<StoredPath> read_row(const Statement& row) {
   const PathContent content{row.column_blob(1),    row.column_blob(2),    row.column_integer(3),
                             row.column_integer(4), row.column_integer(5), row.column_blob(7)};
-  if (content.crc() != row.column_integer(6)) return std::nullopt;
+  if (content.crc() != row.column_integer(6))
+    return std::nullopt;
   std::optional<Path> path =
       decode_waypoints(content.dof, content.waypoint_count, content.encoding, content.waypoints);
-  if (!path) return std::nullopt;
+  if (!path)
+    return std::nullopt;
   std::optional<Eigen::Isometry3d> T_task_base;
   if (!row.column_is_null(2)) {
     T_task_base = pose_from_blob(content.T_task_base);
-    if (!T_task_base) return std::nullopt;
+    if (!T_task_base)
+      return std::nullopt;
   }
   return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
                     std::move(*path)};
@@ -63,7 +66,8 @@ std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& k
       "SELECT id FROM path "
       "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND damaged = 0");
   query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
-  if (!query->step()) return std::nullopt;
+  if (!query->step())
+    return std::nullopt;
   return query->column_integer(0);
 }
 
@@ -96,7 +100,8 @@ PathsRead select_paths(Database& database, const ExperienceKey& key, std::int64_
                       "WHERE task_id = ? AND robot_id = ? AND id > ? AND damaged = 0 ORDER BY id");
   query->bind_all(key.task_id, key.robot_id, after_id);
   PathsRead read;
-  while (std::ssize(read.paths) < limit && query->step()) take_row(*query, read);
+  while (std::ssize(read.paths) < limit && query->step())
+    take_row(*query, read);
   return read;
 }
 
@@ -104,7 +109,8 @@ PathsRead select_path(Database& database, std::int64_t id) {
   const auto query = database.cached(std::string(kColumns) + "WHERE id = ? AND damaged = 0");
   query->bind(1, id);
   PathsRead read;
-  if (query->step()) take_row(*query, read);
+  if (query->step())
+    take_row(*query, read);
   return read;
 }
 
@@ -112,11 +118,13 @@ std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
   ExperienceKey key;
   {
     const auto query = database.cached("SELECT task_id, robot_id FROM path WHERE id = ?");
-    if (!query->bind(1, id).step()) return std::nullopt;
+    if (!query->bind(1, id).step())
+      return std::nullopt;
     key = {query->column_integer(0), query->column_integer(1)};
   }
   database.cached("UPDATE path SET damaged = 1 WHERE id = ? AND damaged = 0")->bind(1, id).run();
-  if (database.changed_rows() == 0) return std::nullopt;
+  if (database.changed_rows() == 0)
+    return std::nullopt;
   database.cached("UPDATE experience SET paths = paths - 1 WHERE task_id = ? AND robot_id = ?")
       ->bind_all(key.task_id, key.robot_id)
       .run();

@@ -44,7 +44,8 @@ std::unique_ptr<Database> ReaderPool::take() {
 void ReaderPool::give_back(std::unique_ptr<Database> database) {
   const std::lock_guard lock(mutex_);
   --lent_;
-  if (database) idle_.push_back(std::move(database));
+  if (database)
+    idle_.push_back(std::move(database));
   changed_.notify_all();
 }
 

@@ -16,7 +16,8 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared) {
     savepoint.keep();
     return receipt;
   } catch (const SqliteError& error) {
-    if (!error.concerns_one_row()) throw;
+    if (!error.concerns_one_row())
+      throw;
     return {prepared.attempt.report_uuid, ReceiptStatus::Refused, error.what()};
   }
 }
@@ -29,6 +30,7 @@ ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
     const Uuid uuid = attempt.report_uuid;
     Result<PreparedAttempt> prepared = prepare(std::move(attempt));
     if (prepared) {
+      bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0);
       prepared_.emplace_back(std::move(prepared).value());
       receipts_.push_back({uuid, ReceiptStatus::TryAgain, ""});
     } else {
@@ -38,9 +40,20 @@ ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
   }
 }
 
+std::unique_ptr<ReportItem> ReportItem::declined(const std::vector<Attempt>& attempts,
+                                                 Store::ReportsDone done, const std::string& why) {
+  auto item = std::make_unique<ReportItem>(std::vector<Attempt>(), std::move(done));
+  for (const Attempt& attempt : attempts) {
+    item->prepared_.emplace_back(std::nullopt);
+    item->receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, why});
+  }
+  return item;
+}
+
 void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
-    if (prepared_[i]) receipts_[i] = insert_alone(batch, *prepared_[i]);
+    if (prepared_[i])
+      receipts_[i] = insert_alone(batch, *prepared_[i]);
 }
 
 void ReportItem::finish(const Error* error) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "server/store/sqlite/prepared_attempt.hpp"
@@ -14,13 +17,19 @@ class ReportItem : public WriteItem {
   /// Encodes and hashes on the caller's thread, which spares the writer's.
   ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done);
 
+  /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
+  static std::unique_ptr<ReportItem> declined(const std::vector<Attempt>& attempts,
+                                              Store::ReportsDone done, const std::string& why);
+
   std::size_t weight() const override { return receipts_.size(); }
+  std::size_t bytes() const override { return bytes_; }
   void apply(Batch& batch) override;
   void finish(const Error* error) override;
 
  private:
-  std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: refused already
+  std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: answered already
   std::vector<Receipt> receipts_;
+  std::size_t bytes_ = 0;
   Store::ReportsDone done_;
 };
 

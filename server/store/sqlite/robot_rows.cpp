@@ -16,13 +16,15 @@ constexpr std::string_view kColumns =
 std::int64_t mask_of(const TaskAxes& axes) {
   std::int64_t mask = 0;
   for (std::size_t i = 0; i < axes.matters.size(); ++i)
-    if (axes.matters[i]) mask |= std::int64_t{1} << i;
+    if (axes.matters[i])
+      mask |= std::int64_t{1} << i;
   return mask;
 }
 
 TaskAxes axes_of(std::int64_t mask) {
   TaskAxes axes;
-  for (std::size_t i = 0; i < axes.matters.size(); ++i) axes.matters[i] = ((mask >> i) & 1) != 0;
+  for (std::size_t i = 0; i < axes.matters.size(); ++i)
+    axes.matters[i] = ((mask >> i) & 1) != 0;
   return axes;
 }
 
@@ -33,8 +35,10 @@ std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer) {
   all.add(Bytes(robot.digest.bytes)).add(std::uint64_t{robot.dof}).add(description.label);
   all.add(description.urdf).add(description.base_link).add(description.tip_link);
   all.add(T_tip_transfer).add(static_cast<std::uint64_t>(mask_of(description.task_axes)));
-  for (const auto& [joint, position] : description.held_joints) all.add(joint).add(position);
-  for (const auto& [a, b] : description.never_colliding) all.add(a).add(b);
+  for (const auto& [joint, position] : description.held_joints)
+    all.add(joint).add(position);
+  for (const auto& [a, b] : description.never_colliding)
+    all.add(a).add(b);
   return crc32c(all.bytes());
 }
 
@@ -54,7 +58,8 @@ void select_parts(Database& database, std::int64_t robot_id, RobotDescription& d
   const auto held =
       database.cached("SELECT joint, position FROM robot_held_joint WHERE robot_id = ?");
   held->bind(1, robot_id);
-  while (held->step()) description.held_joints.emplace(held->column_text(0), held->column_real(1));
+  while (held->step())
+    description.held_joints.emplace(held->column_text(0), held->column_real(1));
   const auto pairs = database.cached(
       "SELECT link_a, link_b FROM robot_never_colliding WHERE robot_id = ? ORDER BY ordinal");
   pairs->bind(1, robot_id);
@@ -75,9 +80,11 @@ std::optional<RobotRecord> read_row(Database& database, const Statement& row) {
   description.task_axes = axes_of(row.column_integer(7));
   description.urdf = row.column_text(10);
   select_parts(database, row.column_integer(0), description);
-  if (robot_crc(robot, row.column_blob(6)) != row.column_integer(9)) return std::nullopt;
+  if (robot_crc(robot, row.column_blob(6)) != row.column_integer(9))
+    return std::nullopt;
   const std::optional<Eigen::Isometry3d> T_tip_transfer = pose_from_blob(row.column_blob(6));
-  if (!T_tip_transfer) return std::nullopt;
+  if (!T_tip_transfer)
+    return std::nullopt;
   description.T_tip_transfer = *T_tip_transfer;
   return robot;
 }
@@ -115,7 +122,8 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
 
 std::optional<RobotRecord> select_robot(Database& database, const Digest& robot) {
   const auto query = database.cached(std::string(kColumns) + "WHERE digest = ?");
-  if (!query->bind(1, Bytes(robot.bytes)).step()) return std::nullopt;
+  if (!query->bind(1, Bytes(robot.bytes)).step())
+    return std::nullopt;
   std::optional<RobotRecord> record = read_row(database, *query);
   if (!record)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged");

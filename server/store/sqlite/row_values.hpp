@@ -40,13 +40,15 @@ constexpr DistributionState state_of(std::int64_t code) {
 template <typename Id>
 Id id_of(Bytes column) {
   Id id;
-  if (column.size() == id.bytes.size()) std::copy(column.begin(), column.end(), id.bytes.begin());
+  if (column.size() == id.bytes.size())
+    std::copy(column.begin(), column.end(), id.bytes.begin());
   return id;
 }
 
 template <typename Id>
 std::optional<Id> optional_id_of(const Statement& row, int column) {
-  if (row.column_is_null(column)) return std::nullopt;
+  if (row.column_is_null(column))
+    return std::nullopt;
   return id_of<Id>(row.column_blob(column));
 }
 
@@ -57,12 +59,14 @@ inline std::uint64_t count_of(const Statement& row, int column) {
 /// The blob of a pose that may be missing; bind it through blob_or_null().
 inline std::optional<std::vector<std::uint8_t>> optional_pose_blob(
     const std::optional<Eigen::Isometry3d>& T_a_b) {
-  if (!T_a_b) return std::nullopt;
+  if (!T_a_b)
+    return std::nullopt;
   return pose_blob(*T_a_b);
 }
 
 inline std::optional<Bytes> blob_or_null(const std::optional<std::vector<std::uint8_t>>& blob) {
-  if (!blob) return std::nullopt;
+  if (!blob)
+    return std::nullopt;
   return Bytes(*blob);
 }
 

@@ -70,7 +70,8 @@ std::filesystem::path prepared_location(const std::filesystem::path& file) {
   const std::filesystem::path directory = absolute.parent_path();
   if (!std::filesystem::exists(directory)) {
     std::filesystem::create_directories(directory, error);
-    if (!error) std::filesystem::permissions(directory, std::filesystem::perms::owner_all, error);
+    if (!error)
+      std::filesystem::permissions(directory, std::filesystem::perms::owner_all, error);
   }
   if (!error && !std::filesystem::is_directory(directory))
     error = std::make_error_code(std::errc::not_a_directory);
@@ -88,20 +89,24 @@ Uuid ensure_epoch(Database& database) {
   std::optional<Uuid> epoch;
   {
     const auto query = database.cached("SELECT value FROM setting WHERE key = 'epoch'");
-    if (query->step()) epoch = Uuid::parse(query->column_text(0));
+    if (query->step())
+      epoch = Uuid::parse(query->column_text(0));
   }
   transaction.commit();
-  if (!epoch) throw Failure(ErrorCode::Storage, "store: its epoch is no UUID");
+  if (!epoch)
+    throw Failure(ErrorCode::Storage, "store: its epoch is no UUID");
   return *epoch;
 }
 
 class SqliteStore : public Store {
  public:
-  explicit SqliteStore(const std::filesystem::path& file)
-      : file_(prepared_location(file)), lock_(file_), readers_(file_) {
+  SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
+      : options_(options), file_(prepared_location(file)), lock_(file_), readers_(file_) {
     std::unique_ptr<Database> database = open_writer(file_);
     epoch_ = ensure_epoch(*database);
-    writer_ = std::make_unique<Writer>(std::move(database), [this] { return reopen(); });
+    writer_ = std::make_unique<Writer>(
+        std::move(database), [this] { return reopen(); },
+        WriterOptions{.retry_after = options.retry_after});
   }
   // Readers close before the writer does, whose last act is to empty the WAL.
   ~SqliteStore() override { readers_.suspend(); }
@@ -115,7 +120,8 @@ class SqliteStore : public Store {
     status.queued = writer_->queued();
     const std::string trouble = writer_->trouble();
     status.writable = trouble.empty();
-    if (!trouble.empty()) status.message = "not writable: " + trouble + "; ";
+    if (!trouble.empty())
+      status.message = "not writable: " + trouble + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
@@ -124,7 +130,8 @@ class SqliteStore : public Store {
     if (sqlite3_libversion_number() < kFixed)
       status.message += std::string("SQLite ") + sqlite3_libversion() +
                         " is older than 3.51.3: no other program may write to the store; ";
-    if (!status.message.empty()) status.message.resize(status.message.size() - 2);
+    if (!status.message.empty())
+      status.message.resize(status.message.size() - 2);
     return status;
   }
 
@@ -145,7 +152,11 @@ class SqliteStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+    if (writer_->queued_bytes() > options_.max_queued_bytes)
+      writer_->submit(ReportItem::declined(attempts, std::move(done),
+                                           "the queue of reports is full, try again"));
+    else
+      writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
   }
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override {
@@ -162,7 +173,8 @@ class SqliteStore : public Store {
                                      std::int64_t after_id, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
     const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
-    if (!key) return {};
+    if (!key)
+      return {};
     constexpr std::size_t kMaxPaths = 1'000'000;
     return undamaged(select_paths(*reader, *key, after_id,
                                   static_cast<std::int64_t>(std::min(limit, kMaxPaths))));
@@ -175,7 +187,8 @@ class SqliteStore : public Store {
   std::optional<Distribution> find_distribution(const Digest& id) const override {
     const ReaderPool::Lease reader = readers_.lease();
     std::optional<Distribution> distribution = select_distribution(*reader, id).distribution;
-    if (distribution) distribution->store_epoch = epoch_;
+    if (distribution)
+      distribution->store_epoch = epoch_;
     return distribution;
   }
 
@@ -203,7 +216,8 @@ class SqliteStore : public Store {
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
     std::optional<AttemptRow> row = select_attempt(*reader, report_uuid);
-    if (!row) return std::nullopt;
+    if (!row)
+      return std::nullopt;
     if (row->path_id)
       for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
         row->attempt.path = std::move(stored.path);
@@ -246,6 +260,7 @@ class SqliteStore : public Store {
     }
   }
 
+  const SqliteOptions options_;
   const std::filesystem::path file_;
   const LockFile lock_;
   mutable ReaderPool readers_;
@@ -256,8 +271,9 @@ class SqliteStore : public Store {
 
 }  // namespace
 
-std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file) {
-  return std::make_unique<SqliteStore>(file);
+std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file,
+                                         const SqliteOptions& options) {
+  return std::make_unique<SqliteStore>(file, options);
 }
 
 }  // namespace kinship::store

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 
@@ -7,10 +9,17 @@
 
 namespace kinship::store {
 
+struct SqliteOptions {
+  /// Reports that come while more than this waits to be written are answered TryAgain.
+  std::size_t max_queued_bytes = std::size_t{64} << 20U;
+  std::chrono::milliseconds retry_after{1000};  ///< between attempts to reopen a failed database
+};
+
 /// Opens (or makes) a store in an SQLite file: takes the lock file, migrates an older schema,
 /// starts the writer thread. Destroying the store drains the queue.
 /// \throws Failure(Unavailable) if another server has it open; Failure(Storage) if the file is
 ///         no Kinship store, is newer than this binary, or cannot be opened.
-std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file);
+std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file,
+                                         const SqliteOptions& options = {});
 
 }  // namespace kinship::store

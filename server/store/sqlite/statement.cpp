@@ -19,7 +19,8 @@ Statement::Statement(sqlite3& connection, std::string_view sql) : connection_(&c
 }
 
 void Statement::check(int code) {
-  if (code != SQLITE_OK) throw_sqlite_error(*connection_, sqlite3_sql(statement_.get()));
+  if (code != SQLITE_OK)
+    throw_sqlite_error(*connection_, sqlite3_sql(statement_.get()));
 }
 
 Statement& Statement::bind(int index, std::int64_t value) {
@@ -54,8 +55,10 @@ Statement& Statement::bind(int index, std::nullopt_t) {
 
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
-  if (code == SQLITE_ROW) return true;
-  if (code == SQLITE_DONE) return false;
+  if (code == SQLITE_ROW)
+    return true;
+  if (code == SQLITE_DONE)
+    return false;
   throw_sqlite_error(*connection_, sqlite3_sql(statement_.get()));
 }
 

@@ -90,7 +90,8 @@ std::optional<Path> decode_waypoints(std::int64_t dof, std::int64_t waypoint_cou
   const auto raw_size = static_cast<std::size_t>(dof * waypoint_count) * sizeof(double);
   Eigen::MatrixXd waypoints;
   if (encoding == static_cast<std::int64_t>(WaypointEncoding::Raw)) {
-    if (bytes.size() != raw_size) return std::nullopt;
+    if (bytes.size() != raw_size)
+      return std::nullopt;
     waypoints.resize(dof, waypoint_count);
     std::memcpy(waypoints.data(), bytes.data(), raw_size);
   } else if (encoding == static_cast<std::int64_t>(WaypointEncoding::Delta)) {
@@ -101,7 +102,8 @@ std::optional<Path> decode_waypoints(std::int64_t dof, std::int64_t waypoint_cou
   } else {
     return std::nullopt;
   }
-  if (!waypoints.allFinite()) return std::nullopt;
+  if (!waypoints.allFinite())
+    return std::nullopt;
   return Path(std::move(waypoints));
 }
 

@@ -15,7 +15,8 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   try {
     item.apply(batch);
   } catch (const SqliteError& error) {
-    if (!error.concerns_one_row()) throw;
+    if (!error.concerns_one_row())
+      throw;
     return error.error();
   } catch (const Failure& failure) {
     return failure.error();
@@ -56,6 +57,7 @@ void Writer::submit(std::unique_ptr<WriteItem> item) {
   {
     const std::lock_guard lock(mutex_);
     queued_weight_ += item->weight();
+    queued_bytes_ += item->bytes();
     queue_.push_back(std::move(item));
   }
   wake_.notify_one();
@@ -64,6 +66,11 @@ void Writer::submit(std::unique_ptr<WriteItem> item) {
 std::size_t Writer::queued() const {
   const std::lock_guard lock(mutex_);
   return queued_weight_;
+}
+
+std::size_t Writer::queued_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return queued_bytes_;
 }
 
 std::string Writer::trouble() const {
@@ -78,12 +85,14 @@ void Writer::run() {
       const Error error{ErrorCode::Storage, trouble()};
       finish_all(items, &error);
       const std::lock_guard lock(mutex_);
-      if (stopping_ && queue_.empty()) return;
+      if (stopping_ && queue_.empty())
+        return;
       continue;
     }
     if (items.empty()) {
       const std::lock_guard lock(mutex_);
-      if (!stopping_ || !queue_.empty()) continue;
+      if (!stopping_ || !queue_.empty())
+        continue;
       break;
     }
     write(items);
@@ -103,8 +112,10 @@ Writer::Items Writer::take_batch() {
   std::size_t weight = 0;
   while (!queue_.empty()) {
     const std::size_t next = queue_.front()->weight();
-    if (!items.empty() && weight + next > options_.batch_cap) break;
+    if (!items.empty() && weight + next > options_.batch_cap)
+      break;
     weight += next;
+    queued_bytes_ -= queue_.front()->bytes();
     items.push_back(std::move(queue_.front()));
     queue_.pop_front();
   }
@@ -117,7 +128,8 @@ void Writer::write(Items& items) {
   try {
     Transaction transaction(*database_, Transaction::Kind::Write);
     Batch batch(*database_);
-    for (std::size_t i = 0; i < items.size(); ++i) errors[i] = apply_alone(*items[i], batch);
+    for (std::size_t i = 0; i < items.size(); ++i)
+      errors[i] = apply_alone(*items[i], batch);
     batch.raise_generations();
     transaction.commit();
   } catch (const Failure& failure) {
@@ -132,7 +144,8 @@ void Writer::write(Items& items) {
 }
 
 void Writer::finish_all(Items& items, const Error* error) {
-  for (const auto& item : items) item->finish(error);
+  for (const auto& item : items)
+    item->finish(error);
 }
 
 void Writer::fail(const Failure& failure) {

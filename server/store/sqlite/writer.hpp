@@ -43,6 +43,7 @@ class WriteItem {
   virtual ~WriteItem() = default;
 
   virtual std::size_t weight() const { return 1; }  ///< counts towards the cap of a batch
+  virtual std::size_t bytes() const { return 0; }   ///< that it occupies while it waits
 
   /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that
   /// does not concern one row: that one undoes the batch.
@@ -77,7 +78,8 @@ class Writer {
 
   void submit(std::unique_ptr<WriteItem> item);
 
-  std::size_t queued() const;  ///< weight of what waits
+  std::size_t queued() const;        ///< weight of what waits
+  std::size_t queued_bytes() const;  ///< and its size
   /// Empty while all is well; else why nothing is written.
   std::string trouble() const;
 
@@ -100,6 +102,7 @@ class Writer {
   std::condition_variable wake_;
   std::deque<std::unique_ptr<WriteItem>> queue_;  // guarded by mutex_, like all below
   std::size_t queued_weight_ = 0;
+  std::size_t queued_bytes_ = 0;
   std::string trouble_;
   bool stopping_ = false;
 

@@ -23,7 +23,8 @@ TEST(Crc32c, MatchesThePublishedVectors) {  // RFC 3720, appendix B.4, and the u
 TEST(Crc32c, OfTwoPartsIsThatOfTheWhole) {
   std::mt19937 generator(1);
   std::vector<std::uint8_t> bytes(101);
-  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(generator());
+  for (std::uint8_t& byte : bytes)
+    byte = static_cast<std::uint8_t>(generator());
   const std::span<const std::uint8_t> all(bytes);
   for (std::size_t cut = 0; cut <= bytes.size(); ++cut)
     EXPECT_EQ(crc32c(all.subspan(cut), crc32c(all.first(cut))), crc32c(all)) << cut;

@@ -15,7 +15,8 @@ namespace {
 /// What another process says when it wants the lock; empty: it got it.
 std::string refusal_of_a_child(const std::filesystem::path& file) {
   int ends[2] = {};
-  if (pipe(ends) != 0) return "no pipe";
+  if (pipe(ends) != 0)
+    return "no pipe";
   const pid_t child = fork();
   if (child == 0) {
     std::string said;

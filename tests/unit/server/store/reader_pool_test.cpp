@@ -68,15 +68,18 @@ TEST_F(ReaderPoolTest, MoreThreadsThanConnectionsTakeTurns) {
   for (int i = 0; i < 16; ++i)
     threads.emplace_back([&] {
       for (int k = 0; k < 20; ++k)
-        if (pool_.lease()->integer("SELECT count(*) + 1 FROM t") == 1) ++read;
+        if (pool_.lease()->integer("SELECT count(*) + 1 FROM t") == 1)
+          ++read;
     });
-  for (std::thread& thread : threads) thread.join();
+  for (std::thread& thread : threads)
+    thread.join();
   EXPECT_EQ(read, 16 * 20);
 }
 
 TEST_F(ReaderPoolTest, AFailedOpeningIsNotLentForGood) {
   ReaderPool missing(directory_ / "missing.db");
-  for (int i = 0; i < 10; ++i) EXPECT_THROW(missing.lease(), SqliteError);  // more than it lends
+  for (int i = 0; i < 10; ++i)
+    EXPECT_THROW(missing.lease(), SqliteError);  // more than it lends
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <future>
 
 #include "server/store/sqlite/database.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
@@ -134,6 +135,40 @@ TEST_F(SqliteStoreTest, ServesNoDamagedRobot) {
   EXPECT_TRUE(store_->robots().empty());
   EXPECT_THROW(store_->find_robot(robot_.digest), Failure);
   EXPECT_NE(store_->status().message.find("1 damaged robot"), std::string::npos);
+}
+
+TEST_F(SqliteStoreTest, AnswersTryAgainWhenTooMuchWaits) {
+  store_ = open_sqlite_store(file_, {.max_queued_bytes = 10'000});
+  ASSERT_TRUE(store_->register_robot(robot_));
+  std::promise<void> busy;
+  std::promise<void> go_on;
+  store_->commit_reports({}, [&](const std::vector<Receipt>&) {  // keeps the writer from writing
+    busy.set_value();
+    go_on.get_future().wait();
+  });
+  busy.get_future().wait();
+  std::vector<std::future<std::vector<Receipt>>> answers;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    auto answer = std::make_shared<std::promise<std::vector<Receipt>>>();
+    answers.push_back(answer->get_future());
+    store_->commit_reports({attempt(i)}, [answer](const std::vector<Receipt>& receipts) {
+      answer->set_value(receipts);
+    });
+  }
+  EXPECT_EQ(store_->status().queued, 100U);
+  go_on.set_value();
+  std::size_t stored = 0;
+  for (auto& answer : answers) {
+    const Receipt receipt = answer.get().at(0);
+    if (receipt.status == ReceiptStatus::Stored)
+      ++stored;
+    else
+      EXPECT_EQ(receipt.status, ReceiptStatus::TryAgain);
+  }
+  EXPECT_GT(stored, 5U);
+  EXPECT_LT(stored, 30U);
+  EXPECT_EQ(store_->status().paths, stored);
+  EXPECT_EQ(test::report(*store_, {attempt(99)})[0].status, ReceiptStatus::Stored);
 }
 
 TEST_F(SqliteStoreTest, MakesItsDirectoryForTheOwnerAlone) {

@@ -114,7 +114,8 @@ std::vector<Row> all_pages(List list) {
   do {
     Page<Row> page = list(cursor);
     EXPECT_LE(page.rows.size(), 2U);
-    for (Row& row : page.rows) rows.push_back(std::move(row));
+    for (Row& row : page.rows)
+      rows.push_back(std::move(row));
     cursor = page.next_cursor;
   } while (!cursor.empty());
   return rows;
@@ -128,7 +129,8 @@ TEST_P(StoreConformance, ListsRobotsByLabelPageByPage) {
   const auto robots = all_pages<RobotSummary>(
       [this](const std::string& cursor) { return store_->list_robots(cursor, 2); });
   ASSERT_EQ(robots.size(), 6U);
-  for (std::size_t i = 1; i < robots.size(); ++i) EXPECT_LT(robots[i - 1].label, robots[i].label);
+  for (std::size_t i = 1; i < robots.size(); ++i)
+    EXPECT_LT(robots[i - 1].label, robots[i].label);
   EXPECT_EQ(robots[1].label, "panda");
   EXPECT_EQ(robots[1].dof, test::kDof);
   EXPECT_EQ(robots[1].paths, 1U);
@@ -157,7 +159,8 @@ TEST_P(StoreConformance, ListsPathsOnceEachUnderEveryFilter) {
   std::uint64_t number = 0;
   for (const RobotRecord* robot : {&panda_, &iiwa_})
     for (const char* const task : {"shelf", "table"})
-      for (int i = 0; i < 3; ++i) report(test::make_attempt(robot->digest, task, ++number));
+      for (int i = 0; i < 3; ++i)
+        report(test::make_attempt(robot->digest, task, ++number));
   const auto list = [this](const std::optional<Digest>& robot, const char* task) {
     return all_pages<PathSummary>(
         [&](const std::string& cursor) { return store_->list_paths(robot, task, cursor, 2); });

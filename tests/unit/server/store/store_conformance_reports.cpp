@@ -152,7 +152,8 @@ TEST_P(StoreConformance, RaisesTheGenerationOnceForEachBatchThatBroughtPaths) {
 }
 
 TEST_P(StoreConformance, ReadsPathsInTheOrderOfArrivalAndOnFromAnId) {
-  for (std::uint64_t i = 1; i <= 5; ++i) report(solved(i));
+  for (std::uint64_t i = 1; i <= 5; ++i)
+    report(solved(i));
   const std::vector<StoredPath> all = store_->read_paths(panda_.digest, "shelf", 0, 100);
   ASSERT_EQ(all.size(), 5U);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -177,12 +178,14 @@ TEST_P(StoreConformance, AnswersEveryClientOfMany) {
     clients.push_back(std::async(std::launch::async, [this, client] {
       int stored = 0;
       for (std::uint64_t i = 0; i < kReports; ++i) {
-        if (report(solved(1000 * (client + 1) + i)) == ReceiptStatus::Stored) ++stored;
+        if (report(solved(1000 * (client + 1) + i)) == ReceiptStatus::Stored)
+          ++stored;
         store_->read_paths(panda_.digest, "shelf", 0, 5);
       }
       return stored;
     }));
-  for (std::future<int>& client : clients) EXPECT_EQ(client.get(), kReports);
+  for (std::future<int>& client : clients)
+    EXPECT_EQ(client.get(), kReports);
   EXPECT_EQ(store_->status().paths, kClients * kReports);
   EXPECT_EQ(store_->status().queued, 0U);
 }

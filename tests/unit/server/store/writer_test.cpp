@@ -79,7 +79,8 @@ class WriterTest : public testing::Test {
   }
 
   std::unique_ptr<Writer> writer(std::unique_ptr<Database> first, Writer::Reopen reopen = {}) {
-    if (!reopen) reopen = [this] { return connect(); };
+    if (!reopen)
+      reopen = [this] { return connect(); };
     return std::make_unique<Writer>(std::move(first), std::move(reopen),
                                     WriterOptions{.batch_cap = 10, .retry_after = 10ms});
   }
@@ -91,7 +92,8 @@ class WriterTest : public testing::Test {
     return outcome;
   }
   static Written get(std::future<Written> outcome) {
-    if (outcome.wait_for(kTooLong) != std::future_status::ready) return {"no answer", 0};
+    if (outcome.wait_for(kTooLong) != std::future_status::ready)
+      return {"no answer", 0};
     return outcome.get();
   }
   std::int64_t rows() { return connect()->integer("SELECT count(*) FROM t"); }
@@ -113,12 +115,14 @@ TEST_F(WriterTest, CommitsTogetherWhatWaitedTogetherUpToTheCap) {
   w->submit(std::make_unique<GateItem>(entered, gate.get_future().share()));
   entered.get_future().wait();
   std::vector<std::future<Written>> outcomes;
-  for (std::int64_t i = 0; i < 4; ++i) outcomes.push_back(submit(*w, i, 4));  // cap 10: 2 + 2
-  outcomes.push_back(submit(*w, 4, 25));  // heavier than a batch: alone
+  for (std::int64_t i = 0; i < 4; ++i)
+    outcomes.push_back(submit(*w, i, 4));  // cap 10: 2 + 2
+  outcomes.push_back(submit(*w, 4, 25));   // heavier than a batch: alone
   EXPECT_EQ(w->queued(), 41U);
   gate.set_value();
   std::vector<std::int64_t> rows_before;
-  for (auto& outcome : outcomes) rows_before.push_back(get(std::move(outcome)).rows);
+  for (auto& outcome : outcomes)
+    rows_before.push_back(get(std::move(outcome)).rows);
   EXPECT_EQ(rows_before, (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(w->queued(), 0U);
 }
@@ -136,9 +140,11 @@ TEST_F(WriterTest, WritesWhatIsQueuedBeforeItEnds) {
   std::vector<std::future<Written>> outcomes;
   {
     const auto w = writer(connect());
-    for (std::int64_t i = 0; i < 100; ++i) outcomes.push_back(submit(*w, i));
+    for (std::int64_t i = 0; i < 100; ++i)
+      outcomes.push_back(submit(*w, i));
   }
-  for (auto& outcome : outcomes) EXPECT_EQ(get(std::move(outcome)).error, "");
+  for (auto& outcome : outcomes)
+    EXPECT_EQ(get(std::move(outcome)).error, "");
   EXPECT_EQ(rows(), 100);
   EXPECT_FALSE(std::filesystem::exists(file_.string() + "-wal"));
 }
@@ -151,7 +157,8 @@ TEST_F(WriterTest, AnswersAFullDiskReopensAndGoesOn) {
   });
   std::int64_t written = 0;
   Written outcome;
-  for (; outcome.error.empty() && written < 100; ++written) outcome = get(submit(*w, written));
+  for (; outcome.error.empty() && written < 100; ++written)
+    outcome = get(submit(*w, written));
   EXPECT_NE(outcome.error.find("full"), std::string::npos) << outcome.error;
   EXPECT_EQ(get(submit(*w, 1000)).error, "");
   EXPECT_EQ(reopened, 1);
@@ -162,7 +169,8 @@ TEST_F(WriterTest, StaysInTroubleUntilAReopenSucceeds) {
   std::promise<void> recovered;
   int tries = 0;
   const auto w = writer(connect_to_small_disk(0), [&]() -> std::unique_ptr<Database> {
-    if (++tries < 5) throw Failure(ErrorCode::Storage, "still broken");
+    if (++tries < 5)
+      throw Failure(ErrorCode::Storage, "still broken");
     recovered.set_value();
     return connect();
   });
