@@ -7,7 +7,7 @@
 
 #include "robots/kinematics/chain.hpp"
 
-namespace kinship::test_support {
+namespace kinship::test {
 
 inline TaskAxes planar_axes(bool yaw) { return {{true, true, false, false, false, yaw}}; }
 
@@ -47,4 +47,4 @@ inline Eigen::Isometry3d planar_pose(double x, double y, double yaw_rad) {
   return T;
 }
 
-}  // namespace kinship::test_support
+}  // namespace kinship::test

@@ -10,7 +10,8 @@ namespace {
 TEST(CounterGenerator, EqualSeedAndPoseGiveEqualNumbers) {
   const Eigen::Isometry3d pose(Eigen::Translation3d(0.1, 0.2, 0.3));
   CounterGenerator a(7, pose), b(7, pose);
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next(), b.next());
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(a.next(), b.next());
 }
 
 TEST(CounterGenerator, NegativeZeroIsZero) {

@@ -13,9 +13,9 @@ namespace kinship::inverse {
 namespace {
 
 using kinematics::JointType;
-using test_support::planar_axes;
-using test_support::planar_pose;
-using test_support::PlanarArm;
+using test::planar_axes;
+using test::planar_pose;
+using test::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 
 bool contains(const InverseSolutions& solutions, const Eigen::VectorXd& q) {

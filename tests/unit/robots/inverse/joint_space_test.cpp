@@ -8,7 +8,7 @@ namespace kinship::inverse {
 namespace {
 
 using kinematics::JointType;
-using test_support::PlanarArm;
+using test::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 
 TEST(Normalize, OfTurnedCopiesTheOneNearestMidRangeStands) {

@@ -12,8 +12,8 @@
 namespace kinship::transfer {
 namespace {
 
-using test_support::planar_pose;
-using test_support::PlanarArm;
+using test::planar_pose;
+using test::PlanarArm;
 
 constexpr std::uint64_t kSeed = 11;
 
