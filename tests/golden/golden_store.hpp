@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "tests/support/store_values.hpp"
+
+/// What the stores of this folder hold. Never edited: the files are not written again.
+namespace kinship::test {
+
+inline const std::vector<store::RobotRecord>& golden_robots() {
+  static const std::vector<store::RobotRecord> kRobots = {make_robot("iiwa", 2),
+                                                          make_robot("panda", 1)};
+  return kRobots;
+}
+
+/// For robot 0 and 1 in turn, tasks "bin" and "shelf"; number 4 is not solved, number 5 has no
+/// placement, number 6 is long and smooth, so that it is compressed.
+inline std::vector<Attempt> golden_attempts() {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 8; ++number) {
+    const Digest& robot = golden_robots()[number % 2].digest;
+    const char* const task = number < 6 ? "shelf" : "bin";
+    attempts.push_back(number == 4 ? make_unsolved(robot, task, number)
+                                   : make_attempt(robot, task, number));
+  }
+  attempts[5].T_task_base.reset();
+  Eigen::MatrixXd line(kDof, 200);
+  for (Eigen::Index i = 0; i < line.cols(); ++i)
+    line.col(i).setConstant(0.001 * static_cast<double>(i));
+  attempts[6].path = Path(line);
+  return attempts;
+}
+
+inline Distribution golden_distribution() {
+  return make_distribution(golden_robots()[0].digest, "shelf", 100);
+}
+
+}  // namespace kinship::test

@@ -1,0 +1,47 @@
+// make_golden_store FILE: writes the store that README.md speaks of.
+
+#include <filesystem>
+#include <iostream>
+
+#include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/golden/golden_store.hpp"
+
+namespace kinship {
+namespace {
+
+int make(const std::filesystem::path& file) {
+  if (std::filesystem::exists(file)) {
+    std::cerr << "make_golden_store: '" << file.string() << "' is there already\n";
+    return 1;
+  }
+  {
+    const std::unique_ptr<store::Store> store = store::open_sqlite_store(file);
+    for (const store::RobotRecord& robot : test::golden_robots())
+      static_cast<void>(store->register_robot(robot).value_or_throw());
+    test::report(*store, test::golden_attempts());
+    store->put_distribution(test::golden_distribution());
+    store->put_distribution(test::golden_distribution());
+  }
+  store::Database(file, store::Access::ReadWrite)
+      .execute("PRAGMA journal_mode = DELETE; PRAGMA page_size = 1024; VACUUM");
+  std::filesystem::remove(file.string() + ".lock");
+  std::cout << file.string() << ": " << std::filesystem::file_size(file) << " bytes\n";
+  return 0;
+}
+
+}  // namespace
+}  // namespace kinship
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::cerr << "usage: make_golden_store FILE\n";
+    return 2;
+  }
+  try {
+    return kinship::make(arguments[1]);
+  } catch (const kinship::Failure& failure) {
+    std::cerr << "make_golden_store: " << failure.what() << "\n";
+    return 1;
+  }
+}
