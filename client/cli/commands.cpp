@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include "client/cli/empty_outbox.hpp"
 #include "client/cli/exit_code.hpp"
 #include "client/cli/fetch_command.hpp"
 #include "client/cli/inverse_commands.hpp"
@@ -31,7 +32,9 @@ struct Session {
 
   /// Runs a command that talks to a server.
   int with_server(const std::function<int(link::Client&)>& use) const {
+    const EmptyOutbox outbox;
     link::ClientOptions options;
+    options.outbox = outbox.folder();
     options.domain = domain;
     options.timeout = milliseconds(timeout_s);
     link::Client server(options);
@@ -101,7 +104,8 @@ void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
                      "Transfer frame in the tip link, \"x y z qx qy qz qw\"");
   command.add_option("--axes", robot.axes,
                      "Coordinates that matter, of x,y,z,roll,pitch,yaw (default: all)");
-  command.add_option("--hold", robot.held, "JOINT=VALUE of a joint off the chain; may be repeated");
+  command.add_option("--hold", robot.held, "JOINT=VALUE of a joint off the chain; may be repeated")
+      ->allow_extra_args(false);
 }
 
 /// The options of all commands; each lives as long as the parse and the run.

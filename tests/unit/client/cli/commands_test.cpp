@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "client/cli/exit_code.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -49,6 +52,38 @@ TEST(Commands, WithoutAServerIsCodeFour) {
   const Answer answer = run_command({"--domain", "198", "--timeout", "0.3", "status"});
   EXPECT_EQ(answer.code, kNoServer);
   EXPECT_NE(answer.err.find("status: "), std::string::npos) << answer.err;
+}
+
+TEST(Commands, LookingAtAServerLeavesTheUsersOutboxAlone) {
+  const test::TemporaryFolder state;
+  setenv("XDG_STATE_HOME", state.path().c_str(), 1);
+  run_command({"--domain", "198", "--timeout", "0.1", "status"});
+  unsetenv("XDG_STATE_HOME");
+  EXPECT_TRUE(std::filesystem::is_empty(state.path()));
+}
+
+TEST(RobotsCheck, HeldJointsMayStandBeforeTheRobot) {
+  const Answer answer = run_command(
+      {"robots", "check", "--hold", "finger_left_joint=0.02", kModels + "panda", "--poses", "1"});
+  EXPECT_EQ(answer.code, kDone) << answer.err;
+}
+
+TEST(RobotsCheck, GivesTheReasonWhyARobotIsRefused) {
+  const Answer answer =
+      run_command({"robots", "check", kModels + "panda", "--hold", "panda_joint1=0"});
+  EXPECT_NE(answer.code, kDone);
+  EXPECT_EQ(answer.err, "robots check: held joint 'panda_joint1': is on the chain\n");
+}
+
+TEST(RobotsIk, EqualSeedsGiveEqualSolutions) {
+  const auto solutions = [](const std::string& seed) {
+    const std::string out = run_command({"robots", "ik", kModels + "panda", "--pose",
+                                         "-0.3 0.1 0.5 1 0 0 0", "--json", "--seed", seed})
+                                .out;
+    return out.substr(0, out.find("\"time_us\""));
+  };
+  EXPECT_EQ(solutions("5"), solutions("5"));
+  EXPECT_NE(solutions("5"), solutions("6"));
 }
 
 TEST(RobotsCheck, TellsChainSolverAndYield) {
