@@ -17,7 +17,8 @@ constexpr double kDigestGrid = 1e-9;
 
 std::optional<std::string> find_fault(std::string_view what, const Eigen::Isometry3d& T) {
   const std::string name(what);
-  if (!T.matrix().allFinite()) return name + ": pose is not finite";
+  if (!T.matrix().allFinite())
+    return name + ": pose is not finite";
   const double largest_m = T.translation().cwiseAbs().maxCoeff();
   if (largest_m > kMaxPlacement_m)
     return name + ": coordinate " + number_text(largest_m) + " m exceeds " +
@@ -30,10 +31,12 @@ std::optional<std::string> find_fault(std::string_view what, const Eigen::Isomet
 
 std::optional<std::string> find_fault(const Joint& joint) {
   const std::string name = "joint '" + joint.name + "'";
-  if (auto fault = find_fault(name, joint.T_previous_joint)) return fault;
+  if (auto fault = find_fault(name, joint.T_previous_joint))
+    return fault;
   if (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > kUnitTolerance)
     return name + ": axis has length " + number_text(joint.axis.norm()) + ", must be 1";
-  if (joint.type == JointType::Continuous) return std::nullopt;
+  if (joint.type == JointType::Continuous)
+    return std::nullopt;
   for (const double limit : {joint.lower, joint.upper})
     if (!(std::abs(limit) <= kMaxPlacement_m))
       return name + ": limit " + number_text(limit) + " exceeds " + number_text(kMaxPlacement_m);
@@ -47,7 +50,8 @@ std::optional<std::string> find_fault(const std::vector<ChainLink>& links, int d
   for (int i = 0; i < static_cast<int>(links.size()); ++i) {
     const ChainLink& link = links[static_cast<std::size_t>(i)];
     const std::string name = "link '" + link.name + "'";
-    if (auto fault = find_fault(name, link.T_joint_link)) return fault;
+    if (auto fault = find_fault(name, link.T_joint_link))
+      return fault;
     if (link.joint < -1 || link.joint >= dof)
       return name + ": joint index " + std::to_string(link.joint) + " is not below " +
              std::to_string(dof);
@@ -62,20 +66,25 @@ void add(Sha256& sha, double value) { sha.add(std::round(value / kDigestGrid)); 
 
 void add(Sha256& sha, const Eigen::Isometry3d& T) {
   for (Eigen::Index row = 0; row < 3; ++row)
-    for (Eigen::Index column = 0; column < 4; ++column) add(sha, T.matrix()(row, column));
+    for (Eigen::Index column = 0; column < 4; ++column)
+      add(sha, T.matrix()(row, column));
 }
 
 }  // namespace
 
 std::optional<std::string> find_fault(const ChainParts& parts) {
-  if (parts.joints.empty()) return "chain: no moving joint";
+  if (parts.joints.empty())
+    return "chain: no moving joint";
   if (parts.joints.size() > kMaxDof)
     return "chain: " + std::to_string(parts.joints.size()) + " moving joints exceed " +
            std::to_string(kMaxDof);
   for (const Joint& joint : parts.joints)
-    if (auto fault = find_fault(joint)) return fault;
-  if (auto fault = find_fault("tip link '" + parts.tip_link + "'", parts.T_last_tip)) return fault;
-  if (auto fault = find_fault("transfer frame", parts.T_tip_transfer)) return fault;
+    if (auto fault = find_fault(joint))
+      return fault;
+  if (auto fault = find_fault("tip link '" + parts.tip_link + "'", parts.T_last_tip))
+    return fault;
+  if (auto fault = find_fault("transfer frame", parts.T_tip_transfer))
+    return fault;
   const auto& matters = parts.task_axes.matters;
   if (std::none_of(matters.begin(), matters.end(), [](bool axis) { return axis; }))
     return "task axes: none matters, need at least one";
@@ -83,7 +92,8 @@ std::optional<std::string> find_fault(const ChainParts& parts) {
 }
 
 Chain::Chain(ChainParts parts) : parts_(std::move(parts)) {
-  if (const auto fault = find_fault(parts_)) throw std::invalid_argument("Chain: " + *fault);
+  if (const auto fault = find_fault(parts_))
+    throw std::invalid_argument("Chain: " + *fault);
   lower_.resize(dof());
   upper_.resize(dof());
   Eigen::Index i = 0;
@@ -104,7 +114,8 @@ bool Chain::within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tol
                                 std::to_string(dof()) + " joints");
   for (Eigen::Index i = 0; i < dof(); ++i) {
     if (parts_.joints[static_cast<std::size_t>(i)].type == JointType::Continuous) {
-      if (!std::isfinite(q[i])) return false;
+      if (!std::isfinite(q[i]))
+        return false;
     } else if (!(q[i] >= lower_[i] - tolerance && q[i] <= upper_[i] + tolerance)) {
       return false;
     }
@@ -126,14 +137,17 @@ Digest Chain::digest() const {
   for (const Joint& joint : parts_.joints) {
     sha.add(static_cast<std::uint64_t>(joint.type));
     add(sha, joint.T_previous_joint);
-    for (const double coordinate : joint.axis) add(sha, coordinate);
-    if (joint.type == JointType::Continuous) continue;
+    for (const double coordinate : joint.axis)
+      add(sha, coordinate);
+    if (joint.type == JointType::Continuous)
+      continue;
     add(sha, joint.lower);
     add(sha, joint.upper);
   }
   add(sha, parts_.T_last_tip);
   add(sha, parts_.T_tip_transfer);
-  for (const bool axis : parts_.task_axes.matters) sha.add(std::uint64_t{axis});
+  for (const bool axis : parts_.task_axes.matters)
+    sha.add(std::uint64_t{axis});
   return sha.finish();
 }
 

@@ -61,7 +61,8 @@ std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,
   poses.reserve(chain.links().size());
   for (const ChainLink& link : chain.links()) {
     Eigen::Isometry3d T_base_link = Eigen::Isometry3d::Identity();
-    if (link.joint >= 0) T_base_link = joints[static_cast<std::size_t>(link.joint)];
+    if (link.joint >= 0)
+      T_base_link = joints[static_cast<std::size_t>(link.joint)];
     follow(link.T_joint_link, T_base_link);
     poses.push_back(T_base_link);
   }

@@ -28,7 +28,8 @@ Jacobian J_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>&
     const Eigen::Vector3d lever = T.translation() - J.col(i).head<3>();
     const bool prismatic = joint.type == JointType::Prismatic;
     J.col(i).head<3>() = prismatic ? axis : axis.cross(lever);
-    if (prismatic) J.col(i).tail<3>().setZero();
+    if (prismatic)
+      J.col(i).tail<3>().setZero();
     ++i;
   }
   return J;

@@ -47,7 +47,8 @@ struct Limits {
 
 /// The stricter of the hard and the soft limits; soft limits of 0 and 0 are absent ones.
 Limits stricter_limits(const urdf::Joint& joint) {
-  if (joint.limits == nullptr) throw invalid(words(joint) + ": no limits");
+  if (joint.limits == nullptr)
+    throw invalid(words(joint) + ": no limits");
   const auto check = [&](const std::string& which, double lower, double upper) {
     if (!(lower <= upper))
       throw invalid(words(joint) + ": lower" + which + " limit " + number_text(lower) +
@@ -55,10 +56,12 @@ Limits stricter_limits(const urdf::Joint& joint) {
   };
   Limits limits{joint.limits->lower, joint.limits->upper};
   check("", limits.lower, limits.upper);
-  if (joint.safety == nullptr) return limits;
+  if (joint.safety == nullptr)
+    return limits;
   const double soft_lower = joint.safety->soft_lower_limit;
   const double soft_upper = joint.safety->soft_upper_limit;
-  if (soft_lower == 0 && soft_upper == 0) return limits;
+  if (soft_lower == 0 && soft_upper == 0)
+    return limits;
   check(" soft", soft_lower, soft_upper);
   limits.lower = std::max(limits.lower, soft_lower);
   limits.upper = std::min(limits.upper, soft_upper);
@@ -91,9 +94,11 @@ Joint read_joint(const urdf::Joint& source) {
 std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface& model,
                                                       const std::string& base,
                                                       const std::string& tip) {
-  if (model.getLink(base) == nullptr) throw invalid("base link '" + base + "': not in the URDF");
+  if (model.getLink(base) == nullptr)
+    throw invalid("base link '" + base + "': not in the URDF");
   urdf::LinkConstSharedPtr link = model.getLink(tip);
-  if (link == nullptr) throw invalid("tip link '" + tip + "': not in the URDF");
+  if (link == nullptr)
+    throw invalid("tip link '" + tip + "': not in the URDF");
   std::vector<urdf::JointConstSharedPtr> joints;
   while (link->name != base) {
     if (link->parent_joint == nullptr)
@@ -124,8 +129,10 @@ class HeldJoints {
         throw invalid("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
                       std::to_string(kMaxLinkNameBytes));
       const urdf::JointConstSharedPtr joint = model.getJoint(name);
-      if (joint == nullptr) throw invalid("held joint '" + name + "': not in the URDF");
-      if (on_chain.contains(name)) throw invalid("held joint '" + name + "': is on the chain");
+      if (joint == nullptr)
+        throw invalid("held joint '" + name + "': not in the URDF");
+      if (on_chain.contains(name))
+        throw invalid("held joint '" + name + "': is on the chain");
       if (!has_one_value(*joint))
         throw invalid("held joint '" + name + "': is fixed, floating or planar");
       check_value(*joint, value);
@@ -135,7 +142,8 @@ class HeldJoints {
   /// Pose of a joint's moving frame in its parent link; floating and planar joints stand at zero.
   Eigen::Isometry3d T_parent_moving(const urdf::Joint& joint) const {
     Eigen::Isometry3d T = T_parent_joint(joint);
-    if (has_one_value(joint)) move(read_joint(joint), value_of(joint), T);
+    if (has_one_value(joint))
+      move(read_joint(joint), value_of(joint), T);
     return T;
   }
 
@@ -151,8 +159,10 @@ class HeldJoints {
   }
 
   double value_of(const urdf::Joint& joint) const {
-    if (const auto held = held_.find(joint.name); held != held_.end()) return held->second;
-    if (joint.type == urdf::Joint::CONTINUOUS) return 0;
+    if (const auto held = held_.find(joint.name); held != held_.end())
+      return held->second;
+    if (joint.type == urdf::Joint::CONTINUOUS)
+      return 0;
     const Limits limits = stricter_limits(joint);
     return std::clamp(0.0, limits.lower, limits.upper);
   }
@@ -176,7 +186,8 @@ class TreeWalk {
            ChainParts& parts)
       : held_(held), parts_(parts) {
     for (const auto& joint : on_chain) {
-      if (!moves(*joint)) continue;
+      if (!moves(*joint))
+        continue;
       check_on_chain(*joint);
       index_[joint->name] = static_cast<int>(parts_.joints.size());
       parts_.joints.push_back(read_joint(*joint));
@@ -193,7 +204,8 @@ class TreeWalk {
         found.push_back(model.getLink(joint->child_link_name));
       }
     for (const ChainLink& link : parts_.links)
-      if (link.name == parts_.tip_link) parts_.T_last_tip = link.T_joint_link;
+      if (link.name == parts_.tip_link)
+        parts_.T_last_tip = link.T_joint_link;
   }
 
  private:
@@ -216,10 +228,12 @@ class TreeWalk {
 };
 
 void check_description(const RobotDescription& description) {
-  if (const auto error = check_label(description.label)) throw Failure(*error);
+  if (const auto error = check_label(description.label))
+    throw Failure(*error);
   for (const auto& [what, name] : {std::pair("base link", &description.base_link),
                                    std::pair("tip link", &description.tip_link)}) {
-    if (name->empty()) throw invalid(std::string(what) + ": name is empty");
+    if (name->empty())
+      throw invalid(std::string(what) + ": name is empty");
     if (name->size() > kMaxLinkNameBytes)
       throw invalid(std::string(what) + ": name of " + std::to_string(name->size()) +
                     " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
@@ -239,10 +253,12 @@ ChainParts read_parts(const RobotDescription& description) {
   parts.task_axes = description.task_axes;
   const auto joints = joints_between(*model, description.base_link, description.tip_link);
   std::set<std::string> on_chain;
-  for (const auto& joint : joints) on_chain.insert(joint->name);
+  for (const auto& joint : joints)
+    on_chain.insert(joint->name);
   const HeldJoints held(*model, description.held_joints, on_chain);
   TreeWalk(held, joints, parts).walk(*model);
-  if (const auto fault = find_fault(parts)) throw invalid(*fault);
+  if (const auto fault = find_fault(parts))
+    throw invalid(*fault);
   return parts;
 }
 

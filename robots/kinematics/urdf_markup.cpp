@@ -28,7 +28,8 @@ class Scanner {
 
   std::optional<Error> scan() {
     while ((at_ = text_.find('<', at_)) != std::string_view::npos)
-      if (auto error = scan_tag()) return error;
+      if (auto error = scan_tag())
+        return error;
     return std::nullopt;
   }
 
@@ -41,11 +42,16 @@ class Scanner {
   }
 
   std::optional<Error> scan_tag() {
-    if (looking_at("<!--")) return skip_past("<!--", "-->");
-    if (looking_at("<![CDATA[")) return skip_past("<![CDATA[", "]]>");
-    if (looking_at("<!")) return malformed("document types and entities are not accepted");
-    if (looking_at("<?")) return scan_instruction();
-    if (looking_at("</")) return scan_end();
+    if (looking_at("<!--"))
+      return skip_past("<!--", "-->");
+    if (looking_at("<![CDATA["))
+      return skip_past("<![CDATA[", "]]>");
+    if (looking_at("<!"))
+      return malformed("document types and entities are not accepted");
+    if (looking_at("<?"))
+      return scan_instruction();
+    if (looking_at("</"))
+      return scan_end();
     return scan_start();
   }
 
@@ -69,7 +75,8 @@ class Scanner {
     const std::size_t end = text_.find_first_of("<>", at_ + 2);
     if (end == std::string_view::npos || text_[end] != '>')
       return malformed("an end tag without '>'");
-    if (--depth_ < 0) return malformed("an end tag without its start tag");
+    if (--depth_ < 0)
+      return malformed("an end tag without its start tag");
     at_ = end + 1;
     return std::nullopt;
   }
@@ -83,8 +90,10 @@ class Scanner {
     std::size_t attributes = 0;
     std::size_t end = name_end;
     for (; end < text_.size() && text_[end] != '>'; ++end) {
-      if (text_[end] == '<') return malformed("'<' inside a tag");
-      if (text_[end] != '"' && text_[end] != '\'') continue;
+      if (text_[end] == '<')
+        return malformed("'<' inside a tag");
+      if (text_[end] != '"' && text_[end] != '\'')
+        continue;
       if (++attributes > kMaxUrdfAttributes)
         return too_large("attributes of one element", attributes, kMaxUrdfAttributes);
       const std::size_t quote = text_.find_first_of(text_[end] == '"' ? "\"<" : "'<", end + 1);
@@ -92,8 +101,10 @@ class Scanner {
         return malformed("an attribute whose quote does not end");
       end = quote;
     }
-    if (end >= text_.size()) return malformed("a tag without '>'");
-    if (auto error = check_unquoted(text_.substr(name_end, end - name_end))) return error;
+    if (end >= text_.size())
+      return malformed("a tag without '>'");
+    if (auto error = check_unquoted(text_.substr(name_end, end - name_end)))
+      return error;
     if (text_[end - 1] != '/' && ++depth_ > kMaxUrdfDepth)
       return too_large("nested elements", static_cast<std::size_t>(depth_), kMaxUrdfDepth);
     at_ = end + 1;
@@ -106,13 +117,17 @@ class Scanner {
     for (std::size_t i = 0; i < inside.size(); ++i) {
       const char c = inside[i];
       if (quote != 0) {
-        if (c == quote) quote = 0;
+        if (c == quote)
+          quote = 0;
         continue;
       }
-      if (c == '"' || c == '\'') quote = c;
-      if (c != '=') continue;
+      if (c == '"' || c == '\'')
+        quote = c;
+      if (c != '=')
+        continue;
       std::size_t next = i + 1;
-      while (next < inside.size() && is_space(inside[next])) ++next;
+      while (next < inside.size() && is_space(inside[next]))
+        ++next;
       if (next == inside.size() || (inside[next] != '"' && inside[next] != '\''))
         return malformed("an attribute's value without quotes");
     }
@@ -128,8 +143,10 @@ class Scanner {
 }  // namespace
 
 std::optional<Error> check_markup(std::string_view text) {
-  if (text.empty()) return Error{ErrorCode::InvalidInput, "URDF: text is empty"};
-  if (text.size() > kMaxUrdfBytes) return too_large("bytes", text.size(), kMaxUrdfBytes);
+  if (text.empty())
+    return Error{ErrorCode::InvalidInput, "URDF: text is empty"};
+  if (text.size() > kMaxUrdfBytes)
+    return too_large("bytes", text.size(), kMaxUrdfBytes);
   const auto control = std::find_if(text.begin(), text.end(), is_forbidden_control);
   if (control != text.end())
     return Error{

@@ -33,10 +33,12 @@ class MessagesByThread : public console_bridge::OutputHandler {
   void log(const std::string& text, console_bridge::LogLevel level, const char* file,
            int line) override {
     if (collected_errors == nullptr) {
-      if (previous_ != nullptr) previous_->log(text, level, file, line);
+      if (previous_ != nullptr)
+        previous_->log(text, level, file, line);
     } else if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR &&
                collected_errors->size() < kMaxComplaintBytes) {
-      if (!collected_errors->empty()) *collected_errors += "; ";
+      if (!collected_errors->empty())
+        *collected_errors += "; ";
       *collected_errors += text.substr(0, kMaxComplaintBytes - collected_errors->size());
     }
   }
@@ -85,7 +87,8 @@ std::optional<Error> check_tree(const urdf::ModelInterface& model) {
 }  // namespace
 
 Result<UrdfModel> parse_urdf(const std::string& text) {
-  if (const auto error = check_markup(text)) return *error;
+  if (const auto error = check_markup(text))
+    return *error;
   std::string complaints;
   urdf::ModelInterfaceSharedPtr model;
   try {
@@ -96,9 +99,12 @@ Result<UrdfModel> parse_urdf(const std::string& text) {
   }
   if (model == nullptr || model->getRoot() == nullptr)
     return invalid(complaints.empty() ? "not understood" : complaints);
-  if (const auto error = check_names("link", model->links_)) return *error;
-  if (const auto error = check_names("joint", model->joints_)) return *error;
-  if (const auto error = check_tree(*model)) return *error;
+  if (const auto error = check_names("link", model->links_))
+    return *error;
+  if (const auto error = check_names("joint", model->joints_))
+    return *error;
+  if (const auto error = check_tree(*model))
+    return *error;
   return UrdfModel(model);
 }
 

@@ -83,7 +83,8 @@ TEST(Chain, FindsLinksByName) {
 TEST(ChainDigest, IgnoresNamesAndLinks) {
   ChainParts renamed = parts();
   renamed.base_link = renamed.tip_link = "other";
-  for (Joint& joint : renamed.joints) joint.name += "_other";
+  for (Joint& joint : renamed.joints)
+    joint.name += "_other";
   renamed.links.clear();
   EXPECT_EQ(Chain(renamed).digest(), Chain(parts()).digest());
 }
