@@ -16,19 +16,6 @@ std::chrono::milliseconds delay_after(int sends) {
   return sends == 1 ? milliseconds(100) : sends == 2 ? milliseconds(300) : milliseconds(1000);
 }
 
-/// Keeps replies for other clients of the partition out of the reader.
-bool is_for_client(const void* sample, void* client_id) {
-  return head_of(sample).client_id == *static_cast<const Uuid*>(client_id);
-}
-
-Entity create_filtered_topic(Handle participant, const Topics& topics, Uuid& client_id) {
-  Entity topic(
-      dds_create_topic(participant, &topics.reply, topics.reply_topic().c_str(), nullptr, nullptr),
-      "topic " + topics.reply_topic());
-  require(dds_set_topic_filter_and_arg(topic.get(), is_for_client, &client_id), "topic filter");
-  return topic;
-}
-
 }  // namespace
 
 RequestLine::Waiter::Waiter(const RequestLine& line)
@@ -46,7 +33,9 @@ RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
       request_topic_(dds_create_topic(participant_, &topics.request, topics.request_topic().c_str(),
                                       nullptr, nullptr),
                      "topic " + topics.request_topic()),
-      reply_topic_(create_filtered_topic(participant_, topics, client_id_)),
+      reply_topic_(dds_create_topic(participant_, &topics.reply, topics.reply_topic().c_str(),
+                                    nullptr, nullptr),
+                   "topic " + topics.reply_topic()),
       subscriber_(dds_create_subscriber(
                       participant_,
                       partition_qos(reply_partition(reply_partition_of(client_id))).get(), nullptr),
@@ -137,7 +126,10 @@ void RequestLine::hand_out_replies() {
     for (std::size_t i = 0; i < replies.size(); ++i) {
       if (!replies[i])
         continue;
-      const auto call = calls_.find(head_of(replies[i]).sequence_number);
+      const codec::Head head = head_of(replies[i]);
+      if (head.client_id != client_id_)
+        continue;  // of the same partition
+      const auto call = calls_.find(head.sequence_number);
       if (call == calls_.end() || call->second->is_answered)
         continue;
       call->second->on_reply(replies[i]);

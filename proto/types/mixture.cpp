@@ -20,16 +20,17 @@ Mixture::Mixture(Eigen::VectorXd weights, Eigen::MatrixXd means,
     throw std::invalid_argument("Mixture: weights must be >= 0 with sum 1, means finite");
   constexpr double kRounding =
       1e-12;  // below it left alone: what was written reads back bit by bit
-  if (std::abs(weights_.sum() - 1) > kRounding) weights_ /= weights_.sum();
+  if (std::abs(weights_.sum() - 1) > kRounding)
+    weights_ /= weights_.sum();
   constexpr double kSymmetryTolerance = 1e-9;
   for (Eigen::MatrixXd& covariance : covariances_) {
     if (covariance.rows() != dimension || covariance.cols() != dimension || !covariance.allFinite())
       throw std::invalid_argument("Mixture: covariances must be d x d and finite");
-    const Eigen::MatrixXd transposed = covariance.transpose();
-    if ((covariance - transposed).cwiseAbs().maxCoeff() >
-        kSymmetryTolerance * covariance.cwiseAbs().maxCoeff())
+    const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
+    if (asymmetry > kSymmetryTolerance * covariance.cwiseAbs().maxCoeff())
       throw std::invalid_argument("Mixture: covariances must be symmetric");
-    covariance = 0.5 * (covariance + transposed);
+    if (asymmetry > 0)
+      covariance = (0.5 * (covariance + covariance.transpose())).eval();
   }
 }
 
