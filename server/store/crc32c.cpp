@@ -16,7 +16,8 @@ constexpr Tables make_tables() {
   Tables tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
     std::uint32_t crc = byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? kPolynomial : 0);
+    for (int bit = 0; bit < 8; ++bit)
+      crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? kPolynomial : 0);
     tables[0][byte] = crc;
   }
   for (std::size_t slice = 1; slice < kSlices; ++slice)
@@ -43,7 +44,8 @@ std::uint32_t crc32c(std::span<const std::uint8_t> bytes, std::uint32_t previous
     for (std::size_t i = 0; i < kSlices; ++i)
       crc ^= kTables[kSlices - 1 - i][(word >> (8 * i)) & 0xFFU];
   }
-  for (const std::uint8_t byte : bytes) crc = (crc >> 8U) ^ kTables[0][(crc ^ byte) & 0xFFU];
+  for (const std::uint8_t byte : bytes)
+    crc = (crc >> 8U) ^ kTables[0][(crc ^ byte) & 0xFFU];
   return ~crc;
 }
 

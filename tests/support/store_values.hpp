@@ -19,7 +19,8 @@ template <typename Id>
 Id id_from(std::uint64_t number) {
   std::mt19937_64 generator(number);
   Id id;
-  for (std::uint8_t& byte : id.bytes) byte = static_cast<std::uint8_t>(generator());
+  for (std::uint8_t& byte : id.bytes)
+    byte = static_cast<std::uint8_t>(generator());
   return id;
 }
 
@@ -119,7 +120,8 @@ inline std::vector<Receipt> report(store::Store& store, std::vector<Attempt> att
 
 inline std::vector<ReceiptStatus> statuses(const std::vector<Receipt>& receipts) {
   std::vector<ReceiptStatus> found;
-  for (const Receipt& receipt : receipts) found.push_back(receipt.status);
+  for (const Receipt& receipt : receipts)
+    found.push_back(receipt.status);
   return found;
 }
 

@@ -14,7 +14,8 @@ class TemporaryDirectory {
  public:
   TemporaryDirectory() {
     std::string name = (std::filesystem::temp_directory_path() / "kinship-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp: " + name);
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("mkdtemp: " + name);
     path_ = name;
   }
   TemporaryDirectory(const TemporaryDirectory&) = delete;
