@@ -22,8 +22,10 @@ struct Figures {
     time_s.push_back(result.planning_time_s);
     ranked_checks.push_back(result.solved ? checks.back() : kWorst);
     ranked_time_s.push_back(result.solved ? time_s.back() : kWorst);
-    if (result.solved) ++statistics.solved;
-    if (result.distribution_id) ++statistics.with_guidance;
+    if (result.solved)
+      ++statistics.solved;
+    if (result.distribution_id)
+      ++statistics.with_guidance;
   }
 
   void summarize() {
@@ -48,9 +50,11 @@ Result<ResultsByName> by_name(const std::vector<ProblemResult>& results, const s
 Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
                            const std::vector<ProblemResult>& guided) {
   const Result<ResultsByName> uniform_by_name = by_name(uniform, "uniform");
-  if (!uniform_by_name) return uniform_by_name.error();
+  if (!uniform_by_name)
+    return uniform_by_name.error();
   const Result<ResultsByName> guided_by_name = by_name(guided, "guided");
-  if (!guided_by_name) return guided_by_name.error();
+  if (!guided_by_name)
+    return guided_by_name.error();
 
   Comparison comparison;
   Figures uniform_figures;
@@ -66,7 +70,8 @@ Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
     ++comparison.pairs;
   }
   for (const auto& [name, result] : *guided_by_name)
-    if (!uniform_by_name->contains(name)) comparison.unpaired.push_back(name);
+    if (!uniform_by_name->contains(name))
+      comparison.unpaired.push_back(name);
   if (comparison.pairs == 0)
     return Error{ErrorCode::InvalidInput, "no problem was answered by both sides"};
 

@@ -21,10 +21,12 @@ std::string padded(const std::string& text, std::size_t width) {
 
 /// 12345 as "12 345"; what is infinite as "unsolved".
 std::string count_text(double value) {
-  if (!std::isfinite(value)) return "unsolved";
+  if (!std::isfinite(value))
+    return "unsolved";
   std::string digits = formatted("%.0f", value);
   constexpr std::size_t kGroup = 3;
-  for (std::size_t i = digits.size(); i > kGroup; i -= kGroup) digits.insert(i - kGroup, " ");
+  for (std::size_t i = digits.size(); i > kGroup; i -= kGroup)
+    digits.insert(i - kGroup, " ");
   return digits;
 }
 
@@ -34,7 +36,8 @@ std::string seconds_text(double value) {
 
 /// Uniform / guided; both unsolved says nothing.
 std::string ratio_text(double ratio) {
-  if (std::isnan(ratio)) return "-";
+  if (std::isnan(ratio))
+    return "-";
   return std::isinf(ratio) ? "inf" : formatted("%.2f", ratio);
 }
 
@@ -46,8 +49,10 @@ void write_row(std::ostream& out, const std::string& name, const std::string& un
   constexpr std::size_t kColumn = 11;
   out << "  " << name << std::string(kName - std::min(kName, name.size()), ' ')
       << padded(uniform, kColumn) << padded(guided, kColumn);
-  if (!ratio.empty()) out << padded(ratio, kColumn - 2);
-  if (!p.empty()) out << padded(p, kColumn);
+  if (!ratio.empty())
+    out << padded(ratio, kColumn - 2);
+  if (!p.empty())
+    out << padded(p, kColumn);
   out << '\n';
 }
 

@@ -10,11 +10,13 @@ namespace kinship::experiments {
 
 std::vector<ProblemResult> read_results(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw Failure(ErrorCode::NotFound, "cannot read '" + file.string() + "'");
+  if (!stream)
+    throw Failure(ErrorCode::NotFound, "cannot read '" + file.string() + "'");
   std::vector<ProblemResult> results;
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    if (line.empty()) continue;
+    if (line.empty())
+      continue;
     Result<ProblemResult> result = json::problem_result_from_json(line);
     if (!result)
       throw Failure(result.error().code, file.string() + " line " + std::to_string(number) + ": " +

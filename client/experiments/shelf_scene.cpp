@@ -15,7 +15,7 @@ constexpr double kThickness = 0.015;  // of boards, sides and back
 constexpr double kCompartmentWidth = 0.22;
 constexpr double kCompartmentHeight = 0.22;
 constexpr double kDepth = 0.26;
-constexpr double kFirstFloor = 0.16;  // top of the lowest board above the table
+constexpr double kFirstFloor = 0.12;  // top of the lowest board above the table
 constexpr std::size_t kColumns = 2;
 constexpr std::size_t kRows = 2;
 constexpr std::size_t kCompartments = kColumns * kRows;
@@ -92,7 +92,8 @@ void add_occupants(Scene& scene, const Eigen::Isometry3d& T_task_shelf, std::siz
                    std::mt19937_64& generator) {
   const Eigen::Vector3d kSize(0.12, 0.10, 0.16);
   std::array<std::size_t, kCompartments - 1> others{};
-  for (std::size_t i = 0; i < others.size(); ++i) others[i] = i < goal ? i : i + 1;
+  for (std::size_t i = 0; i < others.size(); ++i)
+    others[i] = i < goal ? i : i + 1;
   std::shuffle(others.begin(), others.end(), generator);
   const std::size_t occupied = 1 + generator() % 2;
   Noise noise(generator);
@@ -126,24 +127,23 @@ ShelfScene draw_shelf_scene(std::mt19937_64& generator) {
   Noise noise(generator);
   ShelfScene instance;
   add_table(instance.scene, noise);
-  const Eigen::Isometry3d T_task_shelf = noisy(0.50, 0.14, 0, kTurnNoise_rad, noise);
+  const Eigen::Isometry3d T_task_shelf = noisy(0.50, 0.20, 0, kTurnNoise_rad, noise);
   add_shelf(instance.scene, T_task_shelf);
   const std::size_t goal = generator() % kCompartments;
   add_occupants(instance.scene, T_task_shelf, goal, generator);
 
-  // Half a turn about y = x + z ... maps z to -z: the gripper looks down and closes along y.
+  // The gripper looks down, its fingers close along y.
   Eigen::Isometry3d R_down = Eigen::Isometry3d::Identity();
   R_down.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   const double above_table = T_transfer_box().translation().z() + held_box().size.z() / 2 + 0.03;
   instance.T_task_pick = noisy(0.36, -0.42, above_table, kPickTurnNoise_rad, noise) * R_down;
 
-  // The gripper looks into the shelf; as after a turn about y from the pick.
+  // It looks into the shelf: a quarter turn about y away from the pick.
   Eigen::Isometry3d R_forward = Eigen::Isometry3d::Identity();
   R_forward.linear() << 0, 0, 1, 0, -1, 0, 1, 0, 0;
-  constexpr double kPalmBehindOpening = 0.03;
   const Eigen::Vector3d floor = floor_of(goal);
   const double sideways = noise(kPlaceNoise_m / 2);
-  const double inward = kPalmBehindOpening + noise(kPlaceNoise_m / 2);
+  const double inward = noise(kPlaceNoise_m / 2);  // the palm ends at the opening
   const double above_floor = held_box().size.x() / 2 + 0.05;
   instance.T_task_place =
       T_task_shelf * upright(inward, floor.y() + sideways, floor.z() + above_floor) * R_forward;

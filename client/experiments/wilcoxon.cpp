@@ -16,7 +16,8 @@ std::vector<double> differences(const std::vector<double>& first,
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (std::isnan(first[i]) || std::isnan(second[i]))
       throw std::invalid_argument("wilcoxon: a value is not a number");
-    if (first[i] != second[i]) result.push_back(first[i] - second[i]);  // inf - inf cannot occur
+    if (first[i] != second[i])
+      result.push_back(first[i] - second[i]);  // inf - inf cannot occur
   }
   return result;
 }
@@ -30,8 +31,10 @@ std::vector<std::size_t> doubled_ranks(const std::vector<double>& values) {
   std::vector<std::size_t> ranks(values.size());
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin + 1;
-    while (end < order.size() && magnitude(order[end]) == magnitude(order[begin])) ++end;
-    for (std::size_t i = begin; i < end; ++i) ranks[order[i]] = begin + 1 + end;
+    while (end < order.size() && magnitude(order[end]) == magnitude(order[begin]))
+      ++end;
+    for (std::size_t i = begin; i < end; ++i)
+      ranks[order[i]] = begin + 1 + end;
     begin = end;
   }
   return ranks;
@@ -78,12 +81,14 @@ WilcoxonSummary wilcoxon_signed_rank(const std::vector<double>& first,
   WilcoxonSummary summary;
   summary.pairs = values.size();
   summary.dropped = first.size() - values.size();
-  if (values.empty()) return summary;
+  if (values.empty())
+    return summary;
 
   const std::vector<std::size_t> ranks = doubled_ranks(values);
   std::size_t plus = 0;
   std::size_t minus = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) (values[i] > 0 ? plus : minus) += ranks[i];
+  for (std::size_t i = 0; i < values.size(); ++i)
+    (values[i] > 0 ? plus : minus) += ranks[i];
   summary.rank_sum_plus = static_cast<double>(plus) / 2;
   summary.rank_sum_minus = static_cast<double>(minus) / 2;
   const std::size_t smaller = std::min(plus, minus);

@@ -35,7 +35,8 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   record.share = result.share;
   record.distribution_id = result.distribution_id;
   record.distribution_revision = result.distribution_revision;
-  if (result.waypoints) attempt.path = Path(*result.waypoints);
+  if (result.waypoints)
+    attempt.path = Path(*result.waypoints);
   return attempt;
 }
 

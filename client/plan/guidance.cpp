@@ -28,8 +28,10 @@ std::string describe(const Distribution& distribution, double share) {
             std::to_string(source.paths) + " paths)";
   }
   text += "; share " + share_text(share);
-  if (!distribution.evidence.empty()) text += " (" + distribution.evidence + ")";
-  if (!distribution.reason.empty()) text += "; warning: " + distribution.reason;
+  if (!distribution.evidence.empty())
+    text += " (" + distribution.evidence + ")";
+  if (!distribution.reason.empty())
+    text += "; warning: " + distribution.reason;
   return text;
 }
 
@@ -70,7 +72,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
   }
   switch (reply->status) {
     case FetchStatus::Ready:
-      if (reply->distribution) return use(*reply->distribution, wish);
+      if (reply->distribution)
+        return use(*reply->distribution, wish);
       return refusal(NoGuidance::Failed, "the server sent no distribution");
     case FetchStatus::NoExperience:
       return refusal(NoGuidance::NotFound,
@@ -96,17 +99,20 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
 
 std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(const Eigen::Isometry3d& T_task_base) {
   const PoseArray key = to_pose_array(snapped(T_task_base));
-  if (const auto known = answers_.find(key); known != answers_.end()) return {known->second, false};
+  if (const auto known = answers_.find(key); known != answers_.end())
+    return {known->second, false};
   GuidanceAnswer answer = server_missing_
                               ? refusal(NoGuidance::NoServer, "no server answered before")
                               : fetch_guidance(fetch_, wish_, T_task_base);
-  if (answer.why_not == NoGuidance::NoServer) server_missing_ = true;
+  if (answer.why_not == NoGuidance::NoServer)
+    server_missing_ = true;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
 const Guidance* GuidanceBook::find(const Eigen::Isometry3d& T_task_base) const {
   const auto known = answers_.find(to_pose_array(snapped(T_task_base)));
-  if (known == answers_.end() || !known->second.guidance) return nullptr;
+  if (known == answers_.end() || !known->second.guidance)
+    return nullptr;
   return &*known->second.guidance;
 }
 

@@ -47,7 +47,8 @@ int run(const kinship::plan::PlanOptions& options) {
 int main(int argc, char** argv) {
   try {
     const auto options = kinship::plan::parse_plan_options(argc, argv, std::cout, std::cerr);
-    if (const int* const code = std::get_if<int>(&options)) return *code;
+    if (const int* const code = std::get_if<int>(&options))
+      return *code;
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     return run(std::get<kinship::plan::PlanOptions>(options));

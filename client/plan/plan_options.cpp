@@ -101,9 +101,11 @@ Eigen::Isometry3d read_pose(const std::string& text) {
     if (!(stream >> number))
       throw CLI::ValidationError("--transfer", "'" + text + "' is not seven numbers");
   std::string rest;
-  if (stream >> rest) throw CLI::ValidationError("--transfer", "more than seven numbers");
+  if (stream >> rest)
+    throw CLI::ValidationError("--transfer", "more than seven numbers");
   const Result<Eigen::Isometry3d> pose = from_pose_array(numbers);
-  if (!pose) throw CLI::ValidationError("--transfer", pose.error().message);
+  if (!pose)
+    throw CLI::ValidationError("--transfer", pose.error().message);
   return *pose;
 }
 
@@ -112,7 +114,8 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 }
 
 void require_name(const std::optional<Error>& error, const std::string& option) {
-  if (error) throw CLI::ValidationError(option, error->message);
+  if (error)
+    throw CLI::ValidationError(option, error->message);
 }
 
 /// What CLI11 cannot say by itself.
@@ -122,9 +125,12 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) 
     throw CLI::ValidationError("robot", "give --model DIR, or a URDF with --base and --tip");
   if (!robot.urdf.empty() && (robot.base_link.empty() || robot.tip_link.empty()))
     throw CLI::ValidationError("robot", "a URDF needs --base and --tip");
-  if (!raw.transfer.empty()) robot.T_tip_transfer = read_pose(raw.transfer);
-  if (robot.label.empty() && !robot.urdf.empty()) robot.label = robot.urdf.stem().string();
-  if (!robot.urdf.empty()) require_name(check_label(robot.label), "--label");
+  if (!raw.transfer.empty())
+    robot.T_tip_transfer = read_pose(raw.transfer);
+  if (robot.label.empty() && !robot.urdf.empty())
+    robot.label = robot.urdf.stem().string();
+  if (!robot.urdf.empty())
+    require_name(check_label(robot.label), "--label");
 
   const std::string guidance =
       raw.guidance.empty() ? (options.task.empty() ? "none" : "auto") : raw.guidance;
@@ -135,9 +141,11 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) 
     throw CLI::ValidationError("--guidance", guidance + " needs --task");
   if (options.task.empty() && options.report)
     throw CLI::ValidationError("--report", "needs --task");
-  if (!options.task.empty()) require_name(check_task(options.task), "--task");
+  if (!options.task.empty())
+    require_name(check_task(options.task), "--task");
   require_name(check_machine(options.machine), "--machine");
-  if (app.count("--share") > 0) options.share = raw.share;
+  if (app.count("--share") > 0)
+    options.share = raw.share;
   options.timeout = milliseconds_of(raw.timeout_s);
   options.wait = milliseconds_of(raw.wait_s);
 }

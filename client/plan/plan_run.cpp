@@ -38,7 +38,8 @@ int exit_code_without(NoGuidance why_not) {
 
 void write_result(const ProblemResult& result, std::ostream& results) {
   results << json::to_json(result) << std::endl;  // flushed: a reader may follow
-  if (!results) throw Failure(ErrorCode::Storage, "cannot write the results");
+  if (!results)
+    throw Failure(ErrorCode::Storage, "cannot write the results");
 }
 
 GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain) {
@@ -94,7 +95,8 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
   }
   progress.finish();
   server.finish();
-  if (!complete) streams.messages << "interrupted: the remaining problems were not planned\n";
+  if (!complete)
+    streams.messages << "interrupted: the remaining problems were not planned\n";
   return complete ? kDone : kFailed;
 }
 

@@ -14,10 +14,12 @@ constexpr std::size_t kLines = 10;  // where the output is not a terminal
 void Progress::add(const ProblemResult& result) {
   const std::size_t lines_before = done_ * kLines / total_;
   ++done_;
-  if (result.solved) ++solved_;
+  if (result.solved)
+    ++solved_;
   checks_ += result.collision_checks;
   planning_time_s_ += result.planning_time_s;
-  if (!terminal_ && done_ * kLines / total_ == lines_before) return;
+  if (!terminal_ && done_ * kLines / total_ == lines_before)
+    return;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
           << solved_ << ", last: " << result.name << " "
           << (result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason)
@@ -25,7 +27,8 @@ void Progress::add(const ProblemResult& result) {
 }
 
 void Progress::finish() {
-  if (terminal_) stream_ << "\r\033[K";
+  if (terminal_)
+    stream_ << "\r\033[K";
   stream_ << "planned " << done_ << " of " << total_ << " problems, solved " << solved_;
   if (done_ > 0) {
     char text[96];

@@ -7,7 +7,8 @@ namespace kinship::plan {
 ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
                        std::ostream& messages)
     : options_(options), description_(description), messages_(messages) {
-  if (options_.guidance == GuidanceMode::None && !options_.report) return;
+  if (options_.guidance == GuidanceMode::None && !options_.report)
+    return;
   link::ClientOptions link;
   link.domain = options_.domain;
   link.outbox = options_.outbox;
@@ -31,7 +32,8 @@ bool ServerLine::register_robot() {
 
 NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
                                       const std::vector<ProblemLine>& lines) {
-  if (options_.guidance == GuidanceMode::None) return NoGuidance::None;
+  if (options_.guidance == GuidanceMode::None)
+    return NoGuidance::None;
   if (!registered_) {
     messages_ << "guidance: none, no server answered\n";
     return NoGuidance::NoServer;
@@ -40,13 +42,16 @@ NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
       [this](const FetchRequest& request) { return client_->fetch(request); }, wish);
   NoGuidance why_not = NoGuidance::None;
   for (const ProblemLine& line : lines) {
-    if (!line.problem) continue;
+    if (!line.problem)
+      continue;
     const auto [answer, is_new] = guidance_->ask(line.problem->T_task_base);
-    if (!is_new) continue;
+    if (!is_new)
+      continue;
     const std::string outcome = answer.guidance ? "" : "none, ";
     messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
               << answer.message << '\n';
-    if (why_not == NoGuidance::None) why_not = answer.why_not;
+    if (why_not == NoGuidance::None)
+      why_not = answer.why_not;
   }
   return why_not;
 }
@@ -66,14 +71,18 @@ void ServerLine::report(const Attempt& attempt) {
 }
 
 void ServerLine::finish() {
-  if (!client_ || !options_.report) return;
-  if (!registered_) registered_ = register_robot();
+  if (!client_ || !options_.report)
+    return;
+  if (!registered_)
+    registered_ = register_robot();
   const auto deadline = registered_ ? options_.timeout : std::chrono::milliseconds(0);
   const link::Client::OutboxState state = client_->flush(deadline);
   messages_ << "reports: " << reported_ << " attempts; outbox: " << state.accepted
             << " acknowledged, " << state.pending << " pending, " << state.refused << " refused";
-  if (unreportable_ > 0) messages_ << "; " << unreportable_ << " attempts could not be kept";
-  if (state.pending > 0) messages_ << " (pending reports are sent when the outbox is next used)";
+  if (unreportable_ > 0)
+    messages_ << "; " << unreportable_ << " attempts could not be kept";
+  if (state.pending > 0)
+    messages_ << " (pending reports are sent when the outbox is next used)";
   messages_ << std::endl;
 }
 

@@ -18,21 +18,24 @@ ShelfScene drawn(std::uint64_t seed) {
 
 const SceneObject& find(const ShelfScene& instance, const std::string& name) {
   for (const SceneObject& object : instance.scene.objects)
-    if (object.name == name) return object;
+    if (object.name == name)
+      return object;
   throw std::out_of_range("no object '" + name + "'");
 }
 
 int occupants(const ShelfScene& instance) {
   int count = 0;
   for (const SceneObject& object : instance.scene.objects)
-    if (object.name.starts_with("occupant_")) ++count;
+    if (object.name.starts_with("occupant_"))
+      ++count;
   return count;
 }
 
 /// Whether a point in the task frame lies in a box of the scene.
 bool inside(const SceneObject& object, const Eigen::Vector3d& p_task_point) {
   const auto* const box = std::get_if<BoxShape>(&object.shape);
-  if (box == nullptr) return false;
+  if (box == nullptr)
+    return false;
   const Eigen::Vector3d p = object.T_task_object.inverse() * p_task_point;
   return (p.cwiseAbs().array() < box->size.array() / 2).all();
 }
@@ -71,7 +74,8 @@ TEST(ShelfScene, EveryCompartmentIsAGoalAndOneOrTwoOthersAreOccupied) {
     ++occupied[occupants(instance)];
   }
   EXPECT_EQ(goals.size(), 4U);
-  for (const auto& [place, count] : goals) EXPECT_GT(count, kInstances / 10) << place;
+  for (const auto& [place, count] : goals)
+    EXPECT_GT(count, kInstances / 10) << place;
   EXPECT_EQ(occupied.size(), 2U);
   EXPECT_GT(occupied[1], 0);
   EXPECT_GT(occupied[2], 0);

@@ -22,8 +22,10 @@ std::vector<double> mean_ranks(const std::vector<double>& values) {
   for (const double value : values) {
     double rank = 0.5;
     for (const double other : values) {
-      if (std::abs(other) < std::abs(value)) rank += 1;
-      if (std::abs(other) == std::abs(value)) rank += 0.5;
+      if (std::abs(other) < std::abs(value))
+        rank += 1;
+      if (std::abs(other) == std::abs(value))
+        rank += 0.5;
     }
     ranks.push_back(rank);
   }
@@ -38,14 +40,17 @@ double p_by_enumeration(const std::vector<double>& differences) {
   double observed = 0;
   for (std::size_t i = 0; i < n; ++i) {
     total += ranks[i];
-    if (differences[i] > 0) observed += ranks[i];
+    if (differences[i] > 0)
+      observed += ranks[i];
   }
   std::size_t as_far = 0;
   for (std::size_t signs = 0; signs < (std::size_t{1} << n); ++signs) {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i)
-      if ((signs >> i) & 1U) sum += ranks[i];
-    if (std::abs(sum - total / 2) >= std::abs(observed - total / 2) - 1e-9) ++as_far;
+      if ((signs >> i) & 1U)
+        sum += ranks[i];
+    if (std::abs(sum - total / 2) >= std::abs(observed - total / 2) - 1e-9)
+      ++as_far;
   }
   return static_cast<double>(as_far) / static_cast<double>(std::size_t{1} << n);
 }
@@ -86,7 +91,8 @@ TEST(Wilcoxon, NormalApproximationMeetsTheExactValueAtTheBorder) {
   std::mt19937_64 generator(kSeed);
   std::normal_distribution<double> shifted(0.12, 1);
   std::vector<double> differences;
-  while (differences.size() < kMostExactPairs) differences.push_back(shifted(generator));
+  while (differences.size() < kMostExactPairs)
+    differences.push_back(shifted(generator));
   const auto exact = test_of_differences(differences);
   differences.push_back(1e-9);  // the smallest rank hardly matters
   const auto approximate = test_of_differences(differences);

@@ -20,7 +20,8 @@ ProblemResult solved(const std::string& name, std::uint64_t checks) {
 TEST(Progress, WritesALineForEveryTenthWhereNobodyCanWriteOver) {
   std::ostringstream stream;
   Progress progress(stream, false, 20);
-  for (int i = 0; i < 20; ++i) progress.add(solved("p", 100));
+  for (int i = 0; i < 20; ++i)
+    progress.add(solved("p", 100));
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
   EXPECT_NE(text.find("planned 2/20, solved 2, last: p 100 checks\n"), std::string::npos);
@@ -29,7 +30,8 @@ TEST(Progress, WritesALineForEveryTenthWhereNobodyCanWriteOver) {
 TEST(Progress, WritesOverOneLineOnATerminal) {
   std::ostringstream stream;
   Progress progress(stream, true, 20);
-  for (int i = 0; i < 20; ++i) progress.add(solved("p", 100));
+  for (int i = 0; i < 20; ++i)
+    progress.add(solved("p", 100));
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 0);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 20);

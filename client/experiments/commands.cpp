@@ -1,0 +1,59 @@
+#include "client/experiments/commands.hpp"
+
+#include <ostream>
+
+#include "client/experiments/comparison.hpp"
+#include "client/experiments/comparison_table.hpp"
+#include "client/experiments/result_file.hpp"
+#include "client/experiments/shelf_problems.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/model_folder.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+ExperimentRobot load_robot(const std::filesystem::path& model) {
+  const RobotDescription description = models::read_model_folder(model).value_or_throw();
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  return {description.label, std::move(chain), std::move(shapes)};
+}
+
+}  // namespace
+
+void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages) {
+  const ExperimentRobot robot = load_robot(options.model);
+  const Eigen::Isometry3d T_task_base = options.T_task_base.value_or(shelf_placement(robot.label));
+  std::uint32_t redrawn = 0;
+  for (std::uint32_t index = 0; index < options.count; ++index) {
+    const Problem problem = draw_shelf_problem(robot, T_task_base, options.seed, index);
+    if (problem.name.find('.') != std::string::npos)
+      ++redrawn;
+    out << json::to_json(problem) << '\n';
+    if (!out)
+      throw Failure(ErrorCode::Storage, "cannot write the problems");
+  }
+  messages << options.count << " problems for " << robot.label << ", " << redrawn
+           << " of them in a scene drawn again\n";
+}
+
+void write_placement(const std::filesystem::path& model, std::ostream& out) {
+  const PoseArray pose = to_pose_array(shelf_placement(load_robot(model).label));
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    out << (i == 0 ? "" : " ") << pose[i];
+  out << '\n';
+}
+
+void write_comparison(const CompareOptions& options, std::ostream& out) {
+  const Comparison comparison =
+      compare(read_results(options.uniform), read_results(options.guided)).value_or_throw();
+  if (options.json)
+    write_json(comparison, out);
+  else
+    write_table(comparison, out);
+}
+
+}  // namespace kinship::experiments

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+
+/// The commands of kinship-experiment: options in, streams out. They throw Failure.
+namespace kinship::experiments {
+
+struct ShelfOptions {
+  std::filesystem::path model;
+  std::uint32_t count = 40;
+  std::uint64_t seed = 1;
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< empty: shelf_placement of the robot's label
+};
+
+/// Writes `count` problems of the shelf task, one JSON document a line; progress on `messages`.
+void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages);
+
+/// Writes "x y z qx qy qz qw" of the robot's placement in the shelf task.
+void write_placement(const std::filesystem::path& model, std::ostream& out);
+
+struct CompareOptions {
+  std::filesystem::path uniform;
+  std::filesystem::path guided;
+  bool json = false;
+};
+
+/// Compares two result files of kinship-plan.
+void write_comparison(const CompareOptions& options, std::ostream& out);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,126 @@
+#include <CLI/CLI.hpp>
+#include <array>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "client/experiments/commands.hpp"
+#include "proto/types/failure.hpp"
+#include "proto/types/pose.hpp"
+
+namespace {
+
+using namespace kinship;               // NOLINT: a program's main file
+using namespace kinship::experiments;  // NOLINT
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+constexpr int kNotFound = 3;
+
+constexpr const char* kExamples = R"(
+Examples:
+  kinship-experiment shelf --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
+  kinship-experiment placement --model robots/models/ur10e
+  kinship-experiment compare --uniform uniform.results.jsonl --guided guided.results.jsonl
+
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
+
+struct CommandLine {
+  ShelfOptions shelf;
+  std::string placement;
+  std::filesystem::path output;
+  std::filesystem::path placed_model;
+  CompareOptions compare;
+};
+
+void add_shelf(CLI::App& app, CommandLine& line) {
+  CLI::App* const shelf = app.add_subcommand(
+      "shelf", "write planning problems: a held box goes from a table into a shelf");
+  shelf->add_option("--model", line.shelf.model, "model folder of the robot")->required();
+  shelf->add_option("--count", line.shelf.count, "problems to write")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  shelf->add_option("--seed", line.shelf.seed, "equal seeds give equal scenes for every robot")
+      ->capture_default_str();
+  shelf->add_option("--placement", line.placement,
+                    "base of the robot in the task frame, \"x y z qx qy qz qw\"; known for the "
+                    "robots of robots/models, otherwise identity");
+  shelf->add_option("--output", line.output, "file to write; standard output if missing");
+}
+
+void add_placement(CLI::App& app, CommandLine& line) {
+  CLI::App* const placement =
+      app.add_subcommand("placement", "print where the robot stands in the shelf task");
+  placement->add_option("--model", line.placed_model, "model folder of the robot")->required();
+}
+
+void add_compare(CLI::App& app, CommandLine& line) {
+  CLI::App* const compare = app.add_subcommand(
+      "compare", "compare two result files of kinship-plan over the same problems");
+  compare->add_option("--uniform", line.compare.uniform, "results without guidance")->required();
+  compare->add_option("--guided", line.compare.guided, "results with guidance")->required();
+  compare->add_flag("--json", line.compare.json, "one JSON document instead of a table");
+}
+
+Eigen::Isometry3d read_placement(const std::string& text) {
+  std::istringstream stream(text);
+  PoseArray numbers{};
+  std::string rest;
+  for (double& number : numbers)
+    stream >> number;
+  if (!stream || stream >> rest)
+    throw CLI::ValidationError("--placement", "'" + text + "' is not seven numbers");
+  const Result<Eigen::Isometry3d> pose = from_pose_array(numbers);
+  if (!pose)
+    throw CLI::ValidationError("--placement", pose.error().message);
+  return *pose;
+}
+
+void write_shelf(const CommandLine& line) {
+  if (line.output.empty()) {
+    write_shelf_problems(line.shelf, std::cout, std::cerr);
+    return;
+  }
+  std::ofstream file(line.output);
+  write_shelf_problems(line.shelf, file, std::cerr);
+  if (!file.flush())
+    throw Failure(ErrorCode::Storage, "cannot write '" + line.output.string() + "'");
+}
+
+int run(int argc, char** argv) {
+  CommandLine line;
+  CLI::App app{"kinship-experiment: planning problems and comparisons for experiments"};
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  add_shelf(app, line);
+  add_placement(app, line);
+  add_compare(app, line);
+  try {
+    app.parse(argc, argv);
+    if (!line.placement.empty())
+      line.shelf.T_task_base = read_placement(line.placement);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
+  }
+  if (app.got_subcommand("shelf"))
+    write_shelf(line);
+  else if (app.got_subcommand("placement"))
+    write_placement(line.placed_model, std::cout);
+  else
+    write_comparison(line.compare, std::cout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const kinship::Failure& failure) {
+    std::cerr << "kinship-experiment: " << failure.what() << '\n';
+    return failure.code() == kinship::ErrorCode::NotFound ? kNotFound : kFailed;
+  } catch (const std::exception& error) {
+    std::cerr << "kinship-experiment: " << error.what() << '\n';
+    return kFailed;
+  }
+}

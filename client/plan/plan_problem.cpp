@@ -1,0 +1,170 @@
+#include "client/plan/plan_problem.hpp"
+
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "client/planning/birrt.hpp"
+#include "client/planning/configuration_sampler.hpp"
+#include "client/planning/goal_configurations.hpp"
+#include "client/planning/planning_bounds.hpp"
+#include "client/planning/shortcut.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/collision/collision_world.hpp"
+
+namespace kinship::plan {
+namespace {
+
+struct Interrupted {};  // leaves a planner between two checks
+
+/// What is wrong with the problem for this robot.
+std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Problem& problem) {
+  const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
+  if (problem.start.size() != chain.dof())
+    return "start has " + joints(problem.start.size()) + ", the robot " +
+           std::to_string(chain.dof());
+  if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
+    return "goal configurations have " + joints(problem.goal_configurations.rows()) +
+           ", the robot " + std::to_string(chain.dof());
+  constexpr double kRounding = 1e-6;  // of a limit written with few digits
+  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    if (joint.type == kinematics::JointType::Continuous)
+      continue;
+    if (problem.start[i] < joint.lower - kRounding || problem.start[i] > joint.upper + kRounding)
+      return "start: joint '" + joint.name + "' at " + std::to_string(problem.start[i]) +
+             " is outside " + std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
+  }
+  return std::nullopt;
+}
+
+planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
+                                            const Eigen::Matrix2Xd& bounds,
+                                            const Guidance* guidance) {
+  if (guidance == nullptr)
+    return planning::ConfigurationSampler(bounds);
+  return {bounds, chain, guidance->mixture, guidance->share};
+}
+
+Outcome outcome_of(const planning::PlanSummary& summary) {
+  if (summary.waypoints)
+    return Outcome::Solved;
+  const bool gave_up = summary.reason == "checks" || summary.reason == "time";
+  return gave_up ? Outcome::Timeout : Outcome::Failed;
+}
+
+/// One problem under way.
+class Planning {
+ public:
+  Planning(const PlannedRobot& robot, const Problem& problem, const PlanSettings& settings,
+           const std::function<bool()>& stop)
+      : robot_(robot),
+        problem_(problem),
+        settings_(settings),
+        world_(robot.chain, robot.shapes,
+               {problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}),
+        is_free_([this, &stop](const Eigen::VectorXd& q) {
+          if (stop())
+            throw Interrupted();
+          return !world_.collides(q);
+        }),
+        bounds_(planning::planning_bounds(robot.chain, problem.start)),
+        generator_(problem.seed) {}
+
+  void run(const Guidance* guidance, PlannedProblem& planned) {
+    const Eigen::MatrixXd goals = find_goals(planned.result);
+    if (goals.cols() == 0)
+      return;
+    planning::BirrtOptions options;
+    options.step = settings_.resolution;
+    options.overshoot = settings_.overshoot;
+    options.max_checks = settings_.max_checks;
+    options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
+    const auto sampler = make_sampler(robot_.chain, bounds_, guidance);
+    const planning::PlanSummary summary =
+        planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
+    planned.outcome = outcome_of(summary);
+    planned.result.solved = summary.waypoints.has_value();
+    planned.result.collision_checks = summary.collision_checks;
+    planned.result.planning_time_s = summary.planning_time_s;
+    planned.result.reason = explained(summary.reason);
+    if (summary.waypoints)
+      shorten(*summary.waypoints, planned.result);
+  }
+
+ private:
+  /// All of them count: the nearest may lie behind an obstacle.
+  Eigen::MatrixXd find_goals(ProblemResult& result) {
+    if (!problem_.T_task_goal)
+      return problem_.goal_configurations;
+    planning::GoalOptions options;
+    options.max_configurations = settings_.max_goals;
+    options.seed = problem_.seed;
+    planning::GoalConfigurations goals = planning::goal_configurations(
+        robot_.chain, problem_.T_task_base.inverse() * *problem_.T_task_goal, bounds_, is_free_,
+        options);
+    result.goal_checks = goals.collision_checks;
+    result.reason = goals.reason;
+    return std::move(goals.configurations);
+  }
+
+  void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
+    planning::ShortcutOptions options;
+    options.step = settings_.resolution;
+    options.max_checks = settings_.shortcut_checks;
+    const planning::ShortcutSummary shortened =
+        planning::shortcut(waypoints, is_free_, options, generator_);
+    result.shortcut_checks = shortened.collision_checks;
+    result.waypoints = shortened.waypoints;
+  }
+
+  std::string explained(const std::string& reason) {
+    if (reason == "start collides")
+      if (const auto contact = world_.find_contact(problem_.start))
+        return reason + ": '" + contact->first + "' touches '" + contact->second + "'";
+    if (reason == "checks")
+      return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
+    if (reason == "time")
+      return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
+    return reason;
+  }
+
+  const PlannedRobot& robot_;
+  const Problem& problem_;
+  const PlanSettings& settings_;
+  collision::CollisionWorld world_;
+  planning::IsFree is_free_;
+  Eigen::Matrix2Xd bounds_;
+  std::mt19937_64 generator_;
+};
+
+}  // namespace
+
+PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
+                            const Guidance* guidance, const PlanSettings& settings,
+                            const std::function<bool()>& stop) {
+  PlannedProblem planned;
+  planned.result.name = problem.name;
+  planned.result.time_limit_s = problem.time_limit_s;
+  if (guidance != nullptr) {
+    planned.result.distribution_id = guidance->distribution_id;
+    planned.result.distribution_revision = guidance->revision;
+    planned.result.share = guidance->share;
+  }
+  if (const auto misfit = find_misfit(robot.chain, problem)) {
+    planned.result.reason = *misfit;
+    return planned;
+  }
+  try {
+    Planning planning(robot, problem, settings, stop);
+    planned.attempted = true;
+    planning.run(guidance, planned);
+  } catch (const Interrupted&) {
+    planned.interrupted = true;
+  } catch (const Failure& failure) {
+    planned.result.reason = failure.what();
+  }
+  return planned;
+}
+
+}  // namespace kinship::plan

@@ -1,0 +1,119 @@
+#include "client/experiments/shelf_problems.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "client/experiments/shelf_scene.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/inverse/inverse.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/model_folder.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+constexpr std::uint32_t kInstances = 6;
+
+ExperimentRobot robot_named(const std::string& name) {
+  const RobotDescription description =
+      models::read_model_folder(std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name)
+          .value_or_throw();
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  return {description.label, std::move(chain), std::move(shapes)};
+}
+
+Problem drawn(const ExperimentRobot& robot, std::uint32_t index) {
+  return draw_shelf_problem(robot, shelf_placement(robot.label), kSeed, index);
+}
+
+collision::CollisionWorld world_of(const ExperimentRobot& robot, const Problem& problem) {
+  return {robot.chain,
+          robot.shapes,
+          {problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}};
+}
+
+class ShelfProblems : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
+  const ExperimentRobot robot = robot_named(GetParam());
+  for (std::uint32_t index = 0; index < kInstances; ++index) {
+    const Problem problem = drawn(robot, index);
+    EXPECT_TRUE(robot.chain.within_limits(problem.start));
+    EXPECT_FALSE(world_of(robot, problem).collides(problem.start)) << problem.name;
+    const Eigen::Isometry3d T_task_transfer =
+        problem.T_task_base * kinematics::T_base_transfer(robot.chain, problem.start);
+    EXPECT_NEAR(T_task_transfer.linear()(2, 2), -1, 1e-6);  // the gripper looks down
+  }
+}
+
+TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
+  const ExperimentRobot robot = robot_named(GetParam());
+  for (std::uint32_t index = 0; index < kInstances; ++index) {
+    const Problem problem = drawn(robot, index);
+    collision::CollisionWorld world = world_of(robot, problem);
+    const Eigen::Isometry3d T_base_tip = problem.T_task_base.inverse() * *problem.T_task_goal *
+                                         robot.chain.T_tip_transfer().inverse();
+    inverse::InverseOptions options;
+    options.max_solutions = 20;
+    int free = 0;
+    for (const auto& q :
+         inverse::inverse(robot.chain, T_base_tip, options).configurations.colwise())
+      if (!world.collides(q))
+        ++free;
+    EXPECT_GT(free, 0) << problem.name;
+  }
+}
+
+TEST_P(ShelfProblems, EqualSeedsGiveEqualProblems) {
+  const ExperimentRobot robot = robot_named(GetParam());
+  const Problem first = drawn(robot, 1);
+  const Problem second = drawn(robot, 1);
+  EXPECT_EQ(first.start, second.start);
+  EXPECT_EQ(first.seed, second.seed);
+  EXPECT_EQ(first.T_task_goal->matrix(), second.T_task_goal->matrix());
+  EXPECT_NE(first.start, drawn(robot, 2).start);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryModel, ShelfProblems, testing::Values("panda", "iiwa14", "ur10e"),
+                         [](const auto& model) { return std::string(model.param); });
+
+TEST(ShelfProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
+  const ExperimentRobot panda = robot_named("panda");
+  const ExperimentRobot ur10e = robot_named("ur10e");
+  int compared = 0;
+  for (std::uint32_t index = 0; index < kInstances; ++index) {
+    const Problem one = drawn(panda, index);
+    const Problem other = drawn(ur10e, index);
+    if (one.name != other.name)
+      continue;  // drawn again for one of them
+    ++compared;
+    EXPECT_EQ(one.T_task_goal->matrix(), other.T_task_goal->matrix());
+    EXPECT_EQ(one.seed, other.seed);
+    ASSERT_EQ(one.scene.objects.size(), other.scene.objects.size());
+    for (std::size_t i = 0; i < one.scene.objects.size(); ++i)
+      EXPECT_EQ(one.scene.objects[i].T_task_object.matrix(),
+                other.scene.objects[i].T_task_object.matrix());
+  }
+  EXPECT_GT(compared, kInstances / 2);
+}
+
+TEST(ShelfProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
+  const ExperimentRobot robot = robot_named("panda");
+  Eigen::Isometry3d far_away = Eigen::Isometry3d::Identity();
+  far_away.translation().x() = -5;
+  try {
+    draw_shelf_problem(robot, far_away, kSeed, 0);
+    FAIL() << "drew a problem out of reach";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::NotFound);
+    EXPECT_NE(std::string(failure.what()).find("placement"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace kinship::experiments

@@ -1,0 +1,169 @@
+#include "client/plan/plan_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "client/planning/path_vertices.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/unit/client/plan/planar_problem.hpp"
+
+namespace kinship::plan {
+namespace {
+
+using test::planar_robot;
+using test::wall_problem;
+
+bool never() { return false; }
+
+PlannedProblem planned(const Problem& problem, const PlanSettings& settings = {},
+                       const Guidance* guidance = nullptr) {
+  return plan_problem(planar_robot(), problem, guidance, settings, never);
+}
+
+/// Collisions at the resolution along a path that is straight between its waypoints.
+int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
+  const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
+  const PlannedRobot robot = planar_robot();
+  collision::CollisionWorld world(robot.chain, robot.shapes,
+                                  {problem.T_task_base, problem.scene, {}, {}});
+  int collisions = 0;
+  for (Eigen::Index i = 0; i < path.cols(); ++i)
+    if (world.collides(path.col(i)))
+      ++collisions;
+  return collisions;
+}
+
+Guidance guidance_towards(const Eigen::VectorXd& q) {
+  Guidance guidance{
+      Digest{}, 5,
+      Mixture(Eigen::VectorXd::Ones(1), q, {0.1 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
+      0.9};
+  guidance.distribution_id.bytes[3] = 9;
+  return guidance;
+}
+
+TEST(PlanProblem, ThePathLeadsFromStartToGoalFreeAtTheResolution) {
+  const Problem problem = wall_problem();
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  const Eigen::MatrixXd& path = *answer.result.waypoints;
+  EXPECT_EQ(path.col(0), problem.start);
+  EXPECT_EQ(path.col(path.cols() - 1), problem.goal_configurations.col(0));
+  EXPECT_EQ(collisions_along(path, problem), 0);
+  EXPECT_EQ(answer.outcome, Outcome::Solved);
+  EXPECT_EQ(answer.result.reason, "");
+}
+
+TEST(PlanProblem, AGoalPoseIsReachedByTheTransferFrame) {
+  Problem problem = wall_problem();
+  problem.T_task_base.translation() << 0.1, -0.2, 0;
+  problem.scene.objects[0].T_task_object =
+      problem.T_task_base * problem.scene.objects[0].T_task_object;
+  const PlannedRobot robot = planar_robot();
+  problem.T_task_goal = problem.T_task_base * kinematics::T_base_transfer(
+                                                  robot.chain, problem.goal_configurations.col(0));
+  problem.goal_configurations.resize(0, 0);
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  const Eigen::Isometry3d T_task_end =
+      problem.T_task_base *
+      kinematics::T_base_transfer(robot.chain, answer.result.waypoints->rightCols(1));
+  EXPECT_TRUE(T_task_end.isApprox(*problem.T_task_goal, 1e-5));
+  EXPECT_GT(answer.result.goal_checks, 0U);
+}
+
+TEST(PlanProblem, EqualProblemAndSeedGiveEqualChecksAndPath) {
+  const PlannedProblem first = planned(wall_problem());
+  const PlannedProblem second = planned(wall_problem());
+  EXPECT_EQ(first.result.collision_checks, second.result.collision_checks);
+  EXPECT_EQ(first.result.shortcut_checks, second.result.shortcut_checks);
+  EXPECT_EQ(*first.result.waypoints, *second.result.waypoints);
+  Problem other = wall_problem();
+  other.seed += 1;
+  EXPECT_NE(planned(other).result.collision_checks, first.result.collision_checks);
+}
+
+TEST(PlanProblem, ShortcuttingKeepsItsBudgetAndShortensThePath) {
+  PlanSettings without;
+  without.shortcut_checks = 0;
+  const PlannedProblem raw = planned(wall_problem(), without);
+  const PlannedProblem shortened = planned(wall_problem());
+  EXPECT_EQ(raw.result.shortcut_checks, 0U);
+  EXPECT_LE(shortened.result.shortcut_checks, 300U);
+  EXPECT_GT(shortened.result.shortcut_checks, 0U);
+  EXPECT_EQ(raw.result.collision_checks, shortened.result.collision_checks);
+  EXPECT_LT(planning::path_length(*shortened.result.waypoints),
+            planning::path_length(*raw.result.waypoints));
+}
+
+TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  const PlannedProblem answer = planned(wall_problem(), {}, &guidance);
+  EXPECT_EQ(answer.result.distribution_id, guidance.distribution_id);
+  EXPECT_EQ(answer.result.distribution_revision, 5U);
+  EXPECT_EQ(answer.result.share, 0.9);
+  EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
+}
+
+TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {
+  const ProblemResult result = planned(wall_problem()).result;
+  EXPECT_FALSE(result.distribution_id);
+  EXPECT_EQ(result.share, 0);
+}
+
+TEST(PlanProblem, RunningOutOfChecksIsATimeoutWithItsReason) {
+  PlanSettings few;
+  few.max_checks = 20;
+  const PlannedProblem answer = planned(wall_problem(), few);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_FALSE(answer.result.waypoints);
+  EXPECT_EQ(answer.outcome, Outcome::Timeout);
+  EXPECT_EQ(answer.result.collision_checks, 20U);
+  EXPECT_NE(answer.result.reason, "");
+  EXPECT_TRUE(answer.attempted);
+}
+
+TEST(PlanProblem, ACollidingStartNamesWhatTouches) {
+  Problem problem = wall_problem();
+  problem.start.setZero();
+  const PlannedProblem answer = planned(problem);
+  EXPECT_EQ(answer.outcome, Outcome::Failed);
+  EXPECT_NE(answer.result.reason.find("wall"), std::string::npos) << answer.result.reason;
+}
+
+TEST(PlanProblem, AGoalOutOfReachIsSaid) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal = Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0));
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_NE(answer.result.reason.find("goal"), std::string::npos) << answer.result.reason;
+}
+
+TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
+  Problem problem = wall_problem();
+  problem.start = Eigen::VectorXd::Zero(6);
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.attempted);
+  EXPECT_EQ(answer.result.reason, "start has 6 joints, the robot 4");
+  problem = wall_problem();
+  problem.start[2] = 3;
+  EXPECT_NE(planned(problem).result.reason.find("j3"), std::string::npos);
+  EXPECT_FALSE(planned(problem).attempted);
+  problem = wall_problem();
+  problem.attached.push_back({"box", "hand", BoxShape{{0.1, 0.1, 0.1}}, {}, {}});
+  EXPECT_NE(planned(problem).result.reason.find("hand"), std::string::npos);
+}
+
+TEST(PlanProblem, StopsWhenAsked) {
+  int asked = 0;
+  const PlannedProblem answer =
+      plan_problem(planar_robot(), wall_problem(), nullptr, {}, [&] { return ++asked > 10; });
+  EXPECT_TRUE(answer.interrupted);
+  EXPECT_EQ(asked, 11);
+}
+
+}  // namespace
+}  // namespace kinship::plan
