@@ -17,17 +17,20 @@ void read_robot(const Reader& reader, NamedAttempt& named) {
     named.attempt.robot = *digest;
     return;
   }
-  if (const auto error = check_label(text)) reader.refuse(error->message);
+  if (const auto error = check_label(text))
+    reader.refuse(error->message);
   named.label = text;
 }
 
 std::optional<Path> read_path(const Reader& reader, Outcome outcome) {
   const auto waypoints = reader.find("waypoints");
   if (outcome != Outcome::Solved) {
-    if (waypoints) waypoints->refuse("must be null unless record.outcome is 'solved'");
+    if (waypoints)
+      waypoints->refuse("must be null unless record.outcome is 'solved'");
     return std::nullopt;
   }
-  if (!waypoints) reader.at("waypoints").refuse("must not be null if record.outcome is 'solved'");
+  if (!waypoints)
+    reader.at("waypoints").refuse("must not be null if record.outcome is 'solved'");
   Eigen::MatrixXd matrix = waypoints->columns(kMaxDof, kMaxWaypoints);
   if (matrix.cols() < 2 || matrix.rows() < 1)
     waypoints->refuse(std::to_string(matrix.cols()) + " waypoints of " +
@@ -40,16 +43,20 @@ NamedAttempt read_attempt(const Reader& reader) {
   Attempt& attempt = named.attempt;
   attempt.report_uuid = reader.at("report_uuid").uuid();
   attempt.task = reader.at("task").text(kMaxTaskBytes);
-  if (const auto error = check_task(attempt.task)) throw Failure(*error);
+  if (const auto error = check_task(attempt.task))
+    throw Failure(*error);
   read_robot(reader.at("robot"), named);
   if (const auto machine = reader.find("machine")) {
     attempt.machine = machine->text(kMaxMachineBytes);
-    if (const auto error = check_machine(attempt.machine)) throw Failure(*error);
+    if (const auto error = check_machine(attempt.machine))
+      throw Failure(*error);
   }
-  if (const auto placement = reader.find("T_task_base")) attempt.T_task_base = placement->pose();
+  if (const auto placement = reader.find("T_task_base"))
+    attempt.T_task_base = placement->pose();
   attempt.record = read_record(reader.at("record"));
   attempt.path = read_path(reader, attempt.record.outcome);
-  if (const auto scene = reader.find("scene")) scene->refuse("not supported yet, must be null");
+  if (const auto scene = reader.find("scene"))
+    scene->refuse("not supported yet, must be null");
   return named;
 }
 

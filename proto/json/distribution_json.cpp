@@ -28,7 +28,8 @@ OrderedJson source_object(const Source& source) {
 Source read_source(const Reader& reader) {
   Source source;
   source.robot = reader.at("robot").digest();
-  if (const auto label = reader.find("label")) source.label = label->text(kMaxLabelBytes);
+  if (const auto label = reader.find("label"))
+    source.label = label->text(kMaxLabelBytes);
   source.paths = reader.at("paths").count();
   source.generation = reader.at("generation").count();
   source.poses = reader.at("poses").count();
@@ -40,7 +41,8 @@ void add_mixture(const std::optional<Mixture>& mixture, OrderedJson& object) {
   object["weights"] = nullptr;
   object["means"] = nullptr;
   object["covariances"] = nullptr;
-  if (!mixture) return;
+  if (!mixture)
+    return;
   object["weights"] = list(mixture->weights());
   object["means"] = list_of_columns(mixture->means());
   OrderedJson covariances = OrderedJson::array();
@@ -65,8 +67,10 @@ Mixture read_mixture(const Reader& reader) {
 
 Eigen::Matrix2Xd read_limits(const Reader& reader) {
   const Eigen::MatrixXd limits = reader.columns(2, kMaxDof);
-  if (limits.cols() == 0) return Eigen::Matrix2Xd(2, 0);
-  if (limits.rows() != 2) reader.refuse("each joint needs [lower, upper]");
+  if (limits.cols() == 0)
+    return Eigen::Matrix2Xd(2, 0);
+  if (limits.rows() != 2)
+    reader.refuse("each joint needs [lower, upper]");
   for (Eigen::Index joint = 0; joint < limits.cols(); ++joint)
     if (limits(0, joint) > limits(1, joint))
       reader.refuse("joint " + std::to_string(joint) + " has lower limit " +
@@ -80,7 +84,8 @@ void read_provenance(const Reader& reader, Distribution& distribution) {
   distribution.revision = reader.at("revision").count();
   distribution.store_epoch = reader.at("store_epoch").uuid();
   distribution.task = reader.at("task").text(kMaxTaskBytes);
-  if (const auto error = check_task(distribution.task)) throw Failure(*error);
+  if (const auto error = check_task(distribution.task))
+    throw Failure(*error);
   distribution.robot = reader.at("robot").digest();
   if (const auto placement = reader.find("T_task_base"))
     distribution.T_task_base = placement->pose();
@@ -99,10 +104,12 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     distribution.held_out_score = score->number();
   if (const auto evidence = reader.find("evidence"))
     distribution.evidence = evidence->text(kMaxMessageBytes);
-  if (const auto fitted = reader.find("fitted_ms")) distribution.fitted_ms = fitted->integer();
+  if (const auto fitted = reader.find("fitted_ms"))
+    distribution.fitted_ms = fitted->integer();
   if (const auto time = reader.find("transfer_time_s"))
     distribution.transfer_time_s = time->number(0);
-  if (const auto time = reader.find("fit_time_s")) distribution.fit_time_s = time->number(0);
+  if (const auto time = reader.find("fit_time_s"))
+    distribution.fit_time_s = time->number(0);
 }
 
 Distribution read_distribution(const Reader& reader) {
@@ -113,7 +120,8 @@ Distribution read_distribution(const Reader& reader) {
       parse_distribution_state(reader.at("state").text(kMaxWordBytes)).value_or_throw();
   distribution.limits = read_limits(reader.at("limits"));
   distribution.recommended_share = reader.at("recommended_share").number(0, 1);
-  if (const auto cuts = reader.find("cuts")) cuts->refuse("not supported yet, must be null");
+  if (const auto cuts = reader.find("cuts"))
+    cuts->refuse("not supported yet, must be null");
   if (distribution.state == DistributionState::Ready) {
     distribution.mixture = read_mixture(reader);
     if (distribution.mixture->dimension() != distribution.limits.cols())
@@ -139,7 +147,8 @@ std::string to_json(const Distribution& distribution) {
   object["profile"] = distribution.profile;
   object["engines"] = distribution.engines;
   OrderedJson sources = OrderedJson::array();
-  for (const Source& source : distribution.sources) sources.push_back(source_object(source));
+  for (const Source& source : distribution.sources)
+    sources.push_back(source_object(source));
   object["sources"] = std::move(sources);
   object["configurations"] = distribution.configurations;
   add_mixture(distribution.mixture, object);

@@ -17,7 +17,8 @@ NamePairs read_pairs(const Reader& reader) {
   NamePairs pairs;
   for (const Reader& element : reader.elements(kMaxCollisionPairs)) {
     const auto names = element.elements(2);
-    if (names.size() != 2) element.refuse("must be two names");
+    if (names.size() != 2)
+      element.refuse("must be two names");
     pairs.emplace_back(names[0].text(kMaxLinkNameBytes), names[1].text(kMaxLinkNameBytes));
   }
   return pairs;

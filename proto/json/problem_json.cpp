@@ -12,7 +12,7 @@ namespace kinship::json {
 namespace {
 
 constexpr std::size_t kMaxAttached = 64;
-constexpr double kMaxTimeLimit_s = 86400;
+constexpr double kMaxTimeLimit = 86400;  // s
 
 void read_goal(const Reader& reader, Problem& problem) {
   const auto configurations = reader.find("configurations");
@@ -24,7 +24,8 @@ void read_goal(const Reader& reader, Problem& problem) {
     return;
   }
   problem.goal_configurations = configurations->columns(kMaxDof, kMaxWaypoints);
-  if (problem.goal_configurations.cols() == 0) configurations->refuse("is empty");
+  if (problem.goal_configurations.cols() == 0)
+    configurations->refuse("is empty");
   if (problem.goal_configurations.rows() != problem.start.size())
     configurations->refuse(std::to_string(problem.goal_configurations.rows()) +
                            " joints, start has " + std::to_string(problem.start.size()));
@@ -33,11 +34,14 @@ void read_goal(const Reader& reader, Problem& problem) {
 Problem read_problem(const Reader& reader) {
   Problem problem;
   problem.name = reader.at("name").text(kMaxTaskBytes);
-  if (const auto placement = reader.find("T_task_base")) problem.T_task_base = placement->pose();
+  if (const auto placement = reader.find("T_task_base"))
+    problem.T_task_base = placement->pose();
   problem.start = reader.at("start").vector(kMaxDof);
-  if (problem.start.size() == 0) reader.at("start").refuse("is empty");
+  if (problem.start.size() == 0)
+    reader.at("start").refuse("is empty");
   read_goal(reader.at("goal"), problem);
-  if (const auto scene = reader.find("scene")) problem.scene = read_scene(*scene);
+  if (const auto scene = reader.find("scene"))
+    problem.scene = read_scene(*scene);
   if (const auto attached = reader.find("attached"))
     for (const Reader& object : attached->elements(kMaxAttached))
       problem.attached.push_back(read_attached(object));
@@ -46,8 +50,9 @@ Problem read_problem(const Reader& reader) {
   if (const auto constraint = reader.find("constraint"))
     constraint->refuse("not supported yet, must be null");
   if (const auto limit = reader.find("time_limit_s"))
-    problem.time_limit_s = limit->number(0, kMaxTimeLimit_s);
-  if (const auto seed = reader.find("seed")) problem.seed = seed->count();
+    problem.time_limit_s = limit->number(0, kMaxTimeLimit);
+  if (const auto seed = reader.find("seed"))
+    problem.seed = seed->count();
   return problem;
 }
 
@@ -56,8 +61,10 @@ ProblemResult read_problem_result(const Reader& reader) {
   result.name = reader.at("name").text(kMaxTaskBytes);
   result.solved = reader.at("solved").boolean();
   result.collision_checks = reader.at("collision_checks").count();
-  if (const auto checks = reader.find("goal_checks")) result.goal_checks = checks->count();
-  if (const auto checks = reader.find("shortcut_checks")) result.shortcut_checks = checks->count();
+  if (const auto checks = reader.find("goal_checks"))
+    result.goal_checks = checks->count();
+  if (const auto checks = reader.find("shortcut_checks"))
+    result.shortcut_checks = checks->count();
   result.projections = reader.at("projections").count();
   result.planning_time_s = reader.at("planning_time_s").number(0);
   result.time_limit_s = reader.at("time_limit_s").number(0);
@@ -68,7 +75,8 @@ ProblemResult read_problem_result(const Reader& reader) {
     result.distribution_revision = guidance->at("revision").count();
     result.share = guidance->at("share").number(0, 1);
   }
-  if (const auto reason = reader.find("reason")) result.reason = reason->text(kMaxMessageBytes);
+  if (const auto reason = reader.find("reason"))
+    result.reason = reason->text(kMaxMessageBytes);
   return result;
 }
 
@@ -85,7 +93,8 @@ std::string to_json(const Problem& problem) {
     object["goal"]["configurations"] = list_of_columns(problem.goal_configurations);
   object["scene"] = scene_object(problem.scene);
   OrderedJson attached = OrderedJson::array();
-  for (const AttachedObject& each : problem.attached) attached.push_back(attached_object(each));
+  for (const AttachedObject& each : problem.attached)
+    attached.push_back(attached_object(each));
   object["attached"] = std::move(attached);
   object["allowed_collisions"] = pair_list(problem.allowed_collisions);
   object["constraint"] = nullptr;

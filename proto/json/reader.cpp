@@ -50,7 +50,8 @@ void check_structure(std::string_view text, const std::string& what) {
       --depth;
     }
   }
-  if (values > kMaxDocumentValues) throw_too_large(what, values, kMaxDocumentValues, "values");
+  if (values > kMaxDocumentValues)
+    throw_too_large(what, values, kMaxDocumentValues, "values");
 }
 
 }  // namespace
@@ -82,23 +83,29 @@ void Reader::refuse(const std::string& problem) const {
 }
 
 Reader Reader::at(std::string_view key) const {
-  if (!value_->is_object()) refuse(std::string("must be an object, is ") + value_->type_name());
+  if (!value_->is_object())
+    refuse(std::string("must be an object, is ") + value_->type_name());
   std::string name = name_.empty() ? std::string(key) : name_ + "." + std::string(key);
   const auto member = value_->find(key);
-  if (member == value_->end()) throw Failure(ErrorCode::InvalidInput, name + ": is missing");
+  if (member == value_->end())
+    throw Failure(ErrorCode::InvalidInput, name + ": is missing");
   return {*member, std::move(name)};
 }
 
 std::optional<Reader> Reader::find(std::string_view key) const {
-  if (!value_->is_object()) refuse(std::string("must be an object, is ") + value_->type_name());
+  if (!value_->is_object())
+    refuse(std::string("must be an object, is ") + value_->type_name());
   const auto member = value_->find(key);
-  if (member == value_->end() || member->is_null()) return std::nullopt;
+  if (member == value_->end() || member->is_null())
+    return std::nullopt;
   return at(key);
 }
 
 std::vector<std::string> Reader::keys(std::size_t max_count) const {
-  if (!value_->is_object()) refuse(std::string("must be an object, is ") + value_->type_name());
-  if (value_->size() > max_count) throw_too_large(name_, value_->size(), max_count, "members");
+  if (!value_->is_object())
+    refuse(std::string("must be an object, is ") + value_->type_name());
+  if (value_->size() > max_count)
+    throw_too_large(name_, value_->size(), max_count, "members");
   std::vector<std::string> names;
   for (auto member = value_->begin(); member != value_->end(); ++member)
     names.push_back(member.key());
@@ -106,8 +113,10 @@ std::vector<std::string> Reader::keys(std::size_t max_count) const {
 }
 
 void Reader::require_array(std::size_t max_count) const {
-  if (!value_->is_array()) refuse(std::string("must be an array, is ") + value_->type_name());
-  if (value_->size() > max_count) throw_too_large(name_, value_->size(), max_count, "elements");
+  if (!value_->is_array())
+    refuse(std::string("must be an array, is ") + value_->type_name());
+  if (value_->size() > max_count)
+    throw_too_large(name_, value_->size(), max_count, "elements");
 }
 
 std::vector<Reader> Reader::elements(std::size_t max_count) const {
@@ -126,11 +135,15 @@ bool Reader::boolean() const {
 }
 
 double Reader::number(double lowest, double highest) const {
-  if (!value_->is_number()) refuse(std::string("must be a number, is ") + value_->type_name());
+  if (!value_->is_number())
+    refuse(std::string("must be a number, is ") + value_->type_name());
   const double number = value_->get<double>();
-  if (!std::isfinite(number)) refuse("is not finite");
-  if (number < lowest) refuse(to_text(number) + " is below " + to_text(lowest));
-  if (number > highest) refuse(to_text(number) + " exceeds " + to_text(highest));
+  if (!std::isfinite(number))
+    refuse("is not finite");
+  if (number < lowest)
+    refuse(to_text(number) + " is below " + to_text(lowest));
+  if (number > highest)
+    refuse(to_text(number) + " exceeds " + to_text(highest));
   return number;
 }
 
@@ -138,7 +151,8 @@ std::uint64_t Reader::count(std::uint64_t highest) const {
   if (!value_->is_number_unsigned())
     refuse("must be an integer from 0 to 2^64 - 1");  // nlohmann keeps -1 and 1.0 apart from 1
   const auto count = value_->get<std::uint64_t>();
-  if (count > highest) refuse(std::to_string(count) + " exceeds " + std::to_string(highest));
+  if (count > highest)
+    refuse(std::to_string(count) + " exceeds " + std::to_string(highest));
   return count;
 }
 
@@ -151,23 +165,27 @@ std::int64_t Reader::integer() const {
 }
 
 std::string Reader::text(std::size_t max_bytes) const {
-  if (!value_->is_string()) refuse(std::string("must be a string, is ") + value_->type_name());
+  if (!value_->is_string())
+    refuse(std::string("must be a string, is ") + value_->type_name());
   const auto& text = value_->get_ref<const std::string&>();
-  if (text.size() > max_bytes) throw_too_large(name_, text.size(), max_bytes, "bytes");
+  if (text.size() > max_bytes)
+    throw_too_large(name_, text.size(), max_bytes, "bytes");
   return text;
 }
 
 Digest Reader::digest() const {
   const std::string hex = text(kMaxDocumentBytes);
   const auto digest = Digest::from_hex(hex);
-  if (!digest) refuse("'" + hex.substr(0, kMaxShownBytes) + "' is not 64 hexadecimal digits");
+  if (!digest)
+    refuse("'" + hex.substr(0, kMaxShownBytes) + "' is not 64 hexadecimal digits");
   return *digest;
 }
 
 Uuid Reader::uuid() const {
   const std::string written = text(kMaxDocumentBytes);
   const auto uuid = Uuid::parse(written);
-  if (!uuid) refuse("'" + written.substr(0, kMaxShownBytes) + "' is not a UUID (8-4-4-4-12)");
+  if (!uuid)
+    refuse("'" + written.substr(0, kMaxShownBytes) + "' is not a UUID (8-4-4-4-12)");
   return *uuid;
 }
 
@@ -176,9 +194,11 @@ Eigen::Isometry3d Reader::pose() const {
   PoseArray array{};
   if (static_cast<std::size_t>(numbers.size()) != array.size())
     refuse(std::to_string(numbers.size()) + " numbers, must be 7: x y z qx qy qz qw");
-  for (std::size_t i = 0; i < array.size(); ++i) array[i] = numbers[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < array.size(); ++i)
+    array[i] = numbers[static_cast<Eigen::Index>(i)];
   const auto pose = from_pose_array(array);
-  if (!pose) refuse(pose.error().message);
+  if (!pose)
+    refuse(pose.error().message);
   return *pose;
 }
 
@@ -186,7 +206,8 @@ double Reader::number_at(std::size_t index) const {
   const nlohmann::json& element = (*value_)[index];
   if (element.is_number()) {
     const double number = element.get<double>();
-    if (std::isfinite(number)) return number;
+    if (std::isfinite(number))
+      return number;
   }
   return Reader(element, name_ + "[" + std::to_string(index) + "]").number();  // names the place
 }
@@ -208,7 +229,8 @@ Eigen::MatrixXd Reader::columns(std::size_t max_rows, std::size_t max_columns) c
     const Reader inner((*value_)[index], name_ + "[" + std::to_string(index) + "]");
     inner.require_array(max_rows);
     const auto rows = static_cast<Eigen::Index>(inner.value_->size());
-    if (column == 0) matrix.resize(rows, count);
+    if (column == 0)
+      matrix.resize(rows, count);
     if (rows != matrix.rows())
       inner.refuse(std::to_string(rows) + " numbers, the first has " +
                    std::to_string(matrix.rows()));

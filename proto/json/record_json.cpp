@@ -37,17 +37,21 @@ PlanningRecord read_record(const Reader& reader) {
   record.collision_checks = reader.at("collision_checks").count();
   if (const auto planner = reader.find("planner")) {
     record.planner = planner->text(kMaxPlannerBytes);
-    if (const auto error = check_planner(record.planner)) reader.refuse(error->message);
+    if (const auto error = check_planner(record.planner))
+      reader.refuse(error->message);
   }
   if (const auto options = reader.find("planner_options"))
     record.planner_options = options->text(kMaxPlannerOptionsBytes);
   if (const auto projections = reader.find("projections"))
     record.projections = projections->count();
-  if (const auto limit = reader.find("time_limit_s")) record.time_limit_s = limit->number(0);
+  if (const auto limit = reader.find("time_limit_s"))
+    record.time_limit_s = limit->number(0);
   if (const auto arm = reader.find("arm"))
     record.arm = parse_arm(arm->text(kMaxWordBytes)).value_or_throw();
-  if (const auto share = reader.find("share")) record.share = share->number(0, 1);
-  if (const auto id = reader.find("distribution_id")) record.distribution_id = id->digest();
+  if (const auto share = reader.find("share"))
+    record.share = share->number(0, 1);
+  if (const auto id = reader.find("distribution_id"))
+    record.distribution_id = id->digest();
   if (const auto revision = reader.find("distribution_revision"))
     record.distribution_revision = revision->count();
   return record;

@@ -22,27 +22,33 @@ double read_extent(const Reader& reader) {
 
 std::string read_name(const Reader& reader) {
   std::string name = reader.text(kMaxLinkNameBytes);
-  if (name.empty()) reader.refuse("is empty");
+  if (name.empty())
+    reader.refuse("is empty");
   return name;
 }
 
 Eigen::Vector3d read_size(const Reader& reader) {
   const auto elements = reader.elements(3);
-  if (elements.size() != 3) reader.refuse(std::to_string(elements.size()) + " extents, must be 3");
+  if (elements.size() != 3)
+    reader.refuse(std::to_string(elements.size()) + " extents, must be 3");
   return {read_extent(elements[0]), read_extent(elements[1]), read_extent(elements[2])};
 }
 
 /// [radius, length]
 std::pair<double, double> read_round(const Reader& reader) {
   const auto elements = reader.elements(2);
-  if (elements.size() != 2) reader.refuse("must be [radius, length]");
+  if (elements.size() != 2)
+    reader.refuse("must be [radius, length]");
   return {read_extent(elements[0]), read_extent(elements[1])};
 }
 
 Shape read_shape(const Reader& reader) {
-  if (reader.find("mesh")) reader.refuse("meshes are not supported yet");
-  if (const auto box = reader.find("box")) return BoxShape{read_size(*box)};
-  if (const auto sphere = reader.find("sphere")) return SphereShape{read_extent(*sphere)};
+  if (reader.find("mesh"))
+    reader.refuse("meshes are not supported yet");
+  if (const auto box = reader.find("box"))
+    return BoxShape{read_size(*box)};
+  if (const auto sphere = reader.find("sphere"))
+    return SphereShape{read_extent(*sphere)};
   if (const auto cylinder = reader.find("cylinder")) {
     const auto [radius_m, length_m] = read_round(*cylinder);
     return CylinderShape{radius_m, length_m};
@@ -81,7 +87,8 @@ Eigen::Isometry3d read_center(const Reader& reader) {
 template <typename Read>
 void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
   const auto objects = reader.find(key);
-  if (!objects) return;
+  if (!objects)
+    return;
   for (const Reader& element : objects->elements(kMaxObjects)) {
     SceneObject object = read(element);
     object.name = read_name(element.at("name"));

@@ -55,7 +55,8 @@ PathSummary read_path(const Reader& reader) {
   summary.label = reader.at("label").text(kMaxLabelBytes);
   summary.task = reader.at("task").text(kMaxTaskBytes);
   summary.machine = reader.at("machine").text(kMaxMachineBytes);
-  if (const auto placement = reader.find("T_task_base")) summary.T_task_base = placement->pose();
+  if (const auto placement = reader.find("T_task_base"))
+    summary.T_task_base = placement->pose();
   summary.record = read_record(reader.at("record"));
   summary.waypoints = reader.at("waypoints").count();
   summary.length = reader.at("length").number(0);

@@ -8,7 +8,8 @@ namespace kinship::json {
 
 OrderedJson list(const Eigen::Ref<const Eigen::VectorXd>& numbers) {
   OrderedJson array = OrderedJson::array();
-  for (const double number : numbers) array.push_back(number);
+  for (const double number : numbers)
+    array.push_back(number);
   return array;
 }
 

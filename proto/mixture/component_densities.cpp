@@ -51,9 +51,11 @@ Eigen::MatrixXd ComponentDensities::weighted_log_densities(
 
 Eigen::VectorXd log_sum_exp_of_rows(const Eigen::Ref<const Eigen::MatrixXd>& terms) {
   Eigen::ArrayXd largest = terms.col(0);
-  for (Eigen::Index k = 1; k < terms.cols(); ++k) largest = largest.max(terms.col(k).array());
+  for (Eigen::Index k = 1; k < terms.cols(); ++k)
+    largest = largest.max(terms.col(k).array());
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(terms.rows());
-  for (Eigen::Index k = 0; k < terms.cols(); ++k) sum += (terms.col(k).array() - largest).exp();
+  for (Eigen::Index k = 0; k < terms.cols(); ++k)
+    sum += (terms.col(k).array() - largest).exp();
   return largest + sum.log();
 }
 

@@ -39,7 +39,8 @@ std::optional<Eigen::VectorXd> Sampler::sample(std::mt19937_64& generator) const
   Eigen::VectorXd configuration(dimension());
   for (int draw = 0; draw < kMaxDraws; ++draw) {
     const Eigen::Index component = draw_component(generator);
-    for (double& value : noise) value = normal(generator);
+    for (double& value : noise)
+      value = normal(generator);
     bool inside = true;
     for (Eigen::Index joint = 0; joint < dimension() && inside; ++joint) {
       const auto factor_row = factors_.col(component * dimension() + joint);
@@ -48,7 +49,8 @@ std::optional<Eigen::VectorXd> Sampler::sample(std::mt19937_64& generator) const
       inside =
           configuration[joint] >= limits_(0, joint) && configuration[joint] <= limits_(1, joint);
     }
-    if (inside) return configuration;
+    if (inside)
+      return configuration;
   }
   return std::nullopt;
 }

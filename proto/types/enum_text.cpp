@@ -21,7 +21,8 @@ constexpr Words<DistributionState, 2> kDistributionStates = {
 template <typename Enum, std::size_t count>
 std::string_view find_word(const Words<Enum, count>& words, Enum value) {
   for (const auto& [enumerator, word] : words)
-    if (enumerator == value) return word;
+    if (enumerator == value)
+      return word;
   throw std::invalid_argument("to_text: not an enumerator");
 }
 
@@ -31,7 +32,8 @@ Result<Enum> find_enumerator(const Words<Enum, count>& words, std::string_view w
   constexpr std::size_t kMaxShown = 40;
   std::string allowed;
   for (const auto& [enumerator, word] : words) {
-    if (word == text) return enumerator;
+    if (word == text)
+      return enumerator;
     allowed += (allowed.empty() ? "" : ", ") + std::string(word);
   }
   return Error{ErrorCode::InvalidInput, std::string(what) + ": '" +

@@ -21,7 +21,8 @@ class Values {
   double any_double() {
     for (;;) {
       const auto value = std::bit_cast<double>(generator_());
-      if (std::isfinite(value)) return value;
+      if (std::isfinite(value))
+        return value;
     }
   }
   double positive() { return std::abs(any_double()); }
@@ -35,12 +36,14 @@ class Values {
   }
   Digest digest() {
     Digest digest;
-    for (auto& byte : digest.bytes) byte = static_cast<std::uint8_t>(generator_());
+    for (auto& byte : digest.bytes)
+      byte = static_cast<std::uint8_t>(generator_());
     return digest;
   }
   std::string printable(int max_size) {
     std::string text(static_cast<std::size_t>(below(max_size + 1)), ' ');
-    for (char& c : text) c = static_cast<char>(' ' + below('~' - ' ' + 1));
+    for (char& c : text)
+      c = static_cast<char>(' ' + below('~' - ' ' + 1));
     return text;
   }
   Eigen::Isometry3d pose() {
@@ -54,11 +57,13 @@ class Values {
 
   Attempt attempt() {
     Attempt attempt;
-    for (auto& byte : attempt.report_uuid.bytes) byte = static_cast<std::uint8_t>(generator_());
+    for (auto& byte : attempt.report_uuid.bytes)
+      byte = static_cast<std::uint8_t>(generator_());
     attempt.robot = digest();
     attempt.machine = printable(128);
     attempt.task = "task:" + std::to_string(count());
-    if (coin()) attempt.T_task_base = pose();
+    if (coin())
+      attempt.T_task_base = pose();
     attempt.record.outcome = coin() ? Outcome::Solved : Outcome::Timeout;
     attempt.record.planner = printable(128);
     attempt.record.planner_options = printable(1024);
@@ -68,7 +73,8 @@ class Values {
     attempt.record.time_limit_s = positive();
     attempt.record.arm = coin() ? Arm::Guided : Arm::Control;
     attempt.record.share = share();
-    if (coin()) attempt.record.distribution_id = digest();
+    if (coin())
+      attempt.record.distribution_id = digest();
     attempt.record.distribution_revision = count();
     if (attempt.record.outcome == Outcome::Solved)
       attempt.path = Path(matrix(1 + below(32), 2 + below(50)));
@@ -138,7 +144,8 @@ TEST(JsonRoundTrip, DistributionComesBackBitByBit) {
     written.limits.row(0).setConstant(-values.positive());
     written.limits.row(1).setConstant(values.positive());
     written.recommended_share = values.share();
-    if (values.coin()) written.held_out_score = values.any_double();
+    if (values.coin())
+      written.held_out_score = values.any_double();
     written.sources.push_back({values.digest(), "panda", values.count(), 1, 2, 3});
 
     const auto read = distribution_from_json(to_json(written));
