@@ -104,6 +104,7 @@ TEST(ReadChain, TakesTheStricterOfHardAndSoftLimits) {
   const Chain chain = read_chain(limits("-0.5", "3")).value_or_throw();
   EXPECT_EQ(chain.lower()[1], -0.5);
   EXPECT_EQ(chain.upper()[1], 2);
+  EXPECT_EQ(read_chain(limits("-3", "1.5")).value_or_throw().upper()[1], 1.5);
   EXPECT_EQ(read_chain(limits("0", "0")).value_or_throw().lower()[1], -1);
   EXPECT_EQ(message(limits("1", "-1")),
             "joint 'j2': lower soft limit 1 exceeds upper soft limit -1");
