@@ -1,6 +1,10 @@
+#include <dds/ddsrt/log.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "proto/dds/log.hpp"
 #include "proto/dds/participant.hpp"
@@ -53,6 +57,20 @@ TEST(ReplyPartition, SpreadsClientsOverAllPartitions) {
     seen.insert(reply_partition_of(Uuid::random()));
   EXPECT_EQ(seen.size(), kReplyPartitions);
   EXPECT_LT(*seen.rbegin(), kReplyPartitions);
+}
+
+TEST(Log, FloodIsCutAndTheNewestLineIsKnown) {
+  std::vector<std::string> lines;
+  set_log_sink([&](std::string_view line) { lines.emplace_back(line); });
+  limit_log();
+  for (int i = 0; i < 1000; ++i)
+    dds_log(DDS_LC_ERROR, __FILE__, __LINE__, "test", "malformed packet %d\n", i);
+  EXPECT_EQ(lines.size(), 20U);
+  EXPECT_EQ(lines.front(), "malformed packet 0");
+  EXPECT_EQ(last_log_line(), "malformed packet 999");
+  set_log_sink([](std::string_view line) {
+    std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+  });
 }
 
 }  // namespace
