@@ -27,8 +27,12 @@ class Ingest {
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
   };
 
-  /// \param store, robots, desk  outlive the ingest; `desk` reads robots that are not in memory.
+  /// \param store, robots, desk  outlive the ingest, which drains on destruction; `desk` reads
+  /// robots that are not in memory.
   Ingest(store::Store& store, RobotRegistry& robots, WorkerPool& desk, Options options);
+  ~Ingest() { drain(); }
+  Ingest(const Ingest&) = delete;
+  Ingest& operator=(const Ingest&) = delete;
 
   using Done = std::function<void(const std::vector<Receipt>&)>;
 
