@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/robots.hpp"
 
 namespace kinship::planning {
 namespace {
@@ -38,6 +39,17 @@ TEST(PlanningBounds, OfWideJointsAreHalfATurnAroundTheStartClippedToTheLimits) {
   const auto bounds = planning_bounds(arm(2 * M_PI), Eigen::Vector2d(0.5, 1.5 * M_PI));
   expect_bounds(bounds, 0, 0.5 - M_PI, 0.5 + M_PI);
   expect_bounds(bounds, 1, 0.5 * M_PI, 2 * M_PI);
+}
+
+TEST(PlanningBounds, OfAUr10eAreATurnAroundTheStartButForItsElbow) {
+  const auto chain = test::model_chain("ur10e");
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(6, 1.0);
+  const auto bounds = planning_bounds(chain, start);
+  for (Eigen::Index joint = 0; joint < 6; ++joint) {
+    const double center = joint == 2 ? 0 : 1;  // the elbow turns half as far
+    expect_bounds(bounds, joint, center - M_PI, center + M_PI);
+  }
+  EXPECT_EQ(turning_joints(chain), (std::vector<bool>{true, true, false, true, true, true}));
 }
 
 TEST(PlanningBounds, OfContinuousJointsAreHalfATurnAroundTheStartWhereverThatIs) {

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "robots/collision/collision_world.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "tests/support/robots.hpp"
+#include "tests/unit/robots/collision/toy_arm.hpp"
+
+namespace kinship::collision {
+namespace {
+
+constexpr std::uint64_t kSeed = 2;
+
+CollisionWorld bare_world(const std::string& name, const Surroundings& surroundings = {}) {
+  const auto shapes = geometry::read_shapes(test::model_description(name), test::model_chain(name));
+  return CollisionWorld(test::model_chain(name), shapes.value(), surroundings);
+}
+
+Eigen::VectorXd ready(const std::string& name) {
+  if (name == "panda")
+    return test_support::angles({0, -0.785, 0, -2.356, 0, 1.571, 0.785});
+  if (name == "iiwa14")
+    return test_support::angles({0, 0.5, 0, -1.5, 0, 1.1, 0});
+  return test_support::angles({0, -1.57, 1.57, -1.57, -1.57, 0});
+}
+
+std::string words(const std::optional<std::pair<std::string, std::string>>& contact) {
+  return contact ? contact->first + " touches " + contact->second : "";
+}
+
+class Model : public testing::TestWithParam<std::string> {};
+
+TEST_P(Model, IsFreeWhereItStandsReady) {
+  EXPECT_EQ(words(bare_world(GetParam()).find_contact(ready(GetParam()))), "");
+}
+
+TEST_P(Model, HasCapsules) {
+  const auto shapes =
+      geometry::read_shapes(test::model_description(GetParam()), test::model_chain(GetParam()));
+  ASSERT_TRUE(shapes);
+  EXPECT_TRUE(std::any_of(shapes->shapes.begin(), shapes->shapes.end(), [](const auto& shape) {
+    return std::holds_alternative<CapsuleShape>(shape.shape);
+  }));
+}
+
+TEST_P(Model, CollidesWithItselfInSomeButNotMostConfigurations) {
+  CollisionWorld world = bare_world(GetParam());
+  const kinematics::Chain chain = test::model_chain(GetParam());
+  std::mt19937_64 generator(kSeed);
+  constexpr int kConfigurations = 300;
+  int colliding = 0;
+  for (int i = 0; i < kConfigurations; ++i)
+    colliding += world.collides(test::random_configuration(chain, generator));
+  EXPECT_GT(colliding, kConfigurations / 100);
+  EXPECT_LT(colliding, kConfigurations / 2);
+  RecordProperty("colliding", colliding);
+}
+
+TEST_P(Model, HitsAPlateAtHalfItsHeight) {
+  Surroundings surroundings;
+  surroundings.scene.objects.push_back(
+      {"plate", BoxShape{{4, 4, 0.1}}, test_support::shift(0, 0, 0.45)});
+  EXPECT_NE(words(bare_world(GetParam(), surroundings).find_contact(ready(GetParam()))), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, Model, testing::Values("panda", "iiwa14", "ur10e"));
+
+TEST(Ur10e, FoldedOntoItselfCollides) {
+  // The elbow bent as far as it goes: the wrist comes back to the shoulder.
+  EXPECT_TRUE(bare_world("ur10e").collides(test_support::angles({0, -1.57, 3.0, 0, 0, 0})));
+}
+
+}  // namespace
+}  // namespace kinship::collision
