@@ -53,6 +53,12 @@ Body make_attached(const kinematics::Chain& chain, const AttachedObject& object)
           object.touch_links};
 }
 
+std::string unknown_name(const std::string& first, const std::string& second,
+                         const std::string& name) {
+  return "allowed collision ('" + first + "', '" + second +
+         "'): no link, object or attachment named '" + name + "'";
+}
+
 void require_known_names(const std::vector<Body>& bodies, const kinematics::Chain& chain,
                          const Surroundings& surroundings) {
   const auto known = [&](const std::string& name) {
@@ -63,8 +69,7 @@ void require_known_names(const std::vector<Body>& bodies, const kinematics::Chai
   for (const auto& [first, second] : surroundings.allowed_collisions)
     for (const std::string& name : {first, second})
       if (!known(name))
-        refuse("allowed collision ('" + first + "', '" + second +
-               "'): no link, object or attachment named '" + name + "'");
+        refuse(unknown_name(first, second, name));
 }
 
 }  // namespace

@@ -71,6 +71,11 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
   return shapes;
 }
 
+Error no_such_link(const std::string& first, const std::string& second, const std::string& name) {
+  return invalid("never-colliding pair ('" + first + "', '" + second + "'): no link named '" +
+                 name + "'");
+}
+
 Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& description,
                                                     const kinematics::Chain& chain) {
   std::vector<std::pair<int, int>> pairs;
@@ -78,8 +83,7 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
     const int a = chain.find_link(first);
     const int b = chain.find_link(second);
     if (a < 0 || b < 0)
-      return invalid("never-colliding pair ('" + first + "', '" + second + "'): no link named '" +
-                     (a < 0 ? first : second) + "'");
+      return no_such_link(first, second, a < 0 ? first : second);
     if (a != b)
       pairs.emplace_back(std::min(a, b), std::max(a, b));
   }
