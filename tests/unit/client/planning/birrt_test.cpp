@@ -65,7 +65,7 @@ TEST(Birrt, EndsInAnyOfTheGoals) {
 }
 
 TEST(Birrt, SamplesInTheGapMakeItFast) {
-  kinship::test_support::PlanarArm arm;
+  test::PlanarArm arm;
   arm.lengths_m = {1, 1};
   arm.limit = 1;
   const Mixture gap(Eigen::VectorXd::Ones(1), at(0, 0.7), {Eigen::MatrixXd::Identity(2, 2) * 0.01});

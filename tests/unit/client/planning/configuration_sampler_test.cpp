@@ -18,7 +18,7 @@ constexpr std::uint64_t kSeed = 17;
 constexpr int kSamples = 4000;
 
 kinematics::Chain arm(double limit) {
-  kinship::test_support::PlanarArm arm;
+  test::PlanarArm arm;
   arm.lengths_m = {0.4, 0.3};
   arm.limit = limit;
   return arm.chain();

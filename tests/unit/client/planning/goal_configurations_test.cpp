@@ -11,8 +11,8 @@
 namespace kinship::planning {
 namespace {
 
-using kinship::test_support::planar_pose;
-using kinship::test_support::PlanarArm;
+using test::planar_pose;
+using test::PlanarArm;
 
 /// Two links whose tip's place matters: two branches per pose, elbow to either side.
 PlanarArm arm(double limit = M_PI) {

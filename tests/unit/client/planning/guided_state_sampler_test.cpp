@@ -27,7 +27,7 @@ constexpr std::uint64_t kSeed = 23;
 
 /// Samples only in the gap of the wall and at both sides of it.
 std::shared_ptr<const ConfigurationSampler> gap_sampler(double share) {
-  kinship::test_support::PlanarArm arm;
+  test::PlanarArm arm;
   arm.lengths_m = {1, 1};
   arm.limit = 1;
   Eigen::Matrix2d covariance;

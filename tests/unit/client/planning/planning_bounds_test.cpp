@@ -12,7 +12,7 @@ namespace kinship::planning {
 namespace {
 
 using kinematics::JointType;
-using test_support::PlanarArm;
+using test::PlanarArm;
 
 constexpr std::uint64_t kSeed = 8;
 
