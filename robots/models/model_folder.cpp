@@ -15,7 +15,7 @@
 namespace kinship::models {
 namespace {
 
-constexpr std::size_t kMaxChainFileBytes = 256 * 1024;
+constexpr std::size_t kMaxChainFileBytes = 262'144;
 
 /// The fields of one chain.toml. Every method throws Failure that names file and field.
 class ChainFile {
