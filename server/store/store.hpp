@@ -67,7 +67,7 @@ class Store {
   virtual StoreStatus status() const = 0;
 
   /// Durable on return. Known: the digest was there already (its label and text stay as they are).
-  /// \return Conflict if another robot has the label.
+  /// \return Conflict if another robot has the label; InvalidInput if a value cannot be kept.
   virtual Result<RegisterStatus> register_robot(const RobotRecord& robot) = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
   /// By label. A robot whose row is damaged is left out and counted in status().message;
@@ -97,7 +97,8 @@ class Store {
 
   /// Stores a distribution under its id with the next revision, durable on return.
   /// \return the revision given.
-  /// \throws Failure(NotFound) if its robot is not registered.
+  /// \throws Failure(NotFound) if its robot is not registered, Failure(InvalidInput) if a part
+  ///         exceeds its limit.
   virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
   /// The newest revision; nothing if its payload fails its CRC.
   virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;

@@ -23,6 +23,9 @@ std::uint64_t upsert_distribution(Database& database, const Distribution& distri
   for (const Source& source : distribution.sources)
     paths += source.paths;
   const std::vector<std::uint8_t> payload = encode_distribution(distribution);
+  if (!decode_distribution(payload))
+    throw Failure(ErrorCode::InvalidInput, "distribution " + distribution.id.short_hex() +
+                                               ": exceeds a limit and could not be read back");
   const auto components = distribution.mixture ? distribution.mixture->size() : 0;
   const auto insert = database.cached(
       "INSERT INTO distribution (digest, revision, task_id, robot_id, profile, state, reason,"

@@ -9,7 +9,8 @@
 namespace kinship::store {
 
 /// \return the revision given: 1, then one more at each call for the same id.
-/// \throws Failure(NotFound) if its robot is not registered.
+/// \throws Failure(NotFound) if its robot is not registered; Failure(InvalidInput) if it could not
+///         be read back: more sources or components than the limits, a placement that is no pose.
 std::uint64_t upsert_distribution(Database& database, const Distribution& distribution);
 
 /// A distribution without its store epoch.

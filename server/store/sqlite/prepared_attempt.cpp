@@ -16,6 +16,9 @@ std::optional<std::string> reason_against(const Attempt& attempt) {
   if ((record.outcome == Outcome::Solved) != attempt.path.has_value())
     return attempt.path ? "an attempt that is not solved has a path"
                         : "a solved attempt has no path";
+  if (attempt.T_task_base)
+    if (const auto pose = from_pose_array(to_pose_array(*attempt.T_task_base)); !pose)
+      return "T_task_base: " + pose.error().message;
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   for (const std::uint64_t counter :
        {record.collision_checks, record.projections, record.distribution_revision})

@@ -23,8 +23,8 @@ struct PreparedAttempt {
   std::optional<PreparedPath> path;
 };
 
-/// \return the reason if it cannot be stored: solved without a path or the reverse, a counter
-///         over 2^63, more joints or waypoints than the limits.
+/// \return the reason if it cannot be stored: solved without a path or the reverse, a placement
+///         that is no pose, a counter over 2^63, more joints or waypoints than the limits.
 Result<PreparedAttempt> prepare(Attempt attempt);
 
 }  // namespace kinship::store

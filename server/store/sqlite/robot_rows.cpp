@@ -106,6 +106,9 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
     return Error{ErrorCode::Conflict,
                  "robot '" + description.label + "': another robot has this label"};
   const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
+  if (!pose_from_blob(T_tip_transfer))
+    return Error{ErrorCode::InvalidInput,
+                 "robot '" + description.label + "': T_tip_transfer is no pose"};
   database
       .cached(
           "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"

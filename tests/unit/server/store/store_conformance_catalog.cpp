@@ -1,3 +1,4 @@
+#include "proto/types/limits.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
 
 namespace kinship::store {
@@ -82,6 +83,17 @@ TEST_P(StoreConformance, ADistributionNeedsItsRobot) {
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ErrorCode::NotFound);
   }
+}
+
+TEST_P(StoreConformance, TakesNoDistributionOrRobotThatItCouldNotGiveBack) {
+  Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  distribution.sources.resize(kMaxSources + 1, distribution.sources[0]);
+  EXPECT_THROW(store_->put_distribution(distribution), Failure);
+  EXPECT_EQ(store_->status().distributions, 0U);
+  RobotRecord robot = test::make_robot("far", 3);
+  robot.description.T_tip_transfer.translation().x() = 1e6;
+  EXPECT_EQ(store_->register_robot(robot).error().code, ErrorCode::InvalidInput);
+  EXPECT_FALSE(store_->find_robot(robot.digest));
 }
 
 TEST_P(StoreConformance, ReopenKeepsEverything) {

@@ -91,13 +91,15 @@ TEST_P(StoreConformance, RefusesWhatCannotBeKept) {
   counter.record.collision_checks = ~std::uint64_t{0};
   Attempt share = solved(5);
   share.record.share = 1.5;
-  const std::vector<Receipt> receipts =
-      test::report(*store_, {wrong_dof, no_path, failed_with_path, counter, share, solved(6)});
-  for (std::size_t i = 0; i < 5; ++i) {
+  Attempt far_away = solved(7);
+  far_away.T_task_base->translation().x() = 1e6;
+  const std::vector<Receipt> receipts = test::report(
+      *store_, {wrong_dof, no_path, failed_with_path, counter, share, far_away, solved(6)});
+  for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(receipts[i].status, ReceiptStatus::Refused) << i;
     EXPECT_FALSE(receipts[i].message.empty()) << i;
   }
-  EXPECT_EQ(receipts[5].status, ReceiptStatus::Stored);
+  EXPECT_EQ(receipts[6].status, ReceiptStatus::Stored);
   EXPECT_EQ(store_->status().attempts, 1U);  // nothing of the refused ones is left
   EXPECT_EQ(store_->status().paths, 1U);
 }
