@@ -234,23 +234,28 @@ TEST_F(CatalogTest, AWaiterThatAsksAgainTakesItsOwnPlace) {
   EXPECT_THROW(first.get(), std::future_error);  // its callback was dropped
 }
 
-TEST_F(CatalogTest, ABackgroundFitThatSomebodyWaitsForIsDoneOnce) {
-  fit_threads_ = 1;
-  start();
+TEST_F(CatalogTest, ABackgroundFitThatSomebodyWaitsForGoesFirstAndIsDoneOnce) {
   teach(6);
   fetch(request_for(teacher_));
   teach(5, 100);
   advance(kRefitInterval);
   gate_.close();
-  fetch(at_once(request_for(pupil_)));  // holds the only worker
-  gate_.wait_for_calls(2);
+  fetch(at_once(request_for(pupil_)));  // these two hold the two workers
+  fetch(at_once(elsewhere(request_for(pupil_), 0.1)));
+  gate_.wait_for_calls(3);
   fetch(request_for(teacher_));  // queues the background fit
   wait_for_desk();
   std::future<FetchReply> urgent = begin_fetch(with_generation(request_for(teacher_), 2), "now");
+  gate_.let_one_pass();  // that worker begins the fit, now urgent
+  gate_.wait_for_calls(4);
+  gate_.let_one_pass();  // the other finds the background job of the same fit
+  while (service_->status().queued_fits > 0)
+    std::this_thread::yield();
   gate_.open();
   EXPECT_EQ(urgent.get().distribution->revision, 2U);
   EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
-  EXPECT_EQ(gate_.calls(), 3);
+  service_->shutdown();
+  EXPECT_EQ(gate_.calls(), 4);
 }
 
 TEST_F(CatalogTest, StoppingAnswersThoseWhoWait) {

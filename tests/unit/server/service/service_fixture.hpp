@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <future>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,17 +22,9 @@ namespace kinship::service {
 /// The real fit behind a gate, so that a test decides when it goes on; counts calls.
 class GatedFit {
  public:
-  void close() {
-    const std::lock_guard lock(mutex_);
-    is_open_ = false;
-  }
-  void open() {
-    {
-      const std::lock_guard lock(mutex_);
-      is_open_ = true;
-    }
-    changed_.notify_all();
-  }
+  void close() { set_permits(0); }
+  void open() { set_permits(kAlways); }
+  void let_one_pass() { set_permits(1); }
   void wait_for_calls(int calls) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return calls_ >= calls; });
@@ -46,15 +39,26 @@ class GatedFit {
       std::unique_lock lock(mutex_);
       ++calls_;
       changed_.notify_all();
-      changed_.wait(lock, [this] { return is_open_; });
+      changed_.wait(lock, [this] { return permits_ > 0; });
+      if (permits_ != kAlways)
+        --permits_;
     }
     return fit_distribution(key, context, stop);
   }
 
  private:
+  static constexpr int kAlways = std::numeric_limits<int>::max();
+  void set_permits(int permits) {
+    {
+      const std::lock_guard lock(mutex_);
+      permits_ = permits;
+    }
+    changed_.notify_all();
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  bool is_open_ = true;
+  int permits_ = kAlways;
   int calls_ = 0;
 };
 
