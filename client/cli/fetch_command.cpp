@@ -13,7 +13,6 @@
 #include "proto/json/summaries_json.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/enum_text.hpp"
-#include "proto/types/pose.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::cli {
@@ -87,13 +86,6 @@ int print_samples(const Distribution& distribution, const FetchOptions& options,
     out << '\n';
   }
   return kDone;
-}
-
-std::string pose_text(const Eigen::Isometry3d& T_a_b) {
-  std::string text;
-  for (const double number : to_pose_array(T_a_b))
-    text += (text.empty() ? "" : " ") + number_text(number, 4);
-  return text;
 }
 
 }  // namespace

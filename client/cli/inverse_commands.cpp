@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <fstream>
+#include <optional>
 #include <ostream>
 #include <random>
 
@@ -25,11 +26,28 @@ double cpu_time_s() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-Result<kinematics::Chain> read_robot(const models::RobotArguments& arguments) {
+int refuse(const char* command, const Error& error, std::ostream& err) {
+  err << command << ": " << error.message << '\n';
+  return exit_code(error.code);
+}
+
+/// The chain that the arguments describe. Empty with an exit code in `code` if there is none:
+/// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
+std::optional<kinematics::Chain> read_robot(const char* command,
+                                            const models::RobotArguments& arguments,
+                                            std::ostream& err, int& code) {
   const auto description = models::describe_robot(arguments);
-  if (!description)
-    return description.error();
-  return kinematics::read_chain(*description);
+  if (!description) {
+    code = refuse(command, description.error(), err);
+    return std::nullopt;
+  }
+  auto chain = kinematics::read_chain(*description);
+  if (!chain) {
+    refuse(command, chain.error(), err);
+    code = kFailed;
+    return std::nullopt;
+  }
+  return *std::move(chain);
 }
 
 const char* reason_text(inverse::NoSolution reason) {
@@ -125,17 +143,13 @@ void print_check(const RobotCheck& check, std::ostream& out) {
   table.print(out);
 }
 
-int refuse(const char* command, const Error& error, std::ostream& err) {
-  err << command << ": " << error.message << '\n';
-  return exit_code(error.code);
-}
-
 }  // namespace
 
 int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err) {
-  const auto chain = read_robot(options.robot);
+  int code = kDone;
+  const auto chain = read_robot("robots check", options.robot, err, code);
   if (!chain)
-    return refuse("robots check", chain.error(), err);
+    return code;
   RobotCheck check;
   check.robot = chain->digest();
   check.base_link = chain->base_link();
@@ -153,9 +167,10 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
 
 int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "robots ik";
-  const auto chain = read_robot(options.robot);
+  int code = kDone;
+  const auto chain = read_robot(kCommand, options.robot, err, code);
   if (!chain)
-    return refuse(kCommand, chain.error(), err);
+    return code;
   const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
                                                    .min_distance = options.min_distance,
                                                    .seed = options.seed};

@@ -7,9 +7,9 @@
 #include "client/cli/table.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
+#include "proto/json/robot_description_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/enum_text.hpp"
-#include "proto/types/pose.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -38,11 +38,13 @@ int show(link::Client& server, AdminVerb verb, const std::string& argument, bool
   return kDone;
 }
 
-void print_robot(const RobotSummary& robot, std::ostream& out) {
+void print_robot(const RobotSummary& robot, const RobotDescription& description,
+                 std::ostream& out) {
   out << "robot       " << robot.robot.hex() << '\n'
       << "label       " << robot.label << '\n'
       << "chain       " << robot.base_link << " -> " << robot.tip_link << ", " << robot.dof
       << " joints\n"
+      << "transfer    " << pose_text(description.T_tip_transfer) << " in " << robot.tip_link << '\n'
       << "solver      " << robot.solver << '\n'
       << "experience  " << robot.paths << " paths, " << robot.attempts << " attempts\n"
       << "registered  " << time_text(robot.registered_ms) << '\n';
@@ -111,9 +113,29 @@ int show_status(link::Client& server, bool json, std::ostream& out, std::ostream
 
 int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,
                std::ostream& err) {
-  return show(server, AdminVerb::ShowRobot, name, json, "robots show", out, err,
-              json::robot_summary_from_json,
-              [&](const RobotSummary& robot) { print_robot(robot, out); });
+  constexpr const char* kCommand = "robots show";
+  int code = kDone;
+  const auto rows = show_rows(server, AdminVerb::ShowRobot, name, kCommand, err, code);
+  if (code != kDone)
+    return code;
+  constexpr std::size_t kRows = 2;  // what the store knows of it, and how it was described
+  if (rows.size() != kRows) {
+    err << kCommand << ": the server sent " << rows.size() << " rows, expected " << kRows << '\n';
+    return kFailed;
+  }
+  if (json) {
+    out << "{\"robot\":" << rows[0] << ",\n\"description\":" << rows[1] << "}\n";
+    return kDone;
+  }
+  const auto robot = json::robot_summary_from_json(rows[0]);
+  const auto description = json::robot_description_from_json(rows[1]);
+  if (!robot || !description) {
+    err << kCommand << ": cannot read the server's rows: "
+        << (robot ? description.error() : robot.error()).message << '\n';
+    return kFailed;
+  }
+  print_robot(*robot, *description, out);
+  return kDone;
 }
 
 int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "proto/types/pose.hpp"
+
 namespace kinship::cli {
 namespace {
 
@@ -66,6 +68,14 @@ std::string number_text(double value, int digits) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(digits) << value;
   return text.str();
+}
+
+std::string pose_text(const Eigen::Isometry3d& T_a_b) {
+  constexpr int kDigits = 4;
+  std::string text;
+  for (const double number : to_pose_array(T_a_b))
+    text += (text.empty() ? "" : " ") + number_text(number, kDigits);
+  return text;
 }
 
 }  // namespace kinship::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <chrono>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <iosfwd>
 #include <string>
@@ -28,5 +28,7 @@ std::string time_text(std::int64_t unix_ms);
 
 /// With `digits` behind the point.
 std::string number_text(double value, int digits);
+
+std::string pose_text(const Eigen::Isometry3d& T_a_b);  ///< x y z qx qy qz qw
 
 }  // namespace kinship::cli

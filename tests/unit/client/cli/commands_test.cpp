@@ -106,6 +106,13 @@ TEST(RobotsCheck, WantsBaseAndTipForAUrdfFile) {
   EXPECT_NE(answer.err.find("--base"), std::string::npos) << answer.err;
 }
 
+TEST(RobotsCheck, ARobotThatCannotBeUsedIsAFailure) {
+  const Answer answer =
+      run_command({"robots", "check", kModels + "ur10e/robot.urdf", "--base", "a", "--tip", "b"});
+  EXPECT_EQ(answer.code, kFailed);
+  EXPECT_NE(answer.err.find("'a'"), std::string::npos) << answer.err;
+}
+
 TEST(RobotsIk, AnswersAPoseAsJson) {
   const Answer answer = run_command({"robots", "ik", kModels + "panda", "--pose",
                                      "0.4 0.1 0.5 1 0 0 0", "--max-solutions", "2", "--json"});

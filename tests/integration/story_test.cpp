@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "proto/json/problem_json.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kinship::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<ProblemResult> read_results(const fs::path& file) {
+  std::vector<ProblemResult> results;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);)
+    results.push_back(json::problem_result_from_json(line).value_or_throw());
+  return results;
+}
+
+/// Runs deploy/quickstart with two instances per robot. \return its exit code.
+int tell_story(const fs::path& folder, std::uint32_t domain) {
+  const std::string command =
+      std::string("KINSHIP_BIN='") + KINSHIP_BIN_DIR + "' '" + KINSHIP_SOURCE_DIR +
+      "/deploy/quickstart' --no-build --fleet 2 --instances 2 --folder '" + folder.string() +
+      "' --domain " + std::to_string(domain) + " > '" + folder.string() + ".txt' 2>&1";
+  const int status = std::system(command.c_str());  // NOLINT: its arguments are ours
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Story, QuickstartsProgramsTeachANewRobotTwiceInARow) {
+  const ReservedDomain domain;
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path() / "story";
+  for (int run = 0; run < 2; ++run) {
+    ASSERT_EQ(tell_story(folder, domain.number()), 0) << read_text(folder.string() + ".txt");
+    const auto uniform = read_results(folder / "ur10e-uniform.results.jsonl");
+    const auto guided = read_results(folder / "ur10e-guided.results.jsonl");
+    ASSERT_EQ(uniform.size(), 2U);
+    ASSERT_EQ(guided.size(), 2U);
+    for (const ProblemResult& result : uniform)
+      EXPECT_FALSE(result.distribution_id) << result.name;
+    for (const ProblemResult& result : guided)
+      EXPECT_TRUE(result.distribution_id) << result.name;
+    EXPECT_NE(read_text(folder / "comparison.txt").find("collision checks, mean"),
+              std::string::npos);
+  }
+}
+
+TEST(Story, QuickstartLeavesAForeignFolderAlone) {
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path() / "mine";
+  fs::create_directory(folder);
+  std::ofstream(folder / "thesis.txt") << "irreplaceable";
+  EXPECT_EQ(tell_story(folder, 0), 1);
+  EXPECT_EQ(read_text(folder / "thesis.txt"), "irreplaceable");
+}
+
+}  // namespace
+}  // namespace kinship::test
