@@ -9,7 +9,7 @@
 
 #include "proto/json/problem_json.hpp"
 #include "tests/support/server_process.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::test {
 namespace {
@@ -41,7 +41,7 @@ int tell_story(const fs::path& folder, std::uint32_t domain) {
 
 TEST(Story, QuickstartsProgramsTeachANewRobotTwiceInARow) {
   const ReservedDomain domain;
-  const TemporaryFolder temporary;
+  const TemporaryDirectory temporary;
   const fs::path folder = temporary.path() / "story";
   for (int run = 0; run < 2; ++run) {
     ASSERT_EQ(tell_story(folder, domain.number()), 0) << read_text(folder.string() + ".txt");
@@ -59,7 +59,7 @@ TEST(Story, QuickstartsProgramsTeachANewRobotTwiceInARow) {
 }
 
 TEST(Story, QuickstartLeavesAForeignFolderAlone) {
-  const TemporaryFolder temporary;
+  const TemporaryDirectory temporary;
   const fs::path folder = temporary.path() / "mine";
   fs::create_directory(folder);
   std::ofstream(folder / "thesis.txt") << "irreplaceable";

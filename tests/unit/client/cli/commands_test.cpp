@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/cli/exit_code.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -55,7 +55,7 @@ TEST(Commands, WithoutAServerIsCodeFour) {
 }
 
 TEST(Commands, LookingAtAServerLeavesTheUsersOutboxAlone) {
-  const test::TemporaryFolder state;
+  const test::TemporaryDirectory state;
   setenv("XDG_STATE_HOME", state.path().c_str(), 1);
   run_command({"--domain", "198", "--timeout", "0.1", "status"});
   unsetenv("XDG_STATE_HOME");

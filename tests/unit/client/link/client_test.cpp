@@ -10,7 +10,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link {
 namespace {
@@ -71,7 +71,7 @@ class ClientTest : public testing::Test {
   ClientOptions options(std::uint32_t domain, std::chrono::milliseconds timeout = 5s) const {
     return {.domain = domain, .outbox = folder.path(), .timeout = timeout};
   }
-  test::TemporaryFolder folder;
+  test::TemporaryDirectory folder;
 };
 
 TEST_F(ClientTest, ReportsReachTheServer) {

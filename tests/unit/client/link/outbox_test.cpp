@@ -13,7 +13,7 @@
 #include "proto/json/attempt_json.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link {
 namespace {
@@ -38,7 +38,7 @@ class OutboxTest : public testing::Test {
     return folder.path() / part / (attempt.report_uuid.text() + ".json");
   }
 
-  test::TemporaryFolder folder;
+  test::TemporaryDirectory folder;
   test::RandomValues values{kSeed};
   Outbox outbox{folder.path()};
 };

@@ -10,7 +10,7 @@
 #include "client/link/durable_file.hpp"
 #include "proto/types/limits.hpp"
 #include "tests/support/random_values.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link {
 namespace {
@@ -42,7 +42,7 @@ class ReportSenderTest : public testing::Test {
     return folder.path() / "rejected" / (uuid.text() + suffix);
   }
 
-  test::TemporaryFolder folder;
+  test::TemporaryDirectory folder;
   test::RandomValues values{kSeed};
   Outbox outbox{folder.path()};
 };
