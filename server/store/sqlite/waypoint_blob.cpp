@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cstring>
+#include <memory>
+#include <new>
 
 #include "proto/types/limits.hpp"
 
@@ -59,6 +61,30 @@ Eigen::MatrixXd from_shuffled_differences(const std::vector<std::uint8_t>& plane
   return waypoints;
 }
 
+/// Every thread keeps its context: half a megabyte that would go back to the kernel and come again
+/// with each path.
+std::size_t compress(const std::vector<std::uint8_t>& from, std::vector<std::uint8_t>& to) {
+  struct Free {
+    void operator()(ZSTD_CCtx* context) const noexcept { ZSTD_freeCCtx(context); }
+  };
+  thread_local const std::unique_ptr<ZSTD_CCtx, Free> context(ZSTD_createCCtx());
+  if (!context)
+    throw std::bad_alloc();
+  return ZSTD_compressCCtx(context.get(), to.data(), to.size(), from.data(), from.size(),
+                           kZstdLevel);
+}
+
+/// \return the size, or an error code of zstd.
+std::size_t decompress(std::span<const std::uint8_t> from, std::vector<std::uint8_t>& to) {
+  struct Free {
+    void operator()(ZSTD_DCtx* context) const noexcept { ZSTD_freeDCtx(context); }
+  };
+  thread_local const std::unique_ptr<ZSTD_DCtx, Free> context(ZSTD_createDCtx());
+  if (!context)
+    throw std::bad_alloc();
+  return ZSTD_decompressDCtx(context.get(), to.data(), to.size(), from.data(), from.size());
+}
+
 }  // namespace
 
 WaypointBlob encode_waypoints(const Eigen::MatrixXd& waypoints) {
@@ -69,8 +95,7 @@ WaypointBlob encode_waypoints(const Eigen::MatrixXd& waypoints) {
 
   const std::vector<std::uint8_t> planes = shuffled_differences(waypoints);
   blob.bytes.resize(ZSTD_compressBound(planes.size()));
-  const std::size_t size =
-      ZSTD_compress(blob.bytes.data(), blob.bytes.size(), planes.data(), planes.size(), kZstdLevel);
+  const std::size_t size = compress(planes, blob.bytes);
   if (ZSTD_isError(size) == 0 && size < raw_size) {
     blob.encoding = WaypointEncoding::Delta;
     blob.bytes.resize(size);
@@ -96,7 +121,7 @@ std::optional<Path> decode_waypoints(std::int64_t dof, std::int64_t waypoint_cou
     std::memcpy(waypoints.data(), bytes.data(), raw_size);
   } else if (encoding == static_cast<std::int64_t>(WaypointEncoding::Delta)) {
     std::vector<std::uint8_t> planes(raw_size);
-    if (ZSTD_decompress(planes.data(), planes.size(), bytes.data(), bytes.size()) != raw_size)
+    if (decompress(bytes, planes) != raw_size)
       return std::nullopt;  // also every error code of zstd
     waypoints = from_shuffled_differences(planes, dof, waypoint_count);
   } else {
