@@ -16,7 +16,11 @@ struct RunStreams {
 };
 
 /// Exit codes, as every program of Kinship has them.
-enum ExitCode : int { kDone = 0, kFailed = 1, kWrongUsage = 2, kNotFound = 3, kNoServer = 4 };
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kWrongUsage = 2;
+inline constexpr int kNotFound = 3;
+inline constexpr int kNoServer = 4;
 
 /// Reads the problems, fetches guidance once per placement, plans each problem and writes its
 /// result in input order, reports the attempts.

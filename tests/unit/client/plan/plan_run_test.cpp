@@ -1,0 +1,140 @@
+#include "client/plan/plan_run.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/unit/client/plan/planar_problem.hpp"
+
+namespace kinship::plan {
+namespace {
+
+bool never() { return false; }
+
+/// A folder of this test's own, and the planar arm's URDF in it.
+class PlanRun : public testing::Test {
+ protected:
+  PlanRun() {
+    std::filesystem::create_directories(folder_);
+    const RobotDescription description = test::planar_description();
+    std::ofstream(folder_ / "planar.urdf") << description.urdf;
+    options_.robot.urdf = folder_ / "planar.urdf";
+    options_.robot.label = "planar";
+    options_.robot.base_link = description.base_link;
+    options_.robot.tip_link = description.tip_link;
+    options_.guidance = GuidanceMode::None;
+  }
+  ~PlanRun() override { std::filesystem::remove_all(folder_); }
+
+  static std::string line(const std::string& name) {
+    Problem problem = test::wall_problem();
+    problem.name = name;
+    return json::to_json(problem) + "\n";
+  }
+
+  int run(const std::string& problems, const std::function<bool()>& stop = never) {
+    std::istringstream input(problems);
+    std::ostringstream output;
+    const int code = run_plan(options_, {input, output, messages_, false}, stop);
+    std::istringstream lines(output.str());
+    for (std::string text; std::getline(lines, text);)
+      results_.push_back(json::problem_result_from_json(text).value_or_throw());
+    return code;
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      ("kinship_plan_run_" + std::to_string(getpid()) + "_" +
+       testing::UnitTest::GetInstance()->current_test_info()->name());
+  PlanOptions options_;
+  std::ostringstream messages_;
+  std::vector<ProblemResult> results_;
+};
+
+TEST_F(PlanRun, AnswersEveryLineInOrderAlsoABrokenOne) {
+  EXPECT_EQ(run(line("first") + "{broken\n" + line("third")), kDone);
+  ASSERT_EQ(results_.size(), 3U);
+  EXPECT_EQ(results_[0].name, "first");
+  EXPECT_TRUE(results_[0].solved);
+  EXPECT_FALSE(results_[1].solved);
+  EXPECT_NE(results_[1].reason.find("line 2"), std::string::npos);
+  EXPECT_EQ(results_[2].name, "third");
+}
+
+TEST_F(PlanRun, UnsolvedIsAnAnswer) {
+  options_.settings.max_checks = 5;
+  EXPECT_EQ(run(line("hard")), kDone);
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_FALSE(results_[0].solved);
+}
+
+TEST_F(PlanRun, TheSeedOffsetGivesAnotherRunOfTheSameProblem) {
+  run(line("a") + line("a"));
+  options_.seed_offset = 1;
+  run(line("a"));
+  ASSERT_EQ(results_.size(), 3U);
+  EXPECT_EQ(results_[0].collision_checks, results_[1].collision_checks);
+  EXPECT_NE(results_[0].collision_checks, results_[2].collision_checks);
+}
+
+TEST_F(PlanRun, AnInterruptKeepsWhatIsPlanned) {
+  int asked = 0;
+  int first = 0;
+  run(line("count"), [&] { return ++asked < 0; });
+  first = asked;
+  results_.clear();
+  asked = 0;
+  EXPECT_EQ(run(line("a") + line("b"), [&] { return ++asked > first + 10; }), kFailed);
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_EQ(results_[0].name, "a");
+  EXPECT_NE(messages_.str().find("interrupted"), std::string::npos);
+}
+
+TEST_F(PlanRun, AMissingRobotIsNamed) {
+  options_.robot.urdf = folder_ / "nobody.urdf";
+  try {
+    run(line("a"));
+    FAIL() << "planned without a robot";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::NotFound);
+    EXPECT_NE(std::string(failure.what()).find("nobody.urdf"), std::string::npos);
+  }
+}
+
+/// With a client, on a domain where nobody answers.
+class PlanRunWithoutServer : public PlanRun {
+ protected:
+  PlanRunWithoutServer() {
+    options_.task = "wall";
+    options_.domain = 187;
+    options_.timeout = std::chrono::milliseconds(200);
+    options_.outbox = folder_ / "outbox";
+  }
+};
+
+TEST_F(PlanRunWithoutServer, RequiredGuidanceEndsTheRunBeforePlanning) {
+  options_.guidance = GuidanceMode::Require;
+  EXPECT_EQ(run(line("a")), kNoServer);
+  EXPECT_TRUE(results_.empty());
+}
+
+TEST_F(PlanRunWithoutServer, WantedGuidanceIsDoneWithoutAndReportsWait) {
+  options_.guidance = GuidanceMode::Auto;
+  options_.report = true;
+  EXPECT_EQ(run(line("a") + line("b")), kDone);
+  ASSERT_EQ(results_.size(), 2U);
+  EXPECT_TRUE(results_[1].solved);
+  EXPECT_FALSE(results_[1].distribution_id);
+  EXPECT_NE(messages_.str().find("guidance: none"), std::string::npos);
+  EXPECT_NE(messages_.str().find("2 pending"), std::string::npos) << messages_.str();
+}
+
+}  // namespace
+}  // namespace kinship::plan
