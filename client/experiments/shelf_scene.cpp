@@ -60,7 +60,8 @@ void add_box(Scene& scene, std::string name, const Eigen::Vector3d& size,
 /// Middle of a compartment's floor at the opening, in the shelf's frame.
 Eigen::Vector3d floor_of(std::size_t compartment) {
   const double column = static_cast<double>(compartment % kColumns);
-  const double row = static_cast<double>(compartment / kColumns);
+  const std::size_t floors_below = compartment / kColumns;
+  const double row = static_cast<double>(floors_below);
   const double pitch = kCompartmentWidth + kThickness;
   return {0, (column - (kColumns - 1) / 2.0) * pitch,
           kFirstFloor + row * (kCompartmentHeight + kThickness)};
