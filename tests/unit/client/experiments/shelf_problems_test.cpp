@@ -60,9 +60,9 @@ TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
                                          robot.chain.T_tip_transfer().inverse();
     inverse::InverseOptions options;
     options.max_solutions = 20;
+    const Eigen::MatrixXd goals = inverse::inverse(robot.chain, T_base_tip, options).configurations;
     int free = 0;
-    for (const auto& q :
-         inverse::inverse(robot.chain, T_base_tip, options).configurations.colwise())
+    for (const auto& q : goals.colwise())
       if (!world.collides(q))
         ++free;
     EXPECT_GT(free, 0) << problem.name;
