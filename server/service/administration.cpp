@@ -23,7 +23,8 @@ template <typename Row>
 AdminPage page_of(store::Page<Row> page) {
   AdminPage answer;
   answer.status = AdminStatus::Ok;
-  for (Row& row : page.rows) answer.rows.emplace_back(std::move(row));
+  for (Row& row : page.rows)
+    answer.rows.emplace_back(std::move(row));
   answer.next_cursor = std::move(page.next_cursor);
   return answer;
 }
@@ -60,11 +61,13 @@ Error not_found(const std::string& what, const std::string& name) {
 
 /// \return lower-case digits, or empty if `text` is no prefix of a digest.
 std::string digest_prefix(std::string_view text) {
-  if (text.size() < kLeastPrefix || text.size() > kDigestDigits) return {};
+  if (text.size() < kLeastPrefix || text.size() > kDigestDigits)
+    return {};
   std::string prefix;
   for (const char c : text) {
     const char lower = c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (!((lower >= '0' && lower <= '9') || (lower >= 'a' && lower <= 'f'))) return {};
+    if (!((lower >= '0' && lower <= '9') || (lower >= 'a' && lower <= 'f')))
+      return {};
     prefix += lower;
   }
   return prefix;
@@ -119,7 +122,8 @@ AdminPage Administration::dispatch(const AdminRequest& request) {
 AdminPage Administration::list_robots(const AdminRequest& request) {
   allow_no_filter(request);
   store::Page<RobotSummary> page = store_.list_robots(request.cursor, page_size(request));
-  for (RobotSummary& summary : page.rows) name_solver(summary);
+  for (RobotSummary& summary : page.rows)
+    name_solver(summary);
   return page_of(std::move(page));
 }
 
@@ -170,12 +174,15 @@ Result<store::RobotRecord> Administration::find_robot(const std::string& name) c
   const auto labelled = std::find_if(robots.begin(), robots.end(), [&](const auto& robot) {
     return robot.description.label == name;
   });
-  if (labelled != robots.end()) return std::move(*labelled);
+  if (labelled != robots.end())
+    return std::move(*labelled);
   const std::string prefix = digest_prefix(name);
   if (!prefix.empty())
     std::erase_if(robots, [&](const auto& robot) { return !begins_with(robot.digest, prefix); });
-  if (prefix.empty() || robots.empty()) return not_found("robot", name);
-  if (robots.size() == 1) return std::move(robots.front());
+  if (prefix.empty() || robots.empty())
+    return not_found("robot", name);
+  if (robots.size() == 1)
+    return std::move(robots.front());
   return Error{ErrorCode::Conflict,
                "robot '" + name + "' could be '" + robots[0].description.label + "' (" +
                    robots[0].digest.short_hex() + ") or '" + robots[1].description.label + "' (" +
@@ -183,7 +190,8 @@ Result<store::RobotRecord> Administration::find_robot(const std::string& name) c
 }
 
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {
-  if (request.robot.empty()) return std::nullopt;
+  if (request.robot.empty())
+    return std::nullopt;
   return find_robot(request.robot).value_or_throw().digest;
 }
 
@@ -193,7 +201,8 @@ void Administration::check_task_filter(const AdminRequest& request) const {
 }
 
 Result<Digest> Administration::find_distribution_id(const std::string& name) const {
-  if (const std::optional<Digest> id = Digest::from_hex(name)) return *id;
+  if (const std::optional<Digest> id = Digest::from_hex(name))
+    return *id;
   const std::string prefix = digest_prefix(name);
   if (prefix.empty())
     return Error{ErrorCode::InvalidInput,
@@ -205,7 +214,8 @@ Result<Digest> Administration::find_distribution_id(const std::string& name) con
     const store::Page<DistributionSummary> page =
         store_.list_distributions(std::nullopt, {}, cursor, kMaxPageRows);
     for (const DistributionSummary& summary : page.rows) {
-      if (!begins_with(summary.id, prefix)) continue;
+      if (!begins_with(summary.id, prefix))
+        continue;
       if (found)
         return Error{ErrorCode::Conflict, "distribution '" + name + "' could be " +
                                               found->short_hex() + " or " + summary.id.short_hex()};
@@ -213,7 +223,8 @@ Result<Digest> Administration::find_distribution_id(const std::string& name) con
     }
     cursor = page.next_cursor;
   } while (!cursor.empty());
-  if (!found) return not_found("distribution", name);
+  if (!found)
+    return not_found("distribution", name);
   return *found;
 }
 
@@ -222,7 +233,8 @@ RobotSummary Administration::summary_of(const Digest& robot) const {
   do {
     const store::Page<RobotSummary> page = store_.list_robots(cursor, kMaxPageRows);
     for (const RobotSummary& summary : page.rows)
-      if (summary.robot == robot) return summary;
+      if (summary.robot == robot)
+        return summary;
     cursor = page.next_cursor;
   } while (!cursor.empty());
   throw Failure(not_found("robot", robot.short_hex()));

@@ -40,46 +40,59 @@ Catalog::Catalog(const Parts& parts, Options options)
 void Catalog::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
   ++fetches_;
   const Result<DistributionKey> key = make_key(request);
-  if (!key) return done(without_distribution(FetchStatus::Refused, key.error().message));
+  if (!key)
+    return done(without_distribution(FetchStatus::Refused, key.error().message));
   const Digest id = identify(*key);
   Waiter who{waiter, request.minimum_generation, std::nullopt, std::move(done)};
-  if (request.deadline.count() > 0) who.deadline = parts_.clock.now() + request.deadline;
+  if (request.deadline.count() > 0)
+    who.deadline = parts_.clock.now() + request.deadline;
 
   Answers answers;
   {
     const std::lock_guard lock(mutex_);
     bool due = false;
     SharedReply reply = find(id, request, due);
-    if (reply) ++fetches_from_memory_;
-    if (reply && due) refresh(id, *key);
+    if (reply)
+      ++fetches_from_memory_;
+    if (reply && due)
+      refresh(id, *key);
     FetchDone answer = who.done;
-    if (!reply) reply = join(id, *key, std::move(who));
-    if (reply) answers.emplace_back(std::move(answer), std::move(reply));
+    if (!reply)
+      reply = join(id, *key, std::move(who));
+    if (reply)
+      answers.emplace_back(std::move(answer), std::move(reply));
   }
   give(answers);
 }
 
 SharedReply Catalog::find(const Digest& id, const FetchRequest& request, bool& due) {
-  if (stopping_) return shared(busy("the server is stopping"));
+  if (stopping_)
+    return shared(busy("the server is stopping"));
   const DistributionCache::Entry* entry = memory_.find(id);
-  if (entry == nullptr) return nullptr;
+  if (entry == nullptr)
+    return nullptr;
   due = (entry->behind || entry->changes_seen != changes_of(request.task)) &&
         may_refit(*entry->reply->distribution, parts_.clock.unix_ms());
   // A failure that may have been overtaken is no answer; a mixture is, whatever came after it.
-  if (entry->reply->status == FetchStatus::Failed && due) return nullptr;
+  if (entry->reply->status == FetchStatus::Failed && due)
+    return nullptr;
   return satisfies(*entry->reply, request.minimum_generation) ? entry->reply : nullptr;
 }
 
 SharedReply Catalog::join(const Digest& id, const DistributionKey& key, Waiter waiter) {
-  if (waiter_count() >= options_.max_waiters) return shared(busy("too many wait already"));
+  if (waiter_count() >= options_.max_waiters)
+    return shared(busy("too many wait already"));
   const auto [found, is_new] = flights_.try_emplace(id, key);
   Flight& flight = found->second;
   if (flight.stage == Stage::Idle && !begin_look(id, flight)) {
-    if (is_new) flights_.erase(found);
+    if (is_new)
+      flights_.erase(found);
     return shared(busy("the server is busy"));
   }
-  if (flight.stage == Stage::Queued && !flight.urgent) begin_fit(id, flight, Priority::Interactive);
-  if (flight.stage != Stage::Looking && !waiter.deadline) return shared_pending();
+  if (flight.stage == Stage::Queued && !flight.urgent)
+    begin_fit(id, flight, Priority::Interactive);
+  if (flight.stage != Stage::Looking && !waiter.deadline)
+    return shared_pending();
   flight.join(std::move(waiter));
   return nullptr;
 }
@@ -112,10 +125,12 @@ void Catalog::look(const Digest& id) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = flights_.find(id);
-    if (found == flights_.end()) return;  // stopped
+    if (found == flights_.end())
+      return;  // stopped
     key = found->second.key();
     changes = changes_of(key.task);
-    if (const DistributionCache::Entry* entry = memory_.find(id)) known = entry->reply;
+    if (const DistributionCache::Entry* entry = memory_.find(id))
+      known = entry->reply;
   }
   try {
     const Result<RobotRegistry::RobotPointer> robot = parts_.robots.find(key.robot);
@@ -128,7 +143,8 @@ void Catalog::look(const Digest& id) {
       if (std::optional<Distribution> stored = parts_.store.find_distribution(id))
         known = with_distribution(std::move(*stored));
     const std::vector<store::ExperienceSummary> experience = parts_.store.experience(key.task);
-    if (experience.empty() && !known) return end_flight(id, no_experience(key.task));
+    if (experience.empty() && !known)
+      return end_flight(id, no_experience(key.task));
     settle(id, known, experience, changes);
   } catch (const std::exception& exception) {
     end_flight(id, busy(exception.what()));
@@ -142,7 +158,8 @@ void Catalog::settle(const Digest& id, const SharedReply& known,
   {
     const std::lock_guard lock(mutex_);
     const auto found = flights_.find(id);
-    if (found == flights_.end()) return;
+    if (found == flights_.end())
+      return;
     Flight& flight = found->second;
     bool refit = false;
     if (known) {
@@ -150,7 +167,8 @@ void Catalog::settle(const Digest& id, const SharedReply& known,
       const bool behind = is_behind(distribution, experience);
       refit = behind && may_refit(distribution, parts_.clock.unix_ms());
       memory_.put(id, {known, changes, behind});
-      if (known->status == FetchStatus::Ready || !refit) flight.answer_satisfied(known, answers);
+      if (known->status == FetchStatus::Ready || !refit)
+        flight.answer_satisfied(known, answers);
     }
     flight.answer_without_deadline(shared_pending(), answers);
 
@@ -162,8 +180,10 @@ void Catalog::settle(const Digest& id, const SharedReply& known,
                                               });
     const bool begun = (urgent || refit) &&
                        begin_fit(id, flight, urgent ? Priority::Interactive : Priority::Background);
-    if (urgent && !begun) flight.answer_all(shared(busy("too many fits wait already")), answers);
-    if (!begun) rest(found, changes);
+    if (urgent && !begun)
+      flight.answer_all(shared(busy("too many fits wait already")), answers);
+    if (!begun)
+      rest(found, changes);
   }
   give(answers);
 }
@@ -174,7 +194,8 @@ void Catalog::rest(Flights::iterator flight, std::uint64_t changes) {
     return;
   }
   flight->second.stage = Stage::Idle;
-  if (changes_of(flight->second.key().task) != changes) begin_look(flight->first, flight->second);
+  if (changes_of(flight->second.key().task) != changes)
+    begin_look(flight->first, flight->second);
 }
 
 void Catalog::run_fit(const Digest& id) {
@@ -184,7 +205,8 @@ void Catalog::run_fit(const Digest& id) {
     const std::lock_guard lock(mutex_);
     const auto found = flights_.find(id);
     // Stopped, or begun by the flight's other job: a background one that became urgent has two.
-    if (found == flights_.end() || found->second.stage != Stage::Queued) return;
+    if (found == flights_.end() || found->second.stage != Stage::Queued)
+      return;
     found->second.stage = Stage::Fitting;
     key = found->second.key();
     changes = changes_of(key.task);
@@ -224,7 +246,8 @@ void Catalog::land(const Digest& id, const SharedReply& reply, std::uint64_t cha
     typical_fit_s_ = (1 - kNewShare) * typical_fit_s_ + kNewShare * fit_s;
     memory_.put(id, {reply, changes, false});
     const auto found = flights_.find(id);
-    if (found == flights_.end()) return;
+    if (found == flights_.end())
+      return;
     found->second.answer_satisfied(reply, answers);
     rest(found, changes);
   }
@@ -236,7 +259,8 @@ void Catalog::end_flight(const Digest& id, const FetchReply& reply) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = flights_.find(id);
-    if (found == flights_.end()) return;
+    if (found == flights_.end())
+      return;
     found->second.answer_all(shared(reply), answers);
     flights_.erase(found);
   }
@@ -248,7 +272,8 @@ std::optional<Catalog::TimePoint> Catalog::next_deadline() const {
   std::optional<TimePoint> next;
   for (const auto& [id, flight] : flights_)
     for (const Waiter& waiter : flight.waiters())
-      if (waiter.deadline && (!next || *waiter.deadline < *next)) next = waiter.deadline;
+      if (waiter.deadline && (!next || *waiter.deadline < *next))
+        next = waiter.deadline;
   return next;
 }
 
@@ -257,7 +282,8 @@ void Catalog::expire(TimePoint now) {
   {
     const std::lock_guard lock(mutex_);
     const SharedReply pending = shared_pending();
-    for (auto& [id, flight] : flights_) flight.answer_expired(now, pending, answers);
+    for (auto& [id, flight] : flights_)
+      flight.answer_expired(now, pending, answers);
     std::erase_if(flights_, [](const auto& entry) {
       return entry.second.stage == Stage::Idle && entry.second.waiters().empty();
     });
@@ -269,7 +295,8 @@ void Catalog::new_experience(std::string_view task) {
   const std::lock_guard lock(mutex_);
   ++changes_[std::string(task)];
   for (auto& [id, flight] : flights_)
-    if (flight.stage == Stage::Idle && flight.key().task == task) begin_look(id, flight);
+    if (flight.stage == Stage::Idle && flight.key().task == task)
+      begin_look(id, flight);
 }
 
 void Catalog::stop() {
@@ -279,7 +306,8 @@ void Catalog::stop() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
     const SharedReply reply = shared(busy("the server is stopping"));
-    for (auto& [id, flight] : flights_) flight.answer_all(reply, answers);
+    for (auto& [id, flight] : flights_)
+      flight.answer_all(reply, answers);
     flights_.clear();
   }
   give(answers);
@@ -292,7 +320,8 @@ std::uint64_t Catalog::changes_of(const std::string& task) const {
 
 std::size_t Catalog::waiter_count() const {
   std::size_t count = 0;
-  for (const auto& [id, flight] : flights_) count += flight.waiters().size();
+  for (const auto& [id, flight] : flights_)
+    count += flight.waiters().size();
   return count;
 }
 

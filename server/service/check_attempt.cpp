@@ -1,5 +1,6 @@
 #include "server/service/check_attempt.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -17,26 +18,32 @@ using kinematics::JointType;
 Error invalid(std::string message) { return {ErrorCode::InvalidInput, std::move(message)}; }
 
 std::optional<Error> check_seconds(std::string_view what, double seconds) {
-  if (std::isfinite(seconds) && seconds >= 0) return std::nullopt;
+  if (std::isfinite(seconds) && seconds >= 0)
+    return std::nullopt;
   return invalid(std::string(what) + ": " + number_text(seconds) +
                  " s is not a time of at least 0 s");
 }
 
 std::optional<Error> check_record(const PlanningRecord& record) {
-  if (auto error = check_planner(record.planner)) return error;
+  if (auto error = check_planner(record.planner))
+    return error;
   if (record.planner_options.size() > kMaxPlannerOptionsBytes)
     return invalid("planner options: " + std::to_string(record.planner_options.size()) +
                    " bytes exceed " + std::to_string(kMaxPlannerOptionsBytes));
-  if (auto error = check_seconds("planning time", record.planning_time_s)) return error;
-  if (auto error = check_seconds("time limit", record.time_limit_s)) return error;
+  if (auto error = check_seconds("planning time", record.planning_time_s))
+    return error;
+  if (auto error = check_seconds("time limit", record.time_limit_s))
+    return error;
   if (!(record.share >= 0 && record.share <= 1))
     return invalid("share: " + number_text(record.share) + " is not within 0 to 1");
   return std::nullopt;
 }
 
 std::optional<Error> check_placement(const std::optional<Eigen::Isometry3d>& T_task_base) {
-  if (!T_task_base) return std::nullopt;
-  if (!T_task_base->matrix().allFinite()) return invalid("placement: a number is not finite");
+  if (!T_task_base)
+    return std::nullopt;
+  if (!T_task_base->matrix().allFinite())
+    return invalid("placement: a number is not finite");
   const double largest_m = T_task_base->translation().cwiseAbs().maxCoeff();
   if (largest_m > kMaxPlacement_m)
     return invalid("placement: " + number_text(largest_m) + " m exceeds " +
@@ -44,21 +51,25 @@ std::optional<Error> check_placement(const std::optional<Eigen::Isometry3d>& T_t
   return std::nullopt;
 }
 
+bool is_outside(const Joint& joint, double value) {
+  return value > joint.upper + kLimitTolerance || value < joint.lower - kLimitTolerance;
+}
+
 /// The first waypoint outside the limits of a joint, if there is one.
 std::optional<Error> check_joint(const Joint& joint, const Eigen::VectorXd& values,
                                  const std::string& joint_name) {
-  if (joint.type == JointType::Continuous) return std::nullopt;
+  if (joint.type == JointType::Continuous)
+    return std::nullopt;
+  const auto bad = std::find_if(values.begin(), values.end(),
+                                [&](double value) { return is_outside(joint, value); });
+  if (bad == values.end())
+    return std::nullopt;
   const std::string unit = joint.type == JointType::Prismatic ? " m" : " rad";
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const bool above = values[i] > joint.upper + kLimitTolerance;
-    const bool below = values[i] < joint.lower - kLimitTolerance;
-    if (!above && !below) continue;
-    return invalid(joint_name + " at " + number_text(values[i]) + unit +
-                   (above ? " exceeds " : " is below ") +
-                   number_text(above ? joint.upper : joint.lower) + unit + ", waypoint " +
-                   std::to_string(i + 1));
-  }
-  return std::nullopt;
+  const bool above = *bad > joint.upper;
+  return invalid(joint_name + " at " + number_text(*bad) + unit +
+                 (above ? " exceeds " : " is below ") +
+                 number_text(above ? joint.upper : joint.lower) + unit + ", waypoint " +
+                 std::to_string(bad - values.begin() + 1));
 }
 
 std::optional<Error> check_path(const Path& path, const Robot& robot) {
@@ -73,7 +84,8 @@ std::optional<Error> check_path(const Path& path, const Robot& robot) {
     const Joint& joint = robot.chain.joints()[static_cast<std::size_t>(j)];
     const std::string joint_name =
         name + "joint " + std::to_string(j + 1) + " '" + joint.name + "'";
-    if (auto error = check_joint(joint, path.waypoints().row(j), joint_name)) return error;
+    if (auto error = check_joint(joint, path.waypoints().row(j), joint_name))
+      return error;
   }
   return std::nullopt;
 }
@@ -81,13 +93,19 @@ std::optional<Error> check_path(const Path& path, const Robot& robot) {
 }  // namespace
 
 std::optional<Error> check_attempt(const Attempt& attempt, const Robot& robot) {
-  if (auto error = check_task(attempt.task)) return error;
-  if (auto error = check_machine(attempt.machine)) return error;
-  if (auto error = check_record(attempt.record)) return error;
-  if (auto error = check_placement(attempt.T_task_base)) return error;
+  if (auto error = check_task(attempt.task))
+    return error;
+  if (auto error = check_machine(attempt.machine))
+    return error;
+  if (auto error = check_record(attempt.record))
+    return error;
+  if (auto error = check_placement(attempt.T_task_base))
+    return error;
   const bool solved = attempt.record.outcome == Outcome::Solved;
-  if (solved && !attempt.path) return invalid("outcome: solved, but there is no path");
-  if (!solved && attempt.path) return invalid("outcome: not solved, but there is a path");
+  if (solved && !attempt.path)
+    return invalid("outcome: solved, but there is no path");
+  if (!solved && attempt.path)
+    return invalid("outcome: not solved, but there is a path");
   return attempt.path ? check_path(*attempt.path, robot) : std::nullopt;
 }
 

@@ -8,7 +8,8 @@ namespace {
 /// About what a reply occupies: the numbers of its mixture, and a page for the rest.
 std::size_t size_of(const FetchReply& reply) {
   constexpr std::size_t kRest = 4096;
-  if (!reply.distribution || !reply.distribution->mixture) return kRest;
+  if (!reply.distribution || !reply.distribution->mixture)
+    return kRest;
   const Mixture& mixture = *reply.distribution->mixture;
   const auto k = static_cast<std::size_t>(mixture.size());
   const auto d = static_cast<std::size_t>(mixture.dimension());
@@ -18,7 +19,8 @@ std::size_t size_of(const FetchReply& reply) {
 }  // namespace
 
 void DistributionCache::put(const Digest& id, Entry entry) {
-  if (const auto known = index_.find(id); known != index_.end()) drop(known->second);
+  if (const auto known = index_.find(id); known != index_.end())
+    drop(known->second);
   const std::size_t bytes = size_of(*entry.reply);
   nodes_.push_front({id, std::move(entry), bytes});
   index_.emplace(id, nodes_.begin());
@@ -29,7 +31,8 @@ void DistributionCache::put(const Digest& id, Entry entry) {
 
 DistributionCache::Entry* DistributionCache::find(const Digest& id) {
   const auto known = index_.find(id);
-  if (known == index_.end()) return nullptr;
+  if (known == index_.end())
+    return nullptr;
   nodes_.splice(nodes_.begin(), nodes_, known->second);
   return &known->second->entry;
 }

@@ -18,13 +18,15 @@ std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{v
 }  // namespace
 
 Result<DistributionKey> make_key(const FetchRequest& request) {
-  if (const auto error = check_task(request.task)) return *error;
+  if (const auto error = check_task(request.task))
+    return *error;
   const std::optional<Profile> profile = find_profile(request.profile);
   if (!profile)
     return Error{ErrorCode::InvalidInput,
                  "profile '" + request.profile + "' is not one of default, paper"};
   DistributionKey key{request.task, request.robot, std::nullopt, *profile};
-  if (!request.T_task_base) return key;
+  if (!request.T_task_base)
+    return key;
   const Eigen::Isometry3d& T_task_base = *request.T_task_base;
   if (!T_task_base.matrix().allFinite() ||
       T_task_base.translation().cwiseAbs().maxCoeff() > kMaxPlacement_m)

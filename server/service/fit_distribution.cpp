@@ -48,7 +48,8 @@ Eigen::Isometry3d T_target_source(const std::optional<Eigen::Isometry3d>& T_task
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
   const Eigen::Isometry3d target = T_task_target.value_or(identity);
   const Eigen::Isometry3d source = T_task_source.value_or(identity);
-  if (snapped(source).matrix() == target.matrix()) return identity;
+  if (snapped(source).matrix() == target.matrix())
+    return Eigen::Isometry3d::Identity();
   return target.inverse(Eigen::Isometry) * source;
 }
 
@@ -88,9 +89,11 @@ class Fit {
 
 FitOutcome Fit::run() {
   const std::vector<store::ExperienceSummary> experience = context_.store.experience(key_.task);
-  if (experience.empty()) return {FitOutcome::Kind::NoExperience, std::nullopt};
+  if (experience.empty())
+    return {FitOutcome::Kind::NoExperience, std::nullopt};
   std::uint64_t total = 0;
-  for (const auto& source : experience) total += source.paths;
+  for (const auto& source : experience)
+    total += source.paths;
 
   const TimePoint begin = context_.clock.now();
   for (const auto& source : experience) {
@@ -98,7 +101,8 @@ FitOutcome Fit::run() {
         total <= context_.max_paths ? source.paths : source.paths * context_.max_paths / total;
     read_source(source, std::max<std::uint64_t>(share, 1));
   }
-  if (stop_.stop_requested()) return {FitOutcome::Kind::Abandoned, std::nullopt};
+  if (stop_.stop_requested())
+    return {FitOutcome::Kind::Abandoned, std::nullopt};
 
   Distribution distribution;
   distribution.id = identify(key_);
@@ -108,7 +112,8 @@ FitOutcome Fit::run() {
   distribution.T_task_base = key_.T_task_base;
   distribution.profile = key_.profile.name;
   distribution.engines = engines();
-  for (const SourceSummary& summary : sources_) distribution.sources.push_back(summary.source);
+  for (const SourceSummary& summary : sources_)
+    distribution.sources.push_back(summary.source);
   distribution.limits.resize(2, target_->chain.dof());
   distribution.limits.row(0) = target_->chain.lower().transpose();
   distribution.limits.row(1) = target_->chain.upper().transpose();
@@ -143,11 +148,14 @@ void Fit::transfer_paths(const Robot& robot, std::uint64_t wanted, SourceSummary
     const std::size_t limit = std::min<std::uint64_t>(kPathsPerRead, count - index);
     const std::vector<store::StoredPath> page =
         context_.store.read_paths(robot.digest, key_.task, last_id, limit);
-    if (page.empty()) return;  // fewer than counted: some were set aside
+    if (page.empty())
+      return;  // fewer than counted: some were set aside
     last_id = page.back().id;
     for (const store::StoredPath& stored : page) {
-      if (stop_.stop_requested()) return;
-      if (is_chosen(index++, count, wanted)) transfer_one(stored, robot, summary);
+      if (stop_.stop_requested())
+        return;
+      if (is_chosen(index++, count, wanted))
+        transfer_one(stored, robot, summary);
     }
   }
 }
@@ -200,7 +208,8 @@ void Fit::fail(Distribution& distribution, const std::string& message) const {
   distribution.state = DistributionState::Failed;
   distribution.reason = message + ": " + sources_in_words();
   const std::string also = warnings();
-  if (!also.empty()) distribution.reason += "; " + also;
+  if (!also.empty())
+    distribution.reason += "; " + also;
   distribution.reason.resize(std::min(distribution.reason.size(), kMaxMessageBytes));
   distribution.evidence = "no mixture";
 }
@@ -209,7 +218,8 @@ std::string Fit::sources_in_words() const {
   std::string words;
   for (const SourceSummary& summary : sources_) {
     const transfer::TransferSummary& total = summary.total;
-    if (!words.empty()) words += "; ";
+    if (!words.empty())
+      words += "; ";
     words += "'" + summary.source.label + "': " + std::to_string(summary.paths_used) + " paths, " +
              std::to_string(total.poses) + " poses, " + std::to_string(total.poses_solved) +
              " solved, " + std::to_string(total.out_of_reach) + " out of reach, " +
@@ -240,7 +250,8 @@ std::string Fit::warnings() const {
   if (placed && unplaced)
     found.emplace_back("some placements are missing and were taken as the identity");
   std::string words;
-  for (const std::string& warning : found) words += (words.empty() ? "" : "; ") + warning;
+  for (const std::string& warning : found)
+    words += (words.empty() ? "" : "; ") + warning;
   words.resize(std::min(words.size(), kMaxMessageBytes));
   return words;
 }

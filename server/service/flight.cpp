@@ -7,7 +7,8 @@
 namespace kinship::service {
 
 void give(const Answers& answers) {
-  for (const auto& [done, reply] : answers) done(*reply);
+  for (const auto& [done, reply] : answers)
+    done(*reply);
 }
 
 bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation) {

@@ -13,15 +13,18 @@ constexpr std::uint64_t kGrowthDivisor = 20;  // 5 %
 bool has_grown(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience) {
   std::uint64_t then = 0;
-  for (const Source& source : distribution.sources) then += source.paths;
+  for (const Source& source : distribution.sources)
+    then += source.paths;
   std::uint64_t now = 0;
-  for (const store::ExperienceSummary& source : experience) now += source.paths;
+  for (const store::ExperienceSummary& source : experience)
+    now += source.paths;
   return now >= then + std::max(kGrowthPaths, then / kGrowthDivisor);
 }
 
 bool has_changed(const Distribution& distribution,
                  const std::vector<store::ExperienceSummary>& experience) {
-  if (distribution.sources.size() != experience.size()) return true;
+  if (distribution.sources.size() != experience.size())
+    return true;
   return std::any_of(
       experience.begin(), experience.end(), [&distribution](const store::ExperienceSummary& now) {
         return std::none_of(distribution.sources.begin(), distribution.sources.end(),
@@ -39,13 +42,15 @@ bool may_refit(const Distribution& distribution, std::int64_t now_ms) {
 std::uint64_t generation_of(const Digest& robot,
                             const std::vector<store::ExperienceSummary>& experience) {
   for (const store::ExperienceSummary& source : experience)
-    if (source.robot == robot) return source.generation;
+    if (source.robot == robot)
+      return source.generation;
   return 0;
 }
 
 std::uint64_t own_generation(const Distribution& distribution) {
   for (const Source& source : distribution.sources)
-    if (source.robot == distribution.robot) return source.generation;
+    if (source.robot == distribution.robot)
+      return source.generation;
   return 0;
 }
 

@@ -36,16 +36,19 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   batch->attempts = std::move(attempts);
   received_ += batch->receipts.size();
 
-  if (!take_in(*batch)) return answer_try_again(*batch, "the server is busy or stopping");
+  if (!take_in(*batch))
+    return answer_try_again(*batch, "the server is busy or stopping");
   const bool in_memory = std::all_of(
       batch->attempts.begin(), batch->attempts.end(),
       [this](const Attempt& attempt) { return robots_.find_in_memory(attempt.robot) != nullptr; });
-  if (in_memory) return check_and_commit(batch);
+  if (in_memory)
+    return check_and_commit(batch);
   const bool accepted = desk_.submit(
       WorkerPool::Priority::Interactive,
       {.run = [this, batch] { check_and_commit(batch); },
        .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); }});
-  if (!accepted) answer_try_again(*batch, "the server is busy");
+  if (!accepted)
+    answer_try_again(*batch, "the server is busy");
 }
 
 bool Ingest::take_in(Batch& batch) {
@@ -65,10 +68,12 @@ void Ingest::check_and_commit(const BatchPointer& batch) {
   } catch (const std::exception& exception) {  // the store cannot be read
     return answer_try_again(*batch, exception.what());
   }
-  if (batch->accepted.empty()) return answer(*batch);
+  if (batch->accepted.empty())
+    return answer(*batch);
   std::vector<Attempt> good;
   good.reserve(batch->accepted.size());
-  for (const std::size_t i : batch->accepted) good.push_back(std::move(batch->attempts[i]));
+  for (const std::size_t i : batch->accepted)
+    good.push_back(std::move(batch->attempts[i]));
   batch->attempts.clear();
   store_.commit_reports(std::move(good), [this, batch](const std::vector<Receipt>& receipts) {
     committed(*batch, receipts);
@@ -94,9 +99,11 @@ void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
   for (std::size_t i = 0; i < batch.accepted.size() && i < receipts.size(); ++i) {
     const std::size_t position = batch.accepted[i];
     batch.receipts[position] = receipts[i];
-    if (receipts[i].status == ReceiptStatus::Stored) grown.insert(batch.tasks[position]);
+    if (receipts[i].status == ReceiptStatus::Stored)
+      grown.insert(batch.tasks[position]);
   }
-  for (const std::string_view task : grown) options_.on_new_experience(task);
+  for (const std::string_view task : grown)
+    options_.on_new_experience(task);
   answer(batch);
 }
 
@@ -105,7 +112,8 @@ void Ingest::answer(Batch& batch) {
       batch.receipts.begin(), batch.receipts.end(),
       [](const Receipt& receipt) { return receipt.status == ReceiptStatus::Refused; }));
   batch.done(batch.receipts);
-  if (!batch.counted) return;
+  if (!batch.counted)
+    return;
   const std::lock_guard lock(mutex_);
   attempts_ -= batch.receipts.size();
   bytes_ -= batch.bytes;

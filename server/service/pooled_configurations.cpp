@@ -9,7 +9,8 @@ void PooledConfigurations::add(transfer::TransferredPath path) {
   const Eigen::Index count = path.configurations.cols();
   if (path.weights.size() != count || (count > 0 && path.configurations.rows() != dof_))
     throw std::invalid_argument("PooledConfigurations: need dof x n configurations and n weights");
-  if (count == 0) return;
+  if (count == 0)
+    return;
   size_ += count;
   paths_.push_back(std::move(path));
 }
@@ -32,7 +33,8 @@ Eigen::VectorXd PooledConfigurations::weights(bool equal_path_weights) const {
     pooled.segment(row, path.weights.size()) = path.weights / total;
     row += path.weights.size();
   }
-  if (size_ > 0) pooled *= static_cast<double>(size_) / pooled.sum();
+  if (size_ > 0)
+    pooled *= static_cast<double>(size_) / pooled.sum();
   return pooled;
 }
 

@@ -21,9 +21,11 @@ RegisterReply refused(const Error& error) {
 
 RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
                                             std::int64_t now_ms) {
-  if (const auto error = check_label(description.label)) return refused(*error);
+  if (const auto error = check_label(description.label))
+    return refused(*error);
   Result<kinematics::Chain> chain = kinematics::read_chain(description);
-  if (!chain) return refused(chain.error());
+  if (!chain)
+    return refused(chain.error());
 
   RegisterReply reply;
   reply.robot = chain->digest();
@@ -33,7 +35,8 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
                                                                .description = description,
                                                                .dof = reply.dof,
                                                                .registered_ms = now_ms});
-  if (!status) return refused(status.error());
+  if (!status)
+    return refused(status.error());
   reply.status = *status;
 
   if (reply.status == RegisterStatus::Registered) {
@@ -46,7 +49,8 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
 }
 
 Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
-  if (RobotPointer known = find_in_memory(robot)) return known;
+  if (RobotPointer known = find_in_memory(robot))
+    return known;
   const std::optional<store::RobotRecord> record = store_.find_robot(robot);
   if (!record)
     return Error{ErrorCode::NotFound,

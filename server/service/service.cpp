@@ -79,7 +79,7 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter, Fetc
   catalog_.fetch(request, waiter, std::move(done));
 }
 
-void Service::administer(AdminRequest request, std::function<void(const AdminPage&)> done) {
+void Service::administer(AdminRequest request, const std::function<void(const AdminPage&)>& done) {
   auto run = [this, request = std::move(request), done] { done(administration_.answer(request)); };
   if (desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
     return;
@@ -120,7 +120,8 @@ void Service::log_refused(const std::vector<Receipt>& receipts) const {
     return receipt.status == ReceiptStatus::Refused;
   };
   const auto first = std::find_if(receipts.begin(), receipts.end(), is_refused);
-  if (first == receipts.end()) return;
+  if (first == receipts.end())
+    return;
   options_.log("report: " + std::to_string(std::count_if(first, receipts.end(), is_refused)) +
                " of " + std::to_string(receipts.size()) +
                " attempts refused, first: " + first->message);
@@ -128,7 +129,8 @@ void Service::log_refused(const std::vector<Receipt>& receipts) const {
 
 void Service::log_fit(const Distribution& distribution) const {
   std::uint64_t paths = 0;
-  for (const Source& source : distribution.sources) paths += source.paths;
+  for (const Source& source : distribution.sources)
+    paths += source.paths;
   const bool ready = distribution.state == DistributionState::Ready;
   options_.log("fit " + distribution.id.short_hex() + " revision " +
                std::to_string(distribution.revision) + " for robot " +

@@ -50,7 +50,7 @@ class Service {
   void report(ReportRequest request, std::function<void(const ReportReply&)> done);
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
-  void administer(AdminRequest request, std::function<void(const AdminPage&)> done);
+  void administer(AdminRequest request, const std::function<void(const AdminPage&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
   std::optional<Catalog::TimePoint> next_deadline() const { return catalog_.next_deadline(); }

@@ -20,7 +20,8 @@ WorkerPool::~WorkerPool() { stop(Leftovers::Abandon); }
 bool WorkerPool::submit(Priority priority, Job job) {
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_ || interactive_.size() + background_.size() >= queue_limit_) return false;
+    if (stopping_ || interactive_.size() + background_.size() >= queue_limit_)
+      return false;
     (priority == Priority::Interactive ? interactive_ : background_).push_back(std::move(job));
   }
   wake_.notify_one();
@@ -42,8 +43,10 @@ void WorkerPool::stop(Leftovers leftovers) {
   }
   wake_.notify_all();
   for (const Job& job : abandoned)
-    if (job.abandon) job.abandon();
-  for (std::thread& thread : threads) thread.join();
+    if (job.abandon)
+      job.abandon();
+  for (std::thread& thread : threads)
+    thread.join();
 }
 
 std::size_t WorkerPool::queued() const {
@@ -53,7 +56,8 @@ std::size_t WorkerPool::queued() const {
 
 void WorkerPool::work(int niceness) {
   // Linux keeps a nice value per thread; failing to lower it changes no result.
-  if (niceness > 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
+  if (niceness > 0)
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
   Job job;
   while (next_job(job)) {
     job.run();
@@ -65,7 +69,8 @@ bool WorkerPool::next_job(Job& job) {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [this] { return stopping_ || !interactive_.empty() || !background_.empty(); });
   std::deque<Job>& queue = interactive_.empty() ? background_ : interactive_;
-  if (queue.empty()) return false;
+  if (queue.empty())
+    return false;
   job = std::move(queue.front());
   queue.pop_front();
   return true;

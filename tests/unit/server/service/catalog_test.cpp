@@ -58,6 +58,7 @@ TEST_F(CatalogTest, HoweverManyAskThereIsOneFit) {
   constexpr int kAskers = 16;
   std::vector<std::future<FetchReply>> replies(kAskers);
   std::vector<std::thread> askers;
+  askers.reserve(replies.size());
   for (std::size_t i = 0; i < replies.size(); ++i)
     askers.emplace_back(
         [&, i] { replies[i] = begin_fetch(request_for(pupil_), "asker " + std::to_string(i)); });
@@ -276,11 +277,13 @@ TEST_F(CatalogTest, ManyClientsReportingAndFetchingAtOnceAllGetTheirAnswers) {
   teach(6);
   constexpr int kClients = 4, kRounds = 3;
   std::vector<std::thread> clients;
+  clients.reserve(kClients);
   std::atomic<int> ready = 0;
   for (int client = 0; client < kClients; ++client)
     clients.emplace_back([&, client] {
       for (int round = 0; round < kRounds; ++round) {
-        const auto seed = static_cast<std::uint64_t>(1000 * (client + 1) + 10 * round);
+        const std::uint64_t seed =
+            1000 * static_cast<std::uint64_t>(client + 1) + 10 * static_cast<std::uint64_t>(round);
         report(fleet::solved(teacher_, "shelf", 2, seed));
         advance(seconds(4));
         const FetchRequest request =

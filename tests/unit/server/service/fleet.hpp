@@ -31,11 +31,11 @@ inline RobotDescription planar(const std::string& label, const std::vector<doubl
     parent = child;
   };
   const std::string limit = std::to_string(kLimit_rad);
+  std::string motion = "type='revolute'><axis xyz='0 0 1'/><limit lower='-";
+  motion.append(limit).append("' upper='").append(limit).append("' effort='1' velocity='1'/>");
   for (std::size_t i = 0; i < lengths_m.size(); ++i) {
     const std::string number = std::to_string(i + 1);
-    add("j" + number, "link" + number,
-        "type='revolute'><axis xyz='0 0 1'/><limit lower='-" + limit + "' upper='" + limit +
-            "' effort='1' velocity='1'/>");
+    add("j" + number, "link" + number, motion);
     offset_m = lengths_m[i];
   }
   add("tip_joint", "tip", "type='fixed'>");
@@ -99,6 +99,7 @@ inline Attempt solved(const Robot& robot, const std::string& task, std::uint64_t
 inline std::vector<Attempt> solved(const Robot& robot, const std::string& task, int count,
                                    std::uint64_t first_seed) {
   std::vector<Attempt> attempts;
+  attempts.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     attempts.push_back(solved(robot, task, first_seed + static_cast<std::uint64_t>(i)));
   return attempts;

@@ -26,6 +26,7 @@ class IngestTest : public testing::Test {
   }
   static std::vector<ReceiptStatus> statuses(const std::vector<Receipt>& receipts) {
     std::vector<ReceiptStatus> found;
+    found.reserve(receipts.size());
     for (const Receipt& receipt : receipts)
       found.push_back(receipt.status);
     return found;

@@ -65,10 +65,13 @@ class GatedFit {
 /// A service on a real store in a folder of its own, with a clock that the test sets and calls
 /// that wait for their answer. Teacher, pupil and dwarf are registered.
 class ServiceFixture : public testing::Test {
- protected:
+ public:
   ServiceFixture() { start(); }
   ~ServiceFixture() override { gate_.open(); }
+  ServiceFixture(const ServiceFixture&) = delete;
+  ServiceFixture& operator=(const ServiceFixture&) = delete;
 
+ protected:
   /// Starts the service, again if it runs already.
   void start() {
     service_.reset();

@@ -83,6 +83,7 @@ TEST(WorkerPool, RunsEveryJobOfManySubmittersOnce) {
   std::atomic<int> runs = 0;
   WorkerPool pool({.threads = 3, .queue_limit = 10'000, .niceness = 0});
   std::vector<std::thread> submitters;
+  submitters.reserve(4);
   for (int i = 0; i < 4; ++i)
     submitters.emplace_back([&] {
       for (int k = 0; k < 500; ++k)
