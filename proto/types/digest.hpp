@@ -30,7 +30,8 @@ template <>
 struct std::hash<kinship::Digest> {
   std::size_t operator()(const kinship::Digest& digest) const noexcept {
     std::size_t value = 0;  // the digest is uniform already: its first bytes are a hash
-    for (std::size_t i = 0; i < sizeof value; ++i) value = (value << 8U) | digest.bytes[i];
+    for (std::size_t i = 0; i < sizeof value; ++i)
+      value = (value << 8U) | digest.bytes[i];
     return value;
   }
 };

@@ -6,9 +6,12 @@ namespace kinship {
 namespace {
 
 int digit_value(char digit) {
-  if (digit >= '0' && digit <= '9') return digit - '0';
-  if (digit >= 'a' && digit <= 'f') return digit - 'a' + 10;
-  if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
+  if (digit >= '0' && digit <= '9')
+    return digit - '0';
+  if (digit >= 'a' && digit <= 'f')
+    return digit - 'a' + 10;
+  if (digit >= 'A' && digit <= 'F')
+    return digit - 'A' + 10;
   return -1;
 }
 
@@ -26,11 +29,13 @@ std::string to_hex(std::span<const std::uint8_t> bytes) {
 }
 
 bool parse_hex(std::string_view text, std::span<std::uint8_t> bytes) {
-  if (text.size() != 2 * bytes.size()) return false;
+  if (text.size() != 2 * bytes.size())
+    return false;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const int high = digit_value(text[2 * i]);
     const int low = digit_value(text[2 * i + 1]);
-    if (high < 0 || low < 0) return false;
+    if (high < 0 || low < 0)
+      return false;
     bytes[i] = static_cast<std::uint8_t>(16 * high + low);
   }
   return true;

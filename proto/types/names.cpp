@@ -24,30 +24,42 @@ bool is_control_character_in_text(char c) {
 /// Length of the well-formed UTF-8 sequence at the start of `text`; 0 if there is none.
 std::size_t utf8_length(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return 1;
-  if (byte(0) < 0xC2 || byte(0) > 0xF4) return 0;
+  if (byte(0) < 0x80)
+    return 1;
+  if (byte(0) < 0xC2 || byte(0) > 0xF4)
+    return 0;
   const std::size_t length = byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
-  if (text.size() < length) return 0;
+  if (text.size() < length)
+    return 0;
   for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0U) != 0x80U) return 0;
-  if (byte(0) == 0xE0 && byte(1) < 0xA0) return 0;  // overlong
-  if (byte(0) == 0xED && byte(1) > 0x9F) return 0;  // surrogates
-  if (byte(0) == 0xF0 && byte(1) < 0x90) return 0;  // overlong
-  if (byte(0) == 0xF4 && byte(1) > 0x8F) return 0;  // above U+10FFFF
+    if ((byte(i) & 0xC0U) != 0x80U)
+      return 0;
+  if (byte(0) == 0xE0 && byte(1) < 0xA0)
+    return 0;  // overlong
+  if (byte(0) == 0xED && byte(1) > 0x9F)
+    return 0;  // surrogates
+  if (byte(0) == 0xF0 && byte(1) < 0x90)
+    return 0;  // overlong
+  if (byte(0) == 0xF4 && byte(1) > 0x8F)
+    return 0;  // above U+10FFFF
   return length;
 }
 
 std::optional<Error> check_length(std::string_view what, std::string_view text, std::size_t limit) {
-  if (text.size() <= limit) return std::nullopt;
+  if (text.size() <= limit)
+    return std::nullopt;
   return Error{ErrorCode::InvalidInput, std::string(what) + ": " + std::to_string(text.size()) +
                                             " bytes exceed " + std::to_string(limit)};
 }
 
 std::optional<Error> check_name(std::string_view what, std::string_view text, std::size_t limit) {
-  if (text.empty()) return Error{ErrorCode::InvalidInput, std::string(what) + ": is empty"};
-  if (auto error = check_length(what, text, limit)) return error;
+  if (text.empty())
+    return Error{ErrorCode::InvalidInput, std::string(what) + ": is empty"};
+  if (auto error = check_length(what, text, limit))
+    return error;
   const auto bad = std::find_if_not(text.begin(), text.end(), is_name_character);
-  if (bad == text.end()) return std::nullopt;
+  if (bad == text.end())
+    return std::nullopt;
   return Error{ErrorCode::InvalidInput, std::string(what) + ": byte " +
                                             std::to_string(bad - text.begin() + 1) +
                                             " is not one of A-Z a-z 0-9 _ . : -"};
@@ -55,10 +67,13 @@ std::optional<Error> check_name(std::string_view what, std::string_view text, st
 
 std::optional<Error> check_free_text(std::string_view what, std::string_view text,
                                      std::size_t limit, bool (*is_refused)(char)) {
-  if (auto error = check_length(what, text, limit)) return error;
-  if (!is_utf8(text)) return Error{ErrorCode::InvalidInput, std::string(what) + ": is not UTF-8"};
+  if (auto error = check_length(what, text, limit))
+    return error;
+  if (!is_utf8(text))
+    return Error{ErrorCode::InvalidInput, std::string(what) + ": is not UTF-8"};
   const auto bad = std::find_if(text.begin(), text.end(), is_refused);
-  if (bad == text.end()) return std::nullopt;
+  if (bad == text.end())
+    return std::nullopt;
   return Error{ErrorCode::InvalidInput, std::string(what) + ": byte " +
                                             std::to_string(bad - text.begin() + 1) +
                                             " is a control character"};
@@ -89,7 +104,8 @@ std::optional<Error> check_text(std::string_view what, std::string_view text, st
 bool is_utf8(std::string_view text) noexcept {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
-    if (length == 0) return false;
+    if (length == 0)
+      return false;
     text.remove_prefix(length);
   }
   return true;

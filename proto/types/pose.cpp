@@ -11,7 +11,8 @@ PoseArray to_pose_array(const Eigen::Isometry3d& T_a_b) {
   const Eigen::Vector3d p = T_a_b.translation();
   Eigen::Quaterniond q(T_a_b.linear());
   q.normalize();
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  if (q.w() < 0)
+    q.coeffs() = -q.coeffs();
   return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
@@ -48,7 +49,8 @@ Eigen::Isometry3d snapped(const Eigen::Isometry3d& T_a_b) {
   const Eigen::Vector3d vector = (rotation.angle() * rotation.axis()).unaryExpr(snap);
   const double angle = vector.norm();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (angle > 0) T.linear() = Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+  if (angle > 0)
+    T.linear() = Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
   T.translation() = T_a_b.translation().unaryExpr(snap);
   return T;
 }

@@ -3,7 +3,8 @@
 namespace kinship {
 
 std::optional<Profile> find_profile(std::string_view name) {
-  if (name == "default") return Profile{};
+  if (name == "default")
+    return Profile{};
   if (name == "paper") {
     Profile paper;
     paper.name = "paper";

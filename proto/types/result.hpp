@@ -40,7 +40,8 @@ class [[nodiscard]] Result {
   /// The value, or its reason as the exception that ends a request.
   /// \throws Failure with the error.
   T value_or_throw() && {
-    if (!has_value()) throw Failure(error());
+    if (!has_value())
+      throw Failure(error());
     return std::move(*this).value();
   }
 

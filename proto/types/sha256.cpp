@@ -12,7 +12,8 @@ namespace kinship {
 namespace {
 
 void require(int ok) {
-  if (ok != 1) throw Failure(ErrorCode::Internal, "libcrypto: SHA-256 failed");
+  if (ok != 1)
+    throw Failure(ErrorCode::Internal, "libcrypto: SHA-256 failed");
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ Sha256& Sha256::add(const Eigen::Ref<const Eigen::MatrixXd>& values) {
   add(static_cast<std::uint64_t>(values.rows()));
   add(static_cast<std::uint64_t>(values.cols()));
   for (Eigen::Index column = 0; column < values.cols(); ++column)
-    for (Eigen::Index row = 0; row < values.rows(); ++row) add(values(row, column));
+    for (Eigen::Index row = 0; row < values.rows(); ++row)
+      add(values(row, column));
   return *this;
 }
 

@@ -16,7 +16,8 @@ constexpr std::array<std::size_t, 4> kDashes = {8, 13, 18, 23};
 
 std::string Uuid::text() const {
   std::string text = to_hex(bytes);
-  for (const std::size_t dash : kDashes) text.insert(dash, 1, '-');
+  for (const std::size_t dash : kDashes)
+    text.insert(dash, 1, '-');
   return text;
 }
 
@@ -33,14 +34,17 @@ Uuid Uuid::random() {
 }
 
 std::optional<Uuid> Uuid::parse(std::string_view text) {
-  if (text.size() != kTextLength) return std::nullopt;
+  if (text.size() != kTextLength)
+    return std::nullopt;
   std::string digits(text);
   for (auto dash = kDashes.rbegin(); dash != kDashes.rend(); ++dash) {
-    if (digits[*dash] != '-') return std::nullopt;
+    if (digits[*dash] != '-')
+      return std::nullopt;
     digits.erase(*dash, 1);
   }
   Uuid uuid;
-  if (!parse_hex(digits, uuid.bytes)) return std::nullopt;
+  if (!parse_hex(digits, uuid.bytes))
+    return std::nullopt;
   return uuid;
 }
 

@@ -57,7 +57,8 @@ Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters)
   for (Eigen::Index i = 0; i < count; ++i) {
     const double share = count == 1 ? 0.5 : static_cast<double>(i) / static_cast<double>(count - 1);
     const double at = first + share * length;
-    while (segment + 2 < along.size() && along[segment + 1] < at) ++segment;
+    while (segment + 2 < along.size() && along[segment + 1] < at)
+      ++segment;
     const double span = along[segment + 1] - along[segment];
     const double within = span > 0 ? std::clamp((at - along[segment]) / span, 0.0, 1.0) : 0.0;
     resampled.col(i) = (1 - within) * waypoints.col(segment) + within * waypoints.col(segment + 1);

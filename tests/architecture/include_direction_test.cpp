@@ -51,14 +51,16 @@ std::vector<Include> all_includes() {
 /// The folder of `kAllowedEdges` that a path lies in; empty if none does.
 std::string library_of(const std::string& path) {
   for (const auto& [folder, edges] : kAllowedEdges)
-    if (path.starts_with(folder + "/")) return folder;
+    if (path.starts_with(folder + "/"))
+      return folder;
   return {};
 }
 
 std::string external_library_of(const std::string& target) {
   for (const auto& [name, prefixes] : kExternalLibraries)
     for (const std::string& prefix : prefixes)
-      if (target.starts_with(prefix)) return name;
+      if (target.starts_with(prefix))
+        return name;
   return {};
 }
 
@@ -71,7 +73,8 @@ TEST(Architecture, LibrariesIncludeOnlyWhatTheirRowAllows) {
   for (const Include& include : all_includes()) {
     const std::string from = library_of(include.file);
     const std::string to = library_of(include.target);
-    if (!include.quoted || from.empty() || from == to) continue;
+    if (!include.quoted || from.empty() || from == to)
+      continue;
     // Messages are generated from proto/idl/x.idl into a header without a folder.
     const bool generated = to.empty() && include.target.find('/') == std::string::npos;
     const std::string target = generated ? "proto/idl" : to;
@@ -85,7 +88,8 @@ TEST(Architecture, ExternalLibrariesStayInTheirRooms) {
   for (const Include& include : all_includes()) {
     const std::string from = library_of(include.file);
     const std::string external = external_library_of(include.target);
-    if (external.empty() || from.empty()) continue;
+    if (external.empty() || from.empty())
+      continue;
     EXPECT_TRUE(kAllowedEdges.at(from).external.contains(external))
         << include.file << " includes <" << include.target << ">: " << external << " is not for "
         << from;
@@ -98,7 +102,8 @@ TEST(Architecture, FilesStayReadable) {
   roofs.emplace_back("tests");
   for (const std::string& roof : roofs)
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / roof)) {
-      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      if (!entry.is_regular_file() || !is_source(entry.path()))
+        continue;
       std::ifstream stream(entry.path());
       const auto lines = std::count(std::istreambuf_iterator<char>(stream), {}, '\n');
       EXPECT_LE(lines, kMostLines) << entry.path() << ": look for the second noun in it";
