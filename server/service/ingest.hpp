@@ -43,7 +43,8 @@ class Ingest {
   /// From now on everything is answered TryAgain; returns when everything before is answered.
   void drain();
 
-  std::uint64_t received() const noexcept { return received_; }  ///< attempts, since construction
+  /// Attempts, since construction; counted again when a client resends them.
+  std::uint64_t received() const noexcept { return received_; }
   std::uint64_t refused() const noexcept { return refused_; }
   std::size_t queued() const;  ///< attempts taken in and not yet answered
 

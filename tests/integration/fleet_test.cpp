@@ -125,7 +125,7 @@ TEST_F(Fleet, AnUnknownRobotsReportsAreRefusedAndNothingIsStored) {
   EXPECT_EQ(client->flush(seconds(30)).refused, 1U);
   const ServerStatus status = status_of(*client);
   EXPECT_EQ(status.attempts, 0U);
-  EXPECT_EQ(status.reports_refused, 1U);
+  EXPECT_GE(status.reports_refused, 1U);  // again if the first reply was lost and it was resent
 }
 
 TEST_F(Fleet, EveryListIsTheSameInPages) {
