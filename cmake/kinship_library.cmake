@@ -42,11 +42,12 @@ function(kinship_program name)
   target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS})
 endfunction()
 
-# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... [LABELS unit] [TIMEOUT 60])
+# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60])
 #
-# One GoogleTest program; every TEST of it is a test of CTest.
+# One GoogleTest program; every TEST of it is a test of CTest. LABEL: unit, threads (unit tests that
+# ThreadSanitizer runs too), property, integration, story, faults, golden, architecture.
 function(kinship_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "TIMEOUT" "SOURCES;DEPENDS;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;TIMEOUT" "SOURCES;DEPENDS")
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -55,12 +56,7 @@ function(kinship_test name)
   target_compile_definitions(${name} PRIVATE
     KINSHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KINSHIP_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  if(arg_SERIAL)
-    set(serial ON)
-  else()
-    set(serial OFF)
-  endif()
   include(GoogleTest)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}" RUN_SERIAL ${serial})
+    PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL})
 endfunction()
