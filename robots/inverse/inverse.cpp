@@ -46,10 +46,8 @@ class Search {
 
   InverseSolutions run(const InverseOptions& options) {
     const bool all = options.max_solutions == 0;
-    const bool chosen_here = options.attempts == 0;
-    int starts = options.attempts;
-    if (chosen_here)
-      starts = all ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * most_solutions_);
+    const int starts =
+        all ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * most_solutions_);
     const int patience = all ? kSaturated : starts;
     if (beyond_reach())
       return solutions();
@@ -58,7 +56,7 @@ class Search {
     if (found_.empty() && !promising())
       return solutions();
     start(starts - first, Descent::Limits::Steer, kIterations, patience);
-    if (found_.empty() && chosen_here)
+    if (found_.empty())
       start(kPatientStarts, Descent::Limits::Steer, kPatientIterations, kPatientStarts);
     return solutions();
   }
@@ -156,8 +154,8 @@ InverseSolutions inverse(const kinematics::Chain& chain, const Eigen::Isometry3d
                          const InverseOptions& options) {
   if (!T_base_tip.matrix().allFinite())
     throw std::invalid_argument("inverse: the pose of the tip link is not finite");
-  if (options.max_solutions < 0 || options.attempts < 0)
-    throw std::invalid_argument("inverse: max_solutions and attempts must not be negative");
+  if (options.max_solutions < 0)
+    throw std::invalid_argument("inverse: max_solutions must not be negative");
   if (!(options.min_distance >= 0))
     throw std::invalid_argument("inverse: min_distance must be 0 or more");
   return Search(chain, T_base_tip, options).run(options);

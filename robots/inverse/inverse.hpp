@@ -12,7 +12,6 @@ struct InverseOptions {
   int max_solutions = 8;      ///< L; 0: all that are found, at most 1000
   double min_distance = 0.2;  ///< d: Euclidean, 1 m = 1 rad; wrapped for continuous joints
   std::uint64_t seed = 0;     ///< equal seed and pose: equal solutions
-  int attempts = 0;           ///< starting configurations to try; 0: chosen from the chain and L
 };
 
 /// Why a set of solutions is empty.

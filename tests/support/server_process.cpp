@@ -19,8 +19,9 @@ constexpr std::uint32_t kFirstDomain = 200;
 constexpr std::uint32_t kDomains = 20;
 
 int open_lock(std::uint32_t domain) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() /
-                                     ("kinship-test-domain-" + std::to_string(domain) + ".lock");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("kinship-test-" + std::to_string(getuid()) + "-domain-" + std::to_string(domain) + ".lock");
   const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock < 0)
     throw std::system_error(errno, std::system_category(), file.string());
