@@ -73,8 +73,8 @@ std::optional<Eigen::VectorXd> free_configuration(const ExperimentRobot& robot,
                                                   std::mt19937_64& generator) {
   collision::CollisionWorld world(
       robot.chain, robot.shapes,
-      {problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions});
-  const Eigen::Isometry3d T_base_transfer = problem.T_task_base.inverse() * T_task_transfer;
+      {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions});
+  const Eigen::Isometry3d T_base_transfer = problem.T_task_base->inverse() * T_task_transfer;
   for (const Eigen::VectorXd& q : configurations_at(robot.chain, T_base_transfer, generator))
     if (!world.collides(q))
       return q;

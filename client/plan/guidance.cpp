@@ -35,7 +35,7 @@ std::string describe(const Distribution& distribution, double share) {
   return text;
 }
 
-GuidanceAnswer use(const Distribution& distribution, const GuidanceWish& wish) {
+GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceWish& wish) {
   if (!distribution.mixture || distribution.mixture->dimension() != wish.dof)
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has no mixture over " + std::to_string(wish.dof) +
@@ -58,7 +58,7 @@ std::string or_else(const std::string& message, const std::string& otherwise) {
 }  // namespace
 
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
-                              const Eigen::Isometry3d& T_task_base) {
+                              const std::optional<Eigen::Isometry3d>& T_task_base) {
   FetchRequest request;
   request.task = wish.task;
   request.robot = wish.robot;
@@ -73,7 +73,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
   switch (reply->status) {
     case FetchStatus::Ready:
       if (reply->distribution)
-        return use(*reply->distribution, wish);
+        return answer_with(*reply->distribution, wish);
       return refusal(NoGuidance::Failed, "the server sent no distribution");
     case FetchStatus::NoExperience:
       return refusal(NoGuidance::NotFound,
@@ -97,8 +97,15 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
   return refusal(NoGuidance::Failed, or_else(reply->message, "the server refused the request"));
 }
 
-std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(const Eigen::Isometry3d& T_task_base) {
-  const PoseArray key = to_pose_array(snapped(T_task_base));
+GuidanceBook::Key GuidanceBook::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {
+  if (!T_task_base)
+    return std::nullopt;
+  return to_pose_array(snapped(*T_task_base));
+}
+
+std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
+    const std::optional<Eigen::Isometry3d>& T_task_base) {
+  const Key key = key_of(T_task_base);
   if (const auto known = answers_.find(key); known != answers_.end())
     return {known->second, false};
   GuidanceAnswer answer = server_missing_
@@ -109,8 +116,8 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(const Eigen::Isometry3d
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
-const Guidance* GuidanceBook::find(const Eigen::Isometry3d& T_task_base) const {
-  const auto known = answers_.find(to_pose_array(snapped(T_task_base)));
+const Guidance* GuidanceBook::find(const std::optional<Eigen::Isometry3d>& T_task_base) const {
+  const auto known = answers_.find(key_of(T_task_base));
   if (known == answers_.end() || !known->second.guidance)
     return nullptr;
   return &*known->second.guidance;

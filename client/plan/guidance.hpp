@@ -40,24 +40,28 @@ struct GuidanceAnswer {
 
 /// Asks once. Never throws for what a server may answer.
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
-                              const Eigen::Isometry3d& T_task_base);
+                              const std::optional<Eigen::Isometry3d>& T_task_base);
 
 /// The guidance of a run, asked for once per distinct placement (snapped to 1 mm and 1 mrad) before
-/// planning. When nobody answers once, nobody is asked again.
+/// planning; a missing placement is one of its own. When nobody answers once, nobody is asked
+/// again.
 class GuidanceBook {
  public:
   GuidanceBook(Fetch fetch, GuidanceWish wish) : fetch_(std::move(fetch)), wish_(std::move(wish)) {}
 
   /// Asks unless the placement is known. \return the answer, and whether it is new.
-  std::pair<const GuidanceAnswer&, bool> ask(const Eigen::Isometry3d& T_task_base);
+  std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
 
   /// \return what ask() brought for the placement; null if nothing. Never waits.
-  const Guidance* find(const Eigen::Isometry3d& T_task_base) const;
+  const Guidance* find(const std::optional<Eigen::Isometry3d>& T_task_base) const;
 
  private:
+  using Key = std::optional<PoseArray>;
+  static Key key_of(const std::optional<Eigen::Isometry3d>& T_task_base);
+
   Fetch fetch_;
   GuidanceWish wish_;
-  std::map<PoseArray, GuidanceAnswer> answers_;
+  std::map<Key, GuidanceAnswer> answers_;
   bool server_missing_ = false;
 };
 

@@ -1,8 +1,10 @@
 #include "client/plan/plan_problem.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "client/planning/birrt.hpp"
 #include "client/planning/configuration_sampler.hpp"
@@ -17,6 +19,39 @@ namespace {
 
 struct Interrupted {};  // leaves a planner between two checks
 
+/// The first joint of a configuration that is beyond its limits, with its value and the limits.
+std::optional<std::string> beyond_limits(const kinematics::Chain& chain,
+                                         const Eigen::Ref<const Eigen::VectorXd>& q) {
+  constexpr double kRounding = 1e-6;  // of a limit written with few digits
+  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    if (joint.type == kinematics::JointType::Continuous)
+      continue;
+    if (q[i] < joint.lower - kRounding || q[i] > joint.upper + kRounding)
+      return "joint '" + joint.name + "' at " + std::to_string(q[i]) + " is outside " +
+             std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
+  }
+  return std::nullopt;
+}
+
+/// The configurations where planning may go: within limits to rounding, turning joints in the
+/// turn of the start. Those that no turn brings there are left out.
+Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matrix2Xd& bounds,
+                              const Eigen::MatrixXd& configurations) {
+  const std::vector<bool> turning = planning::turning_joints(chain);
+  Eigen::MatrixXd kept(configurations.rows(), configurations.cols());
+  Eigen::Index count = 0;
+  for (const auto& q : configurations.colwise()) {
+    Eigen::VectorXd limited = q;
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      if (chain.joints()[static_cast<std::size_t>(i)].type != kinematics::JointType::Continuous)
+        limited[i] = std::clamp(q[i], chain.lower()[i], chain.upper()[i]);
+    if (const auto turned = planning::turned_into(bounds, turning, limited))
+      kept.col(count++) = *turned;
+  }
+  return kept.leftCols(count);
+}
+
 /// What is wrong with the problem for this robot.
 std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Problem& problem) {
   const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
@@ -26,15 +61,11 @@ std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Pro
   if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
     return "goal configurations have " + joints(problem.goal_configurations.rows()) +
            ", the robot " + std::to_string(chain.dof());
-  constexpr double kRounding = 1e-6;  // of a limit written with few digits
-  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
-    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
-    if (joint.type == kinematics::JointType::Continuous)
-      continue;
-    if (problem.start[i] < joint.lower - kRounding || problem.start[i] > joint.upper + kRounding)
-      return "start: joint '" + joint.name + "' at " + std::to_string(problem.start[i]) +
-             " is outside " + std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
-  }
+  if (const auto outside = beyond_limits(chain, problem.start))
+    return "start: " + *outside;
+  for (Eigen::Index i = 0; i < problem.goal_configurations.cols(); ++i)
+    if (const auto outside = beyond_limits(chain, problem.goal_configurations.col(i)))
+      return "goal " + std::to_string(i + 1) + ": " + *outside;
   return std::nullopt;
 }
 
@@ -61,8 +92,9 @@ class Planning {
       : robot_(robot),
         problem_(problem),
         settings_(settings),
+        T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
         world_(robot.chain, robot.shapes,
-               {problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}),
+               {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
         is_free_([this, &stop](const Eigen::VectorXd& q) {
           if (stop())
             throw Interrupted();
@@ -95,14 +127,19 @@ class Planning {
  private:
   /// All of them count: the nearest may lie behind an obstacle.
   Eigen::MatrixXd find_goals(ProblemResult& result) {
-    if (!problem_.T_task_goal)
-      return problem_.goal_configurations;
+    if (!problem_.T_task_goal) {
+      Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
+      if (goals.cols() == 0)
+        result.reason =
+            "every goal is outside the planning bounds: joints wider than a turn move "
+            "at most half a turn from the start";
+      return goals;
+    }
     planning::GoalOptions options;
     options.max_configurations = settings_.max_goals;
     options.seed = problem_.seed;
     planning::GoalConfigurations goals = planning::goal_configurations(
-        robot_.chain, problem_.T_task_base.inverse() * *problem_.T_task_goal, bounds_, is_free_,
-        options);
+        robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free_, options);
     result.goal_checks = goals.collision_checks;
     result.reason = goals.reason;
     return std::move(goals.configurations);
@@ -132,6 +169,7 @@ class Planning {
   const PlannedRobot& robot_;
   const Problem& problem_;
   const PlanSettings& settings_;
+  const Eigen::Isometry3d T_task_base_;
   collision::CollisionWorld world_;
   planning::IsFree is_free_;
   Eigen::Matrix2Xd bounds_;

@@ -56,7 +56,7 @@ NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
   return why_not;
 }
 
-const Guidance* ServerLine::guidance(const Eigen::Isometry3d& T_task_base) const {
+const Guidance* ServerLine::guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const {
   return guidance_ ? guidance_->find(T_task_base) : nullptr;
 }
 

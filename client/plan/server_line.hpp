@@ -27,7 +27,7 @@ class ServerLine {
   NoGuidance fetch_guidance(const GuidanceWish& wish, const std::vector<ProblemLine>& lines);
 
   /// Never waits. \return null: plan uniformly.
-  const Guidance* guidance(const Eigen::Isometry3d& T_task_base) const;
+  const Guidance* guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const;
 
   /// Puts the attempt into the outbox; says so if it cannot be kept.
   void report(const Attempt& attempt);

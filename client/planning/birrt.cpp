@@ -102,6 +102,17 @@ class Birrt {
     return goal_tree_.size() == 0 ? "every goal collides" : "";
   }
 
+  /// The path of a start that is a goal already.
+  std::optional<Eigen::MatrixXd> standstill() const {
+    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd goal = goal_tree_.node(goal_tree_.nearest(start));
+    if (goal != start)
+      return std::nullopt;
+    Eigen::MatrixXd path(start.size(), 2);
+    path << start, goal;
+    return path;
+  }
+
   /// One extension of each tree. \return the path if they met.
   std::optional<Eigen::MatrixXd> iterate() {
     Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
@@ -154,6 +165,8 @@ PlanSummary plan_birrt(const Eigen::VectorXd& start, const Eigen::MatrixXd& goal
   Birrt birrt(sampler, options, budget, generator);
   PlanSummary summary;
   summary.reason = birrt.plant(start, goals);
+  if (summary.reason.empty())
+    summary.waypoints = birrt.standstill();
   while (summary.reason.empty() && !summary.waypoints && !budget.exhausted()) {
     ++summary.iterations;
     summary.waypoints = birrt.iterate();

@@ -20,8 +20,9 @@ struct BirrtOptions {
 };
 
 struct PlanSummary {
-  std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n, at most `step` apart; absent if unsolved
-  std::uint64_t collision_checks = 0;        ///< configurations asked of `is_free`
+  /// dof x n, n >= 2, at most `step` apart; absent if unsolved.
+  std::optional<Eigen::MatrixXd> waypoints;
+  std::uint64_t collision_checks = 0;  ///< configurations asked of `is_free`
   std::uint64_t iterations = 0;
   double planning_time_s = 0;
   /// Why unsolved: "start collides", "every goal collides", "no goal", "checks" or "time".
@@ -31,7 +32,8 @@ struct PlanSummary {
 /// Bi-directional RRT with greedy extension of both trees, in the style of CBiRRT2 without
 /// constraints. Every goal configuration is a root of the goal tree. Each iteration extends one
 /// tree towards a sample (overshot) until something is in the way, then the other tree towards
-/// where that came; then they swap. Every waypoint was checked, start and goal included.
+/// where that came; then they swap. Every waypoint was checked, start and goal included. A start
+/// that is a free goal is answered with [start, goal], without an iteration.
 /// Equal seed, equal path, as long as the time limit does not end it.
 /// \param start  dof.
 /// \param goals  dof x n; colliding ones are left out.

@@ -85,7 +85,7 @@ ProblemResult read_problem_result(const Reader& reader) {
 std::string to_json(const Problem& problem) {
   OrderedJson object;
   object["name"] = problem.name;
-  object["T_task_base"] = pose_list(problem.T_task_base);
+  object["T_task_base"] = pose_or_null(problem.T_task_base);
   object["start"] = list(problem.start);
   if (problem.T_task_goal)
     object["goal"]["pose"] = pose_list(*problem.T_task_goal);

@@ -16,7 +16,7 @@ namespace kinship {
 /// One planning problem for kinship-plan (a line of a problem file).
 struct Problem {
   std::string name;
-  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, told as missing
   Eigen::VectorXd start;                         ///< dof, joint units
   Eigen::MatrixXd goal_configurations;           ///< dof x n; empty if a pose is given
   std::optional<Eigen::Isometry3d> T_task_goal;  ///< of the transfer frame

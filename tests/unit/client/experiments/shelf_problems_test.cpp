@@ -34,7 +34,7 @@ Problem drawn(const ExperimentRobot& robot, std::uint32_t index) {
 collision::CollisionWorld world_of(const ExperimentRobot& robot, const Problem& problem) {
   return {robot.chain,
           robot.shapes,
-          {problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}};
+          {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}};
 }
 
 class ShelfProblems : public testing::TestWithParam<const char*> {};
@@ -46,7 +46,7 @@ TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
     EXPECT_TRUE(robot.chain.within_limits(problem.start));
     EXPECT_FALSE(world_of(robot, problem).collides(problem.start)) << problem.name;
     const Eigen::Isometry3d T_task_transfer =
-        problem.T_task_base * kinematics::T_base_transfer(robot.chain, problem.start);
+        *problem.T_task_base * kinematics::T_base_transfer(robot.chain, problem.start);
     EXPECT_NEAR(T_task_transfer.linear()(2, 2), -1, 1e-6);  // the gripper looks down
   }
 }
@@ -56,7 +56,7 @@ TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
   for (std::uint32_t index = 0; index < kInstances; ++index) {
     const Problem problem = drawn(robot, index);
     collision::CollisionWorld world = world_of(robot, problem);
-    const Eigen::Isometry3d T_base_tip = problem.T_task_base.inverse() * *problem.T_task_goal *
+    const Eigen::Isometry3d T_base_tip = problem.T_task_base->inverse() * *problem.T_task_goal *
                                          robot.chain.T_tip_transfer().inverse();
     inverse::InverseOptions options;
     options.max_solutions = 20;

@@ -21,7 +21,7 @@ PlannedProblem solved() {
 
 TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   Problem problem;
-  problem.T_task_base.translation().x() = 0.25;
+  problem.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.25, 0, 0));
   const PlannedProblem planned = solved();
   const Attempt attempt = make_attempt(kReporter, problem, planned, {});
   ASSERT_TRUE(attempt.path);
@@ -32,6 +32,10 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.task, "box_to_shelf");
   EXPECT_EQ(attempt.machine, "cell 3");
   EXPECT_EQ(attempt.T_task_base->translation().x(), 0.25);
+}
+
+TEST(AttemptRecord, AMissingPlacementIsReportedAsMissing) {
+  EXPECT_FALSE(make_attempt(kReporter, {}, solved(), {}).T_task_base);
 }
 
 TEST(AttemptRecord, AnUnsolvedProblemHasNoPath) {

@@ -121,6 +121,21 @@ TEST(GuidanceBook, AsksOncePerPlacementWithinAMillimetre) {
   EXPECT_EQ(asked, 2);
 }
 
+TEST(GuidanceBook, AMissingPlacementIsAskedForAsMissing) {
+  std::vector<bool> placed;
+  GuidanceBook book(
+      [&](const FetchRequest& request) {
+        placed.push_back(request.T_task_base.has_value());
+        return Result<FetchReply>(ready());
+      },
+      wish());
+  EXPECT_TRUE(book.ask(std::nullopt).second);
+  EXPECT_FALSE(book.ask(std::nullopt).second);
+  EXPECT_TRUE(book.ask(placement(0)).second);
+  EXPECT_EQ(placed, (std::vector<bool>{false, true}));
+  EXPECT_NE(book.find(std::nullopt), nullptr);
+}
+
 TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
   GuidanceBook book(
       [](const FetchRequest& request) {

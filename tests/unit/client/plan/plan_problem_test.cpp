@@ -22,12 +22,16 @@ PlannedProblem planned(const Problem& problem, const PlanSettings& settings = {}
   return plan_problem(planar_robot(), problem, guidance, settings, never);
 }
 
+Eigen::Isometry3d placement_of(const Problem& problem) {
+  return problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
+}
+
 /// Collisions at the resolution along a path that is straight between its waypoints.
 int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
   const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
   const PlannedRobot robot = planar_robot();
   collision::CollisionWorld world(robot.chain, robot.shapes,
-                                  {problem.T_task_base, problem.scene, {}, {}});
+                                  {placement_of(problem), problem.scene, {}, {}});
   int collisions = 0;
   for (Eigen::Index i = 0; i < path.cols(); ++i)
     if (world.collides(path.col(i)))
@@ -58,18 +62,17 @@ TEST(PlanProblem, ThePathLeadsFromStartToGoalFreeAtTheResolution) {
 
 TEST(PlanProblem, AGoalPoseIsReachedByTheTransferFrame) {
   Problem problem = wall_problem();
-  problem.T_task_base.translation() << 0.1, -0.2, 0;
-  problem.scene.objects[0].T_task_object =
-      problem.T_task_base * problem.scene.objects[0].T_task_object;
+  const Eigen::Isometry3d T_task_base(Eigen::Translation3d(0.1, -0.2, 0));
+  problem.T_task_base = T_task_base;
+  problem.scene.objects[0].T_task_object = T_task_base * problem.scene.objects[0].T_task_object;
   const PlannedRobot robot = planar_robot();
-  problem.T_task_goal = problem.T_task_base * kinematics::T_base_transfer(
-                                                  robot.chain, problem.goal_configurations.col(0));
+  problem.T_task_goal =
+      T_task_base * kinematics::T_base_transfer(robot.chain, problem.goal_configurations.col(0));
   problem.goal_configurations.resize(0, 0);
   const PlannedProblem answer = planned(problem);
   ASSERT_TRUE(answer.result.solved) << answer.result.reason;
   const Eigen::Isometry3d T_task_end =
-      problem.T_task_base *
-      kinematics::T_base_transfer(robot.chain, answer.result.waypoints->rightCols(1));
+      T_task_base * kinematics::T_base_transfer(robot.chain, answer.result.waypoints->rightCols(1));
   EXPECT_TRUE(T_task_end.isApprox(*problem.T_task_goal, 1e-5));
   EXPECT_GT(answer.result.goal_checks, 0U);
 }
@@ -155,6 +158,72 @@ TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
   problem = wall_problem();
   problem.attached.push_back({"box", "hand", BoxShape{{0.1, 0.1, 0.1}}, {}, {}});
   EXPECT_NE(planned(problem).result.reason.find("hand"), std::string::npos);
+}
+
+TEST(PlanProblem, AGoalBeyondALimitNamesGoalJointValueAndLimit) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.conservativeResize(4, 2);
+  problem.goal_configurations.col(1) << -0.9, 3.5, 0, 0;
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.attempted);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_EQ(answer.result.reason,
+            "goal 2: joint 'j2' at 3.500000 is outside -2.800000 to 2.800000");
+}
+
+TEST(PlanProblem, AGoalBeyondALimitByRoundingEndsAtTheLimit) {
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.goal_configurations.col(0) << 2.8 + 1e-7, 0, 0, 0;
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.waypoints->rightCols(1)(0), 2.8);
+}
+
+TEST(PlanProblem, AGoalIsTurnedIntoTheTurnOfTheStart) {
+  const PlannedRobot robot = planar_robot("-6.2", "6.2");
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[0] = 3;
+  problem.goal_configurations(0, 0) = -3;
+  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 2 * M_PI - 3, 1e-9);
+}
+
+TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
+  RobotDescription description = test::planar_description();
+  const std::string revolute = "type='revolute'";
+  description.urdf.replace(description.urdf.find(revolute), revolute.size(), "type='continuous'");
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  const PlannedRobot robot{std::move(chain), std::move(shapes)};
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[0] = 3;
+  problem.goal_configurations(0, 0) = 4;
+  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 4, 1e-9);
+}
+
+TEST(PlanProblem, AGoalThatNoTurnBringsNearTheStartIsSaid) {
+  const PlannedRobot robot = planar_robot("-6.2", "6.2");
+  Problem problem = wall_problem();
+  problem.start[0] = 6;
+  problem.goal_configurations(0, 0) = 0.5;
+  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_NE(answer.result.reason.find("outside the planning bounds"), std::string::npos)
+      << answer.result.reason;
+}
+
+TEST(PlanProblem, AStartThatIsTheGoalIsAPathOfTwoWaypoints) {
+  Problem problem = wall_problem();
+  problem.goal_configurations = problem.start;
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.waypoints->cols(), 2);
 }
 
 TEST(PlanProblem, StopsWhenAsked) {

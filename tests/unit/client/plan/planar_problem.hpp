@@ -11,11 +11,10 @@
 namespace kinship::plan::test {
 
 inline std::string joint_xml(const std::string& name, const std::string& parent,
-                             const std::string& child, double x) {
+                             const std::string& child, double x, const std::string& limits) {
   return "<joint name='" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" +
-         child + "'/><origin xyz='" + std::to_string(x) +
-         " 0 0'/><axis xyz='0 0 1'/><limit lower='-2.8' upper='2.8' effort='1' velocity='1'/>"
-         "</joint>";
+         child + "'/><origin xyz='" + std::to_string(x) + " 0 0'/><axis xyz='0 0 1'/><limit " +
+         limits + " effort='1' velocity='1'/></joint>";
 }
 
 inline std::string link_xml(const std::string& name, double length) {
@@ -26,14 +25,18 @@ inline std::string link_xml(const std::string& name, double length) {
 }
 
 /// Four links of 0.3 m in the plane z = 0; the transfer frame is the end of the last.
-inline RobotDescription planar_description() {
+/// \param lower,upper  limits of the first joint; the others go from -2.8 to 2.8.
+inline RobotDescription planar_description(const std::string& lower = "-2.8",
+                                           const std::string& upper = "2.8") {
+  const std::string limits = "lower='-2.8' upper='2.8'";
   RobotDescription description;
   description.label = "planar";
-  description.urdf = "<robot name='planar'><link name='base'/>" + link_xml("l1", 0.3) +
-                     link_xml("l2", 0.3) + link_xml("l3", 0.3) + link_xml("l4", 0.3) +
-                     joint_xml("j1", "base", "l1", 0) + joint_xml("j2", "l1", "l2", 0.3) +
-                     joint_xml("j3", "l2", "l3", 0.3) + joint_xml("j4", "l3", "l4", 0.3) +
-                     "</robot>";
+  description.urdf =
+      "<robot name='planar'><link name='base'/>" + link_xml("l1", 0.3) + link_xml("l2", 0.3) +
+      link_xml("l3", 0.3) + link_xml("l4", 0.3) +
+      joint_xml("j1", "base", "l1", 0, "lower='" + lower + "' upper='" + upper + "'") +
+      joint_xml("j2", "l1", "l2", 0.3, limits) + joint_xml("j3", "l2", "l3", 0.3, limits) +
+      joint_xml("j4", "l3", "l4", 0.3, limits) + "</robot>";
   description.base_link = "base";
   description.tip_link = "l4";
   description.T_tip_transfer.translation().x() = 0.3;
@@ -41,8 +44,9 @@ inline RobotDescription planar_description() {
   return description;
 }
 
-inline PlannedRobot planar_robot() {
-  const RobotDescription description = planar_description();
+inline PlannedRobot planar_robot(const std::string& lower = "-2.8",
+                                 const std::string& upper = "2.8") {
+  const RobotDescription description = planar_description(lower, upper);
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
   return {std::move(chain), std::move(shapes)};

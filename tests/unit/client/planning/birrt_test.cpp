@@ -47,6 +47,20 @@ TEST(Birrt, FindsFreePathsWithTheRightEndsAndStep) {
   }
 }
 
+TEST(Birrt, AStartThatIsAGoalIsAPathOfTwoEqualWaypoints) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    WallWorld world;
+    Eigen::MatrixXd goals(2, 2);
+    goals << kGoal, kStart;
+    const PlanSummary summary = plan(world, goals, seed);
+    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    ASSERT_EQ(summary.waypoints->cols(), 2);
+    EXPECT_EQ(summary.waypoints->col(0), kStart);
+    EXPECT_EQ(summary.waypoints->col(1), kStart);
+    EXPECT_EQ(summary.iterations, 0U);
+  }
+}
+
 TEST(Birrt, CountsEveryConfigurationItAsksAbout) {
   WallWorld world;
   const PlanSummary summary = plan(world, kGoal, 1);

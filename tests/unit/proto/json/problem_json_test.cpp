@@ -50,8 +50,18 @@ TEST(ProblemJson, OnlyNameStartAndGoalAreRequired) {
       problem_from_json(R"({"name": "n", "start": [0], "goal": {"pose": [1, 0, 0, 0, 0, 0, 1]}})");
   ASSERT_TRUE(problem) << problem.error().message;
   EXPECT_EQ(problem->T_task_goal->translation(), Eigen::Vector3d(1, 0, 0));
+  EXPECT_FALSE(problem->T_task_base);
   EXPECT_EQ(problem->time_limit_s, 10);
   EXPECT_TRUE(problem->scene.objects.empty());
+}
+
+TEST(ProblemJson, AMissingPlacementIsWrittenAsMissing) {
+  Problem problem;
+  problem.start = problem.goal_configurations = Eigen::VectorXd::Zero(1);
+  const std::string text = to_json(problem);
+  EXPECT_NE(text.find(R"("T_task_base":null)"), std::string::npos) << text;
+  problem.T_task_base = Eigen::Isometry3d::Identity();
+  EXPECT_TRUE(problem_from_json(to_json(problem))->T_task_base);
 }
 
 TEST(ProblemJson, WhatIsNotSupportedYetIsRefused) {
