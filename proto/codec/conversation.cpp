@@ -1,19 +1,13 @@
 #include "proto/codec/conversation.hpp"
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 
 namespace kinship::codec {
 namespace {
 
-/// Cut at the limit, so that a refusal can always be sent; never inside a UTF-8 sequence.
-std::string message_of(const Error& error) {
-  if (error.message.size() <= kMaxMessageBytes)
-    return error.message;
-  std::size_t end = kMaxMessageBytes;
-  while (end > 0 && (static_cast<unsigned char>(error.message[end]) & 0xC0U) == 0x80U)
-    --end;
-  return error.message.substr(0, end);
-}
+/// So that a refusal can always be sent.
+std::string message_of(const Error& error) { return cut_text(error.message, kMaxMessageBytes); }
 
 }  // namespace
 

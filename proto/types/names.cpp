@@ -111,4 +111,21 @@ bool is_utf8(std::string_view text) noexcept {
   return true;
 }
 
+std::string cut_text(std::string_view text, std::size_t max_bytes) {
+  std::string cut;
+  while (!text.empty()) {
+    const std::size_t known = utf8_length(text);
+    const std::size_t length = known == 0 ? 1 : known;
+    if (cut.size() + length > max_bytes)
+      break;
+    if (known == 0 || is_control_character_in_text(text.front())) {
+      cut += '?';
+    } else {
+      cut += text.substr(0, length);
+    }
+    text.remove_prefix(length);
+  }
+  return cut;
+}
+
 }  // namespace kinship

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "proto/types/failure.hpp"
@@ -22,5 +23,9 @@ std::optional<Error> check_text(std::string_view what, std::string_view text, st
 
 /// Whether the bytes are well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates).
 bool is_utf8(std::string_view text) noexcept;
+
+/// The start of a message that is fit to be sent: at most `max_bytes`, whole UTF-8 characters;
+/// each byte that is not UTF-8 and each control character that check_text() refuses becomes '?'.
+std::string cut_text(std::string_view text, std::size_t max_bytes);
 
 }  // namespace kinship

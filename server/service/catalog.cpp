@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "server/service/fetch_reply.hpp"
 #include "server/service/freshness.hpp"
 
@@ -231,7 +232,7 @@ SharedReply Catalog::keep(Distribution distribution) {
     distribution.revision = 0;
     distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
                            std::string(failure.what());
-    distribution.reason.resize(std::min(distribution.reason.size(), kMaxMessageBytes));
+    distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   }
   options_.on_fit(distribution);
   return with_distribution(std::move(distribution));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 #include "server/density/fit.hpp"
 #include "server/service/pooled_configurations.hpp"
@@ -210,7 +211,7 @@ void Fit::fail(Distribution& distribution, const std::string& message) const {
   const std::string also = warnings();
   if (!also.empty())
     distribution.reason += "; " + also;
-  distribution.reason.resize(std::min(distribution.reason.size(), kMaxMessageBytes));
+  distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   distribution.evidence = "no mixture";
 }
 
@@ -252,8 +253,7 @@ std::string Fit::warnings() const {
   std::string words;
   for (const std::string& warning : found)
     words += (words.empty() ? "" : "; ") + warning;
-  words.resize(std::min(words.size(), kMaxMessageBytes));
-  return words;
+  return cut_text(words, kMaxMessageBytes);
 }
 
 }  // namespace

@@ -50,5 +50,21 @@ TEST(Utf8, RefusesOverlongSurrogatesTruncatedAndTooLarge) {
     EXPECT_FALSE(is_utf8(text));
 }
 
+TEST(Names, ACutTextIsNeverCutInsideACharacter) {
+  const std::string text = "a\xC3\xA9\xE2\x82\xAC\xF0\x9F\xA4\x96";  // 1, 2, 3 and 4 bytes
+  const std::size_t expected[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
+  for (std::size_t most = 0; most < std::size(expected); ++most)
+    EXPECT_EQ(cut_text(text, most), text.substr(0, expected[most])) << most;
+}
+
+TEST(Names, ACutTextMayAlwaysBeSent) {
+  EXPECT_EQ(cut_text("a\x01"
+                     "b\x7F\tc\nd",
+                     99),
+            "a?b?\tc\nd");
+  EXPECT_EQ(cut_text("no UTF-8: \xFF, \xC3", 99), "no UTF-8: ?, ?");
+  EXPECT_FALSE(check_text("message", cut_text("\x80\xE2\x82\x02", 99), 99));
+}
+
 }  // namespace
 }  // namespace kinship
