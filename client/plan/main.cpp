@@ -52,8 +52,11 @@ int main(int argc, char** argv) {
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     return run(std::get<kinship::plan::PlanOptions>(options));
+  } catch (const kinship::Failure& failure) {
+    std::cerr << "kinship-plan: " << failure.what() << '\n';
+    return kinship::exit_code(failure.code());
   } catch (const std::exception& error) {
     std::cerr << "kinship-plan: " << error.what() << '\n';
-    return kinship::plan::kFailed;
+    return kinship::kFailed;
   }
 }

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 
@@ -24,7 +25,7 @@ Examples:
       a robot without a model folder; problems on standard input
 
 Exit codes: 0 every line was answered (unsolved is an answer), 1 failed or interrupted, 2 wrong usage,
-3 no such task or distribution (--guidance require), 4 no server answered (--guidance require).)";
+3 a file or folder does not exist, or no such task or distribution (--guidance require), 4 no server answered (--guidance require).)";
 
 /// What needs a second look after parsing.
 struct RawOptions {
@@ -154,7 +155,6 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) 
 
 std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,
                                                   std::ostream& out, std::ostream& err) {
-  constexpr int kWrongUsage = 2;
   PlanOptions options;
   RawOptions raw;
   CLI::App app{"kinship-plan: plans motions of one robot, guided by the experience of its fleet"};
@@ -167,7 +167,7 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
     complete(app, raw, options);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error, out, err);
-    return code == 0 ? 0 : kWrongUsage;
+    return code == 0 ? kDone : kWrongUsage;
   }
   return options;
 }

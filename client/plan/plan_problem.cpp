@@ -1,6 +1,7 @@
 #include "client/plan/plan_problem.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 #include <random>
 #include <utility>
@@ -11,7 +12,6 @@
 #include "client/planning/goal_configurations.hpp"
 #include "client/planning/planning_bounds.hpp"
 #include "client/planning/shortcut.hpp"
-#include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 
 namespace kinship::plan {
@@ -199,8 +199,8 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     planning.run(guidance, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;
-  } catch (const Failure& failure) {
-    planned.result.reason = failure.what();
+  } catch (const std::exception& exception) {  // of one problem: the others are planned
+    planned.result.reason = exception.what();
   }
   return planned;
 }

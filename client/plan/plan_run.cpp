@@ -91,7 +91,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     write_result(planned.result, streams.results);
     progress.add(planned.result);
     if (options.report && planned.attempted)
-      server.report(make_attempt(reporter, problem, planned, options.settings));
+      server.report([&] { return make_attempt(reporter, problem, planned, options.settings); });
   }
   progress.finish();
   server.finish();

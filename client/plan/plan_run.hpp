@@ -4,6 +4,7 @@
 #include <iosfwd>
 
 #include "client/plan/plan_options.hpp"
+#include "proto/types/exit_code.hpp"
 
 namespace kinship::plan {
 
@@ -14,13 +15,6 @@ struct RunStreams {
   std::ostream& messages;  ///< for people
   bool messages_on_terminal = false;
 };
-
-/// Exit codes, as every program of Kinship has them.
-inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;
-inline constexpr int kWrongUsage = 2;
-inline constexpr int kNotFound = 3;
-inline constexpr int kNoServer = 4;
 
 /// Reads the problems, fetches guidance once per placement, plans each problem and writes its
 /// result in input order, reports the attempts.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
 
 namespace kinship::plan {
 
@@ -13,6 +14,8 @@ std::vector<ProblemLine> read_problem_lines(std::istream& stream) {
   for (std::size_t number = 1; std::getline(stream, text); ++number)
     if (text.find_first_not_of(" \t\r") != std::string::npos)
       lines.push_back({number, json::problem_from_json(text)});
+  if (stream.bad())
+    throw Failure(ErrorCode::Storage, "cannot read the problems: a directory, or a disk error");
   return lines;
 }
 

@@ -16,6 +16,7 @@ struct ProblemLine {
 };
 
 /// Reads every line; a broken one is an error of its own and does not end the reading.
+/// \throws Failure(Storage) if the stream itself cannot be read.
 std::vector<ProblemLine> read_problem_lines(std::istream& stream);
 
 /// The answer to a line that holds no problem.

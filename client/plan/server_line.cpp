@@ -1,42 +1,58 @@
 #include "client/plan/server_line.hpp"
 
+#include <exception>
 #include <ostream>
 
 namespace kinship::plan {
+namespace {
+
+Result<RegisterReply> ask_to_register(link::Client& client, const RobotDescription& description) {
+  try {
+    return client.register_robot(description);
+  } catch (const std::exception& exception) {
+    return Error{ErrorCode::Internal, exception.what()};
+  }
+}
+
+}  // namespace
 
 ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
                        std::ostream& messages)
     : options_(options), description_(description), messages_(messages) {
   if (options_.guidance == GuidanceMode::None && !options_.report)
     return;
-  link::ClientOptions link;
-  link.domain = options_.domain;
-  link.outbox = options_.outbox;
-  link.timeout = options_.timeout;
-  client_ = std::make_unique<link::Client>(link);
-  registered_ = register_robot();
+  link::ClientOptions client;
+  client.domain = options_.domain;
+  client.outbox = options_.outbox;
+  client.timeout = options_.timeout;
+  try {
+    client_ = std::make_unique<link::Client>(client);
+    register_robot();
+  } catch (const std::exception& exception) {
+    trouble_ = Error{ErrorCode::Internal, exception.what()};
+    messages_ << "no line to a server: " << exception.what() << '\n';
+  }
 }
 
-bool ServerLine::register_robot() {
-  const Result<RegisterReply> reply = client_->register_robot(description_);
-  if (!reply) {
-    messages_ << "robot '" << description_.label << "' not registered: " << reply.error().message
+void ServerLine::register_robot() {
+  const Result<RegisterReply> reply = ask_to_register(*client_, description_);
+  trouble_.reset();
+  if (!reply)
+    trouble_ = reply.error();
+  else if (reply->status == RegisterStatus::Refused)
+    trouble_ = Error{ErrorCode::InvalidInput, "the server refused it: " + reply->message};
+  if (trouble_)
+    messages_ << "robot '" << description_.label << "' not registered: " << trouble_->message
               << '\n';
-    return false;
-  }
-  if (reply->status == RegisterStatus::Refused)
-    throw Failure(ErrorCode::InvalidInput,
-                  "the server refused robot '" + description_.label + "': " + reply->message);
-  return true;
 }
 
 NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
                                       const std::vector<ProblemLine>& lines) {
   if (options_.guidance == GuidanceMode::None)
     return NoGuidance::None;
-  if (!registered_) {
-    messages_ << "guidance: none, no server answered\n";
-    return NoGuidance::NoServer;
+  if (trouble_) {
+    messages_ << "no guidance: " << trouble_->message << '\n';
+    return trouble_->code == ErrorCode::Unavailable ? NoGuidance::NoServer : NoGuidance::Failed;
   }
   guidance_ = std::make_unique<GuidanceBook>(
       [this](const FetchRequest& request) { return client_->fetch(request); }, wish);
@@ -60,30 +76,42 @@ const Guidance* ServerLine::guidance(const std::optional<Eigen::Isometry3d>& T_t
   return guidance_ ? guidance_->find(T_task_base) : nullptr;
 }
 
-void ServerLine::report(const Attempt& attempt) {
+void ServerLine::report(const std::function<Attempt()>& make_attempt) {
   try {
-    client_->report(attempt);
+    if (!client_)
+      throw Failure(ErrorCode::Unavailable, "no line to a server");
+    client_->report(make_attempt());
     ++reported_;
-  } catch (const Failure& failure) {
+  } catch (const std::exception& exception) {
     if (unreportable_++ == 0)
-      messages_ << "an attempt could not be reported: " << failure.what() << '\n';
+      messages_ << "an attempt could not be reported: " << exception.what() << '\n';
   }
 }
 
 void ServerLine::finish() {
-  if (!client_ || !options_.report)
+  if (!options_.report)
     return;
-  if (!registered_)
-    registered_ = register_robot();
-  const auto deadline = registered_ ? options_.timeout : std::chrono::milliseconds(0);
-  const link::Client::OutboxState state = client_->flush(deadline);
-  messages_ << "reports: " << reported_ << " attempts; outbox: " << state.accepted
-            << " acknowledged, " << state.pending << " pending, " << state.refused << " refused";
+  if (client_ && trouble_)
+    register_robot();
+  messages_ << "reports: " << reported_ << " attempts";
+  try {
+    if (client_)
+      flush();
+  } catch (const std::exception& exception) {
+    messages_ << "; the outbox could not be emptied: " << exception.what();
+  }
   if (unreportable_ > 0)
     messages_ << "; " << unreportable_ << " attempts could not be kept";
+  messages_ << std::endl;
+}
+
+void ServerLine::flush() {
+  const auto deadline = trouble_ ? std::chrono::milliseconds(0) : options_.timeout;
+  const link::Client::OutboxState state = client_->flush(deadline);
+  messages_ << "; outbox: " << state.accepted << " acknowledged, " << state.pending << " pending, "
+            << state.refused << " refused";
   if (state.pending > 0)
     messages_ << " (pending reports are sent when the outbox is next used)";
-  messages_ << std::endl;
 }
 
 }  // namespace kinship::plan

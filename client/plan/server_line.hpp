@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "client/link/client.hpp"
@@ -17,7 +19,8 @@ namespace kinship::plan {
 /// works: there is no guidance, and reports stay in the outbox.
 class ServerLine {
  public:
-  /// Registers the robot if the options need the server.
+  /// Registers the robot if the options need the server. A line that cannot be had, or a refused
+  /// registration, is said and means no guidance; it never throws.
   /// \param messages  for people; borrowed.
   ServerLine(const PlanOptions& options, const RobotDescription& description,
              std::ostream& messages);
@@ -29,21 +32,23 @@ class ServerLine {
   /// Never waits. \return null: plan uniformly.
   const Guidance* guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const;
 
-  /// Puts the attempt into the outbox; says so if it cannot be kept.
-  void report(const Attempt& attempt);
+  /// Puts the attempt into the outbox; says so if it cannot be made or kept.
+  void report(const std::function<Attempt()>& make_attempt);
 
   /// Waits, at most for the timeout, for receipts of what was reported, and says how many came.
+  /// Never throws: the run is answered.
   void finish();
 
  private:
-  bool register_robot();
+  void register_robot();
+  void flush();
 
   const PlanOptions options_;
   const RobotDescription description_;
   std::ostream& messages_;
-  std::unique_ptr<link::Client> client_;  // null: no server needed
+  std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had
   std::unique_ptr<GuidanceBook> guidance_;
-  bool registered_ = false;
+  std::optional<Error> trouble_;  // why the robot is not registered
   std::size_t reported_ = 0;
   std::size_t unreportable_ = 0;
 };

@@ -132,8 +132,29 @@ TEST_F(PlanRunWithoutServer, WantedGuidanceIsDoneWithoutAndReportsWait) {
   ASSERT_EQ(results_.size(), 2U);
   EXPECT_TRUE(results_[1].solved);
   EXPECT_FALSE(results_[1].distribution_id);
-  EXPECT_NE(messages_.str().find("guidance: none"), std::string::npos);
+  EXPECT_NE(messages_.str().find("no guidance: "), std::string::npos);
   EXPECT_NE(messages_.str().find("2 pending"), std::string::npos) << messages_.str();
+}
+
+TEST_F(PlanRunWithoutServer, AnOutboxThatCannotBeMadeDoesNotStopPlanning) {
+  std::ofstream(folder_ / "file") << "not a folder";
+  options_.outbox = folder_ / "file" / "outbox";
+  options_.guidance = GuidanceMode::Auto;
+  options_.report = true;
+  EXPECT_EQ(run(line("a") + line("b")), kDone);
+  ASSERT_EQ(results_.size(), 2U);
+  EXPECT_TRUE(results_[1].solved);
+  EXPECT_NE(messages_.str().find("no guidance: "), std::string::npos) << messages_.str();
+  EXPECT_NE(messages_.str().find("2 attempts could not be kept"), std::string::npos)
+      << messages_.str();
+}
+
+TEST_F(PlanRunWithoutServer, AnOutboxThatCannotBeMadeFailsRequiredGuidance) {
+  std::ofstream(folder_ / "file") << "not a folder";
+  options_.outbox = folder_ / "file" / "outbox";
+  options_.guidance = GuidanceMode::Require;
+  EXPECT_EQ(run(line("a")), kFailed);
+  EXPECT_TRUE(results_.empty());
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 namespace kinship::plan {
@@ -26,6 +28,11 @@ TEST(ProblemLines, TheAnswerToABrokenLineNamesItAndSaysWhy) {
       broken_line_result(7, {ErrorCode::InvalidInput, "problem.start: is empty"});
   EXPECT_FALSE(result.solved);
   EXPECT_EQ(result.reason, "line 7: problem.start: is empty");
+}
+
+TEST(ProblemLines, WhatCannotBeReadIsNotAnEmptyFile) {
+  std::ifstream directory(std::filesystem::temp_directory_path());
+  EXPECT_THROW(read_problem_lines(directory), Failure);
 }
 
 }  // namespace
