@@ -4,6 +4,7 @@
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/writer.hpp"
 
 namespace kinship::store {
 namespace {
@@ -35,13 +36,15 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   configure_writer(*database);
   check_schema(*database, file, embedded_migrations());
-  check_newest_paths(*database, kNewestRowsChecked);
   Transaction probe(*database, Transaction::Kind::Write);
   Statement(database->connection(),
             "INSERT INTO setting VALUES ('reopened_ms', ?) "
             "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
       .bind(1, std::to_string(now_ms()))
       .run();
+  Batch batch(*database);
+  set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
+  batch.raise_generations();
   probe.commit();
   return database;
 }

@@ -13,7 +13,8 @@ namespace kinship::store {
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file);
 
 /// Opens the writing connection again after a failure: the file must be there, with the newest
-/// schema, its newest rows readable and undamaged, and must accept a commit.
+/// schema, its newest paths readable, and must accept a commit, which also sets aside those of the
+/// newest paths that are damaged: damage must not keep the store closed to all others.
 /// \throws Failure(Storage) if not.
 std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file);
 

@@ -58,6 +58,24 @@ void take_row(const Statement& row, PathsRead& read) {
     read.damaged.push_back(row.column_integer(0));
 }
 
+/// \return its robot and task, or nothing if it was set aside already.
+std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
+  ExperienceKey key;
+  {
+    const auto query = database.cached("SELECT task_id, robot_id FROM path WHERE id = ?");
+    if (!query->bind(1, id).step())
+      return std::nullopt;
+    key = {query->column_integer(0), query->column_integer(1)};
+  }
+  database.cached("UPDATE path SET damaged = 1 WHERE id = ? AND damaged = 0")->bind(1, id).run();
+  if (database.changed_rows() == 0)
+    return std::nullopt;
+  database.cached("UPDATE experience SET paths = paths - 1 WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+  return key;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& key,
@@ -114,31 +132,21 @@ PathsRead select_path(Database& database, std::int64_t id) {
   return read;
 }
 
-std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
-  ExperienceKey key;
-  {
-    const auto query = database.cached("SELECT task_id, robot_id FROM path WHERE id = ?");
-    if (!query->bind(1, id).step())
-      return std::nullopt;
-    key = {query->column_integer(0), query->column_integer(1)};
-  }
-  database.cached("UPDATE path SET damaged = 1 WHERE id = ? AND damaged = 0")->bind(1, id).run();
-  if (database.changed_rows() == 0)
-    return std::nullopt;
-  database.cached("UPDATE experience SET paths = paths - 1 WHERE task_id = ? AND robot_id = ?")
-      ->bind_all(key.task_id, key.robot_id)
-      .run();
-  return key;
+void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
+  for (const std::int64_t path : paths)
+    if (const auto key = mark_damaged(batch.database(), path))
+      batch.paths_changed(key->task_id, key->robot_id);
 }
 
-void check_newest_paths(Database& database, std::int64_t count) {
+std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {
   const auto query =
       database.cached(std::string(kColumns) + "WHERE damaged = 0 ORDER BY id DESC LIMIT ?");
   query->bind(1, count);
+  std::vector<std::int64_t> damaged;
   while (query->step())
     if (!read_row(*query))
-      throw Failure(ErrorCode::Storage,
-                    "path " + std::to_string(query->column_integer(0)) + " is damaged");
+      damaged.push_back(query->column_integer(0));
+  return damaged;
 }
 
 }  // namespace kinship::store

@@ -7,6 +7,7 @@
 
 #include "server/store/sqlite/database.hpp"
 #include "server/store/sqlite/prepared_attempt.hpp"
+#include "server/store/sqlite/writer.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::store {
@@ -39,12 +40,11 @@ PathsRead select_paths(Database& database, const ExperienceKey& key, std::int64_
 /// The path with this id: none if it was set aside before.
 PathsRead select_path(Database& database, std::int64_t id);
 
-/// Sets a path aside: out of the counts and of every reading. The generation is the caller's part.
-/// \return its robot and task, or nothing if it was set aside already.
-std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id);
+/// Sets paths aside: out of the counts and of every reading, and the generation is raised. One that
+/// is aside already stays so.
+void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
 
-/// Reads the newest paths of all.
-/// \throws Failure(Storage) if one is damaged that was not known to be.
-void check_newest_paths(Database& database, std::int64_t count);
+/// Those of the newest `count` paths of all that are damaged and not set aside yet.
+std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);
 
 }  // namespace kinship::store

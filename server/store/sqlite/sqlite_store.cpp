@@ -52,11 +52,7 @@ class DamageItem : public WriteItem {
  public:
   explicit DamageItem(std::vector<std::int64_t> paths) : paths_(std::move(paths)) {}
 
-  void apply(Batch& batch) override {
-    for (const std::int64_t path : paths_)
-      if (const auto key = mark_damaged(batch.database(), path))
-        batch.paths_changed(key->task_id, key->robot_id);
-  }
+  void apply(Batch& batch) override { set_aside(batch, paths_); }
   void finish(const Error* /*error*/) override {}
 
  private:

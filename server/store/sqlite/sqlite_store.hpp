@@ -12,7 +12,7 @@ namespace kinship::store {
 struct SqliteOptions {
   /// Reports that come while more than this waits to be written are answered TryAgain.
   std::size_t max_queued_bytes = std::size_t{64} << 20U;
-  std::chrono::milliseconds retry_after{1000};  ///< between attempts to reopen a failed database
+  std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
 };
 
 /// Opens (or makes) a store in an SQLite file: takes the lock file, migrates an older schema,

@@ -81,7 +81,7 @@ std::string Writer::trouble() const {
 void Writer::run() {
   while (true) {
     Items items = take_batch();
-    if (!database_ && !recover()) {
+    if (!database_ && !recover_if_due()) {
       const Error error{ErrorCode::Storage, trouble()};
       finish_all(items, &error);
       const std::lock_guard lock(mutex_);
@@ -100,14 +100,14 @@ void Writer::run() {
   close();
 }
 
-/// Empty if the writer shall stop or, after a failure, try to reopen.
+/// Empty if the writer shall stop or, after a failure, a try to reopen is due.
 Writer::Items Writer::take_batch() {
   std::unique_lock lock(mutex_);
   const auto something_to_do = [this] { return stopping_ || !queue_.empty(); };
   if (database_)
     wake_.wait(lock, something_to_do);
   else
-    wake_.wait_for(lock, options_.retry_after, something_to_do);
+    wake_.wait_until(lock, next_try_, something_to_do);
   Items items;
   std::size_t weight = 0;
   while (!queue_.empty()) {
@@ -136,7 +136,7 @@ void Writer::write(Items& items) {
     fail(failure);
     const Error error = failure.error();
     finish_all(items, &error);
-    recover();
+    recover_if_due();
     return;
   }
   for (std::size_t i = 0; i < items.size(); ++i)
@@ -154,13 +154,18 @@ void Writer::fail(const Failure& failure) {
   trouble_ = failure.what();
 }
 
-bool Writer::recover() {
+/// A try closes all readers and reads the file, so a stream of items must not bring one each.
+bool Writer::recover_if_due() {
+  if (std::chrono::steady_clock::now() < next_try_)
+    return false;
   try {
     database_ = reopen_();
   } catch (const Failure& failure) {
     fail(failure);
-    return false;
   }
+  next_try_ = std::chrono::steady_clock::now() + options_.retry_after;
+  if (!database_)
+    return false;
   const std::lock_guard lock(mutex_);
   trouble_.clear();
   return true;

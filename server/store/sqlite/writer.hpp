@@ -55,15 +55,15 @@ class WriteItem {
 
 struct WriterOptions {
   std::size_t batch_cap = 256;  ///< weight of one transaction, unless one item exceeds it alone
-  std::chrono::milliseconds retry_after{1000};  ///< between attempts to reopen a failed database
+  std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
 };
 
 /// The thread that owns the only writing connection. It takes whatever is queued as one
 /// transaction and finishes the items after the commit is durable; nobody waits for a timer.
 ///
 /// Fail-stop: on an I/O error, a full disk or damage it undoes the batch, finishes every item with
-/// the error, closes the connection and opens it again with checks; until that succeeds items are
-/// answered with the error.
+/// the error, closes the connection and opens it again with checks, but never sooner than
+/// `retry_after` after the last try; until a try succeeds items are answered with the error.
 class Writer {
  public:
   /// \param database  the connection to begin with.
@@ -91,12 +91,14 @@ class Writer {
   void write(Items& items);
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
-  bool recover();
+  bool recover_if_due();
   void close();
 
   const Reopen reopen_;
   const WriterOptions options_;
-  std::unique_ptr<Database> database_;  // the writer's thread only; empty after a failure
+  // The writer's thread only:
+  std::unique_ptr<Database> database_;                // empty after a failure
+  std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <future>
 
+#include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/database.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
 
@@ -75,6 +76,17 @@ TEST_F(SqliteStoreTest, SetsADamagedPathAside) {
   EXPECT_NE(status.message.find("1 damaged path"), std::string::npos) << status.message;
   EXPECT_EQ(store_->generation(robot_.digest, "shelf"), 2U);  // a fit with it is stale
   EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.size(), 2U);
+}
+
+TEST_F(SqliteStoreTest, ReopeningAfterAFailureSetsADamagedPathAsideAndGoesOn) {
+  open();
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  damage(kFlipByte);
+  EXPECT_NO_THROW(reopen_writer(file_));
+  open();
+  EXPECT_EQ(store_->status().paths, 2U);
+  EXPECT_NE(store_->status().message.find("1 damaged path"), std::string::npos);
+  EXPECT_EQ(store_->generation(robot_.digest, "shelf"), 2U);  // a fit with it is stale
 }
 
 TEST_F(SqliteStoreTest, AnAttemptOfADamagedPathIsShownWithoutIt) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 #include <optional>
 
@@ -78,11 +79,12 @@ class WriterTest : public testing::Test {
     return database;
   }
 
-  std::unique_ptr<Writer> writer(std::unique_ptr<Database> first, Writer::Reopen reopen = {}) {
+  std::unique_ptr<Writer> writer(std::unique_ptr<Database> first, Writer::Reopen reopen = {},
+                                 std::chrono::milliseconds retry_after = 10ms) {
     if (!reopen)
       reopen = [this] { return connect(); };
     return std::make_unique<Writer>(std::move(first), std::move(reopen),
-                                    WriterOptions{.batch_cap = 10, .retry_after = 10ms});
+                                    WriterOptions{.batch_cap = 10, .retry_after = retry_after});
   }
 
   static std::future<Written> submit(Writer& writer, std::int64_t value, std::size_t weight = 1) {
@@ -179,6 +181,31 @@ TEST_F(WriterTest, StaysInTroubleUntilAReopenSucceeds) {
   ASSERT_EQ(recovered.get_future().wait_for(kTooLong), std::future_status::ready);
   EXPECT_EQ(get(submit(*w, 2)).error, "");
   EXPECT_EQ(w->trouble(), "");
+}
+
+TEST_F(WriterTest, TriesToReopenOncePerRetryTimeHoweverManyItemsCome) {
+  std::atomic<int> tries = 0;
+  const auto reopen = [&]() -> std::unique_ptr<Database> {
+    ++tries;
+    throw Failure(ErrorCode::Storage, "still broken");
+  };
+  const auto w = writer(connect_to_small_disk(0), reopen, 1h);
+  EXPECT_NE(get(submit(*w, 0)).error, "");
+  for (std::int64_t i = 1; i <= 20; ++i)
+    EXPECT_EQ(get(submit(*w, i)).error, "still broken");
+  EXPECT_EQ(tries, 1);
+}
+
+TEST_F(WriterTest, WaitsTheRetryTimeAlsoWhenItFailsRightAfterAReopen) {
+  std::atomic<int> tries = 0;
+  const auto reopen = [&] {
+    ++tries;
+    return connect_to_small_disk(0);  // opens, but takes nothing
+  };
+  const auto w = writer(connect_to_small_disk(0), reopen, 1h);
+  for (std::int64_t i = 0; i < 20; ++i)
+    EXPECT_NE(get(submit(*w, i)).error.find("full"), std::string::npos);
+  EXPECT_EQ(tries, 1);
 }
 
 TEST_F(WriterTest, AnswersItsItemsAlsoWhenItEndsInTrouble) {
