@@ -286,6 +286,9 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   } catch (const Failure& failure) {
     err << "kinship: " << failure.what() << '\n';
     return exit_code(failure.code());
+  } catch (const std::exception& error) {
+    err << "kinship: " << error.what() << '\n';
+    return kFailed;
   }
 }
 

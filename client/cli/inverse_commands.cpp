@@ -187,6 +187,8 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
                   err);
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos)
+      continue;
     const auto T_base_tip = json::pose_from_json(line);
     if (!T_base_tip)
       return refuse(

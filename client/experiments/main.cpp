@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "client/experiments/commands.hpp"
+#include "proto/types/exit_code.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
 
@@ -12,10 +13,6 @@ namespace {
 
 using namespace kinship;               // NOLINT: a program's main file
 using namespace kinship::experiments;  // NOLINT
-
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-constexpr int kNotFound = 3;
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -100,7 +97,7 @@ int run(int argc, char** argv) {
     if (!line.placement.empty())
       line.shelf.T_task_base = read_placement(line.placement);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongUsage;
+    return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
   if (app.got_subcommand("shelf"))
     write_shelf(line);
@@ -108,7 +105,7 @@ int run(int argc, char** argv) {
     write_placement(line.placed_model, std::cout);
   else
     write_comparison(line.compare, std::cout);
-  return 0;
+  return kDone;
 }
 
 }  // namespace
@@ -118,7 +115,7 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const kinship::Failure& failure) {
     std::cerr << "kinship-experiment: " << failure.what() << '\n';
-    return failure.code() == kinship::ErrorCode::NotFound ? kNotFound : kFailed;
+    return exit_code(failure.code());
   } catch (const std::exception& error) {
     std::cerr << "kinship-experiment: " << error.what() << '\n';
     return kFailed;

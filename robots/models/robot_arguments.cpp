@@ -74,7 +74,8 @@ void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& d
 
 /// \throws Failure with what is wrong.
 RobotDescription put_together(const RobotArguments& arguments) {
-  const bool is_folder = std::filesystem::is_directory(arguments.source);
+  std::error_code unreadable;  // is for read_urdf_file to tell
+  const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   RobotDescription description = is_folder ? read_model_folder(arguments.source).value_or_throw()
                                            : read_urdf_file(arguments.source);
   if (!is_folder && (arguments.base_link.empty() || arguments.tip_link.empty()))

@@ -10,11 +10,11 @@ int main(int argc, char** argv) {
   try {
     const std::variant<ServerOptions, int> options =
         parse_arguments(argc, argv, std::cout, std::cerr);
-    if (const int* const exit_code = std::get_if<int>(&options))
-      return *exit_code;
+    if (const int* const code = std::get_if<int>(&options))
+      return *code;
     return serve(std::get<ServerOptions>(options), std::cout);
   } catch (const std::exception& exception) {
     std::cerr << "kinshipd: " << exception.what() << '\n';
-    return kFailed;
+    return kinship::kFailed;
   }
 }

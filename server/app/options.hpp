@@ -8,6 +8,8 @@
 #include <string>
 #include <variant>
 
+#include "proto/types/exit_code.hpp"
+
 namespace kinship::app {
 
 /// What kinshipd was asked to do.
@@ -18,10 +20,6 @@ struct ServerOptions {
   std::size_t workers = 1;        ///< threads that transfer and fit
   std::string log_level = "info";
 };
-
-inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;
-inline constexpr int kWrongUsage = 2;
 
 /// Options from the command line; what is not there from the file of --config; the domain then
 /// from the environment (KINSHIP_DOMAIN).

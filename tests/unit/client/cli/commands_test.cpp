@@ -100,6 +100,12 @@ TEST(RobotsCheck, NamesAMissingFile) {
   EXPECT_NE(answer.err.find("/nowhere/arm.urdf"), std::string::npos) << answer.err;
 }
 
+TEST(RobotsCheck, AFileNameTooLongIsAnAnswer) {
+  const Answer answer = run_command({"robots", "check", std::string(300, 'x')});
+  EXPECT_EQ(answer.code, kNotFound);
+  EXPECT_NE(answer.err.find("xxx"), std::string::npos);
+}
+
 TEST(RobotsCheck, WantsBaseAndTipForAUrdfFile) {
   const Answer answer = run_command({"robots", "check", kModels + "ur10e/robot.urdf"});
   EXPECT_EQ(answer.code, kWrongUsage);
@@ -126,6 +132,14 @@ TEST(RobotsIk, AnUnreachablePoseIsAnAnswer) {
       run_command({"robots", "ik", kModels + "panda", "--pose", "5 0 0 0 0 0 1", "--json"});
   EXPECT_EQ(answer.code, kDone) << answer.err;
   EXPECT_NE(answer.out.find("\"reason\":\"out_of_reach\""), std::string::npos) << answer.out;
+}
+
+TEST(RobotsIk, SkipsBlankLinesOfAFile) {
+  const std::string file = testing::TempDir() + "kinship_blank_poses.jsonl";
+  std::ofstream(file) << "\n[5, 0, 0, 0, 0, 0, 1]\n \t\r\n[5, 0, 0, 0, 0, 0, 1]\n\n";
+  const Answer answer = run_command({"robots", "ik", kModels + "panda", "--poses", file, "--json"});
+  EXPECT_EQ(answer.code, kDone) << answer.err;
+  EXPECT_EQ(std::count(answer.out.begin(), answer.out.end(), '\n'), 2) << answer.out;
 }
 
 TEST(RobotsIk, AnswersAFileLineByLineAndNamesABrokenLine) {
