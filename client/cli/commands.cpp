@@ -60,7 +60,8 @@ using Show = int (*)(link::Client&, const std::string&, bool, std::ostream&, std
 CLI::App* add_list(CLI::App& group, Session& session, ListOptions& options, List list) {
   CLI::App* command = add_command(group, "list", "List " + group.get_name(),
                                   "kinship " + group.get_name() + " list --json");
-  command->add_option("--limit", options.limit, "Rows at most (default: all)");
+  command->add_option("--limit", options.limit, "Rows at most (default: all)")
+      ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
   command->callback([&session, &options, list] {
     options.json = session.json;
@@ -142,7 +143,8 @@ void add_check(CLI::App& group, Session& session, CheckOptions& options) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--min-distance", options.min_distance, "Between solutions (default 0.2)")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--seed", options.seed);
+  command->add_option("--seed", options.seed, "Of the poses and solutions (default 0)")
+      ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
   command->callback([&session, &options] {
     options.json = session.json;
@@ -165,7 +167,8 @@ void add_inverse(CLI::App& group, Session& session, InverseCommandOptions& optio
       ->check(CLI::Range(0, 1000));
   command->add_option("--min-distance", options.min_distance, "Between solutions (default 0.2)")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--seed", options.seed, "Equal seed, equal solutions (default 0)");
+  command->add_option("--seed", options.seed, "Equal seed, equal solutions (default 0)")
+      ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
   command->callback([&session, &options] {
     options.json = session.json;
@@ -201,11 +204,14 @@ void add_fetch(CLI::App& group, Session& session, CommandOptions& options) {
                       "Robot's base in the task frame, \"x y z qx qy qz qw\"");
   command->add_option("--profile", fetch.profile, "default or paper");
   command->add_option("--wait", options.wait_s, "Seconds until it must be there (default 30)")
-      ->check(CLI::Range(0.0, 86'400.0));
+      ->check(CLI::Range(0.0, 3600.0));
   CLI::Option* samples = command->add_option("--samples", fetch.samples,
                                              "Draw so many configurations and print them as CSV");
+  samples->check(CLI::Range(1.0, 1e9));
   command->add_flag("--csv")->description("The format of --samples")->needs(samples);
-  command->add_option("--seed", fetch.seed, "Of the samples (default 0)")->needs(samples);
+  command->add_option("--seed", fetch.seed, "Of the samples (default 0)")
+      ->needs(samples)
+      ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
   command->callback([&session, &options] {
     options.fetch.wait = milliseconds(options.wait_s);
@@ -272,6 +278,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       "Example:\n  kinship --domain 42 paths list --task box_to_shelf");
   app.require_subcommand(1);
   app.fallthrough();
+  app.set_version_flag("--version", std::string("kinship ") + KINSHIP_VERSION);
   app.add_option("--domain", session.domain, "DDS domain (default 0)")
       ->envname("KINSHIP_DOMAIN")
       ->check(CLI::Range(0, 230));
@@ -280,7 +287,20 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_commands(app, session, options);
   try {
     app.parse(argc, argv);
-    return session.command();
+    const int code = session.command();
+    if (!out.flush()) {
+      err << "kinship: cannot write to standard output\n";
+      return kFailed;
+    }
+    return code;
+  } catch (const CLI::RequiredError& error) {
+    const std::vector<std::string> unknown = app.remaining(true);
+    if (unknown.empty())
+      app.exit(error, out, err);
+    else
+      err << "kinship: unknown command or argument '" << unknown.front()
+          << "' (see: kinship --help)\n";
+    return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
   } catch (const Failure& failure) {

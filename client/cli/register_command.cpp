@@ -23,11 +23,14 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     err << "robots register: refused: " << reply->message << '\n';
     return kFailed;
   }
+  if (!reply->message.empty())
+    err << "robots register: " << reply->message << "; the label '" << description->label
+        << "' is not kept\n";
   if (json)
     out << json::to_json(*reply, description->label) << '\n';
   else
-    out << description->label << " is robot " << reply->robot.short_hex() << ": " << reply->dof
-        << " joints, " << reply->solver
+    out << (reply->message.empty() ? description->label + " is " : "") << "robot "
+        << reply->robot.short_hex() << ": " << reply->dof << " joints, " << reply->solver
         << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
   return kDone;
 }

@@ -5,6 +5,7 @@
 #include "proto/codec/distribution_codec.hpp"
 #include "proto/codec/reader.hpp"
 #include "proto/codec/writer.hpp"
+#include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
 namespace kinship::codec {
@@ -34,7 +35,8 @@ std::optional<Error> check(const FetchRequest& request) {
   rules.name(check_task(request.task))
       .not_empty("profile", request.profile)
       .text("profile", request.profile, kMaxProfileBytes)
-      .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0, kMaxMilliseconds);
+      .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0,
+               static_cast<double>(kMaxFetchDeadline_ms));
   if (request.T_task_base)
     rules.pose("T_task_base", *request.T_task_base);
   return rules.broken();

@@ -34,6 +34,14 @@ Qos request_qos() {
   return qos;
 }
 
+Qos request_reader_qos() {
+  // Bounds what waits for the server; a request that is pushed out is sent again.
+  constexpr std::int32_t kWaitingRequests = 256;
+  Qos qos = reliable_volatile_qos();
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWaitingRequests);
+  return qos;
+}
+
 Qos reply_qos() {
   Qos qos = reliable_volatile_qos();
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kReplyDepth);

@@ -15,8 +15,11 @@ struct DeleteQos {
 };
 using Qos = std::unique_ptr<dds_qos, DeleteQos>;
 
-/// Reliable, keep all, volatile; a writer blocks for at most 100 ms.
+/// Of a client's writer: reliable, keep all, volatile; blocks for at most 100 ms.
 Qos request_qos();
+
+/// Of the server's reader: reliable, keep last 256, volatile.
+Qos request_reader_qos();
 
 /// Reliable, keep last 64, volatile, without autodispose: a writer never blocks, and a lost reply
 /// is asked for again.

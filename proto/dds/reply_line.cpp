@@ -12,9 +12,9 @@ ReplyLine::ReplyLine(const Participant& participant, const Topics& topics)
       reply_topic_(dds_create_topic(participant.get(), &topics.reply, topics.reply_topic().c_str(),
                                     nullptr, nullptr),
                    "topic " + topics.reply_topic()),
-      reader_(
-          dds_create_reader(participant.get(), request_topic_.get(), request_qos().get(), nullptr),
-          "reader " + topics.request_topic()) {
+      reader_(dds_create_reader(participant.get(), request_topic_.get(), request_reader_qos().get(),
+                                nullptr),
+              "reader " + topics.request_topic()) {
   for (unsigned number = 0; number < kReplyPartitions; ++number) {
     const Qos partition = partition_qos(reply_partition(number));
     publishers_.emplace_back(dds_create_publisher(participant.get(), partition.get(), nullptr),

@@ -39,11 +39,11 @@ class Requester<Conversation>::Implementation {
  private:
   Error nobody_answered(Clock::time_point start) const {
     const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
-    return {ErrorCode::Unavailable, std::string(Conversation::kName) + ": " +
-                                        (line_.has_server() ? "the server" : "no server") +
-                                        " answered within " + std::to_string(waited.count()) +
-                                        " ms (domain " + std::to_string(options_.domain) + ", " +
-                                        options_.server + ")"};
+    return {ErrorCode::Unavailable,
+            std::string(Conversation::kName) + ": " +
+                (line_.has_server() ? "the server did not answer" : "no server answered") +
+                " within " + std::to_string(waited.count()) + " ms (domain " +
+                std::to_string(options_.domain) + ", " + options_.server + ")"};
   }
 
   ParticipantOptions options_;

@@ -15,6 +15,7 @@ constexpr std::size_t kMaxAttached = 64;
 constexpr double kMaxTimeLimit = 86400;  // s
 
 void read_goal(const Reader& reader, Problem& problem) {
+  reader.allow_only({"configurations", "pose"});
   const auto configurations = reader.find("configurations");
   const auto pose = reader.find("pose");
   if (configurations.has_value() == pose.has_value())
@@ -32,6 +33,8 @@ void read_goal(const Reader& reader, Problem& problem) {
 }
 
 Problem read_problem(const Reader& reader) {
+  reader.allow_only({"name", "T_task_base", "start", "goal", "scene", "attached",
+                     "allowed_collisions", "constraint", "time_limit_s", "seed"});
   Problem problem;
   problem.name = reader.at("name").text(kMaxTaskBytes);
   if (const auto placement = reader.find("T_task_base"))

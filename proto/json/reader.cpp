@@ -1,10 +1,12 @@
 #include "proto/json/reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "proto/types/limits.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::json {
@@ -99,6 +101,14 @@ std::optional<Reader> Reader::find(std::string_view key) const {
   if (member == value_->end() || member->is_null())
     return std::nullopt;
   return at(key);
+}
+
+void Reader::allow_only(std::initializer_list<std::string_view> members) const {
+  for (const std::string& key : keys(kMaxDocumentValues))
+    if (std::find(members.begin(), members.end(), key) == members.end())
+      throw Failure(ErrorCode::InvalidInput, (name_.empty() ? "" : name_ + ": ") +
+                                                 "has an unknown member '" +
+                                                 key.substr(0, kMaxLabelBytes) + "'");
 }
 
 std::vector<std::string> Reader::keys(std::size_t max_count) const {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -36,7 +37,11 @@ class Reader {
   Reader at(std::string_view key) const;                       ///< a required member of an object
   std::optional<Reader> find(std::string_view key) const;      ///< empty if missing or null
   std::vector<std::string> keys(std::size_t max_count) const;  ///< of an object
-  std::vector<Reader> elements(std::size_t max_count) const;   ///< of an array
+
+  /// Refuses an object with a member that is not listed: where a misspelt one would be dropped.
+  void allow_only(std::initializer_list<std::string_view> members) const;
+
+  std::vector<Reader> elements(std::size_t max_count) const;  ///< of an array
 
   bool boolean() const;
   double number(double lowest = std::numeric_limits<double>::lowest(),

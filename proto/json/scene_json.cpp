@@ -133,6 +133,7 @@ OrderedJson scene_object(const Scene& scene) {
 }
 
 Scene read_scene(const Reader& reader) {
+  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes"});
   Scene scene;
   read_objects(reader, "boxes", scene, [](const Reader& box) {
     return SceneObject{"", BoxShape{read_size(box.at("size"))}, box.at("pose").pose()};

@@ -7,6 +7,19 @@
 
 namespace kinship {
 
+namespace {
+
+/// Whether the first coordinate that is not about zero is negative.
+bool points_backward(const Eigen::Vector3d& axis) {
+  constexpr double kAboutZero = 1e-3;
+  for (const double coordinate : axis)
+    if (std::abs(coordinate) > kAboutZero)
+      return coordinate < 0;
+  return false;
+}
+
+}  // namespace
+
 PoseArray to_pose_array(const Eigen::Isometry3d& T_a_b) {
   const Eigen::Vector3d p = T_a_b.translation();
   Eigen::Quaterniond q(T_a_b.linear());
@@ -46,7 +59,11 @@ Eigen::Isometry3d snapped(const Eigen::Isometry3d& T_a_b) {
     return Eigen::Quaterniond(pose[6], pose[3], pose[4], pose[5]);
   }();
   const Eigen::AngleAxisd rotation(q);
-  const Eigen::Vector3d vector = (rotation.angle() * rotation.axis()).unaryExpr(snap);
+  Eigen::Vector3d axis = rotation.axis();
+  // Half a turn about an axis is half a turn about its opposite: near it, one of both is chosen.
+  if (rotation.angle() > EIGEN_PI - 0.5 * kCell && points_backward(axis))
+    axis = -axis;
+  const Eigen::Vector3d vector = (rotation.angle() * axis).unaryExpr(snap);
   const double angle = vector.norm();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   if (angle > 0)

@@ -48,6 +48,20 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"--domain", "300", "status"}).code, kWrongUsage);
 }
 
+TEST(Commands, NamesWhatItDoesNotKnow) {
+  const Answer answer = run_command({"robots", "dance"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("'dance'"), std::string::npos) << answer.err;
+}
+
+TEST(Commands, RefusesNegativeCounts) {
+  EXPECT_EQ(run_command({"paths", "list", "--limit", "-1"}).code, kWrongUsage);
+  EXPECT_EQ(run_command(
+                {"distributions", "fetch", "--task", "pick", "--robot", "panda", "--samples", "-3"})
+                .code,
+            kWrongUsage);
+}
+
 TEST(Commands, WithoutAServerIsCodeFour) {
   const Answer answer = run_command({"--domain", "198", "--timeout", "0.3", "status"});
   EXPECT_EQ(answer.code, kNoServer);

@@ -133,5 +133,17 @@ TEST(ProblemJson, ChecksOutsidePlanningMayBeMissingInAResult) {
   EXPECT_EQ(back->shortcut_checks, 0U);
 }
 
+TEST(ProblemJson, AMisspeltMemberIsNotDropped) {
+  const auto refused = problem_from_json(
+      R"({"name": "a", "start": [0], "goal": {"configurations": [[1]]}, "scene": {"boxs": []}})");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "scene: has an unknown member 'boxs'");
+  EXPECT_EQ(problem_from_json(
+                R"({"name": "a", "start": [0], "goal": {"configurations": [[1]]}, "atached": []})")
+                .error()
+                .message,
+            "has an unknown member 'atached'");
+}
+
 }  // namespace
 }  // namespace kinship::json

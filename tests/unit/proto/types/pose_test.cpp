@@ -50,5 +50,17 @@ TEST(Pose, SnappedMovesLessThanACellAndIsIdempotent) {
   }
 }
 
+TEST(Pose, SnappedKnowsAHalfTurnFromBothSides) {
+  std::mt19937_64 generator(kSeed);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d axis = random_pose(generator).linear().col(0);
+    Eigen::Isometry3d below = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d above = Eigen::Isometry3d::Identity();
+    below.linear() = Eigen::AngleAxisd(EIGEN_PI - 1e-9, axis).toRotationMatrix();
+    above.linear() = Eigen::AngleAxisd(EIGEN_PI + 1e-9, axis).toRotationMatrix();
+    EXPECT_TRUE(snapped(below).isApprox(snapped(above), 1e-9)) << axis.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace kinship
