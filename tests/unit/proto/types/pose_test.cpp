@@ -10,6 +10,7 @@ namespace kinship {
 namespace {
 
 constexpr std::uint64_t kSeed = 20;
+constexpr double kPi = 3.14159265358979323846;
 
 Eigen::Isometry3d random_pose(std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
@@ -56,8 +57,8 @@ TEST(Pose, SnappedKnowsAHalfTurnFromBothSides) {
     const Eigen::Vector3d axis = random_pose(generator).linear().col(0);
     Eigen::Isometry3d below = Eigen::Isometry3d::Identity();
     Eigen::Isometry3d above = Eigen::Isometry3d::Identity();
-    below.linear() = Eigen::AngleAxisd(EIGEN_PI - 1e-9, axis).toRotationMatrix();
-    above.linear() = Eigen::AngleAxisd(EIGEN_PI + 1e-9, axis).toRotationMatrix();
+    below.linear() = Eigen::AngleAxisd(kPi - 1e-9, axis).toRotationMatrix();
+    above.linear() = Eigen::AngleAxisd(kPi + 1e-9, axis).toRotationMatrix();
     EXPECT_TRUE(snapped(below).isApprox(snapped(above), 1e-9)) << axis.transpose();
   }
 }
