@@ -114,5 +114,16 @@ TEST(ReportCodec, ReceiptsComeBack) {
   EXPECT_EQ(read.receipts[1].message, "robot 'x': unknown");
 }
 
+TEST(ReportCodec, AnOddMessageHoldsNoReceiptBack) {
+  const ReportReply written{Uuid::random(),
+                            {{Uuid::random(), ReceiptStatus::Refused, "joint 'j\x01'"},
+                             {Uuid::random(), ReceiptStatus::Refused, std::string(5000, 'x')},
+                             {Uuid::random(), ReceiptStatus::Stored, ""}}};
+  const auto read = decode(encode({}, written)->wire).value_or_throw();
+  ASSERT_EQ(read.receipts.size(), 3U);
+  EXPECT_EQ(read.receipts[0].message, "joint 'j?'");
+  EXPECT_EQ(read.receipts[1].message.size(), kMaxMessageBytes);
+}
+
 }  // namespace
 }  // namespace kinship::codec
