@@ -24,7 +24,7 @@ struct Figures {
     ranked_time_s.push_back(result.solved ? time_s.back() : kWorst);
     if (result.solved)
       ++statistics.solved;
-    if (result.distribution_id)
+    if (result.distribution_id && result.share > 0)
       ++statistics.with_guidance;
   }
 

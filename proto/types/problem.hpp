@@ -35,7 +35,7 @@ struct ProblemResult {
   std::uint64_t goal_checks = 0;       ///< of goal configurations, before planning
   std::uint64_t shortcut_checks = 0;   ///< of shortening the path, after planning
   std::uint64_t projections = 0;
-  double planning_time_s = 0;
+  double planning_time_s = 0;  ///< without goal configurations and shortcutting
   double time_limit_s = 0;
   std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n
   std::optional<Digest> distribution_id;     ///< with revision and share: present if guided

@@ -24,6 +24,7 @@ ProblemResult guided_attempt(const std::string& name, bool solved, std::uint64_t
                              double time_s) {
   ProblemResult result = attempt(name, solved, checks, time_s);
   result.distribution_id = Digest{};
+  result.share = 0.9;
   return result;
 }
 
@@ -42,6 +43,12 @@ std::string table_of(const Comparison& comparison) {
   std::ostringstream out;
   write_table(comparison, out);
   return out.str();
+}
+
+TEST(Comparison, ADistributionWithShareZeroIsNoGuidance) {
+  std::vector<ProblemResult> unused = kGuided;
+  unused[1].share = 0;
+  EXPECT_EQ(compared(kUniform, unused).guided.with_guidance, 2U);
 }
 
 TEST(Comparison, PairsByNameInWhateverOrder) {
