@@ -67,6 +67,7 @@ class Store {
   virtual StoreStatus status() const = 0;
 
   /// Durable on return. Known: the digest was there already (its label and text stay as they are).
+  /// A damaged row of this digest is written anew from `robot` and keeps its paths: Registered.
   /// \return Conflict if another robot has the label; InvalidInput if a value cannot be kept.
   virtual Result<RegisterStatus> register_robot(const RobotRecord& robot) = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
@@ -81,8 +82,9 @@ class Store {
   /// waits together is committed together. `done` must not throw, block or wait for a write. Never
   /// throws Storage.
   ///
-  /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content the
-  /// (robot, task) has already is recorded as an attempt and answered Duplicate.
+  /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content (waypoints
+  /// and snapped placement, or none) the (robot, task) has already is recorded as an attempt and
+  /// answered Duplicate.
   virtual void commit_reports(std::vector<Attempt> attempts, ReportsDone done) = 0;
 
   /// The robots with paths of a task, by digest.

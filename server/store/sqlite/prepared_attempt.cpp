@@ -38,6 +38,19 @@ double length_of(const Eigen::MatrixXd& waypoints) {
   return (waypoints.rightCols(segments) - waypoints.leftCols(segments)).colwise().norm().sum();
 }
 
+/// What makes a path new: its waypoints and the cell of its placement. Waypoints alone would drop
+/// the same motion at another placement, which passes through other poses of the task.
+Digest content_digest(const Digest& waypoints,
+                      const std::optional<Eigen::Isometry3d>& T_task_base) {
+  Sha256 hash;
+  hash.add(waypoints).add(std::uint64_t{T_task_base ? 1U : 0U});
+  if (T_task_base) {
+    const Eigen::MatrixXd placement = snapped(*T_task_base).matrix().topRows<3>();  // 3 x 4
+    hash.add(placement);
+  }
+  return hash.finish();
+}
+
 Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path) {
   const PlanningRecord& record = attempt.record;
   Sha256 hash;
@@ -55,7 +68,7 @@ Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& pa
     hash.add(*record.distribution_id);
   hash.add(record.distribution_revision);
   if (path)
-    hash.add(path->content);
+    hash.add(path->waypoints);  // the placement is in it already, unsnapped
   return hash.finish();
 }
 
@@ -68,7 +81,8 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
   std::optional<PreparedPath> path;
   if (attempt.path) {
     const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
-    path = PreparedPath{Sha256().add(waypoints).finish(), length_of(waypoints),
+    const Digest digest = Sha256().add(waypoints).finish();
+    path = PreparedPath{digest, content_digest(digest, attempt.T_task_base), length_of(waypoints),
                         encode_waypoints(waypoints)};
   }
   const Digest body = body_digest(attempt, path);

@@ -11,7 +11,8 @@ namespace kinship::store {
 
 /// A path ready to be written.
 struct PreparedPath {
-  Digest content;     ///< of the waypoints alone: the same path is kept once per robot and task
+  Digest waypoints;   ///< of the waypoints alone
+  Digest content;     ///< and of the snapped placement: kept once per robot and task
   double length = 0;  ///< joint units
   WaypointBlob blob;
 };

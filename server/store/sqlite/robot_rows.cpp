@@ -89,37 +89,60 @@ std::optional<RobotRecord> read_row(Database& database, const Statement& row) {
   return robot;
 }
 
-template <typename Value>
-bool has_robot(Database& database, std::string_view sql, const Value& value) {
-  const auto query = database.cached(sql);
-  return query->bind(1, value).step();
+bool has_undamaged(Database& database, const Digest& digest) {
+  const auto query = database.cached(std::string(kColumns) + "WHERE digest = ?");
+  return query->bind(1, Bytes(digest.bytes)).step() && read_row(database, *query);
+}
+
+bool another_has_label(Database& database, const RobotRecord& robot) {
+  const auto query = database.cached("SELECT 1 FROM robot WHERE label = ? AND digest <> ?");
+  query->bind_all(std::string_view(robot.description.label), Bytes(robot.digest.bytes));
+  return query->step();
+}
+
+/// \return the id of the row, the old one if the digest is there.
+std::int64_t upsert_row(Database& database, const RobotRecord& robot, Bytes T_tip_transfer) {
+  const RobotDescription& description = robot.description;
+  const auto row = database.cached(
+      "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
+      " registered_ms, crc32c, urdf) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
+      "ON CONFLICT (digest) DO UPDATE SET label = excluded.label, dof = excluded.dof,"
+      " base_link = excluded.base_link, tip_link = excluded.tip_link,"
+      " T_tip_transfer = excluded.T_tip_transfer, task_axes = excluded.task_axes,"
+      " registered_ms = excluded.registered_ms, crc32c = excluded.crc32c, urdf = excluded.urdf "
+      "RETURNING id");
+  row->bind_all(Bytes(robot.digest.bytes), std::string_view(description.label),
+                std::int64_t{robot.dof}, std::string_view(description.base_link),
+                std::string_view(description.tip_link), T_tip_transfer,
+                mask_of(description.task_axes), robot.registered_ms,
+                std::int64_t{robot_crc(robot, T_tip_transfer)}, std::string_view(description.urdf));
+  row->step();
+  const std::int64_t id = row->column_integer(0);
+  row->step();  // to the end, as a statement that writes must
+  return id;
+}
+
+void delete_parts(Database& database, std::int64_t robot_id) {
+  database.cached("DELETE FROM robot_held_joint WHERE robot_id = ?")->bind(1, robot_id).run();
+  database.cached("DELETE FROM robot_never_colliding WHERE robot_id = ?")->bind(1, robot_id).run();
 }
 
 }  // namespace
 
 Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
-  if (has_robot(database, "SELECT 1 FROM robot WHERE digest = ?", Bytes(robot.digest.bytes)))
+  if (has_undamaged(database, robot.digest))
     return RegisterStatus::Known;
-  if (has_robot(database, "SELECT 1 FROM robot WHERE label = ?",
-                std::string_view(description.label)))
+  if (another_has_label(database, robot))
     return Error{ErrorCode::Conflict,
                  "robot '" + description.label + "': another robot has this label"};
   const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
   if (!pose_from_blob(T_tip_transfer))
     return Error{ErrorCode::InvalidInput,
                  "robot '" + description.label + "': T_tip_transfer is no pose"};
-  database
-      .cached(
-          "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
-          " registered_ms, crc32c, urdf) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(Bytes(robot.digest.bytes), std::string_view(description.label),
-                 std::int64_t{robot.dof}, std::string_view(description.base_link),
-                 std::string_view(description.tip_link), Bytes(T_tip_transfer),
-                 mask_of(description.task_axes), robot.registered_ms,
-                 std::int64_t{robot_crc(robot, T_tip_transfer)}, std::string_view(description.urdf))
-      .run();
-  insert_parts(database, database.last_insert_id(), description);
+  const std::int64_t id = upsert_row(database, robot, T_tip_transfer);
+  delete_parts(database, id);  // of a damaged row
+  insert_parts(database, id, description);
   return RegisterStatus::Registered;
 }
 

@@ -9,7 +9,8 @@
 
 namespace kinship::store {
 
-/// \return Known if the digest is there; Conflict if another robot has the label.
+/// Writes a damaged row of the digest anew, under its id, so that its paths stay.
+/// \return Known if the digest is there, undamaged; Conflict if another robot has the label.
 Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot);
 
 /// \throws Failure(Storage) if the row is damaged.

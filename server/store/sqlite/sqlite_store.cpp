@@ -132,7 +132,11 @@ class SqliteStore : public Store {
   }
 
   Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
-    return write([&](Batch& batch) { return insert_robot(batch.database(), robot); });
+    Result<RegisterStatus> result =
+        write([&](Batch& batch) { return insert_robot(batch.database(), robot); });
+    if (damaged_robots_ > 0)
+      static_cast<void>(robots());  // counts again: this may have been one of them
+    return result;
   }
 
   std::optional<RobotRecord> find_robot(const Digest& robot) const override {

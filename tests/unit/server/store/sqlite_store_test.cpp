@@ -143,10 +143,31 @@ TEST_F(SqliteStoreTest, ServesNoDamagedDistribution) {
 TEST_F(SqliteStoreTest, ServesNoDamagedRobot) {
   open();
   damage("UPDATE robot_held_joint SET position = 0.03 WHERE joint = 'finger_1'");
-  open();
+  store_ = open_sqlite_store(file_);
   EXPECT_TRUE(store_->robots().empty());
   EXPECT_THROW(store_->find_robot(robot_.digest), Failure);
   EXPECT_NE(store_->status().message.find("1 damaged robot"), std::string::npos);
+}
+
+TEST_F(SqliteStoreTest, RegisteringADamagedRobotAgainRepairsItAndKeepsItsPaths) {
+  open();
+  test::report(*store_, {attempt(1)});
+  for (const char* edit : {"UPDATE robot_held_joint SET position = 0.03 WHERE joint = 'finger_1'",
+                           "UPDATE robot SET label = 'pandb', urdf = urdf || 'x'",
+                           "DELETE FROM robot_never_colliding"}) {
+    damage(edit);
+    store_ = open_sqlite_store(file_);
+    ASSERT_TRUE(store_->robots().empty()) << edit;
+    EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Registered) << edit;
+    EXPECT_EQ(store_->status().message.find("damaged robot"), std::string::npos);
+    const std::optional<RobotRecord> robot = store_->find_robot(robot_.digest);
+    ASSERT_TRUE(robot) << edit;
+    EXPECT_EQ(robot->description.label, "panda");
+    EXPECT_EQ(robot->description.held_joints, robot_.description.held_joints);
+    EXPECT_EQ(robot->description.never_colliding, robot_.description.never_colliding);
+    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 10).size(), 1U);
+    EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Known);
+  }
 }
 
 TEST_F(SqliteStoreTest, AnswersTryAgainWhenTooMuchWaits) {

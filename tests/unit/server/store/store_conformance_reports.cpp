@@ -80,6 +80,31 @@ TEST_P(StoreConformance, TheSameContentOfAnotherRobotOrTaskIsItsOwnPath) {
   EXPECT_EQ(store_->status().paths, 3U);
 }
 
+TEST_P(StoreConformance, TheSameWaypointsAtAnotherPlacementAreTheirOwnPath) {
+  Attempt moved = solved(2);
+  moved.T_task_base->translation().x() += 0.5;
+  Attempt turned = solved(3);
+  turned.T_task_base->rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
+  Attempt without = solved(4);
+  without.T_task_base.reset();
+  Attempt identity = solved(5);
+  identity.T_task_base = Eigen::Isometry3d::Identity();
+  moved.path = turned.path = without.path = identity.path = solved(1).path;
+  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), moved, turned, without, identity})),
+            Statuses(5, ReceiptStatus::Stored));
+  EXPECT_EQ(store_->status().paths, 5U);
+}
+
+TEST_P(StoreConformance, TheSameWaypointsWithinACellOfPlacementsAreOnePath) {
+  Attempt again = solved(2);
+  again.path = solved(1).path;
+  again.T_task_base->translation().x() += 1e-6;  // of the middle of a cell of 1 mm
+  EXPECT_EQ(test::statuses(test::report(*store_, {solved(1), again})),
+            (Statuses{ReceiptStatus::Stored, ReceiptStatus::Duplicate}));
+  EXPECT_FALSE(
+      store_->find_attempt(again.report_uuid)->T_task_base->isApprox(test::make_pose(), 0));
+}
+
 TEST_P(StoreConformance, RefusesWhatCannotBeKept) {
   Attempt wrong_dof = solved(1);
   wrong_dof.path = test::make_path(1, test::kDof + 1);
