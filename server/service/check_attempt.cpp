@@ -15,6 +15,10 @@ namespace {
 using kinematics::Joint;
 using kinematics::JointType;
 
+struct Range {
+  double lower = 0, upper = 0;
+};
+
 Error invalid(std::string message) { return {ErrorCode::InvalidInput, std::move(message)}; }
 
 std::optional<Error> check_seconds(std::string_view what, double seconds) {
@@ -51,24 +55,27 @@ std::optional<Error> check_placement(const std::optional<Eigen::Isometry3d>& T_t
   return std::nullopt;
 }
 
-bool is_outside(const Joint& joint, double value) {
-  return value > joint.upper + kLimitTolerance || value < joint.lower - kLimitTolerance;
+/// What a joint may report: a continuous one counts its turns.
+Range range_of(const Joint& joint) {
+  if (joint.type == JointType::Continuous)
+    return {-kMaxJointValue, kMaxJointValue};
+  return {joint.lower, joint.upper};
 }
 
 /// The first waypoint outside the limits of a joint, if there is one.
 std::optional<Error> check_joint(const Joint& joint, const Eigen::VectorXd& values,
                                  const std::string& joint_name) {
-  if (joint.type == JointType::Continuous)
-    return std::nullopt;
-  const auto bad = std::find_if(values.begin(), values.end(),
-                                [&](double value) { return is_outside(joint, value); });
+  const Range range = range_of(joint);
+  const auto bad = std::find_if(values.begin(), values.end(), [&range](double value) {
+    return value > range.upper + kLimitTolerance || value < range.lower - kLimitTolerance;
+  });
   if (bad == values.end())
     return std::nullopt;
   const std::string unit = joint.type == JointType::Prismatic ? " m" : " rad";
-  const bool above = *bad > joint.upper;
+  const bool above = *bad > range.upper;
   return invalid(joint_name + " at " + number_text(*bad) + unit +
                  (above ? " exceeds " : " is below ") +
-                 number_text(above ? joint.upper : joint.lower) + unit + ", waypoint " +
+                 number_text(above ? range.upper : range.lower) + unit + ", waypoint " +
                  std::to_string(bad - values.begin() + 1));
 }
 

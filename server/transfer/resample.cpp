@@ -48,6 +48,8 @@ Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters)
   const Eigen::MatrixXd& waypoints = path.waypoints();
   const Eigen::VectorXd along = distances(waypoints);
   const double total = along[along.size() - 1];
+  if (!std::isfinite(total))
+    throw std::invalid_argument("resample: the length of the path is not finite");
   const double first = parameters.dropped_end_share * total;
   const double length = total - 2 * first;
   const Eigen::Index count = count_poses(length, parameters);

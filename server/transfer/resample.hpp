@@ -17,7 +17,7 @@ namespace kinship::transfer {
 /// remains or only one is allowed.
 /// \return dof x n, n >= 1.
 /// \throws std::invalid_argument unless pose_spacing > 0, max_poses_per_path >= 0 and
-///         0 <= dropped_end_share <= 0.5.
+///         0 <= dropped_end_share <= 0.5, or if the length of the path overflows.
 Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters);
 
 }  // namespace kinship::transfer

@@ -1,5 +1,7 @@
 #include "server/transfer/transfer.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,8 +24,17 @@ bool same_robot_and_place(const kinematics::Chain& source, const kinematics::Cha
   return difference <= kSamePlacement && source.digest() == target.digest();
 }
 
-TransferredPath taken_over(Eigen::MatrixXd waypoints) {
+/// Turns continuous joints into [-pi, pi], where the limits of what is sampled lie.
+void unwind(const kinematics::Chain& robot, Eigen::MatrixXd& waypoints) {
+  for (Eigen::Index joint = 0; joint < robot.dof(); ++joint)
+    if (robot.joints()[static_cast<std::size_t>(joint)].type == kinematics::JointType::Continuous)
+      waypoints.row(joint) = waypoints.row(joint).unaryExpr(
+          [](double value) { return std::remainder(value, 2 * std::numbers::pi); });
+}
+
+TransferredPath taken_over(const kinematics::Chain& robot, Eigen::MatrixXd waypoints) {
   const Eigen::Index count = waypoints.cols();
+  unwind(robot, waypoints);
   TransferredPath result;
   result.configurations = std::move(waypoints);
   result.pose_index = Eigen::VectorXi::LinSpaced(count, 0, static_cast<int>(count) - 1);
@@ -87,7 +98,7 @@ TransferredPath transfer_path(const Path& path, const kinematics::Chain& source,
                                 " joints for a source robot of " + std::to_string(source.dof()));
   Eigen::MatrixXd waypoints = resample(path, parameters);
   if (same_robot_and_place(source, target, T_target_source))
-    return taken_over(std::move(waypoints));
+    return taken_over(target, std::move(waypoints));
 
   const Eigen::Isometry3d T_transfer_tip = target.T_tip_transfer().inverse();
   const inverse::InverseOptions options{.max_solutions = parameters.max_solutions,

@@ -32,7 +32,8 @@ struct TransferredPath {
 /// Moves one path of the source robot into the configuration space of the target robot: forward
 /// kinematics to the transfer frame, then up to L inverse solutions a pose at least d apart.
 /// If the digests are equal and T_target_source is the identity (within 1e-9), the resampled
-/// waypoints are taken over as they are: one configuration a pose, with solution_index 0.
+/// waypoints are taken over: one configuration a pose, with solution_index 0, as they are but for
+/// continuous joints, which are turned into [-pi, pi].
 /// The task axes that matter are the target robot's.
 ///
 /// \param T_target_source  pose of the source robot's base in the target robot's base:
@@ -48,6 +49,6 @@ TransferredPath transfer_path(const Path& path, const kinematics::Chain& source,
                               const TransferParameters& parameters, std::uint64_t seed);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kTransferVersion = 1;
+inline constexpr int kTransferVersion = 2;
 
 }  // namespace kinship::transfer

@@ -107,5 +107,18 @@ TEST_F(CheckAttempt, LengthsHaveLimits) {
   EXPECT_EQ(check(), "robot 'teacher': 16385 waypoints exceed 16384");
 }
 
+TEST_F(CheckAttempt, AJointWithoutLimitsCountsItsTurnsUpToALimit) {
+  RobotDescription wheel = fleet::teacher();
+  for (std::size_t at; (at = wheel.urdf.find("'revolute'")) != std::string::npos;)
+    wheel.urdf.replace(at, 10, "'continuous'");
+  robot_ = fleet::robot_of(wheel);
+  set_joint(2, 1, -9999.5);
+  EXPECT_EQ(check(), "");
+  set_joint(2, 1, 12345);
+  EXPECT_EQ(check(), "robot 'teacher': joint 3 'j3' at 12345 rad exceeds 10000 rad, waypoint 2");
+  set_joint(2, 1, -1e308);
+  EXPECT_NE(check().find("is below -10000 rad"), std::string::npos) << check();
+}
+
 }  // namespace
 }  // namespace kinship::service

@@ -106,5 +106,11 @@ TEST(Resample, RefusesParametersWithoutMeaning) {
   EXPECT_THROW(resample(path, {.dropped_end_share = -0.1}), std::invalid_argument);
 }
 
+TEST(Resample, RefusesALengthThatOverflows) {
+  Eigen::MatrixXd waypoints(1, 2);
+  waypoints << -1e308, 1e308;
+  EXPECT_THROW(resample(Path(waypoints), {}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace kinship::transfer

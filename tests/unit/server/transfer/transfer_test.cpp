@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <stdexcept>
 
 #include "robots/inverse/inverse.hpp"
@@ -156,6 +157,17 @@ TEST(Transfer, RefusesAPathOfAnotherRobot) {
   EXPECT_THROW(
       transfer_path(source_path(), target_arm(), source_arm(), planar_pose(0, 0, 0), {}, kSeed),
       std::invalid_argument);
+}
+
+TEST(Transfer, OwnContinuousJointsAreTurnedToWhereSamplesLie) {
+  const auto arm =
+      PlanarArm{.lengths_m = {0.3, 0.2}, .type = kinematics::JointType::Continuous}.chain();
+  Eigen::MatrixXd waypoints(2, 2);
+  waypoints << 3, 8, -40, -41;
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  const auto transferred = transfer_path(Path(waypoints), arm, arm, same, {}, kSeed);
+  EXPECT_LE(transferred.configurations.cwiseAbs().maxCoeff(), std::numbers::pi);
+  EXPECT_LT(largest_error(transferred, arm, arm, same, resample(Path(waypoints), {})), 1e-12);
 }
 
 }  // namespace
