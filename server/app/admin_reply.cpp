@@ -10,6 +10,22 @@
 
 namespace kinship::app {
 
+namespace {
+
+std::size_t bytes_of(const AdminReply& reply) {
+  std::size_t bytes = 0;
+  for (const std::string& row : reply.rows)
+    bytes += row.size();
+  return bytes;
+}
+
+bool is_listing(AdminVerb verb) {
+  return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
+         verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions;
+}
+
+}  // namespace
+
 std::string to_json(const service::AdminRow& row) {
   return std::visit([](const auto& value) { return json::to_json(value); }, row);
 }
@@ -32,11 +48,25 @@ AdminReply to_reply(const service::AdminPage& page) {
   return reply;
 }
 
-bool fits_page(const AdminReply& reply) {
-  std::size_t bytes = 0;
-  for (const std::string& row : reply.rows)
-    bytes += row.size();
-  return bytes <= kMaxPageBytes;
+bool fits_page(const AdminReply& reply) { return bytes_of(reply) <= kMaxPageBytes; }
+
+std::optional<AdminRequest> for_fewer_rows(const AdminRequest& request, std::size_t rows) {
+  if (!is_listing(request.verb) || rows < 2)
+    return std::nullopt;
+  AdminRequest smaller = request;
+  smaller.limit = static_cast<std::uint32_t>(rows / 2);
+  if (smaller.limit >= request.limit)
+    return std::nullopt;
+  return smaller;
+}
+
+AdminReply too_large(const AdminReply& reply) {
+  AdminReply failed;
+  failed.status = AdminStatus::Failed;
+  failed.message = std::to_string(reply.rows.size()) + " rows of " +
+                   std::to_string(bytes_of(reply)) + " bytes exceed a page of " +
+                   std::to_string(kMaxPageBytes);
+  return failed;
 }
 
 }  // namespace kinship::app

@@ -1,6 +1,6 @@
 #include "server/app/endpoints.hpp"
 
-#include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,11 +25,12 @@ void administer(service::Service& service, const AdminRequest& request,
                 const dds::Answer<AdminConversation>& answer) {
   service.administer(request, [&service, request, answer](const service::AdminPage& page) {
     const AdminReply reply = to_reply(page);
-    if (fits_page(reply) || page.rows.size() < 2)
+    if (fits_page(reply))
       return answer(reply);
-    AdminRequest smaller = request;
-    smaller.limit = static_cast<std::uint32_t>(page.rows.size() / 2);
-    administer(service, smaller, answer);
+    const std::optional<AdminRequest> smaller = for_fewer_rows(request, page.rows.size());
+    if (!smaller)
+      return answer(too_large(reply));
+    administer(service, *smaller, answer);
   });
 }
 

@@ -15,8 +15,8 @@ constexpr const char* kDescription =
     "kinshipd: keeps the planning experience of a fleet of robots and makes it of use to others";
 
 constexpr const char* kFooter =
-    R"(Prints 'ready domain=N store=FILE' when it serves; the log goes to stderr. SIGTERM and SIGINT end it
-after what was reported is durable. Exit codes: 0 done, 1 failed, 2 wrong usage.
+    R"(Prints 'ready domain=N store=FILE' when it serves; the log goes to stderr. SIGTERM, SIGINT and
+SIGHUP end it after what was reported is durable. Exit codes: 0 done, 1 failed, 2 wrong usage.
 
 Examples:
   kinshipd                                       default store, domain 0, loopback
@@ -55,6 +55,7 @@ std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* ar
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("kinshipd ") + KINSHIP_VERSION);
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
+  app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_option("--store", options.store, "SQLite file; made if there is none")
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain")
@@ -73,6 +74,10 @@ std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* ar
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
+  }
+  if (options.store.empty() && app.count("--store") > 0) {
+    err << "kinshipd: --store is empty; it needs a file\n";
+    return kWrongUsage;
   }
   if (options.store.empty()) {
     err << "kinshipd: neither XDG_STATE_HOME nor HOME is set; say where with --store FILE\n";

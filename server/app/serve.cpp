@@ -47,10 +47,11 @@ int serve(const ServerOptions& options, std::ostream& out) {
 
   hold_termination_signals();
 
-  service::Service service(store::open_sqlite_store(options.store), service_options(options));
+  // Before the store: who cannot join the domain leaves no file behind.
   const dds::Participant participant({.domain = options.domain,
                                       .role = dds::Role::Server,
                                       .network_interface = options.network_interface});
+  service::Service service(store::open_sqlite_store(options.store), service_options(options));
   dds::WaitLoop loop(participant);
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
@@ -62,6 +63,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
                status.version, options.domain, options.store.string(), status.robots, status.paths,
                status.distributions);
+  if (!status.storage_message.empty())
+    spdlog::warn("store: {}", status.storage_message);
   out << "ready domain=" << options.domain << " store=" << options.store.string() << std::endl;
   notify_service_manager("READY=1");
   loop.run([&service] {

@@ -5,8 +5,8 @@
 
 namespace kinship::app {
 
-/// Keeps SIGTERM and SIGINT from ending the process until a SignalWatcher takes them. Call it
-/// before any other thread is made: threads inherit it.
+/// Keeps SIGTERM, SIGINT and SIGHUP from ending the process until a SignalWatcher takes them. Call
+/// it before any other thread is made: threads inherit it.
 void hold_termination_signals();
 
 /// Turns held signals, earlier ones too, into calls on a thread of its own, where anything may be

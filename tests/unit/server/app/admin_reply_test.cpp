@@ -69,5 +69,39 @@ TEST(AdminReply, TheRowsOfAPageHaveALimitTogether) {
   EXPECT_FALSE(fits_page(reply));
 }
 
+TEST(AdminReply, AListingThatDoesNotFitIsAskedForInHalves) {
+  AdminRequest request;
+  request.verb = AdminVerb::ListPaths;
+  request.task = "shelf";
+  request.limit = 1000;
+  std::uint32_t rounds = 0;
+  std::optional<AdminRequest> smaller = request;
+  while ((smaller = for_fewer_rows(*smaller, smaller->limit))) {
+    EXPECT_EQ(smaller->task, "shelf");
+    ASSERT_LT(++rounds, 20U);
+  }
+  EXPECT_EQ(rounds, 9U);
+}
+
+TEST(AdminReply, WhatDoesNotFollowTheLimitIsNotAskedForAgain) {
+  AdminRequest request;
+  request.limit = 1000;
+  request.verb = AdminVerb::ShowRobot;
+  EXPECT_FALSE(for_fewer_rows(request, 2));
+  request.verb = AdminVerb::ListRobots;
+  request.limit = 1;
+  EXPECT_FALSE(for_fewer_rows(request, 2));
+}
+
+TEST(AdminReply, APageThatNothingMakesFitNamesItsSizeAndTheLimit) {
+  AdminReply reply;
+  reply.status = AdminStatus::Ok;
+  reply.rows = {std::string(kMaxPageBytes, 'x'), "y"};
+  const AdminReply failed = too_large(reply);
+  EXPECT_EQ(failed.status, AdminStatus::Failed);
+  EXPECT_TRUE(failed.rows.empty());
+  EXPECT_EQ(failed.message, "2 rows of 524289 bytes exceed a page of 524288");
+}
+
 }  // namespace
 }  // namespace kinship::app

@@ -92,5 +92,23 @@ TEST_F(Options, HelpAndVersionGoToTheOutput) {
   EXPECT_EQ(out_.str().find("kinshipd "), 0U);
 }
 
+TEST_F(Options, WhatIsWrongInTheFileIsWrongUsageThatNamesIt) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.ini").string();
+  for (const char* line : {"nonsense=4", "[[[broken", "[server]\nworkers=2"}) {
+    std::ofstream(file) << "domain=3\n" << line << "\n";
+    EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage) << line;
+    const std::string named = std::string(line).substr(0, std::string(line).find_first_of("=]"));
+    EXPECT_NE(err_.str().find(named.substr(named.find_first_not_of('['))), std::string::npos)
+        << err_.str();
+  }
+}
+
+TEST_F(Options, AnEmptyStoreIsSaidToBeEmpty) {
+  setenv("HOME", "/home/someone", 1);
+  EXPECT_EQ(code({"--store", ""}), kWrongUsage);
+  EXPECT_NE(err_.str().find("--store is empty"), std::string::npos) << err_.str();
+}
+
 }  // namespace
 }  // namespace kinship::app

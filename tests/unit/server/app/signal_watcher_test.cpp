@@ -12,13 +12,16 @@ namespace {
 TEST(SignalWatcher, PassesOnSignalsAlsoThoseHeldBefore) {
   hold_termination_signals();
   kill(getpid(), SIGTERM);  // would end the test
-  std::promise<int> first, second;
+  std::promise<int> first, second, third;
   int calls = 0;
-  const SignalWatcher watcher(
-      [&](int signal) { (++calls == 1 ? first : second).set_value(signal); });
+  const SignalWatcher watcher([&](int signal) {
+    (++calls == 1 ? first : calls == 2 ? second : third).set_value(signal);
+  });
   EXPECT_EQ(first.get_future().get(), SIGTERM);
   kill(getpid(), SIGINT);
   EXPECT_EQ(second.get_future().get(), SIGINT);
+  kill(getpid(), SIGHUP);
+  EXPECT_EQ(third.get_future().get(), SIGHUP);
 }
 
 TEST(SignalWatcher, EndsWithoutASignal) {
