@@ -11,6 +11,7 @@
 #include "proto/types/sha256.hpp"
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
 
 namespace kinship::store {
@@ -19,7 +20,7 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
-  throw Failure(ErrorCode::Storage, "store '" + file.string() + "' " + why);
+  throw Failure(ErrorCode::Storage, "store '" + file.string() + "': " + why);
 }
 
 Digest text_digest(const Migration& migration) {
@@ -85,6 +86,7 @@ void back_up(Database& database, const std::filesystem::path& file, std::int64_t
   const std::filesystem::path backup = file.string() + ".backup-" + std::to_string(version);
   const std::filesystem::path partial = backup.string() + ".partial";
   std::filesystem::remove(partial);
+  make_for_owner(partial);  // VACUUM takes an empty file and keeps its mode
   Statement(database.connection(), "VACUUM INTO ?").bind(1, partial.string()).run();
   sync_file(partial);
   std::filesystem::rename(partial, backup);

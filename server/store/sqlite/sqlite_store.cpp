@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <future>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -18,6 +18,7 @@
 #include "server/store/sqlite/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
+#include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
 #include "server/store/sqlite/writer.hpp"
 
@@ -59,24 +60,6 @@ class DamageItem : public WriteItem {
   std::vector<std::int64_t> paths_;
 };
 
-/// Parents are made for the owner alone; links are followed, so that one file has one lock.
-std::filesystem::path prepared_location(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(file);
-  const std::filesystem::path directory = absolute.parent_path();
-  if (!std::filesystem::exists(directory)) {
-    std::filesystem::create_directories(directory, error);
-    if (!error)
-      std::filesystem::permissions(directory, std::filesystem::perms::owner_all, error);
-  }
-  if (!error && !std::filesystem::is_directory(directory))
-    error = std::make_error_code(std::errc::not_a_directory);
-  if (error)
-    throw Failure(ErrorCode::Storage,
-                  "directory '" + directory.string() + "' of the store: " + error.message());
-  return std::filesystem::weakly_canonical(absolute);
-}
-
 Uuid ensure_epoch(Database& database) {
   Transaction transaction(database, Transaction::Kind::Write);
   database.cached("INSERT INTO setting VALUES ('epoch', ?) ON CONFLICT DO NOTHING")
@@ -90,14 +73,14 @@ Uuid ensure_epoch(Database& database) {
   }
   transaction.commit();
   if (!epoch)
-    throw Failure(ErrorCode::Storage, "store: its epoch is no UUID");
+    throw Failure(ErrorCode::Storage, "its epoch is no UUID");
   return *epoch;
 }
 
 class SqliteStore : public Store {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
-      : options_(options), file_(prepared_location(file)), lock_(file_), readers_(file_) {
+      : options_(options), file_(locate_store(file)), lock_(file_), readers_(file_) {
     std::unique_ptr<Database> database = open_writer(file_);
     epoch_ = ensure_epoch(*database);
     writer_ = std::make_unique<Writer>(
@@ -273,7 +256,17 @@ class SqliteStore : public Store {
 
 std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file,
                                          const SqliteOptions& options) {
-  return std::make_unique<SqliteStore>(file, options);
+  const std::string prefix = "store '";
+  try {
+    return std::make_unique<SqliteStore>(file, options);
+  } catch (const Failure& failure) {
+    const Error& error = failure.error();
+    if (error.message.starts_with(prefix))
+      throw;
+    throw Failure(error.code, prefix + file.string() + "': " + error.message);
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw Failure(ErrorCode::Storage, prefix + file.string() + "': " + error.what());
+  }
 }
 
 }  // namespace kinship::store

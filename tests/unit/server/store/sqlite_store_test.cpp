@@ -229,6 +229,47 @@ TEST_F(SqliteStoreTest, RefusesAFileOfSomebodyElseAndLeavesItAlone) {
   EXPECT_EQ(Database(file_, Access::ReadOnly).integer("PRAGMA application_id"), 0);
 }
 
+TEST_F(SqliteStoreTest, RefusesWhatCannotBeAStoreBeforeItMakesALock) {
+  const std::string name = "store '" + file_.string() + "': ";
+  const std::filesystem::path lock = file_.string() + ".lock";
+  for (const std::string& text :
+       {std::string("root:x:0:0:root:/root:/bin/sh\n"), std::string("x")}) {
+    std::ofstream(file_) << text;
+    EXPECT_EQ(refusal(), name + "is no SQLite database");
+    EXPECT_FALSE(std::filesystem::exists(lock));
+  }
+  std::filesystem::remove(file_);
+  std::filesystem::create_directory(file_);
+  EXPECT_EQ(refusal(), name + "is a directory");
+  std::filesystem::remove(file_);
+  std::filesystem::create_symlink(directory_ / "nowhere", file_);
+  EXPECT_EQ(refusal(), name + "is a link to a file that does not exist");
+  EXPECT_FALSE(std::filesystem::exists(lock));
+}
+
+TEST_F(SqliteStoreTest, RefusesAFileWithASecondName) {
+  open();
+  store_.reset();
+  std::filesystem::create_hard_link(file_, directory_ / "other.db");
+  EXPECT_NE(refusal().find("has 2 names"), std::string::npos) << refusal();
+  std::filesystem::remove(directory_ / "other.db");
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(SqliteStoreTest, NamesTheFileInEveryRefusal) {
+  const std::string name = "store '" + file_.string() + "': ";
+  std::ofstream(file_) << std::string("SQLite format 3\0", 16) << std::string(8176, 'x');
+  EXPECT_EQ(refusal().find(name), 0U) << refusal();
+  std::ofstream(file_) << std::string(5000, 'x');  // its lock file is there now
+  EXPECT_EQ(refusal().find(name), 0U) << refusal();
+}
+
+TEST_F(SqliteStoreTest, MakesItsFileForTheOwnerAlone) {
+  open();
+  EXPECT_EQ(std::filesystem::status(file_).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
 TEST_F(SqliteStoreTest, RefusesANewerSchema) {
   open();
   store_.reset();
