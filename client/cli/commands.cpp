@@ -6,7 +6,6 @@
 #include <ostream>
 #include <string>
 
-#include "client/cli/empty_outbox.hpp"
 #include "client/cli/exit_code.hpp"
 #include "client/cli/fetch_command.hpp"
 #include "client/cli/inverse_commands.hpp"
@@ -32,9 +31,8 @@ struct Session {
 
   /// Runs a command that talks to a server.
   int with_server(const std::function<int(link::Client&)>& use) const {
-    const EmptyOutbox outbox;
     link::ClientOptions options;
-    options.outbox = outbox.folder();
+    options.has_outbox = false;  // a look at a server delivers nothing to it
     options.domain = domain;
     options.timeout = milliseconds(timeout_s);
     link::Client server(options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "client/link/report_sender.hpp"
 #include "proto/codec/report_codec.hpp"
 #include "proto/dds/requester.hpp"
+#include "robots/kinematics/urdf.hpp"
 
 namespace kinship::link {
 namespace {
@@ -17,7 +19,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kReceiptTime = 5s;       // for a batch to be stored
+constexpr milliseconds kReceiptTime = 5s;       // for a batch to be stored, and a robot
 constexpr milliseconds kShortestPause = 100ms;  // between two requests of one fetch
 
 /// What the server is given of the time that is left, so that its "pending" still arrives in time.
@@ -31,15 +33,24 @@ class Client::Implementation {
  public:
   explicit Implementation(const ClientOptions& options)
       : timeout_(options.timeout),
-        outbox_(options.outbox.empty() ? default_outbox_folder() : options.outbox),
         participant_({.domain = options.domain, .server = options.server}),
         register_(participant_, client_id_),
         report_(participant_, client_id_),
         fetch_(participant_, client_id_),
-        admin_(participant_, client_id_),
-        sender_(outbox_, [this](const ReportRequest& batch) {
+        admin_(participant_, client_id_) {
+    if (!options.has_outbox)
+      return;
+    outbox_.emplace(options.outbox.empty() ? default_outbox_folder(options.domain, options.server)
+                                           : options.outbox);
+    sender_.emplace(
+        *outbox_,
+        [this](const ReportRequest& batch) {
           return report_.call(batch, Clock::now() + kReceiptTime);
-        }) {}
+        },
+        [this](const RobotDescription& description) {
+          return register_.call(description, Clock::now() + kReceiptTime);
+        });
+  }
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
@@ -51,24 +62,34 @@ class Client::Implementation {
   }
 
   Result<RegisterReply> register_robot(const RobotDescription& description) {
-    return register_.call(description, Clock::now() + timeout_);
+    keep(description);
+    Result<RegisterReply> reply = register_.call(description, Clock::now() + timeout_);
+    if (sender_ && reply && reply->status != RegisterStatus::Refused)
+      sender_->retry();
+    return reply;
   }
 
   void report(const Attempt& attempt) {
+    if (!outbox_)
+      throw std::logic_error("Client: report() without an outbox");
     if (const auto error = codec::check(attempt))
       throw Failure(*error);
-    outbox_.add(attempt);
-    sender_.wake();
+    outbox_->add(attempt);
+    sender_->wake();
   }
 
   OutboxState outbox() const {
-    ReportSender::Counts counts = sender_.counts();
-    return {outbox_.pending_count(), counts.accepted, counts.refused, std::move(counts.problem)};
+    if (!outbox_)
+      return {};
+    ReportSender::Counts counts = sender_->counts();
+    return {outbox_->pending_count(), counts.accepted, counts.refused, std::move(counts.problem)};
   }
 
   OutboxState flush(milliseconds deadline) {
-    sender_.wake();
-    sender_.wait_until_empty(Clock::now() + deadline);
+    if (sender_) {
+      sender_->wake();
+      sender_->wait_until_empty(Clock::now() + deadline);
+    }
     return outbox();
   }
 
@@ -97,6 +118,14 @@ class Client::Implementation {
   }
 
  private:
+  void keep(const RobotDescription& description) {
+    if (!outbox_)
+      return;
+    // One that cannot be read has no reports; the server says what is wrong with it.
+    if (const auto chain = kinematics::read_chain(description))
+      outbox_->keep_robot(chain->digest(), description);
+  }
+
   /// How long to wait before asking again; empty: the reply is final.
   static std::optional<milliseconds> pause_after(const Result<FetchReply>& reply) {
     if (!reply)
@@ -110,13 +139,13 @@ class Client::Implementation {
 
   milliseconds timeout_;
   Uuid client_id_ = Uuid::random();
-  Outbox outbox_;
+  std::optional<Outbox> outbox_;
   dds::Participant participant_;
   dds::Requester<codec::RegisterConversation> register_;
   dds::Requester<codec::ReportConversation> report_;
   dds::Requester<codec::FetchConversation> fetch_;
   dds::Requester<codec::AdminConversation> admin_;
-  ReportSender sender_;  // last: uses the outbox and a requester
+  std::optional<ReportSender> sender_;  // last: uses the outbox and requesters
 };
 
 Client::Client(const ClientOptions& options)

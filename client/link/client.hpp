@@ -17,7 +17,8 @@ namespace kinship::link {
 struct ClientOptions {
   std::uint32_t domain = 0;
   std::string server = "127.0.0.1";         ///< host of kinshipd
-  std::filesystem::path outbox;             ///< folder; empty: XDG state home /kinship/outbox
+  std::filesystem::path outbox;             ///< folder; empty: default_outbox_folder()
+  bool has_outbox = true;                   ///< false: delivers nothing, report() is not allowed
   std::chrono::milliseconds timeout{5000};  ///< of register and admin
 };
 
@@ -35,12 +36,15 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
+  /// Keeps the description in the outbox, so that reports of the robot reach also a server that
+  /// does not know it yet or any more.
   /// \return the reply, or Unavailable if no server answered within the timeout.
+  /// \throws Failure(Storage) if the outbox cannot be written.
   Result<RegisterReply> register_robot(const RobotDescription& description);
 
   /// Puts the attempt into the outbox (durable on return) and wakes the sender.
   /// \throws Failure(InvalidInput) if the server would refuse it anyway; Failure(Storage) if the
-  ///         outbox cannot be written.
+  ///         outbox cannot be written; std::logic_error without an outbox.
   void report(const Attempt& attempt);
 
   struct OutboxState {
@@ -49,7 +53,7 @@ class Client {
     std::size_t refused = 0;   ///< since this client started; kept in the rejected folder
     std::string problem;       ///< why sending does not get on; empty: nothing known
   };
-  OutboxState outbox() const;
+  OutboxState outbox() const;  ///< of no outbox: zeros
 
   /// Waits until nothing is pending or the deadline has passed.
   OutboxState flush(std::chrono::milliseconds deadline);

@@ -1,6 +1,7 @@
 #include "client/link/durable_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -98,6 +99,21 @@ void write_durably(const std::filesystem::path& path, std::string_view content) 
     fail(path, "cannot rename to");
   temporary.keep();
   Descriptor(path.parent_path(), O_RDONLY | O_DIRECTORY).sync();
+}
+
+void make_folder_durably(const std::filesystem::path& folder) {
+  const std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    return;
+  const std::filesystem::path parent = path.parent_path();
+  if (parent != path)
+    make_folder_durably(parent);
+  if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST)
+    fail(path, "cannot make the folder");
+  if (!std::filesystem::is_directory(path, error))  // a file, or a link to nothing
+    throw Failure(ErrorCode::Storage, path.string() + ": is not a folder");
+  Descriptor(parent, O_RDONLY | O_DIRECTORY).sync();
 }
 
 std::string read_file(const std::filesystem::path& path, std::size_t limit) {

@@ -12,6 +12,10 @@ namespace kinship::link {
 /// \throws Failure(Storage) naming the file and what the system said.
 void write_durably(const std::filesystem::path& path, std::string_view content);
 
+/// Makes a folder, and those above it, unless they are there.
+/// \throws Failure(Storage) naming the folder and what the system said.
+void make_folder_durably(const std::filesystem::path& folder);
+
 /// \throws Failure(Storage) if it cannot be read, Failure(TooLarge) above `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t limit);
 

@@ -13,6 +13,7 @@
 
 #include "client/link/durable_file.hpp"
 #include "proto/json/attempt_json.hpp"
+#include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::link {
@@ -23,8 +24,9 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPending = "pending";
 constexpr std::string_view kSent = "sent";
 constexpr std::string_view kRejected = "rejected";
+constexpr std::string_view kRobots = "robots";
 constexpr std::string_view kSuffix = ".json";
-constexpr std::size_t kMaxReportFileBytes = 16'000'000;
+constexpr std::size_t kMaxFileBytes = 16'000'000;
 constexpr std::size_t kUuidTextBytes = 36;
 constexpr std::chrono::hours kKeepSent{7 * 24};
 constexpr std::chrono::hours kKeepTemporary{24};
@@ -70,10 +72,10 @@ void remove_older_than(const fs::directory_entry& entry, std::chrono::hours age)
   // Whatever failed here is tried again at the next purge.
 }
 
-/// \return TooLarge, as a value, for a file that cannot be a report.
+/// \return TooLarge, as a value, for a file that cannot be ours.
 Result<std::string> read_limited(const fs::path& path) {
   try {
-    return read_file(path, kMaxReportFileBytes);
+    return read_file(path, kMaxFileBytes);
   } catch (const Failure& failure) {
     if (failure.code() == ErrorCode::TooLarge)
       return failure.error();
@@ -84,11 +86,8 @@ Result<std::string> read_limited(const fs::path& path) {
 }  // namespace
 
 Outbox::Outbox(fs::path folder) : folder_(std::move(folder)) {
-  for (const std::string_view part : {kPending, kSent, kRejected}) {
-    std::error_code error;
-    fs::create_directories(folder_ / part, error);
-    require(error, folder_ / part, "cannot make the folder");
-  }
+  for (const std::string_view part : {kPending, kSent, kRejected, kRobots})
+    make_folder_durably(folder_ / part);
 }
 
 fs::path Outbox::file(std::string_view part, const Uuid& report_uuid) const {
@@ -156,6 +155,27 @@ void Outbox::reject(const Uuid& report_uuid, std::string_view reason) {
   move_file(file(kPending, report_uuid), file(kRejected, report_uuid));
 }
 
+void Outbox::keep_robot(const Digest& robot, const RobotDescription& description) {
+  write_durably(folder_ / kRobots / (robot.hex() + std::string(kSuffix)),
+                json::to_json(description) + "\n");
+}
+
+Result<RobotDescription> Outbox::robot(const Digest& robot) const {
+  const fs::path path = folder_ / kRobots / (robot.hex() + std::string(kSuffix));
+  std::error_code error;
+  if (!fs::exists(path, error))
+    return Error{ErrorCode::NotFound,
+                 "no description of robot " + robot.short_hex() + " is kept; register it first"};
+  const auto text = read_limited(path);
+  if (!text)
+    return text.error();
+  auto description = json::robot_description_from_json(*text);
+  if (!description)
+    return Error{description.error().code,
+                 path.string() + ": damaged file: " + description.error().message};
+  return description;
+}
+
 void Outbox::note_store_epoch(const Uuid& epoch) {
   const fs::path path = folder_ / "store_epoch";
   std::error_code error;
@@ -177,7 +197,8 @@ void Outbox::purge() {
     if (report_uuid_of(entry.path()))
       remove_older_than(entry, kKeepSent);
   });
-  for (const fs::path& folder : {folder_ / kPending, folder_ / kRejected, folder_})
+  for (const fs::path& folder :
+       {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})
     for_each_entry(folder, [](const fs::directory_entry& entry) {
       if (is_temporary(entry.path()))
         remove_older_than(entry, kKeepTemporary);
@@ -209,12 +230,15 @@ SenderLock::~SenderLock() {
     ::close(descriptor_);  // releases the lock
 }
 
-fs::path default_outbox_folder() {
+fs::path default_outbox_folder(std::uint32_t domain, std::string_view server) {
+  std::string name = "domain-" + std::to_string(domain) + "@" + std::string(server);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '/' || c == '\0'; }, '_');
   for (const auto& [variable, below] :
        {std::pair("XDG_STATE_HOME", ""), std::pair("HOME", ".local/state")}) {
     const char* value = std::getenv(variable);
     if (value && fs::path(value).is_absolute())  // the XDG specification ignores relative ones
-      return fs::path(value) / below / "kinship" / "outbox";
+      return fs::path(value) / below / "kinship" / "outbox" / name;
   }
   throw Failure(ErrorCode::InvalidInput,
                 "outbox: neither XDG_STATE_HOME nor HOME is an absolute path; name a folder");

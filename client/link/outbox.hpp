@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,19 +9,22 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship::link {
 
 /// Reports of a client on disk, one file each, named by report UUID:
 /// `pending/` until the server's receipt, then `sent/` for seven days or `rejected/` for good.
+/// Beside them `robots/`: what to register their robots with.
 ///
 /// Processes may share one: anybody adds, whoever holds the SenderLock moves. Methods throw
 /// Failure(Storage) naming the file. May be shared between threads.
 class Outbox {
  public:
-  /// Makes the folders if they are missing.
+  /// Makes the folders if they are missing, durably.
   explicit Outbox(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const noexcept { return folder_; }
@@ -36,6 +40,12 @@ class Outbox {
 
   void mark_sent(const Uuid& report_uuid);
   void reject(const Uuid& report_uuid, std::string_view reason);  ///< reason: <uuid>.reason.txt
+
+  void keep_robot(const Digest& robot, const RobotDescription& description);  ///< durably
+
+  /// \return what keep_robot() was given last; NotFound if it never was, InvalidInput or TooLarge
+  ///         if its file is damaged.
+  Result<RobotDescription> robot(const Digest& robot) const;
 
   /// To be told the store epoch of every receipt. If it differs from the one remembered, the
   /// server's store was restored or replaced, and what was sent is pending again.
@@ -69,8 +79,9 @@ class SenderLock {
   int descriptor_;  // -1: moved from
 };
 
-/// $XDG_STATE_HOME/kinship/outbox, by default ~/.local/state/kinship/outbox.
+/// The outbox for one server: $XDG_STATE_HOME/kinship/outbox/domain-<domain>@<server>, by default
+/// below ~/.local/state. What cannot be in a file name is `_`.
 /// \throws Failure(InvalidInput) if neither XDG_STATE_HOME nor HOME is an absolute path.
-std::filesystem::path default_outbox_folder();
+std::filesystem::path default_outbox_folder(std::uint32_t domain, std::string_view server);
 
 }  // namespace kinship::link

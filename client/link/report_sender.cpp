@@ -1,7 +1,7 @@
 #include "client/link/report_sender.hpp"
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "proto/codec/report_codec.hpp"
@@ -16,14 +16,21 @@ constexpr std::chrono::milliseconds kRetry = 1s;      // after "try again" or wi
 constexpr std::chrono::milliseconds kIdle = 2s;       // another process may have added reports
 constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
+constexpr std::chrono::hours kPurge{1};
 constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process sends
 
-bool is_final(ReceiptStatus status) { return status != ReceiptStatus::TryAgain; }
+bool is_final(ReceiptStatus status) {
+  return status != ReceiptStatus::TryAgain && status != ReceiptStatus::UnknownRobot;
+}
 
 }  // namespace
 
-ReportSender::ReportSender(Outbox& outbox, Send send)
-    : outbox_(outbox), send_(std::move(send)), thread_([this] { run(); }) {}
+ReportSender::ReportSender(Outbox& outbox, Send send, Register register_robot, Now now)
+    : outbox_(outbox),
+      send_(std::move(send)),
+      register_robot_(std::move(register_robot)),
+      now_(std::move(now)),
+      thread_([this] { run(); }) {}
 
 ReportSender::~ReportSender() {
   {
@@ -38,6 +45,14 @@ void ReportSender::wake() {
   {
     const std::lock_guard lock(mutex_);
     is_woken_ = true;
+  }
+  changed_.notify_all();
+}
+
+void ReportSender::retry() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_retry_due_ = true;
   }
   changed_.notify_all();
 }
@@ -68,6 +83,7 @@ void ReportSender::run() {
     {
       const std::lock_guard guard(mutex_);
       is_woken_ = false;
+      is_retry_due_ = false;
     }
     std::chrono::milliseconds pause = kStorageRetry;
     try {
@@ -77,7 +93,9 @@ void ReportSender::run() {
     }
     changed_.notify_all();
     std::unique_lock guard(mutex_);
-    changed_.wait_for(guard, pause, [&] { return is_stopped_ || (is_woken_ && pause == kIdle); });
+    changed_.wait_for(guard, pause, [&] {
+      return is_stopped_ || is_retry_due_ || (is_woken_ && pause == kIdle);
+    });
   }
 }
 
@@ -87,21 +105,24 @@ std::chrono::milliseconds ReportSender::work(std::optional<SenderLock>& lock) {
     lock = SenderLock::try_acquire(outbox_.folder());
     if (!lock)
       return kLockRetry;
-    outbox_.purge();
   }
+  purge_now_and_then();
   return send_all_pending() ? kIdle : kRetry;
+}
+
+void ReportSender::purge_now_and_then() {
+  const std::chrono::steady_clock::time_point now = now_();
+  if (purged_ && now - *purged_ < kPurge)
+    return;
+  outbox_.purge();
+  purged_ = now;
 }
 
 /// \return false if something is left that should be tried again.
 bool ReportSender::send_all_pending() {
   ReportRequest batch;
   std::size_t bytes = 0;
-  const auto send_collected = [&] {
-    const bool is_done = batch.attempts.empty() || send_batch(batch);
-    batch.attempts.clear();
-    bytes = 0;
-    return is_done;
-  };
+  unknown_.clear();
   for (const Uuid& uuid : outbox_.pending()) {
     if (is_stopped())
       return false;
@@ -109,41 +130,98 @@ bool ReportSender::send_all_pending() {
     const auto error = attempt ? codec::check(*attempt) : attempt.error();
     if (error && error->code != ErrorCode::NotFound)
       apply({uuid, ReceiptStatus::Refused, error->message});
-    if (error)
+    if (error || unknown_.contains(attempt->robot))
       continue;
     const std::size_t size = codec::batch_bytes(*attempt);
-    if (batch.attempts.size() == kMaxAttemptsPerBatch || bytes + size > kMaxBatchBytes)
-      if (!send_collected())
+    if (batch.attempts.size() == kMaxAttemptsPerBatch || bytes + size > kMaxBatchBytes) {
+      if (!deliver(batch))
         return false;
+      bytes = 0;
+    }
     bytes += size;
     batch.attempts.push_back(std::move(attempt).value());
   }
-  return send_collected();
+  return deliver(batch) && unknown_.empty();
 }
 
-/// \return false if an attempt of the batch should be tried again.
-bool ReportSender::send_batch(const ReportRequest& batch) {
+/// Sends a batch, if need be once more after registering robots, and empties it. Reports of robots
+/// that stay unknown do not hold up others.
+/// \return false if nothing more should be sent in this round.
+bool ReportSender::deliver(ReportRequest& batch) {
+  bool gets_on = send_batch(batch);
+  if (gets_on && register_robots(batch))
+    gets_on = send_batch(batch);
+  for (const Attempt& attempt : batch.attempts)
+    unknown_.insert(attempt.robot);
+  batch.attempts.clear();
+  return gets_on;
+}
+
+/// Leaves those attempts in the batch whose robots the server does not know.
+/// \return false if another attempt of the batch should be tried again.
+bool ReportSender::send_batch(ReportRequest& batch) {
+  if (batch.attempts.empty())
+    return true;
   const Result<ReportReply> reply = send_(batch);
   if (!reply) {
     report_problem(reply.error().message);
     return false;
   }
-  std::set<Uuid> open;
-  for (const Attempt& attempt : batch.attempts)
-    open.insert(attempt.report_uuid);
-  if (!reply->receipts.empty())
-    outbox_.note_store_epoch(reply->store_epoch);
+  std::map<Uuid, const Receipt*> receipts;  // no entry: none, or try again
   std::string problem;
   for (const Receipt& receipt : reply->receipts) {
     if (!is_final(receipt.status))
       problem = receipt.message;
-    else if (open.erase(receipt.report_uuid) == 1)
-      apply(receipt);
+    if (receipt.status != ReceiptStatus::TryAgain)
+      receipts.emplace(receipt.report_uuid, &receipt);
   }
-  if (!open.empty() && problem.empty())
-    problem = "the server gave no receipt for " + std::to_string(open.size()) + " reports";
-  report_problem(open.empty() ? "" : problem);
-  return open.empty();
+  const auto open = std::count_if(
+      batch.attempts.begin(), batch.attempts.end(),
+      [&](const Attempt& attempt) { return !receipts.contains(attempt.report_uuid); });
+  if (open > 0 && problem.empty())
+    problem = "the server gave no receipt for " + std::to_string(open) + " reports";
+  if (!problem.empty() || unknown_.empty())
+    report_problem(problem);  // before the last report leaves the outbox, which people wait for
+
+  if (!reply->receipts.empty())
+    outbox_.note_store_epoch(reply->store_epoch);
+  std::vector<Attempt> of_unknown_robots;
+  for (Attempt& attempt : batch.attempts) {
+    const auto found = receipts.find(attempt.report_uuid);
+    if (found == receipts.end())
+      continue;
+    if (found->second->status == ReceiptStatus::UnknownRobot)
+      of_unknown_robots.push_back(std::move(attempt));
+    else
+      apply(*found->second);
+  }
+  batch.attempts = std::move(of_unknown_robots);
+  return open == 0;
+}
+
+/// Registers the robots of a batch as the outbox describes them.
+/// \return true if the server knows one now.
+bool ReportSender::register_robots(const ReportRequest& batch) {
+  std::set<Digest> robots;
+  for (const Attempt& attempt : batch.attempts)
+    robots.insert(attempt.robot);
+  if (!register_robot_)
+    return false;
+  bool is_registered = false;
+  for (const Digest& robot : robots) {
+    const Result<RobotDescription> description = outbox_.robot(robot);
+    if (!description) {
+      report_problem(description.error().message);
+      continue;
+    }
+    const Result<RegisterReply> reply = register_robot_(*description);
+    if (!reply || reply->status == RegisterStatus::Refused)
+      report_problem("robot '" + description->label + "' (" + robot.short_hex() +
+                     ") not registered: " + (reply ? reply->message : reply.error().message));
+    else
+      is_registered = true;
+  }
+  return is_registered;
 }
 
 void ReportSender::apply(const Receipt& receipt) {

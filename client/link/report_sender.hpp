@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,19 +24,28 @@ class ReportSender {
   /// Hands a batch to the server and waits for its receipts, for a bounded time.
   using Send = std::function<Result<ReportReply>(const ReportRequest&)>;
 
+  /// Registers a robot, for a bounded time.
+  using Register = std::function<Result<RegisterReply>(const RobotDescription&)>;
+  using Now = std::function<std::chrono::steady_clock::time_point()>;
+
   struct Counts {
     std::size_t accepted = 0;  ///< receipts stored, duplicate or recorded
     std::size_t refused = 0;   ///< refused by the server or unreadable on disk
     std::string problem;       ///< why it does not get on; empty: nothing known
   };
 
-  /// \param outbox  must outlive the sender.
-  ReportSender(Outbox& outbox, Send send);
-  ~ReportSender();  ///< waits for the batch under way; `send` should be made to end before
+  /// \param outbox          must outlive the sender.
+  /// \param register_robot  called on the sender's thread for robots that the server does not know
+  ///                        and the outbox has a description of; empty: they wait.
+  /// \param now             the time by which `sent/` is purged.
+  ReportSender(Outbox& outbox, Send send, Register register_robot = {},
+               Now now = std::chrono::steady_clock::now);
+  ~ReportSender();  ///< waits for the call under way, which should be made to end before
   ReportSender(const ReportSender&) = delete;
   ReportSender& operator=(const ReportSender&) = delete;
 
-  void wake();  ///< there is something new in the outbox
+  void wake();   ///< there is something new in the outbox
+  void retry();  ///< also what has to wait: something has changed at the server
   Counts counts() const;
 
   /// Waits until nothing is pending, also if another process sends, or the time has come.
@@ -43,18 +54,26 @@ class ReportSender {
  private:
   void run();
   std::chrono::milliseconds work(std::optional<SenderLock>& lock);
+  void purge_now_and_then();
   bool send_all_pending();
-  bool send_batch(const ReportRequest& batch);
+  bool deliver(ReportRequest& batch);
+  bool send_batch(ReportRequest& batch);
+  bool register_robots(const ReportRequest& batch);
   void apply(const Receipt& receipt);
   void report_problem(const std::string& problem);
   bool is_stopped() const;
 
   Outbox& outbox_;
-  Send send_;
+  const Send send_;
+  const Register register_robot_;
+  const Now now_;
+  std::optional<std::chrono::steady_clock::time_point> purged_;  // of the thread alone
+  std::set<Digest> unknown_;  // of the thread alone: robots whose reports wait for the next round
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   Counts counts_;
   bool is_woken_ = false;
+  bool is_retry_due_ = false;
   bool is_stopped_ = false;
   std::thread thread_;  // last: uses the others
 };

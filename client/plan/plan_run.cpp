@@ -88,10 +88,10 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
       complete = false;
       break;
     }
-    write_result(planned.result, streams.results);
-    progress.add(planned.result);
     if (options.report && planned.attempted)
       server.report([&] { return make_attempt(reporter, problem, planned, options.settings); });
+    write_result(planned.result, streams.results);  // after: what has a result is in the outbox
+    progress.add(planned.result);
   }
   progress.finish();
   server.finish();

@@ -23,6 +23,7 @@ ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& descr
     return;
   link::ClientOptions client;
   client.domain = options_.domain;
+  client.has_outbox = options_.report;  // who only looks delivers nothing
   client.outbox = options_.outbox;
   client.timeout = options_.timeout;
   try {

@@ -206,7 +206,7 @@ Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
   for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
     Receipt receipt;
     receipt.report_uuid = read_uuid(entry.report_uuid);
-    receipt.status = reader.enumerator("status", entry.status, ReceiptStatus::TryAgain);
+    receipt.status = reader.enumerator("status", entry.status, ReceiptStatus::UnknownRobot);
     receipt.message = reader.text("message", entry.message, kMaxMessageBytes);
     reader.rules.text("message", receipt.message, kMaxMessageBytes);
     reply.receipts.push_back(std::move(receipt));

@@ -26,13 +26,14 @@ struct RegisterReply {
   std::string message;  ///< why Refused
 };
 
-enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain };
+enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
 
-/// The server's answer to one attempt. Anything but TryAgain follows a durable commit or is final.
+/// The server's answer to one attempt. Stored, Duplicate and Recorded follow a durable commit;
+/// Refused is final; after TryAgain, or UnknownRobot once the robot is registered, send it again.
 struct Receipt {
   Uuid report_uuid;
   ReceiptStatus status = ReceiptStatus::TryAgain;
-  std::string message;  ///< why Refused or TryAgain
+  std::string message;  ///< why Refused, TryAgain or UnknownRobot
 };
 
 /// A batch of attempts.

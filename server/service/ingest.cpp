@@ -87,7 +87,11 @@ void Ingest::check(Batch& batch) {
     const std::optional<Error> error =
         robot ? check_attempt(attempt, *robot.value()) : robot.error();
     if (error) {
-      batch.receipts[i] = {attempt.report_uuid, ReceiptStatus::Refused, error->message};
+      // A robot may be registered later: its reports are not refused for good.
+      const bool is_unknown = !robot && error->code == ErrorCode::NotFound;
+      batch.receipts[i] = {attempt.report_uuid,
+                           is_unknown ? ReceiptStatus::UnknownRobot : ReceiptStatus::Refused,
+                           error->message};
     } else {
       batch.accepted.push_back(i);
     }

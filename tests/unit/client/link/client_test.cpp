@@ -10,6 +10,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
+#include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::link {
@@ -160,6 +161,25 @@ TEST_F(ClientTest, WithoutAServerEverythingEndsInTime) {
   EXPECT_EQ(client.register_robot(test::RandomValues(kSeed).robot_description()).error().code,
             ErrorCode::Unavailable);
   EXPECT_LT(Clock::now() - start, 3s);
+}
+
+TEST_F(ClientTest, DescriptionOfARobotIsKeptAlsoWithoutAServer) {
+  Client client(options(139, 50ms));
+  EXPECT_FALSE(client.register_robot(test::model_description("panda")));
+  const std::string digest = test::model_chain("panda").digest().hex();
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "robots" / (digest + ".json")));
+}
+
+TEST_F(ClientTest, ClientWithoutOutboxTouchesNoneAndCannotReport) {
+  Server server(140, [](const auto&) { return status(FetchStatus::NoExperience); });
+  ClientOptions looks = options(140);
+  looks.outbox = folder.path() / "untouched";
+  looks.has_outbox = false;
+  Client client(looks);
+  EXPECT_TRUE(client.fetch(request(10s)));
+  EXPECT_THROW(client.report(test::RandomValues(kSeed).attempt()), std::logic_error);
+  EXPECT_EQ(client.flush(10s).pending, 0U);
+  EXPECT_FALSE(std::filesystem::exists(looks.outbox));
 }
 
 TEST_F(ClientTest, TwoClientsMayShareAnOutbox) {

@@ -160,6 +160,21 @@ TEST_F(OutboxTest, ChangedStoreEpochOffersSentReportsAgain) {
   EXPECT_EQ(outbox.pending(), std::vector{attempt.report_uuid});
 }
 
+TEST_F(OutboxTest, KeepsTheLatestDescriptionOfARobot) {
+  const Digest robot = values.digest();
+  EXPECT_EQ(outbox.robot(robot).error().code, ErrorCode::NotFound);
+  RobotDescription description = values.robot_description();
+  outbox.keep_robot(robot, description);
+  description.label = "renamed";
+  outbox.keep_robot(robot, description);
+  const RobotDescription kept = Outbox(folder.path()).robot(robot).value_or_throw();
+  EXPECT_EQ(kept.label, "renamed");
+  EXPECT_EQ(kept.urdf, description.urdf);
+  write_text(folder.path() / "robots" / (robot.hex() + ".json"), "{\"label\":");
+  EXPECT_NE(outbox.robot(robot).error().message.find(robot.hex() + ".json: damaged file: "),
+            std::string::npos);
+}
+
 TEST_F(OutboxTest, OneHolderOfTheSenderLockAtATime) {
   auto lock = SenderLock::try_acquire(folder.path());
   ASSERT_TRUE(lock);
@@ -213,12 +228,12 @@ TEST_F(OutboxTest, MissingFolderIsReportedByName) {
 TEST(DefaultOutboxFolder, FollowsTheXdgSpecification) {
   setenv("HOME", "/home/u", 1);
   setenv("XDG_STATE_HOME", "/state", 1);
-  EXPECT_EQ(default_outbox_folder(), "/state/kinship/outbox");
+  EXPECT_EQ(default_outbox_folder(0, "127.0.0.1"), "/state/kinship/outbox/domain-0@127.0.0.1");
   setenv("XDG_STATE_HOME", "relative", 1);
-  EXPECT_EQ(default_outbox_folder(), "/home/u/.local/state/kinship/outbox");
+  EXPECT_EQ(default_outbox_folder(7, "a/b"), "/home/u/.local/state/kinship/outbox/domain-7@a_b");
   unsetenv("XDG_STATE_HOME");
   unsetenv("HOME");
-  EXPECT_THROW(default_outbox_folder(), Failure);
+  EXPECT_THROW(default_outbox_folder(0, "127.0.0.1"), Failure);
 }
 
 }  // namespace

@@ -183,6 +183,29 @@ TEST_F(ReportSenderTest, RestoredStoreGetsEverythingAgain) {
   EXPECT_EQ(sent, 3);
 }
 
+TEST_F(ReportSenderTest, SentReportsArePurgedOnceAnHourWhileItRuns) {
+  const auto start = std::chrono::steady_clock::now();
+  std::atomic<int> minutes = 0;
+  ReportSender sender(
+      outbox, [](const ReportRequest& batch) { return answer(batch, ReceiptStatus::Stored); }, {},
+      [&] { return start + std::chrono::minutes(minutes); });
+  // The round that sends a new report has purged before.
+  const auto is_kept_at = [&](const Uuid& uuid, int minute) {
+    minutes = minute;
+    add();
+    sender.wake();
+    sender.wait_until_empty(in(10s));
+    return std::filesystem::exists(folder.path() / "sent" / (uuid.text() + ".json"));
+  };
+  const Uuid old = add().report_uuid;
+  ASSERT_TRUE(is_kept_at(old, 0));
+  const auto file = folder.path() / "sent" / (old.text() + ".json");
+  std::filesystem::last_write_time(
+      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 8));
+  EXPECT_TRUE(is_kept_at(old, 59));
+  EXPECT_FALSE(is_kept_at(old, 60));
+}
+
 TEST_F(ReportSenderTest, SecondSenderOfAnOutboxLeavesItToTheFirst) {
   std::atomic<int> calls_of_second = 0;
   std::promise<void> first_is_sending;

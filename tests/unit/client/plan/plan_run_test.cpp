@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proto/json/problem_json.hpp"
@@ -108,6 +110,19 @@ TEST_F(PlanRun, AMissingRobotIsNamed) {
   }
 }
 
+/// Text that is looked at whenever it is flushed.
+class WatchedText : public std::stringbuf {
+ public:
+  explicit WatchedText(std::function<void()> look) : look_(std::move(look)) {}
+
+ private:
+  int sync() override {
+    look_();
+    return 0;
+  }
+  std::function<void()> look_;
+};
+
 /// With a client, on a domain where nobody answers.
 class PlanRunWithoutServer : public PlanRun {
  protected:
@@ -153,8 +168,29 @@ TEST_F(PlanRunWithoutServer, AnOutboxThatCannotBeMadeFailsRequiredGuidance) {
   std::ofstream(folder_ / "file") << "not a folder";
   options_.outbox = folder_ / "file" / "outbox";
   options_.guidance = GuidanceMode::Require;
+  options_.report = true;
   EXPECT_EQ(run(line("a")), kFailed);
   EXPECT_TRUE(results_.empty());
+}
+
+TEST_F(PlanRunWithoutServer, ReportIsInTheOutboxBeforeItsResultIsWritten) {
+  options_.guidance = GuidanceMode::None;
+  options_.report = true;
+  std::vector<std::ptrdiff_t> reports;  // in the outbox, at each result
+  WatchedText text([&] {
+    reports.push_back(
+        std::distance(std::filesystem::directory_iterator(options_.outbox / "pending"), {}));
+  });
+  std::istringstream input(line("a") + line("b"));
+  std::ostream output(&text);
+  EXPECT_EQ(run_plan(options_, {input, output, messages_, false}, never), kDone);
+  EXPECT_EQ(reports, (std::vector<std::ptrdiff_t>{1, 2}));
+}
+
+TEST_F(PlanRunWithoutServer, WithoutReportingNoOutboxIsOpened) {
+  options_.guidance = GuidanceMode::Auto;
+  EXPECT_EQ(run(line("a")), kDone);
+  EXPECT_FALSE(std::filesystem::exists(options_.outbox));
 }
 
 }  // namespace

@@ -1,0 +1,78 @@
+// What is synced to disk, seen at the call of the system: fsync() of this program is the one below.
+
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+
+#include "client/link/durable_file.hpp"
+#include "client/link/outbox.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace {
+
+std::mutex mutex;
+std::set<std::filesystem::path> synced;  // guarded by mutex
+
+}  // namespace
+
+extern "C" int fsync(int descriptor) {
+  std::error_code error;
+  const auto path =
+      std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor), error);
+  const std::lock_guard lock(mutex);
+  synced.insert(path);
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
+
+namespace kinship::link {
+namespace {
+
+class DurableFolder : public testing::Test {
+ protected:
+  DurableFolder() { forget(); }
+  static void forget() {
+    const std::lock_guard lock(mutex);
+    synced.clear();
+  }
+  static bool is_synced(const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex);
+    return synced.contains(path);
+  }
+  test::TemporaryDirectory directory;
+  const std::filesystem::path folder = std::filesystem::canonical(directory.path());
+};
+
+TEST_F(DurableFolder, EveryFolderThatGotANewOneIsSynced) {
+  const Outbox outbox(folder / "state" / "kinship" / "outbox");
+  EXPECT_TRUE(is_synced(folder));
+  EXPECT_TRUE(is_synced(folder / "state"));
+  EXPECT_TRUE(is_synced(folder / "state" / "kinship"));
+  EXPECT_TRUE(is_synced(folder / "state" / "kinship" / "outbox"));
+}
+
+TEST_F(DurableFolder, FoldersThatAreThereAreLeftAlone) {
+  make_folder_durably(folder / "a");
+  forget();
+  make_folder_durably(folder / "a" / "");
+  make_folder_durably(folder / "a");
+  EXPECT_FALSE(is_synced(folder));
+}
+
+TEST_F(DurableFolder, FileInTheWayIsNamed) {
+  write_durably(folder / "file", "");
+  try {
+    make_folder_durably(folder / "file" / "a");
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Storage);
+    EXPECT_NE(std::string(failure.what()).find("file"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace kinship::link
