@@ -59,17 +59,18 @@ Error not_found(const std::string& what, const std::string& name) {
   return {ErrorCode::NotFound, "no " + what + " '" + name + "'"};
 }
 
+bool is_hexadecimal(std::string_view text) {
+  return !text.empty() &&
+         text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
+
 /// \return lower-case digits, or empty if `text` is no prefix of a digest.
 std::string digest_prefix(std::string_view text) {
-  if (text.size() < kLeastPrefix || text.size() > kDigestDigits)
+  if (text.size() < kLeastPrefix || text.size() > kDigestDigits || !is_hexadecimal(text))
     return {};
   std::string prefix;
-  for (const char c : text) {
-    const char lower = c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (!((lower >= '0' && lower <= '9') || (lower >= 'a' && lower <= 'f')))
-      return {};
-    prefix += lower;
-  }
+  for (const char c : text)
+    prefix += c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
   return prefix;
 }
 
@@ -179,6 +180,10 @@ Result<store::RobotRecord> Administration::find_robot(const std::string& name) c
   const std::string prefix = digest_prefix(name);
   if (!prefix.empty())
     std::erase_if(robots, [&](const auto& robot) { return !begins_with(robot.digest, prefix); });
+  if (prefix.empty() && name.size() < kLeastPrefix && is_hexadecimal(name))
+    return Error{ErrorCode::NotFound, not_found("robot", name).message +
+                                          "; a prefix of a digest needs at least " +
+                                          std::to_string(kLeastPrefix) + " digits"};
   if (prefix.empty() || robots.empty())
     return not_found("robot", name);
   if (robots.size() == 1)

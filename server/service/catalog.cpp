@@ -16,6 +16,8 @@ namespace {
 using Stage = Flight::Stage;
 using Priority = WorkerPool::Priority;
 
+constexpr std::chrono::milliseconds kLookRetry(50);  // after the desk had no room
+
 /// Whether a fit could say more than this distribution: a mixture grows old by growth, a failure
 /// by any change.
 bool is_behind(const Distribution& distribution,
@@ -108,7 +110,13 @@ bool Catalog::begin_look(const Digest& id, Flight& flight) {
   if (!parts_.desk.submit(Priority::Interactive, {.run = [this, id] { look(id); }, .abandon = {}}))
     return false;
   flight.stage = Stage::Looking;
+  flight.look_due.reset();
   return true;
+}
+
+void Catalog::look_soon(const Digest& id, Flight& flight) {
+  if (!begin_look(id, flight))
+    flight.look_due = parts_.clock.now() + kLookRetry;
 }
 
 bool Catalog::begin_fit(const Digest& id, Flight& flight, Priority priority) {
@@ -136,10 +144,7 @@ void Catalog::look(const Digest& id) {
   try {
     const Result<RobotRegistry::RobotPointer> robot = parts_.robots.find(key.robot);
     if (!robot)
-      return end_flight(id, without_distribution(robot.error().code == ErrorCode::NotFound
-                                                     ? FetchStatus::UnknownRobot
-                                                     : FetchStatus::Refused,
-                                                 robot.error().message));
+      return end_flight(id, without(robot.error()));
     if (!known)
       if (std::optional<Distribution> stored = parts_.store.find_distribution(id))
         known = with_distribution(std::move(*stored));
@@ -149,6 +154,17 @@ void Catalog::look(const Digest& id) {
     settle(id, known, experience, changes);
   } catch (const std::exception& exception) {
     end_flight(id, busy(exception.what()));
+  }
+}
+
+FetchReply Catalog::without(const Error& robot_error) const {
+  switch (robot_error.code) {
+    case ErrorCode::NotFound:
+      return without_distribution(FetchStatus::UnknownRobot, robot_error.message);
+    case ErrorCode::Storage:
+      return busy(robot_error.message);
+    default:
+      return without_distribution(FetchStatus::Refused, robot_error.message);
   }
 }
 
@@ -196,7 +212,7 @@ void Catalog::rest(Flights::iterator flight, std::uint64_t changes) {
   }
   flight->second.stage = Stage::Idle;
   if (changes_of(flight->second.key().task) != changes)
-    begin_look(flight->first, flight->second);
+    look_soon(flight->first, flight->second);
 }
 
 void Catalog::run_fit(const Digest& id) {
@@ -213,15 +229,32 @@ void Catalog::run_fit(const Digest& id) {
     changes = changes_of(key.task);
   }
   try {
-    FitOutcome outcome = options_.fit(key, stop_source_.get_token());
+    FitOutcome outcome = try_fit(key);
     if (outcome.kind == FitOutcome::Kind::Abandoned)
       return end_flight(id, busy("the server is stopping"));
     if (outcome.kind == FitOutcome::Kind::NoExperience)
       return end_flight(id, no_experience(key.task));
     land(id, keep(std::move(outcome.distribution).value()), changes);
-  } catch (const std::exception& exception) {
+  } catch (const std::exception& exception) {  // the store cannot be read
     end_flight(id, busy(exception.what()));
   }
+}
+
+FitOutcome Catalog::try_fit(const DistributionKey& key) const {
+  std::string reason;
+  try {
+    return options_.fit(key, stop_source_.get_token());
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
+      throw;  // the next attempt may find it well again
+    reason = failure.what();
+  } catch (const std::exception& exception) {
+    reason = exception.what();
+  }
+  return {FitOutcome::Kind::Fitted,
+          failed_distribution(
+              key, {.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock},
+              "the fit ended: " + reason)};
 }
 
 SharedReply Catalog::keep(Distribution distribution) {
@@ -271,10 +304,15 @@ void Catalog::end_flight(const Digest& id, const FetchReply& reply) {
 std::optional<Catalog::TimePoint> Catalog::next_deadline() const {
   const std::lock_guard lock(mutex_);
   std::optional<TimePoint> next;
-  for (const auto& [id, flight] : flights_)
+  const auto consider = [&next](const std::optional<TimePoint>& time) {
+    if (time && (!next || *time < *next))
+      next = time;
+  };
+  for (const auto& [id, flight] : flights_) {
+    consider(flight.look_due);
     for (const Waiter& waiter : flight.waiters())
-      if (waiter.deadline && (!next || *waiter.deadline < *next))
-        next = waiter.deadline;
+      consider(waiter.deadline);
+  }
   return next;
 }
 
@@ -288,6 +326,9 @@ void Catalog::expire(TimePoint now) {
     std::erase_if(flights_, [](const auto& entry) {
       return entry.second.stage == Stage::Idle && entry.second.waiters().empty();
     });
+    for (auto& [id, flight] : flights_)
+      if (flight.look_due && *flight.look_due <= now)
+        look_soon(id, flight);
   }
   give(answers);
 }
@@ -297,7 +338,7 @@ void Catalog::new_experience(std::string_view task) {
   ++changes_[std::string(task)];
   for (auto& [id, flight] : flights_)
     if (flight.stage == Stage::Idle && flight.key().task == task)
-      begin_look(id, flight);
+      look_soon(id, flight);
 }
 
 void Catalog::stop() {

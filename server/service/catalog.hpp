@@ -59,7 +59,8 @@ class Catalog {
   /// When expire() has something to do next; empty: not before the next fetch.
   std::optional<TimePoint> next_deadline() const;
 
-  /// Tells those Pending whose deadline has passed. Their fit goes on.
+  /// Tells those Pending whose deadline has passed; their fit goes on. Looks again where there was
+  /// no room on the desk for it.
   void expire(TimePoint now);
 
   /// There are new paths of a task.
@@ -78,6 +79,9 @@ class Catalog {
   // On workers, without the lock.
   void look(const Digest& id);
   void run_fit(const Digest& id);
+  /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
+  /// \throws Failure(Storage or Unavailable), which may pass.
+  FitOutcome try_fit(const DistributionKey& key) const;
   SharedReply keep(Distribution distribution);
   void settle(const Digest& id, const SharedReply& known,
               const std::vector<store::ExperienceSummary>& experience, std::uint64_t changes);
@@ -89,11 +93,13 @@ class Catalog {
   SharedReply join(const Digest& id, const DistributionKey& key, Waiter waiter);
   void refresh(const Digest& id, const DistributionKey& key);
   bool begin_look(const Digest& id, Flight& flight);
+  void look_soon(const Digest& id, Flight& flight);
   bool begin_fit(const Digest& id, Flight& flight, WorkerPool::Priority priority);
   void rest(Flights::iterator flight, std::uint64_t changes);
   std::uint64_t changes_of(const std::string& task) const;
   std::size_t waiter_count() const;
   FetchReply busy(const std::string& message) const;
+  FetchReply without(const Error& robot_error) const;
 
   const Parts parts_;
   const Options options_;

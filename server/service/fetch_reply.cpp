@@ -2,12 +2,15 @@
 
 #include <utility>
 
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+
 namespace kinship::service {
 
-FetchReply without_distribution(FetchStatus status, std::string message) {
+FetchReply without_distribution(FetchStatus status, const std::string& message) {
   FetchReply reply;
   reply.status = status;
-  reply.message = std::move(message);
+  reply.message = cut_text(message, kMaxMessageBytes);
   return reply;
 }
 

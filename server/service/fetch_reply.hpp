@@ -8,7 +8,7 @@
 namespace kinship::service {
 
 /// Pending, NoExperience, UnknownRobot, Busy or Refused, and why.
-FetchReply without_distribution(FetchStatus status, std::string message);
+FetchReply without_distribution(FetchStatus status, const std::string& message);
 
 FetchReply no_experience(const std::string& task);
 

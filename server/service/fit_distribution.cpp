@@ -54,6 +54,32 @@ Eigen::Isometry3d T_target_source(const std::optional<Eigen::Isometry3d>& T_task
   return target.inverse(Eigen::Isometry) * source;
 }
 
+/// What a distribution says of itself before its fit.
+Distribution begun(const DistributionKey& key, const FitContext& context,
+                   const kinematics::Chain& target) {
+  Distribution distribution;
+  distribution.id = identify(key);
+  distribution.store_epoch = context.store.epoch();
+  distribution.task = key.task;
+  distribution.robot = key.robot;
+  distribution.T_task_base = key.T_task_base;
+  distribution.profile = key.profile.name;
+  distribution.engines = engines();
+  distribution.limits.resize(2, target.dof());
+  distribution.limits.row(0) = target.lower().transpose();
+  distribution.limits.row(1) = target.upper().transpose();
+  return distribution;
+}
+
+Source source_of(const store::ExperienceSummary& experience) {
+  Source source;
+  source.robot = experience.robot;
+  source.label = experience.robot.short_hex();
+  source.paths = experience.paths;
+  source.generation = experience.generation;
+  return source;
+}
+
 /// One fit on its way.
 class Fit {
  public:
@@ -105,19 +131,9 @@ FitOutcome Fit::run() {
   if (stop_.stop_requested())
     return {FitOutcome::Kind::Abandoned, std::nullopt};
 
-  Distribution distribution;
-  distribution.id = identify(key_);
-  distribution.store_epoch = context_.store.epoch();
-  distribution.task = key_.task;
-  distribution.robot = key_.robot;
-  distribution.T_task_base = key_.T_task_base;
-  distribution.profile = key_.profile.name;
-  distribution.engines = engines();
+  Distribution distribution = begun(key_, context_, target_->chain);
   for (const SourceSummary& summary : sources_)
     distribution.sources.push_back(summary.source);
-  distribution.limits.resize(2, target_->chain.dof());
-  distribution.limits.row(0) = target_->chain.lower().transpose();
-  distribution.limits.row(1) = target_->chain.upper().transpose();
   distribution.transfer_time_s = seconds_since(begin);
   fit(distribution);
   distribution.fitted_ms = context_.clock.unix_ms();
@@ -126,10 +142,7 @@ FitOutcome Fit::run() {
 
 void Fit::read_source(const store::ExperienceSummary& experience, std::uint64_t wanted) {
   SourceSummary summary;
-  summary.source.robot = experience.robot;
-  summary.source.paths = experience.paths;
-  summary.source.generation = experience.generation;
-  summary.source.label = experience.robot.short_hex();
+  summary.source = source_of(experience);
   const Result<RobotRegistry::RobotPointer> robot = context_.robots.find(experience.robot);
   if (robot) {
     summary.source.label = robot.value()->label;
@@ -261,6 +274,22 @@ std::string Fit::warnings() const {
 FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
                             const std::stop_token& stop) {
   return Fit(key, context, stop).run();
+}
+
+Distribution failed_distribution(const DistributionKey& key, const FitContext& context,
+                                 const std::string& reason) {
+  const RobotRegistry::RobotPointer target = context.robots.find(key.robot).value_or_throw();
+  Distribution distribution = begun(key, context, target->chain);
+  for (const store::ExperienceSummary& experience : context.store.experience(key.task)) {
+    distribution.sources.push_back(source_of(experience));
+    if (const Result<RobotRegistry::RobotPointer> robot = context.robots.find(experience.robot))
+      distribution.sources.back().label = robot.value()->label;
+  }
+  distribution.state = DistributionState::Failed;
+  distribution.reason = cut_text(reason, kMaxMessageBytes);
+  distribution.evidence = "no mixture";
+  distribution.fitted_ms = context.clock.unix_ms();
+  return distribution;
 }
 
 }  // namespace kinship::service

@@ -37,4 +37,10 @@ struct FitOutcome {
 FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
                             const std::stop_token& stop);
 
+/// The record of a fit that ended without one: Failed with this reason, cut to what a message may
+/// have, and with the experience of now as its sources.
+/// \throws Failure(NotFound or InvalidInput) for the target robot; Failure(Storage).
+Distribution failed_distribution(const DistributionKey& key, const FitContext& context,
+                                 const std::string& reason);
+
 }  // namespace kinship::service

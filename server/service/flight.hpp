@@ -50,6 +50,8 @@ class Flight {
   const DistributionKey& key() const noexcept { return key_; }
   Stage stage = Stage::Idle;
   bool urgent = false;  ///< while Queued: before the background jobs
+  /// While Idle: its experience changed, but the desk had no room; when to try again.
+  std::optional<std::chrono::steady_clock::time_point> look_due;
 
   /// A waiter that takes another's place keeps the earlier deadline of the two.
   void join(Waiter waiter);

@@ -65,11 +65,15 @@ bool Ingest::take_in(Batch& batch) {
 void Ingest::check_and_commit(const BatchPointer& batch) {
   try {
     check(*batch);
-  } catch (const std::exception& exception) {  // the store cannot be read
+    if (!batch->accepted.empty())
+      return commit(batch);
+  } catch (const std::exception& exception) {  // no memory, or the store is at its end
     return answer_try_again(*batch, exception.what());
   }
-  if (batch->accepted.empty())
-    return answer(*batch);
+  answer(*batch);
+}
+
+void Ingest::commit(const BatchPointer& batch) {
   std::vector<Attempt> good;
   good.reserve(batch->accepted.size());
   for (const std::size_t i : batch->accepted)
@@ -92,6 +96,12 @@ void Ingest::check(Batch& batch) {
       batch.receipts[i] = {attempt.report_uuid,
                            is_unknown ? ReceiptStatus::UnknownRobot : ReceiptStatus::Refused,
                            error->message};
+=======
+      batch.receipts[i] = {
+          attempt.report_uuid,
+          error->code == ErrorCode::Storage ? ReceiptStatus::TryAgain : ReceiptStatus::Refused,
+          error->message};
+>>>>>>> 421adf4 (service: damage and failures stay where they happen)
     } else {
       batch.accepted.push_back(i);
     }

@@ -55,6 +55,7 @@ class Ingest {
   bool take_in(Batch& batch);
   void check_and_commit(const BatchPointer& batch);
   void check(Batch& batch);
+  void commit(const BatchPointer& batch);
   void committed(Batch& batch, const std::vector<Receipt>& receipts);
   void answer(Batch& batch);
   void answer_try_again(Batch& batch, std::string_view message);

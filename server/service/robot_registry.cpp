@@ -51,7 +51,12 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
 Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
   if (RobotPointer known = find_in_memory(robot))
     return known;
-  const std::optional<store::RobotRecord> record = store_.find_robot(robot);
+  std::optional<store::RobotRecord> record;
+  try {
+    record = store_.find_robot(robot);
+  } catch (const Failure& failure) {  // one damaged row must not cost the other robots
+    return failure.error();
+  }
   if (!record)
     return Error{ErrorCode::NotFound,
                  "robot " + robot.short_hex() + " is not known here; register it first"};

@@ -40,8 +40,7 @@ class RobotRegistry {
 
   /// From memory, or read from the store and parsed.
   /// \return NotFound if the store has no such robot; InvalidInput if its description cannot be
-  ///         read any more.
-  /// \throws Failure(Storage)
+  ///         read any more; Storage if its row is damaged or the store cannot be read.
   Result<RobotPointer> find(const Digest& robot);
 
   /// From memory only; null if it is not there.

@@ -4,15 +4,26 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <string>
+#include <system_error>
 #include <utility>
+
+#include "proto/types/failure.hpp"
 
 namespace kinship::service {
 
 WorkerPool::WorkerPool(const Options& options)
     : queue_limit_(options.queue_limit), thread_count_(std::max<std::size_t>(options.threads, 1)) {
   threads_.reserve(thread_count_);
-  for (std::size_t i = 0; i < thread_count_; ++i)
-    threads_.emplace_back([this, niceness = options.niceness] { work(niceness); });
+  try {
+    for (std::size_t i = 0; i < thread_count_; ++i)
+      threads_.emplace_back([this, niceness = options.niceness] { work(niceness); });
+  } catch (const std::system_error& error) {
+    const std::string begun = std::to_string(threads_.size());
+    stop(Leftovers::Abandon);
+    throw Failure(ErrorCode::Internal, "only " + begun + " of " + std::to_string(thread_count_) +
+                                           " threads could be begun: " + error.what());
+  }
 }
 
 WorkerPool::~WorkerPool() { stop(Leftovers::Abandon); }

@@ -31,6 +31,7 @@ class WorkerPool {
   /// What stop() does with jobs that nobody has begun.
   enum class Leftovers { Run, Abandon };
 
+  /// \throws Failure(Internal) if the operating system has no room for that many threads.
   explicit WorkerPool(const Options& options);
   ~WorkerPool();  ///< stop(Leftovers::Abandon)
   WorkerPool(const WorkerPool&) = delete;

@@ -7,6 +7,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/service/fleet.hpp"
+#include "tests/unit/server/service/troubled_store.hpp"
 
 namespace kinship::service {
 namespace {
@@ -80,12 +81,10 @@ TEST_F(AdministrationTest, ARobotIsShownByLabelOrByDigestPrefix) {
   }
 }
 
-TEST_F(AdministrationTest, UnknownRobotsAndShortPrefixesAreNotFound) {
-  for (const std::string& name : {std::string("nobody"), teacher_.digest.hex().substr(0, 3)}) {
-    const AdminPage page = ask(AdminVerb::ShowRobot, name);
-    EXPECT_EQ(page.status, AdminStatus::NotFound);
-    EXPECT_EQ(page.message, "no robot '" + name + "'");
-  }
+TEST_F(AdministrationTest, UnknownRobotsAreNotFound) {
+  const AdminPage page = ask(AdminVerb::ShowRobot, "nobody");
+  EXPECT_EQ(page.status, AdminStatus::NotFound);
+  EXPECT_EQ(page.message, "no robot 'nobody'");
 }
 
 TEST_F(AdministrationTest, AnAmbiguousPrefixNamesTheCandidates) {
@@ -167,6 +166,26 @@ TEST_F(AdministrationTest, AForeignCursorIsRefused) {
   AdminRequest request = fleet::question(AdminVerb::ListPaths);
   request.cursor = "not a cursor";
   EXPECT_EQ(administration_.answer(request).status, AdminStatus::Refused);
+}
+
+TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
+  damage_robot(directory_ / "fleet.db", "pupil");
+  RobotRegistry cold(*store_);
+  Administration administration(*store_, cold, [] { return ServerStatus(); });
+  const AdminPage page = administration.answer(fleet::question(AdminVerb::ListRobots));
+  ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
+  ASSERT_EQ(page.rows.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& summary = row<RobotSummary>(page, i);
+    EXPECT_EQ(summary.solver == "multi-start Levenberg-Marquardt", summary.label == "teacher")
+        << summary.solver;
+  }
+}
+
+TEST_F(AdministrationTest, APrefixThatIsTooShortIsSaidToBe) {
+  const AdminPage page = ask(AdminVerb::ShowRobot, teacher_.digest.hex().substr(0, 3));
+  EXPECT_EQ(page.status, AdminStatus::NotFound);
+  EXPECT_NE(page.message.find("needs at least 4 digits"), std::string::npos) << page.message;
 }
 
 }  // namespace

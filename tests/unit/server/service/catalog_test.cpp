@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <thread>
 
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "server/service/freshness.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
+#include "tests/unit/server/service/troubled_store.hpp"
 
 namespace kinship::service {
 namespace {
@@ -297,6 +301,85 @@ TEST_F(CatalogTest, ManyClientsReportingAndFetchingAtOnceAllGetTheirAnswers) {
   for (std::thread& client : clients)
     client.join();
   EXPECT_EQ(ready, kClients * kRounds);
+}
+
+TEST_F(CatalogTest, ADamagedSourceIsLeftOutOfTheFitWhichSaysSo) {
+  teach(6);
+  report(fleet::solved(dwarf_, "shelf", 2, 50));
+  start();  // the fit's registry has nothing in memory
+  damage_robot(directory_ / "fleet.db", "dwarf");
+  const FetchReply reply = fetch(request_for(pupil_));
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_NE(reply.distribution->reason.find(dwarf_.digest.short_hex() + "': left out"),
+            std::string::npos)
+      << reply.distribution->reason;
+}
+
+TEST_F(CatalogTest, AFitThatThrowsIsAFailureWithItsReasonAndNotTriedForEver) {
+  teach(6);
+  gate_.set_trouble([] { throw std::length_error("too long"); });
+  const FetchReply reply = fetch(request_for(teacher_));
+  ASSERT_EQ(reply.status, FetchStatus::Failed) << reply.message;
+  EXPECT_EQ(reply.distribution->reason, "the fit ended: too long");
+  EXPECT_EQ(reply.distribution->revision, 1U);
+  ASSERT_EQ(reply.distribution->sources.size(), 1U);
+  EXPECT_EQ(reply.distribution->sources[0].label, "teacher");
+  advance(kRefitInterval);
+  EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Failed);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
+TEST_F(CatalogTest, AFitThatTheStoreEndedIsBusyAndTriedAgain) {
+  teach(6);
+  gate_.set_trouble([] { throw Failure(ErrorCode::Storage, "disk I/O error"); });
+  const FetchReply reply = fetch(request_for(teacher_));
+  EXPECT_EQ(reply.status, FetchStatus::Busy);
+  EXPECT_EQ(reply.message, "disk I/O error");
+  gate_.set_trouble({});
+  EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
+}
+
+TEST_F(CatalogTest, TheReasonOfAFailureIsCutBetweenCharacters) {
+  teach(6);
+  std::string words = "x";
+  while (words.size() < 2 * kMaxMessageBytes)
+    words += "\xE2\x82\xAC";
+  for (int shift = 0; shift < 3; ++shift, words.insert(0, "x")) {
+    gate_.set_trouble([words] { throw std::runtime_error(words); });
+    const FetchReply reply = fetch(elsewhere(request_for(teacher_), 0.1 * shift));
+    ASSERT_EQ(reply.status, FetchStatus::Failed);
+    EXPECT_FALSE(check_text("reason", reply.distribution->reason, kMaxMessageBytes));
+  }
+}
+
+TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
+  desk_queue_ = 2;
+  start();
+  teach(6);
+  fetch(request_for(teacher_));
+  std::future<FetchReply> early = begin_fetch(with_generation(request_for(teacher_), 2), "early");
+  wait_for_desk();
+
+  std::promise<void> begun, release, emptied;  // the desk is held, then full
+  service_->administer(fleet::question(AdminVerb::Status), [&](const AdminPage&) {
+    begun.set_value();
+    release.get_future().wait();
+  });
+  begun.get_future().wait();
+  service_->administer(fleet::question(AdminVerb::Status), [](const AdminPage&) {});
+  service_->administer(fleet::question(AdminVerb::Status),
+                       [&](const AdminPage&) { emptied.set_value(); });
+  teach(1, 100);  // its robot is in memory: no need of the desk
+  release.set_value();
+  emptied.get_future().wait();
+
+  const auto retry = service_->next_deadline();
+  ASSERT_TRUE(retry);
+  EXPECT_LT(*retry, clock_.now() + seconds(1));
+  service_->expire(*retry);
+  const FetchReply reply = early.get();
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->sources[0].generation, 2U);
 }
 
 }  // namespace

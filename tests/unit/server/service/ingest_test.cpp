@@ -9,6 +9,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/service/fleet.hpp"
+#include "tests/unit/server/service/troubled_store.hpp"
 
 namespace kinship::service {
 namespace {
@@ -135,6 +136,27 @@ TEST_F(IngestTest, DrainingAnswersWhatWasTakenInAndTakesInNothingMore) {
 }
 
 TEST_F(IngestTest, AnEmptyBatchIsAnsweredToo) { EXPECT_TRUE(submit({}).get().empty()); }
+
+TEST_F(IngestTest, ADamagedRobotCostsItsOwnAttemptsOnly) {
+  const Robot pupil = fleet::robot_of(fleet::pupil());
+  RobotRegistry(*store_).register_robot(fleet::pupil(), 2);  // not in the memory of the other one
+  damage_robot(directory_ / "fleet.db", "pupil");
+  const std::vector<Receipt> receipts =
+      submit({fleet::solved(pupil, "shelf", 1), fleet::solved(robot_, "shelf", 2)}).get();
+  EXPECT_EQ(statuses(receipts), (std::vector{ReceiptStatus::TryAgain, ReceiptStatus::Stored}));
+  EXPECT_NE(receipts[0].message, "");
+}
+
+TEST_F(IngestTest, WhatTheStoreCannotTakeIsAskedForAgainAndDrainingEnds) {
+  TroubledStore troubled(*store_);
+  Ingest ingest(troubled, registry_, desk_, {});
+  std::vector<Receipt> receipts;
+  ingest.submit({fleet::solved(robot_, "shelf", 1), fleet::unsolved(robot_.digest, "shelf")},
+                [&](const std::vector<Receipt>& answer) { receipts = answer; });
+  EXPECT_EQ(statuses(receipts), (std::vector{ReceiptStatus::TryAgain, ReceiptStatus::TryAgain}));
+  EXPECT_EQ(ingest.queued(), 0U);
+  ingest.drain();
+}
 
 }  // namespace
 }  // namespace kinship::service

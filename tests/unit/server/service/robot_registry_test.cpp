@@ -5,6 +5,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/service/fleet.hpp"
+#include "tests/unit/server/service/troubled_store.hpp"
 
 namespace kinship::service {
 namespace {
@@ -83,6 +84,14 @@ TEST_F(Registry, ADescriptionThatReadsAsAnotherRobotIsNotUsed) {
   const auto found = registry_.find(wrong);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::InvalidInput);
+}
+
+TEST_F(Registry, ADamagedRobotIsAnErrorOfTheStoreAndNoException) {
+  const Digest robot = RobotRegistry(*store_).register_robot(fleet::teacher(), 1).robot;
+  damage_robot(directory_ / "fleet.db", "teacher");
+  const auto found = registry_.find(robot);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::Storage);
 }
 
 }  // namespace

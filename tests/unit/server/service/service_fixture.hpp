@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <future>
 #include <limits>
 #include <memory>
@@ -25,6 +26,11 @@ class GatedFit {
   void close() { set_permits(0); }
   void open() { set_permits(kAlways); }
   void let_one_pass() { set_permits(1); }
+  /// Called by each fit before it begins; may throw.
+  void set_trouble(std::function<void()> trouble) {
+    const std::lock_guard lock(mutex_);
+    trouble_ = std::move(trouble);
+  }
   void wait_for_calls(int calls) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return calls_ >= calls; });
@@ -40,6 +46,8 @@ class GatedFit {
       ++calls_;
       changed_.notify_all();
       changed_.wait(lock, [this] { return permits_ > 0; });
+      if (trouble_)
+        trouble_();
       if (permits_ != kAlways)
         --permits_;
     }
@@ -59,6 +67,7 @@ class GatedFit {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   int permits_ = kAlways;
+  std::function<void()> trouble_;
   int calls_ = 0;
 };
 
@@ -84,6 +93,7 @@ class ServiceFixture : public testing::Test {
     options.version = "1.2.3";
     options.fit_threads = fit_threads_;
     options.fit_queue = fit_queue_;
+    options.desk_queue = desk_queue_;
     options.clock = clock_;
     options.fit = [this](const DistributionKey& key, const std::stop_token& stop) {
       return gate_(key, *context_, stop);
@@ -145,7 +155,7 @@ class ServiceFixture : public testing::Test {
             return std::chrono::steady_clock::time_point(std::chrono::milliseconds(time_ms_));
           },
       .unix_ms = [this] { return time_ms_.load(); }};
-  std::size_t fit_threads_ = 2, fit_queue_ = 64;
+  std::size_t fit_threads_ = 2, fit_queue_ = 64, desk_queue_ = 1024;
   GatedFit gate_;
   std::mutex log_mutex_;
   std::vector<std::string> log_;  // guarded by log_mutex_

@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "proto/types/failure.hpp"
+
 namespace kinship::service {
 namespace {
 
@@ -107,6 +109,26 @@ TEST(WorkerPool, ThreadsRunAtTheirNicenessAndTheOthersKeepTheirs) {
   EXPECT_EQ(niceness.get_future().get(), 7);
   EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before);
 }
+
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)  // they need the addresses
+/// The exit code of a process with room for a few threads that asks for many.
+int ask_for_too_many_threads() {
+  constexpr rlim_t kAddresses = rlim_t{256} << 20U;
+  const rlimit room{kAddresses, kAddresses};
+  if (setrlimit(RLIMIT_AS, &room) != 0)
+    return 1;
+  try {
+    const WorkerPool pool({.threads = 1000, .queue_limit = 1, .niceness = 0});
+  } catch (const Failure& failure) {
+    return std::string(failure.what()).find("of 1000 threads") == std::string::npos ? 2 : 0;
+  }
+  return 3;
+}
+
+TEST(WorkerPool, MoreThreadsThanThereIsRoomForAreAFailure) {
+  EXPECT_EXIT(_exit(ask_for_too_many_threads()), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace
 }  // namespace kinship::service
