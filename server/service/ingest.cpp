@@ -9,6 +9,17 @@
 #include "server/service/check_attempt.hpp"
 
 namespace kinship::service {
+namespace {
+
+/// A robot may be registered later, and a damaged one repaired: their reports are not refused for
+/// good.
+ReceiptStatus status_of(bool is_robot_there, const Error& error) {
+  if (!is_robot_there && error.code == ErrorCode::NotFound)
+    return ReceiptStatus::UnknownRobot;
+  return error.code == ErrorCode::Storage ? ReceiptStatus::TryAgain : ReceiptStatus::Refused;
+}
+
+}  // namespace
 
 /// A batch on its way. Shared by the callbacks of one submission, never used by two at a time.
 struct Ingest::Batch {
@@ -91,17 +102,8 @@ void Ingest::check(Batch& batch) {
     const std::optional<Error> error =
         robot ? check_attempt(attempt, *robot.value()) : robot.error();
     if (error) {
-      // A robot may be registered later: its reports are not refused for good.
-      const bool is_unknown = !robot && error->code == ErrorCode::NotFound;
-      batch.receipts[i] = {attempt.report_uuid,
-                           is_unknown ? ReceiptStatus::UnknownRobot : ReceiptStatus::Refused,
+      batch.receipts[i] = {attempt.report_uuid, status_of(robot.has_value(), *error),
                            error->message};
-=======
-      batch.receipts[i] = {
-          attempt.report_uuid,
-          error->code == ErrorCode::Storage ? ReceiptStatus::TryAgain : ReceiptStatus::Refused,
-          error->message};
->>>>>>> 421adf4 (service: damage and failures stay where they happen)
     } else {
       batch.accepted.push_back(i);
     }
