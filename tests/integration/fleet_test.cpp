@@ -118,14 +118,17 @@ TEST_F(Fleet, ReportsToAnAbsentServerArriveWhenItComesBackAlsoFromAClientThatEnd
   EXPECT_EQ(listed_paths(*client).size(), 5U);
 }
 
-TEST_F(Fleet, AnUnknownRobotsReportsAreRefusedAndNothingIsStored) {
+TEST_F(Fleet, AnUnknownRobotsReportsWaitUntilItIsRegistered) {
   start_server();
   const auto client = make_client();
   client->report(test::panda_attempt(test::model_chain("panda").digest(), "sweep", 1));
-  EXPECT_EQ(client->flush(seconds(30)).refused, 1U);
-  const ServerStatus status = status_of(*client);
-  EXPECT_EQ(status.attempts, 0U);
-  EXPECT_GE(status.reports_refused, 1U);  // again if the first reply was lost and it was resent
+  const auto waiting = client->flush(seconds(1));
+  EXPECT_EQ(waiting.refused, 0U);
+  EXPECT_EQ(waiting.pending, 1U);
+  EXPECT_EQ(status_of(*client).attempts, 0U);
+  register_model(*client, "panda");
+  EXPECT_EQ(client->flush(seconds(30)).accepted, 1U);
+  EXPECT_EQ(status_of(*client).attempts, 1U);
 }
 
 TEST_F(Fleet, EveryListIsTheSameInPages) {

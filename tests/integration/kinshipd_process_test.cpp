@@ -76,7 +76,8 @@ TEST_F(KinshipdProcess, WhatIsNoStoreIsRefused) {
   EXPECT_EQ(run({"--store", (directory_ / "notes.txt").string(), "--domain",
                  std::to_string(domain_.number())}),
             1);
-  EXPECT_NE(error_.find("not a database"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("notes.txt': is no SQLite database"), std::string::npos) << error_;
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "notes.txt.lock"));
 }
 
 TEST_F(KinshipdProcess, WrongUsageIsExitCodeTwoAndHelpIsZero) {

@@ -75,6 +75,8 @@ TEST(ProblemJson, WhatIsNotSupportedYetIsRefused) {
 
 TEST(ProblemJson, GoalIsEitherConfigurationsOrPose) {
   EXPECT_EQ(message_of(changed("\"configurations\"", "\"neither\"")),
+            "goal: has an unknown member 'neither'");
+  EXPECT_EQ(message_of(changed("[[1, 2], [3, 4]]", "null")),
             "goal: must have either configurations or pose");
   EXPECT_EQ(message_of(changed("\"goal\": {", R"("goal": {"pose": [0,0,0,0,0,0,1], )")),
             "goal: must have either configurations or pose");
