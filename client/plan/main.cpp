@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -31,6 +32,10 @@ int run(const kinship::plan::PlanOptions& options) {
   }
   std::ofstream result_file;
   if (!options.output.empty()) {
+    std::error_code ignored;  // there is no output file yet
+    if (std::filesystem::equivalent(options.problems, options.output, ignored))
+      throw kinship::Failure(kinship::ErrorCode::InvalidInput,
+                             "--output '" + options.output.string() + "' is the problem file");
     result_file.open(options.output);
     if (!result_file)
       throw kinship::Failure(kinship::ErrorCode::Storage,
