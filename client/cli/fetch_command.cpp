@@ -104,8 +104,8 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
   out << "made          " << time_text(distribution.fitted_ms) << ", transfer "
       << number_text(distribution.transfer_time_s, 2) << " s, fit "
       << number_text(distribution.fit_time_s, 2) << " s\n"
-      << "share         " << number_text(distribution.recommended_share, 2) << " recommended"
-      << (distribution.evidence.empty() ? "" : ": ") << distribution.evidence << '\n';
+      << "share         " << number_text(distribution.advice.recommended_share, 2) << " recommended"
+      << (distribution.advice.evidence.empty() ? "" : ": ") << distribution.advice.evidence << '\n';
   if (!distribution.reason.empty())
     out << "note          " << distribution.reason << '\n';
   out << '\n';

@@ -28,8 +28,8 @@ std::string describe(const Distribution& distribution, double share) {
             std::to_string(source.paths) + " paths)";
   }
   text += "; share " + share_text(share);
-  if (!distribution.evidence.empty())
-    text += " (" + distribution.evidence + ")";
+  if (!distribution.advice.evidence.empty())
+    text += " (" + distribution.advice.evidence + ")";
   if (!distribution.reason.empty())
     text += "; warning: " + distribution.reason;
   return text;
@@ -40,7 +40,7 @@ GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceWish&
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has no mixture over " + std::to_string(wish.dof) +
                                            " joints");
-  const double share = wish.share.value_or(distribution.recommended_share);
+  const double share = wish.share.value_or(distribution.advice.recommended_share);
   if (!(share >= 0 && share <= 1))
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " recommends share " + std::to_string(share) +

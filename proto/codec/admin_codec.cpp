@@ -11,6 +11,8 @@ std::optional<Error> check(const AdminReply& reply) {
   rules.at_most("rows", reply.rows.size(), kMaxPageRows)
       .text("next_cursor", reply.next_cursor, kMaxCursorBytes)
       .text("message", reply.message, kMaxMessageBytes);
+  rules.that(!reply.last_row_continues || (!reply.rows.empty() && !reply.next_cursor.empty()),
+             "last_row_continues: without a row or a next page");
   std::size_t bytes = 0;
   for (const std::string& row : reply.rows) {
     rules.text("row", row, kMaxPageBytes);
@@ -19,15 +21,21 @@ std::optional<Error> check(const AdminReply& reply) {
   return rules.at_most("rows (bytes)", bytes, kMaxPageBytes).broken();
 }
 
+std::size_t max_argument_bytes(AdminVerb verb) {
+  return verb == AdminVerb::Backup ? kMaxFileNameBytes : kMaxTaskBytes;
+}
+
 }  // namespace
 
 std::optional<Error> check(const AdminRequest& request) {
   return Rules()
-      .text("argument", request.argument, kMaxTaskBytes)
+      .text("argument", request.argument, max_argument_bytes(request.verb))
       .text("robot", request.robot, kMaxTaskBytes)
       .text("task", request.task, kMaxTaskBytes)
       .text("cursor", request.cursor, kMaxCursorBytes)
       .between("limit", request.limit, 1, kMaxPageRows)
+      .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0,
+               static_cast<double>(kMaxFetchDeadline_ms))
       .broken();
 }
 
@@ -43,18 +51,20 @@ Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminR
   wire.task = arena.text(request.task);
   wire.cursor = arena.text(request.cursor);
   wire.limit = request.limit;
+  wire.deadline_ms = static_cast<std::uint32_t>(request.deadline.count());
   return message;
 }
 
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   Reader reader;
   AdminRequest request;
-  request.verb = reader.enumerator("verb", wire.verb, AdminVerb::ShowDistribution);
-  request.argument = reader.text("argument", wire.argument, kMaxTaskBytes);
+  request.verb = reader.enumerator("verb", wire.verb, AdminVerb::JobRows);
+  request.argument = reader.text("argument", wire.argument, max_argument_bytes(request.verb));
   request.robot = reader.text("robot", wire.robot, kMaxTaskBytes);
   request.task = reader.text("task", wire.task, kMaxTaskBytes);
   request.cursor = reader.text("cursor", wire.cursor, kMaxCursorBytes);
   request.limit = wire.limit;
+  request.deadline = std::chrono::milliseconds(wire.deadline_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(request))
@@ -74,6 +84,7 @@ Result<Message<kinship_wire_AdminReply>> encode(const Head& head, const AdminRep
     wire.rows._buffer[i] = arena.text(reply.rows[i]);
   wire.next_cursor = arena.text(reply.next_cursor);
   wire.message = arena.text(reply.message);
+  wire.last_row_continues = reply.last_row_continues;
   return limited(std::move(message));
 }
 
@@ -88,6 +99,7 @@ Result<AdminReply> decode(const kinship_wire_AdminReply& wire) {
     reply.rows.push_back(reader.text("row", row, kMaxPageBytes));
   reply.next_cursor = reader.text("next_cursor", wire.next_cursor, kMaxCursorBytes);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
+  reply.last_row_continues = wire.last_row_continues;
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/selection_codec.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -76,15 +77,67 @@ void write_sources(const std::vector<Source>& sources, Arena& arena,
     entry.generation = sources[i].generation;
     entry.poses = sources[i].poses;
     entry.poses_solved = sources[i].poses_solved;
+    entry.relation = static_cast<std::uint32_t>(sources[i].relation);
+    entry.paths_used = sources[i].paths_used;
+    entry.out_of_reach = sources[i].out_of_reach;
+    entry.outside_limits = sources[i].outside_limits;
+    entry.not_converged = sources[i].not_converged;
+    entry.configurations = sources[i].configurations;
+    entry.mass = sources[i].mass;
   }
 }
 
 std::vector<Source> read_sources(const kinship_wire_Distribution& wire, Reader& reader) {
   std::vector<Source> sources;
   for (const kinship_wire_Source& entry : elements(wire.sources))
-    sources.push_back({read_digest(entry.robot), reader.text("label", entry.label, kMaxLabelBytes),
-                       entry.paths, entry.generation, entry.poses, entry.poses_solved});
+    sources.push_back(
+        {.robot = read_digest(entry.robot),
+         .label = reader.text("label", entry.label, kMaxLabelBytes),
+         .paths = entry.paths,
+         .generation = entry.generation,
+         .poses = entry.poses,
+         .poses_solved = entry.poses_solved,
+         .relation = reader.enumerator("relation of a source", entry.relation, Relation::Identical),
+         .paths_used = entry.paths_used,
+         .out_of_reach = entry.out_of_reach,
+         .outside_limits = entry.outside_limits,
+         .not_converged = entry.not_converged,
+         .configurations = entry.configurations,
+         .mass = entry.mass});
   return sources;
+}
+
+using EvidenceMember = decltype(kinship_wire_Distribution::guided);
+
+void write_evidence(const std::optional<ArmEvidence>& evidence, Arena& arena,
+                    EvidenceMember& wire) {
+  if (!evidence)
+    return;
+  arena.resize(wire, 1);
+  wire._buffer[0].attempts = evidence->attempts;
+  wire._buffer[0].solved = evidence->solved;
+  wire._buffer[0].checks_per_solution = evidence->checks_per_solution;
+}
+
+std::optional<ArmEvidence> read_evidence(const EvidenceMember& wire) {
+  const auto entries = elements(wire);
+  if (entries.empty())
+    return std::nullopt;
+  return ArmEvidence{.attempts = entries[0].attempts,
+                     .solved = entries[0].solved,
+                     .checks_per_solution = entries[0].checks_per_solution};
+}
+
+void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evidence,
+                    Rules& rules) {
+  if (!evidence)
+    return;
+  const std::string what(arm);
+  rules
+      .that(evidence->solved <= evidence->attempts, what + ": " + std::to_string(evidence->solved) +
+                                                        " solved of " +
+                                                        std::to_string(evidence->attempts))
+      .not_negative(what + ": checks_per_solution", evidence->checks_per_solution);
 }
 
 void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
@@ -105,16 +158,20 @@ std::optional<Error> check(const Distribution& distribution) {
       .text("profile", distribution.profile, kMaxProfileBytes)
       .text("engines", distribution.engines, kMaxEnginesBytes)
       .text("reason", distribution.reason, kMaxMessageBytes)
-      .text("evidence", distribution.evidence, kMaxMessageBytes)
+      .text("evidence", distribution.advice.evidence, kMaxMessageBytes)
       .at_most("sources", distribution.sources.size(), kMaxSources)
-      .between("recommended_share", distribution.recommended_share, 0, 1)
+      .between("recommended_share", distribution.advice.recommended_share, 0, 1)
       .finite("held_out_score", distribution.held_out_score.value_or(0))
       .not_negative("transfer_time_s", distribution.transfer_time_s)
       .not_negative("fit_time_s", distribution.fit_time_s);
   if (distribution.T_task_base)
     rules.pose("T_task_base", *distribution.T_task_base);
   for (const Source& source : distribution.sources)
-    rules.text("label of a source", source.label, kMaxLabelBytes);
+    rules.text("label of a source", source.label, kMaxLabelBytes)
+        .between("mass of a source", source.mass, 0, 1);
+  check_selection(distribution.selection, rules);
+  check_evidence("guided", distribution.advice.guided, rules);
+  check_evidence("control", distribution.advice.control, rules);
   check_limits(distribution.limits, rules);
   const auto& mixture = distribution.mixture;
   rules.that(mixture.has_value() == (distribution.state == DistributionState::Ready),
@@ -150,11 +207,14 @@ void write_distribution(const Distribution& distribution, Arena& arena,
                 static_cast<std::size_t>(distribution.limits.size()), wire.limits);
   if (distribution.held_out_score)
     write_numbers(arena, &*distribution.held_out_score, 1, wire.held_out_score);
-  wire.recommended_share = distribution.recommended_share;
-  wire.evidence = arena.text(distribution.evidence);
+  wire.recommended_share = distribution.advice.recommended_share;
+  wire.evidence = arena.text(distribution.advice.evidence);
   wire.fitted_ms = distribution.fitted_ms;
   wire.transfer_time_s = distribution.transfer_time_s;
   wire.fit_time_s = distribution.fit_time_s;
+  write_selection(distribution.selection, arena, wire.selection);
+  write_evidence(distribution.advice.guided, arena, wire.guided);
+  write_evidence(distribution.advice.control, arena, wire.control);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -183,11 +243,14 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
     distribution.mixture = read_mixture(mixture[0], limits.size() / 2, reader);
   distribution.held_out_score =
       reader.optional_number("held_out_score", elements(wire.held_out_score));
-  distribution.recommended_share = wire.recommended_share;
-  distribution.evidence = reader.text("evidence", wire.evidence, kMaxMessageBytes);
+  distribution.advice.recommended_share = wire.recommended_share;
+  distribution.advice.evidence = reader.text("evidence", wire.evidence, kMaxMessageBytes);
   distribution.fitted_ms = wire.fitted_ms;
   distribution.transfer_time_s = wire.transfer_time_s;
   distribution.fit_time_s = wire.fit_time_s;
+  distribution.selection = read_selection(wire.selection, reader);
+  distribution.advice.guided = read_evidence(wire.guided);
+  distribution.advice.control = read_evidence(wire.control);
   return distribution;
 }
 

@@ -4,6 +4,7 @@
 
 #include "proto/codec/distribution_codec.hpp"
 #include "proto/codec/reader.hpp"
+#include "proto/codec/selection_codec.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -37,9 +38,11 @@ std::optional<Error> check(const FetchRequest& request) {
       .text("profile", request.profile, kMaxProfileBytes)
       .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0,
                static_cast<double>(kMaxFetchDeadline_ms));
+  rules.between("follow (s)", static_cast<double>(request.follow.count()), 0,
+                static_cast<double>(kMaxFollow_s));
   if (request.T_task_base)
     rules.pose("T_task_base", *request.T_task_base);
-  return rules.broken();
+  return check_selection(request.selection, rules).broken();
 }
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request) {
@@ -54,6 +57,8 @@ Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchR
   wire.profile = arena.text(request.profile);
   wire.minimum_generation = request.minimum_generation;
   wire.deadline_ms = static_cast<std::uint32_t>(request.deadline.count());
+  write_selection(request.selection, arena, wire.selection);
+  wire.follow_s = static_cast<std::uint32_t>(request.follow.count());
   return message;
 }
 
@@ -66,6 +71,8 @@ Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire) {
   request.profile = reader.text("profile", wire.profile, kMaxProfileBytes);
   request.minimum_generation = wire.minimum_generation;
   request.deadline = std::chrono::milliseconds(wire.deadline_ms);
+  request.selection = read_selection(wire.selection, reader);
+  request.follow = std::chrono::seconds(wire.follow_s);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(request))

@@ -8,11 +8,14 @@ namespace kinship::codec {
 namespace {
 
 std::optional<Error> check(const RegisterReply& reply) {
-  return Rules()
-      .at_most("dof", reply.dof, kMaxDof)
+  Rules rules;
+  rules.at_most("dof", reply.dof, kMaxDof)
       .text("solver", reply.solver, kMaxPlannerBytes)
       .text("message", reply.message, kMaxMessageBytes)
-      .broken();
+      .at_most("same_arms", reply.same_arms.size(), kMaxSameArms);
+  for (const std::string& label : reply.same_arms)
+    rules.text("same_arms", label, kMaxLabelBytes);
+  return rules.broken();
 }
 
 }  // namespace
@@ -108,6 +111,9 @@ Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const Regis
   wire.dof = reply.dof;
   wire.solver = message.arena->text(reply.solver);
   wire.message = message.arena->text(reply.message);
+  message.arena->resize(wire.same_arms, reply.same_arms.size());
+  for (std::size_t i = 0; i < reply.same_arms.size(); ++i)
+    wire.same_arms._buffer[i] = message.arena->text(reply.same_arms[i]);
   return message;
 }
 
@@ -119,6 +125,11 @@ Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
   reply.dof = wire.dof;
   reply.solver = reader.text("solver", wire.solver, kMaxPlannerBytes);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
+  reader.rules.at_most("same_arms", wire.same_arms._length, kMaxSameArms);
+  if (reader.rules.broken())
+    return *reader.rules.broken();
+  for (const char* label : elements(wire.same_arms))
+    reply.same_arms.push_back(reader.text("same_arms", label, kMaxLabelBytes));
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

@@ -103,7 +103,7 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
   if (const auto score = reader.find("held_out_score"))
     distribution.held_out_score = score->number();
   if (const auto evidence = reader.find("evidence"))
-    distribution.evidence = evidence->text(kMaxMessageBytes);
+    distribution.advice.evidence = evidence->text(kMaxMessageBytes);
   if (const auto fitted = reader.find("fitted_ms"))
     distribution.fitted_ms = fitted->integer();
   if (const auto time = reader.find("transfer_time_s"))
@@ -119,7 +119,7 @@ Distribution read_distribution(const Reader& reader) {
   distribution.state =
       parse_distribution_state(reader.at("state").text(kMaxWordBytes)).value_or_throw();
   distribution.limits = read_limits(reader.at("limits"));
-  distribution.recommended_share = reader.at("recommended_share").number(0, 1);
+  distribution.advice.recommended_share = reader.at("recommended_share").number(0, 1);
   if (const auto cuts = reader.find("cuts"))
     cuts->refuse("not supported yet, must be null");
   if (distribution.state == DistributionState::Ready) {
@@ -157,8 +157,8 @@ std::string to_json(const Distribution& distribution) {
   object["k_curve"] = nullptr;
   object["held_out_score"] = distribution.held_out_score ? OrderedJson(*distribution.held_out_score)
                                                          : OrderedJson(nullptr);
-  object["recommended_share"] = distribution.recommended_share;
-  object["evidence"] = distribution.evidence;
+  object["recommended_share"] = distribution.advice.recommended_share;
+  object["evidence"] = distribution.advice.evidence;
   object["state"] = to_text(distribution.state);
   object["reason"] = distribution.reason;
   object["fitted_ms"] = distribution.fitted_ms;

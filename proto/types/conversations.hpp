@@ -11,6 +11,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/robot_description.hpp"
+#include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
 /// What the four conversations between client and server carry, as values.
@@ -22,8 +23,9 @@ struct RegisterReply {
   RegisterStatus status = RegisterStatus::Refused;
   Digest robot;
   std::uint32_t dof = 0;
-  std::string solver;   ///< what inverse kinematics will use for it
-  std::string message;  ///< why Refused
+  std::string solver;                       ///< what inverse kinematics will use for it
+  std::string message;                      ///< why Refused
+  std::vector<std::string> same_arms = {};  ///< labels of known robots that are the same arm
 };
 
 enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
@@ -56,6 +58,8 @@ struct FetchRequest {
   std::string profile = "default";
   std::uint64_t minimum_generation = 0;   ///< of the robot's own experience; 0: any
   std::chrono::milliseconds deadline{0};  ///< 0: answer with what is there
+  Selection selection;
+  std::chrono::seconds follow{0};  ///< a lease on interest, at most kMaxFollow_s; 0: once
 };
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
@@ -76,24 +80,37 @@ enum class AdminVerb {
   ListPaths,
   ShowPath,
   ListDistributions,
-  ShowDistribution
+  ShowDistribution,
+  ExplainDistribution,   ///< row: proto/types/summaries.hpp, Explanation
+  EvictDistribution,     ///< row: {"evicted": id}
+  ExportConfigurations,  ///< begins a job; row: Job. Its rows: CSV lines
+  ExportPaths,           ///< rows: lines of an experience file; filters robot and task
+  RetirePath,            ///< row: Retirement
+  ResetTask,             ///< row: Retirement
+  Backup,                ///< begins a job that writes `argument`, a file at the server; row: Job
+  ListJobs,
+  ShowJob,    ///< answers when the job has ended or `deadline` has passed
+  CancelJob,  ///< row: Job
+  JobRows     ///< the rows of a job that is done, page by page
 };
 
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;
-  std::string argument;       ///< label, digest prefix, task or UUID of a show verb
+  std::string argument;       ///< label, digest prefix, task, UUID, job or file the verb is about
   std::string robot, task;    ///< filters of a list verb; empty: all
   std::string cursor;         ///< from the page before; empty: the first page
   std::uint32_t limit = 100;  ///< rows a page
+  std::chrono::milliseconds deadline{0};  ///< of ShowJob: how long it may wait for the end
 };
 
 enum class AdminStatus { Ok, NotFound, Refused, Failed };
 
 struct AdminReply {
   AdminStatus status = AdminStatus::Refused;
-  std::vector<std::string> rows;  ///< one JSON document each (proto/json/summaries.hpp)
+  std::vector<std::string> rows;  ///< one document each (proto/json/summaries_json.hpp)
   std::string next_cursor;        ///< empty: no more pages
   std::string message;
+  bool last_row_continues = false;  ///< the next page begins with the rest of the last row
 };
 
 }  // namespace kinship

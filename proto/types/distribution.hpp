@@ -6,20 +6,36 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/advice.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
+#include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship {
+
+/// How a source robot is related to the target.
+enum class Relation {
+  Other,      ///< another arm: by inverse kinematics
+  SameArm,    ///< the same arm within tolerance: waypoints taken over and polished
+  Identical,  ///< the same kinematics, or the robot itself: waypoints taken over as they are
+};
 
 /// What one source robot contributed to a distribution.
 struct Source {
   Digest robot;
   std::string label;
-  std::uint64_t paths = 0;
+  std::uint64_t paths = 0;         ///< of (robot, task) when the fit read it
   std::uint64_t generation = 0;    ///< of (robot, task) when the fit read it
   std::uint64_t poses = 0;         ///< after resampling
   std::uint64_t poses_solved = 0;  ///< with at least one configuration of the target
+  Relation relation = Relation::Other;
+  std::uint64_t paths_used = 0;    ///< read and transferred; fewer than `paths` by `since`, a cap
+  std::uint64_t out_of_reach = 0;  ///< poses without a solution, by reason
+  std::uint64_t outside_limits = 0;
+  std::uint64_t not_converged = 0;
+  std::uint64_t configurations = 0;  ///< its poses became
+  double mass = 0;                   ///< its share of the weight of all configurations, 0 to 1
 };
 
 /// Ready: there is a mixture. Failed: nothing could be transferred or fitted; `reason` says why.
@@ -34,6 +50,7 @@ struct Distribution {
   Digest robot;
   std::optional<Eigen::Isometry3d> T_task_base;  ///< snapped
   std::string profile;
+  Selection selection;  ///< sources and since as asked; weighting as used
   std::string engines;  ///< versions of the transfer and density code, e.g. "transfer 1, density 1"
   DistributionState state = DistributionState::Ready;
   std::string reason;  ///< why Failed; a warning otherwise, mostly empty
@@ -42,9 +59,9 @@ struct Distribution {
   std::optional<Mixture> mixture;    ///< present exactly if Ready
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
   std::optional<double> held_out_score;
-  double recommended_share = 0;  ///< of guided samples
-  std::string evidence;          ///< for the share, in words
-  std::int64_t fitted_ms = 0;    ///< Unix time, UTC
+  /// Of the moment it was sent, not of the fit.
+  Advice advice;
+  std::int64_t fitted_ms = 0;  ///< Unix time, UTC
   double transfer_time_s = 0;
   double fit_time_s = 0;
 };

@@ -18,6 +18,23 @@ constexpr Words<Arm, 3> kArms = {
 constexpr Words<DistributionState, 2> kDistributionStates = {
     {{DistributionState::Ready, "ready"}, {DistributionState::Failed, "failed"}}};
 
+constexpr Words<Relation, 3> kRelations = {{{Relation::Other, "other"},
+                                            {Relation::SameArm, "same_arm"},
+                                            {Relation::Identical, "identical"}}};
+constexpr Words<Weighting, 2> kWeightings = {
+    {{Weighting::Sources, "sources"}, {Weighting::Paths, "paths"}}};
+constexpr Words<EventKind, 6> kEventKinds = {{{EventKind::Registered, "registered"},
+                                              {EventKind::Report, "report"},
+                                              {EventKind::Fetch, "fetch"},
+                                              {EventKind::Fit, "fit"},
+                                              {EventKind::Refusal, "refusal"},
+                                              {EventKind::Administration, "admin"}}};
+constexpr Words<JobState, 5> kJobStates = {{{JobState::Queued, "queued"},
+                                            {JobState::Running, "running"},
+                                            {JobState::Done, "done"},
+                                            {JobState::Failed, "failed"},
+                                            {JobState::Cancelled, "cancelled"}}};
+
 template <typename Enum, std::size_t count>
 std::string_view find_word(const Words<Enum, count>& words, Enum value) {
   for (const auto& [enumerator, word] : words)
@@ -46,6 +63,10 @@ Result<Enum> find_enumerator(const Words<Enum, count>& words, std::string_view w
 std::string_view to_text(Outcome outcome) { return find_word(kOutcomes, outcome); }
 std::string_view to_text(Arm arm) { return find_word(kArms, arm); }
 std::string_view to_text(DistributionState state) { return find_word(kDistributionStates, state); }
+std::string_view to_text(Relation relation) { return find_word(kRelations, relation); }
+std::string_view to_text(Weighting weighting) { return find_word(kWeightings, weighting); }
+std::string_view to_text(EventKind kind) { return find_word(kEventKinds, kind); }
+std::string_view to_text(JobState state) { return find_word(kJobStates, state); }
 
 Result<Outcome> parse_outcome(std::string_view text) {
   return find_enumerator(kOutcomes, "outcome", text);
@@ -55,6 +76,18 @@ Result<Arm> parse_arm(std::string_view text) { return find_enumerator(kArms, "ar
 
 Result<DistributionState> parse_distribution_state(std::string_view text) {
   return find_enumerator(kDistributionStates, "state", text);
+}
+
+Result<Relation> parse_relation(std::string_view text) {
+  return find_enumerator(kRelations, "relation", text);
+}
+
+Result<Weighting> parse_weighting(std::string_view text) {
+  return find_enumerator(kWeightings, "weighting", text);
+}
+
+Result<JobState> parse_job_state(std::string_view text) {
+  return find_enumerator(kJobStates, "state", text);
 }
 
 }  // namespace kinship

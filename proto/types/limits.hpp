@@ -27,6 +27,11 @@ inline constexpr std::size_t kMaxCursorBytes = 512;
 inline constexpr std::size_t kMaxMessageBytes = 2048;
 inline constexpr std::size_t kMaxSampleBytes = 1'200'000;  ///< of one DDS sample
 inline constexpr std::size_t kMaxFetchDeadline_ms = 3'600'000;
+inline constexpr std::size_t kMaxFollow_s = 86'400;
+inline constexpr std::size_t kMaxEventBytes = 512;      ///< of an event's text
+inline constexpr std::size_t kMaxFileNameBytes = 1024;  ///< of a file at the server
+inline constexpr std::size_t kMaxSelectedSources = 256;
+inline constexpr std::size_t kMaxSameArms = 1024;
 inline constexpr double kMaxJointValue = 1e4;      ///< joint units, of joints without limits
 inline constexpr double kMaxPlacement_m = 1000.0;  ///< largest coordinate of a placement or pose
 

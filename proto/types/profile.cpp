@@ -13,7 +13,10 @@ std::optional<Profile> find_profile(std::string_view name) {
                       .max_solutions = 5,
                       .min_distance = 0.5,
                       .dropped_end_share = 0};
-    paper.density = {.components = 50, .covariance_floor = 1e-4, .equal_path_weights = false};
+    paper.density = {.components = 50,
+                     .covariance_floor = 1e-4,
+                     .equal_path_weights = false,
+                     .weighting = Weighting::Paths};
     paper.recommended_share = 1;
     return paper;
   }

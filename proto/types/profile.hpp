@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "proto/types/selection.hpp"
+
 namespace kinship {
 
 /// How paths become configurations of the target robot.
@@ -20,9 +22,10 @@ struct TransferParameters {
 
 /// How configurations become a mixture.
 struct DensityParameters {
-  int components = 50;             ///< K, lowered if there are too few configurations
-  double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
-  bool equal_path_weights = true;  ///< every path weighs the same, however long
+  int components = 50;                       ///< K, lowered if there are too few configurations
+  double covariance_floor = 1e-4;            ///< added to each variance, squared joint units
+  bool equal_path_weights = true;            ///< every path weighs the same, however long
+  Weighting weighting = Weighting::Sources;  ///< of source robots against each other
 
   bool operator==(const DensityParameters&) const = default;
 };

@@ -116,6 +116,8 @@ AdminPage Administration::dispatch(const AdminRequest& request) {
       return list_distributions(request);
     case AdminVerb::ShowDistribution:
       return show_distribution(request.argument);
+    default:
+      break;
   }
   return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
 }

@@ -161,7 +161,7 @@ void Fit::transfer_paths(const Robot& robot, std::uint64_t wanted, SourceSummary
   for (std::uint64_t index = 0; index < count;) {
     const std::size_t limit = std::min<std::uint64_t>(kPathsPerRead, count - index);
     const std::vector<store::StoredPath> page =
-        context_.store.read_paths(robot.digest, key_.task, last_id, limit);
+        context_.store.read_paths(robot.digest, key_.task, {.after_id = last_id, .limit = limit});
     if (page.empty())
       return;  // fewer than counted: some were set aside
     last_id = page.back().id;
@@ -214,8 +214,9 @@ void Fit::fit(Distribution& distribution) const {
   distribution.state = DistributionState::Ready;
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = warnings();
-  distribution.recommended_share = key_.profile.recommended_share;
-  distribution.evidence = "share of profile '" + key_.profile.name + "'; no attempts compared yet";
+  distribution.advice.recommended_share = key_.profile.recommended_share;
+  distribution.advice.evidence =
+      "share of profile '" + key_.profile.name + "'; no attempts compared yet";
 }
 
 void Fit::fail(Distribution& distribution, const std::string& message) const {
@@ -225,7 +226,7 @@ void Fit::fail(Distribution& distribution, const std::string& message) const {
   if (!also.empty())
     distribution.reason += "; " + also;
   distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
-  distribution.evidence = "no mixture";
+  distribution.advice.evidence = "no mixture";
 }
 
 std::string Fit::sources_in_words() const {
@@ -287,7 +288,7 @@ Distribution failed_distribution(const DistributionKey& key, const FitContext& c
   }
   distribution.state = DistributionState::Failed;
   distribution.reason = cut_text(reason, kMaxMessageBytes);
-  distribution.evidence = "no mixture";
+  distribution.advice.evidence = "no mixture";
   distribution.fitted_ms = context.clock.unix_ms();
   return distribution;
 }

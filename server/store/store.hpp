@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,14 +30,37 @@ struct StoredPath {
   std::int64_t id = 0;  ///< grows with arrival
   Uuid report_uuid;
   std::optional<Eigen::Isometry3d> T_task_base;
+  std::int64_t received_ms = 0;
   Path path;
 };
 
-/// One (robot, task) pair that has paths.
+/// Which paths of a robot and task are read: a page of them, in the order of arrival.
+struct PathRange {
+  std::int64_t after_id = 0;  ///< ids greater than this
+  std::size_t limit = 0;
+  std::int64_t since_ms = 0;  ///< received at or after; 0: all
+};
+
+/// One (robot, task) pair that has, or had, paths.
 struct ExperienceSummary {
   Digest robot;
-  std::uint64_t paths = 0;
+  std::uint64_t paths = 0;  ///< without retired and damaged ones
   std::uint64_t generation = 0;
+  std::uint64_t retired_generation = 0;  ///< when a path was retired last; 0: never
+};
+
+/// What the attempts of one arm sum up to; the sums from which a ratio's interval follows.
+struct ArmTotals {
+  std::uint64_t attempts = 0;
+  std::uint64_t solved = 0;
+  double checks = 0;            ///< collision checks, of solved and unsolved ones
+  double checks_squared = 0;    ///< sum of their squares
+  double checks_of_solved = 0;  ///< of the solved ones alone
+};
+
+/// The attempts of one robot and task, by arm.
+struct AttemptTotals {
+  ArmTotals guided, control;
 };
 
 struct StoreStatus {
@@ -91,11 +115,20 @@ class Store {
   virtual std::vector<ExperienceSummary> experience(std::string_view task) const = 0;
   virtual std::uint64_t generation(const Digest& robot, std::string_view task) const = 0;
 
-  /// The paths of one robot and task with id > after_id, in the order of ids, at most `limit`. A
-  /// path whose blob fails its CRC is set aside (kept, marked damaged, counted in status().message)
-  /// and left out.
+  /// Paths of one robot and task in the order of ids. A path whose blob fails its CRC is set aside
+  /// (kept, marked damaged, counted in status().message) and left out; retired ones are left out.
   virtual std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
-                                             std::int64_t after_id, std::size_t limit) const = 0;
+                                             const PathRange& range) const = 0;
+
+  /// Takes a path, or all paths of a task, out of every fit, durable on return. They are kept for
+  /// the record, their report UUIDs stay known, and their content may be reported anew. Raises
+  /// generation and retired_generation of each (robot, task) that lost a path.
+  /// \return what was retired; NotFound for an unknown report or task; InvalidInput for a report
+  ///         that brought no path.
+  virtual Result<Retirement> retire_path(const Uuid& report_uuid) = 0;
+  virtual Result<Retirement> reset_task(std::string_view task) = 0;
+
+  virtual AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const = 0;
 
   /// Stores a distribution under its id with the next revision, durable on return.
   /// \return the revision given.
@@ -104,6 +137,9 @@ class Store {
   virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
   /// The newest revision; nothing if its payload fails its CRC.
   virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;
+  /// Forgets the mixture of a distribution, durable on return; its next fit gets the next revision.
+  /// \return whether it was there.
+  virtual bool evict_distribution(const Digest& id) = 0;
 
   /// Listings: at most `limit` rows after `cursor`, which is empty for the first page. What comes
   /// or goes between two pages neither repeats nor hides other rows. `solver` of a robot is left
@@ -117,10 +153,23 @@ class Store {
   /// An attempt with its path, by report UUID; unsolved ones too. Without its path if that one is
   /// damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
+  /// Attempts with their paths for export, oldest first; without retired and damaged paths'
+  /// attempts. A page ends early once its waypoints exceed `max_bytes`, but holds one at least.
+  virtual Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                        std::string_view cursor, std::size_t limit,
+                                        std::size_t max_bytes) const = 0;
   virtual Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
                                                        std::string_view task,
                                                        std::string_view cursor,
                                                        std::size_t limit) const = 0;
+
+  /// Copies the store as of one instant into a new file, while reports go on. A file that is not
+  /// complete never has that name.
+  /// \param progress  called now and then with 0 to 1; false ends the copy with nothing kept.
+  /// \return false if `progress` ended it; Conflict if the file is there already.
+  /// \throws Failure(Storage) that names the file.
+  virtual Result<bool> backup(const std::filesystem::path& file,
+                              const std::function<bool(double)>& progress) const = 0;
 };
 
 }  // namespace kinship::store

@@ -28,6 +28,8 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"zstd", {"zstd.h", "zstd_errors.h"}},
     {"CLI11", {"CLI/"}},
     {"spdlog", {"spdlog/"}},
+    {"assimp", {"assimp/"}},
+    {"tinyxml2", {"tinyxml2.h"}},
 };
 
 inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
@@ -46,10 +48,13 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
   const std::string service = "server/service";
+  const std::string files = "client/files";
+  const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string planning = "client/planning";
-  const std::set<std::string> planner_programs = {
-      link, planning, inverse, collision, geometry, kinematics, models, mixture, json, types};
+  const std::set<std::string> planner_programs = {link,    arguments, files,    planning,
+                                                  inverse, collision, geometry, kinematics,
+                                                  models,  mixture,   json,     types};
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -58,9 +63,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
-      {models, {{types}, {"Eigen", "toml"}}},
+      {models, {{geometry, kinematics, types}, {"Eigen", "toml"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
-      {geometry, {{kinematics, types}, {"Eigen", "urdfdom"}}},
+      {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL"}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
@@ -68,10 +73,13 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {service,
        {{store, transfer, density, inverse, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
+      {files, {{types}, {}}},
+      {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen", "OMPL"}}},
       {"client/cli",
-       {{link, inverse, kinematics, models, mixture, json, types}, {"Eigen", "CLI11"}}},
+       {{link, arguments, files, inverse, geometry, kinematics, models, mixture, json, types},
+        {"Eigen", "CLI11"}}},
       {"client/plan", {planner_programs, {"Eigen", "CLI11"}}},
       {"client/experiments", {planner_programs, {"Eigen", "CLI11"}}},
   };

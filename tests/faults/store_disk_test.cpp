@@ -72,7 +72,7 @@ TEST_F(StoreDisk, AnswersTryAgainWhileItCannotWriteAndStoresAfterwards) {
     const FileSizeLimit full(kNoRoom);
     during = report(1000);
     status = store_->status();
-    readable = store_->read_paths(robot_.digest, "shelf", 0, 1000).size();
+    readable = store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 1000}).size();
   }
   EXPECT_EQ(during.status, ReceiptStatus::TryAgain);
   EXPECT_FALSE(during.message.empty());
@@ -112,7 +112,8 @@ TEST_F(StoreDisk, SurvivesARowOfFailures) {
     EXPECT_EQ(report_until_answered(1000 + round).status, ReceiptStatus::Stored);
   }
   EXPECT_EQ(store_->status().paths, kBefore + 5);
-  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 1000).size(), kBefore + 5);
+  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 1000}).size(),
+            kBefore + 5);
 }
 
 }  // namespace

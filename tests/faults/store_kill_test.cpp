@@ -116,7 +116,8 @@ TEST(StoreKill, LosesNoAcknowledgedReportAndKeepsNoneTwice) {
   const std::unique_ptr<Store> store = open_sqlite_store(directory / "s.db");
   const StoreStatus before = store->status();
   EXPECT_GE(before.attempts, ledger.size());
-  EXPECT_EQ(store->read_paths(robot().digest, "shelf", 0, 1'000'000).size(), before.paths);
+  EXPECT_EQ(store->read_paths(robot().digest, "shelf", {.after_id = 0, .limit = 1'000'000}).size(),
+            before.paths);
   for (const std::uint64_t number : ledger)
     EXPECT_EQ(test::report(*store, {attempt(number)}).at(0).status, ReceiptStatus::Duplicate);
   EXPECT_EQ(store->status().attempts, before.attempts);

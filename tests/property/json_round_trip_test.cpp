@@ -143,7 +143,7 @@ TEST(JsonRoundTrip, DistributionComesBackBitByBit) {
     written.limits.resize(2, dof);
     written.limits.row(0).setConstant(-values.positive());
     written.limits.row(1).setConstant(values.positive());
-    written.recommended_share = values.share();
+    written.advice.recommended_share = values.share();
     if (values.coin())
       written.held_out_score = values.any_double();
     written.sources.push_back({values.digest(), "panda", values.count(), 1, 2, 3});

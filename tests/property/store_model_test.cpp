@@ -85,7 +85,8 @@ class StoreModel : public testing::Test {
       for (std::size_t task = 0; task < kTasks.size(); ++task) {
         const Digest& digest = robots_[robot].digest;
         EXPECT_EQ(store_->generation(digest, kTasks[task]), model_.generation(robot, task));
-        const auto stored = store_->read_paths(digest, kTasks[task], 0, 1000);
+        const auto stored =
+            store_->read_paths(digest, kTasks[task], {.after_id = 0, .limit = 1000});
         EXPECT_EQ(stored.size(), model_.paths(robot, task).size());
         for (const std::uint64_t content : model_.paths(robot, task))
           EXPECT_TRUE(std::ranges::any_of(stored, [&](const StoredPath& path) {

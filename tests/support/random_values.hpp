@@ -128,8 +128,8 @@ class RandomValues {
       distribution.mixture = mixture(dof);
     if (coin())
       distribution.held_out_score = number();
-    distribution.recommended_share = share();
-    distribution.evidence = name(100);
+    distribution.advice.recommended_share = share();
+    distribution.advice.evidence = name(100);
     distribution.fitted_ms = static_cast<std::int64_t>(count() / 2);
     distribution.transfer_time_s = share();
     distribution.fit_time_s = share();

@@ -59,8 +59,8 @@ Distribution read_distribution(ByteReader& in) {
   distribution.limits = in.matrix(2, kMaxDof);
   if (in.integer() != 0)
     distribution.held_out_score = in.real();
-  distribution.recommended_share = in.real();
-  distribution.evidence = in.text(kMaxTextBytes);
+  distribution.advice.recommended_share = in.real();
+  distribution.advice.evidence = in.text(kMaxTextBytes);
   distribution.fitted_ms = static_cast<std::int64_t>(in.integer());
   distribution.transfer_time_s = in.real();
   distribution.fit_time_s = in.real();
@@ -89,7 +89,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   out.add(std::uint64_t{distribution.held_out_score ? 1U : 0U});
   if (distribution.held_out_score)
     out.add(*distribution.held_out_score);
-  out.add(distribution.recommended_share).add(distribution.evidence);
+  out.add(distribution.advice.recommended_share).add(distribution.advice.evidence);
   out.add(static_cast<std::uint64_t>(distribution.fitted_ms));
   out.add(distribution.transfer_time_s).add(distribution.fit_time_s);
   out.add(std::uint64_t{distribution.sources.size()});

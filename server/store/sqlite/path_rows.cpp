@@ -47,7 +47,7 @@ std::optional<StoredPath> read_row(const Statement& row) {
     if (!T_task_base)
       return std::nullopt;
   }
-  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
+  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base, 0,
                     std::move(*path)};
 }
 

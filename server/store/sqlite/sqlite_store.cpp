@@ -77,6 +77,8 @@ Uuid ensure_epoch(Database& database) {
   return *epoch;
 }
 
+Failure unbuilt() { return {ErrorCode::Internal, "being built"}; }
+
 class SqliteStore : public Store {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
@@ -153,14 +155,30 @@ class SqliteStore : public Store {
   }
 
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
-                                     std::int64_t after_id, std::size_t limit) const override {
+                                     const PathRange& range) const override {
     const ReaderPool::Lease reader = readers_.lease();
     const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
     if (!key)
       return {};
     constexpr std::size_t kMaxPaths = 1'000'000;
-    return undamaged(select_paths(*reader, *key, after_id,
-                                  static_cast<std::int64_t>(std::min(limit, kMaxPaths))));
+    return undamaged(select_paths(*reader, *key, range.after_id,
+                                  static_cast<std::int64_t>(std::min(range.limit, kMaxPaths))));
+  }
+
+  Result<Retirement> retire_path(const Uuid& /*report_uuid*/) override { throw unbuilt(); }
+  Result<Retirement> reset_task(std::string_view /*task*/) override { throw unbuilt(); }
+  AttemptTotals attempt_totals(const Digest& /*robot*/, std::string_view /*task*/) const override {
+    return {};
+  }
+  bool evict_distribution(const Digest& /*id*/) override { throw unbuilt(); }
+  Page<Attempt> export_attempts(const std::optional<Digest>& /*robot*/, std::string_view /*task*/,
+                                std::string_view /*cursor*/, std::size_t /*limit*/,
+                                std::size_t /*max_bytes*/) const override {
+    throw unbuilt();
+  }
+  Result<bool> backup(const std::filesystem::path& /*file*/,
+                      const std::function<bool(double)>& /*progress*/) const override {
+    throw unbuilt();
   }
 
   std::uint64_t put_distribution(const Distribution& distribution) override {

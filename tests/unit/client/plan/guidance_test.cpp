@@ -21,7 +21,7 @@ FetchReply ready(double recommended_share = 0.9, Eigen::Index dimension = kDof) 
   distribution.configurations = 400;
   distribution.sources = {{Digest{}, "panda", 60, 60, 900, 880}};
   distribution.mixture = one_component(dimension);
-  distribution.recommended_share = recommended_share;
+  distribution.advice.recommended_share = recommended_share;
   FetchReply reply;
   reply.status = FetchStatus::Ready;
   reply.distribution = distribution;

@@ -23,7 +23,7 @@ Distribution two_components() {
       Mixture(Eigen::Vector2d(0.25, 0.75), means, {covariance, Eigen::Matrix2d::Identity()});
   distribution.limits.resize(2, 2);
   distribution.limits << -1, -2, 1, 2;
-  distribution.recommended_share = 0.9;
+  distribution.advice.recommended_share = 0.9;
   return distribution;
 }
 

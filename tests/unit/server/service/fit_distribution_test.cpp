@@ -96,7 +96,8 @@ TEST_F(FitDistribution, AnotherRobotsPathsGuideTheHandAlongThem) {
   EXPECT_EQ(distribution.limits.cols(), 4);
 
   std::vector<Path> paths;
-  for (const store::StoredPath& stored : store_->read_paths(teacher_.digest, "shelf", 0, 100))
+  for (const store::StoredPath& stored :
+       store_->read_paths(teacher_.digest, "shelf", {.after_id = 0, .limit = 100}))
     paths.push_back(stored.path);
   EXPECT_LT(median_distance_m(distribution, pupil_.chain, paths, teacher_.chain), 0.05);
 }
@@ -139,8 +140,8 @@ TEST_F(FitDistribution, NamesItsSourcesAndTheirGenerations) {
     EXPECT_GT(source.poses, 0U);
     EXPECT_GE(source.poses, source.poses_solved);
   }
-  EXPECT_DOUBLE_EQ(distribution.recommended_share, 0.9);
-  EXPECT_EQ(distribution.evidence, "share of profile 'default'; no attempts compared yet");
+  EXPECT_DOUBLE_EQ(distribution.advice.recommended_share, 0.9);
+  EXPECT_EQ(distribution.advice.evidence, "share of profile 'default'; no attempts compared yet");
 }
 
 TEST_F(FitDistribution, OwnPathsAtTheOwnPlaceAreTakenOverAsTheyAre) {

@@ -38,9 +38,25 @@ class TroubledStore final : public store::Store {
     return store_.generation(robot, task);
   }
   std::vector<store::StoredPath> read_paths(const Digest& robot, std::string_view task,
-                                            std::int64_t after_id,
-                                            std::size_t limit) const override {
-    return store_.read_paths(robot, task, after_id, limit);
+                                            const store::PathRange& range) const override {
+    return store_.read_paths(robot, task, range);
+  }
+  Result<Retirement> retire_path(const Uuid& report_uuid) override {
+    return store_.retire_path(report_uuid);
+  }
+  Result<Retirement> reset_task(std::string_view task) override { return store_.reset_task(task); }
+  store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
+    return store_.attempt_totals(robot, task);
+  }
+  bool evict_distribution(const Digest& id) override { return store_.evict_distribution(id); }
+  store::Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                       std::string_view cursor, std::size_t limit,
+                                       std::size_t max_bytes) const override {
+    return store_.export_attempts(robot, task, cursor, limit, max_bytes);
+  }
+  Result<bool> backup(const std::filesystem::path& file,
+                      const std::function<bool(double)>& progress) const override {
+    return store_.backup(file, progress);
   }
   std::uint64_t put_distribution(const Distribution& distribution) override {
     return store_.put_distribution(distribution);

@@ -65,7 +65,7 @@ TEST_F(SqliteStoreTest, SetsADamagedPathAside) {
   test::report(*store_, {attempt(1), attempt(2), attempt(3)});
   damage(kFlipByte);
   open();
-  const auto paths = store_->read_paths(robot_.digest, "shelf", 0, 2);
+  const auto paths = store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 2});
   ASSERT_EQ(paths.size(), 2U);  // a full page, without the damaged one
   EXPECT_EQ(paths[0].report_uuid, test::id_from<Uuid>(1));
   EXPECT_EQ(paths[1].report_uuid, test::id_from<Uuid>(3));
@@ -105,12 +105,12 @@ TEST_F(SqliteStoreTest, TakesTheContentOfADamagedPathAgain) {
   test::report(*store_, {attempt(1), attempt(2)});
   damage(kFlipByte);
   open();
-  store_->read_paths(robot_.digest, "shelf", 0, 10);
+  store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 10});
   drain();
   Attempt again = attempt(9);
   again.path = attempt(2).path;
   EXPECT_EQ(test::report(*store_, {again})[0].status, ReceiptStatus::Stored);
-  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 10).size(), 2U);
+  EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 10}).size(), 2U);
 }
 
 TEST_F(SqliteStoreTest, TheChecksumCoversPlacementAndShapeToo) {
@@ -122,10 +122,13 @@ TEST_F(SqliteStoreTest, TheChecksumCoversPlacementAndShapeToo) {
     open();
     const Attempt fresh = attempt(100 + store_->status().attempts);
     test::report(*store_, {fresh});
-    const std::size_t before = store_->read_paths(robot_.digest, "shelf", 0, 100).size();
+    const std::size_t before =
+        store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 100}).size();
     damage("UPDATE path SET " + edit + " WHERE id = (SELECT max(id) FROM path)");
     open();
-    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 100).size(), before - 1) << edit;
+    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 100}).size(),
+              before - 1)
+        << edit;
   }
 }
 
@@ -165,7 +168,7 @@ TEST_F(SqliteStoreTest, RegisteringADamagedRobotAgainRepairsItAndKeepsItsPaths) 
     EXPECT_EQ(robot->description.label, "panda");
     EXPECT_EQ(robot->description.held_joints, robot_.description.held_joints);
     EXPECT_EQ(robot->description.never_colliding, robot_.description.never_colliding);
-    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", 0, 10).size(), 1U);
+    EXPECT_EQ(store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 10}).size(), 1U);
     EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Known);
   }
 }

@@ -112,7 +112,7 @@ TEST_P(StoreConformance, ReopenKeepsEverything) {
   EXPECT_EQ(after.distributions, 1U);
   EXPECT_TRUE(after.writable);
   EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 1U);
-  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", 0, 10).size(), 1U);
+  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 10}).size(), 1U);
   EXPECT_EQ(store_->find_distribution(distribution.id)->mixture->means(),
             distribution.mixture->means());
   EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate);

@@ -181,7 +181,8 @@ TEST_P(StoreConformance, RaisesTheGenerationOnceForEachBatchThatBroughtPaths) {
 TEST_P(StoreConformance, ReadsPathsInTheOrderOfArrivalAndOnFromAnId) {
   for (std::uint64_t i = 1; i <= 5; ++i)
     report(solved(i));
-  const std::vector<StoredPath> all = store_->read_paths(panda_.digest, "shelf", 0, 100);
+  const std::vector<StoredPath> all =
+      store_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 100});
   ASSERT_EQ(all.size(), 5U);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].report_uuid, test::id_from<Uuid>(i + 1));
@@ -189,12 +190,13 @@ TEST_P(StoreConformance, ReadsPathsInTheOrderOfArrivalAndOnFromAnId) {
     EXPECT_TRUE(all[i].T_task_base->isApprox(test::make_pose(), 1e-15));
     EXPECT_GT(all[i].id, i == 0 ? 0 : all[i - 1].id);
   }
-  const auto some = store_->read_paths(panda_.digest, "shelf", all[1].id, 2);
+  const auto some = store_->read_paths(panda_.digest, "shelf", {.after_id = all[1].id, .limit = 2});
   ASSERT_EQ(some.size(), 2U);
   EXPECT_EQ(some[0].id, all[2].id);
-  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", all[4].id, 2).empty());
-  EXPECT_TRUE(store_->read_paths(iiwa_.digest, "shelf", 0, 100).empty());
-  EXPECT_TRUE(store_->read_paths(panda_.digest, "table", 0, 100).empty());
+  EXPECT_TRUE(
+      store_->read_paths(panda_.digest, "shelf", {.after_id = all[4].id, .limit = 2}).empty());
+  EXPECT_TRUE(store_->read_paths(iiwa_.digest, "shelf", {.after_id = 0, .limit = 100}).empty());
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "table", {.after_id = 0, .limit = 100}).empty());
 }
 
 TEST_P(StoreConformance, AnswersEveryClientOfMany) {
@@ -207,7 +209,7 @@ TEST_P(StoreConformance, AnswersEveryClientOfMany) {
       for (std::uint64_t i = 0; i < kReports; ++i) {
         if (report(solved(1000 * (client + 1) + i)) == ReceiptStatus::Stored)
           ++stored;
-        store_->read_paths(panda_.digest, "shelf", 0, 5);
+        store_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 5});
       }
       return stored;
     }));

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "proto/codec/arena.hpp"
+#include "proto/codec/reader.hpp"
+#include "proto/codec/rules.hpp"
+#include "proto/idl/fetch.h"
+#include "proto/types/selection.hpp"
+
+/// A selection as a member of messages, which may lack it: all experience.
+namespace kinship::codec {
+
+using SelectionMember = decltype(kinship_wire_FetchRequest::selection);
+
+Rules& check_selection(const Selection& selection, Rules& rules);
+void write_selection(const Selection& selection, Arena& arena, SelectionMember& wire);
+Selection read_selection(const SelectionMember& wire, Reader& reader);
+
+}  // namespace kinship::codec
