@@ -9,6 +9,7 @@
 
 #include "client/cli/exit_code.hpp"
 #include "client/cli/table.hpp"
+#include "client/files/lines.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/inverse/inverse.hpp"
@@ -29,6 +30,11 @@ double cpu_time_s() {
 int refuse(const char* command, const Error& error, std::ostream& err) {
   err << command << ": " << error.message << '\n';
   return exit_code(error.code);
+}
+
+Error in_line(const std::filesystem::path& file, std::size_t number, const Error& error) {
+  return {error.code,
+          "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
 }
 
 /// The chain that the arguments describe. Empty with an exit code in `code` if there is none:
@@ -181,24 +187,17 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
     return kDone;
   }
-  std::ifstream stream(options.poses);
-  if (!stream)
-    return refuse(kCommand, {ErrorCode::NotFound, "cannot read '" + options.poses.string() + "'"},
-                  err);
-  std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos)
-      continue;
-    const auto T_base_tip = json::pose_from_json(line);
-    if (!T_base_tip)
-      return refuse(
-          kCommand,
-          {T_base_tip.error().code, "'" + options.poses.string() + "' line " +
-                                        std::to_string(number) + ": " + T_base_tip.error().message},
-          err);
-    print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
-  }
-  return kDone;
+  std::ifstream stream = files::open_input(options.poses);
+  files::for_each_line(stream, options.poses.string(), [&](const files::Line& line) {
+    const Result<Eigen::Isometry3d> T_base_tip =
+        line.text ? json::pose_from_json(*line.text) : line.text.error();
+    if (T_base_tip)
+      print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
+    else
+      code = refuse(kCommand, in_line(options.poses, line.number, T_base_tip.error()), err);
+    return T_base_tip.has_value();
+  });
+  return code;
 }
 
 }  // namespace kinship::cli

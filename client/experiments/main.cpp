@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <array>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
 #include "client/experiments/commands.hpp"
+#include "client/files/output_file.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
@@ -74,14 +74,9 @@ Eigen::Isometry3d read_placement(const std::string& text) {
 }
 
 void write_shelf(const CommandLine& line) {
-  if (line.output.empty()) {
-    write_shelf_problems(line.shelf, std::cout, std::cerr);
-    return;
-  }
-  std::ofstream file(line.output);
-  write_shelf_problems(line.shelf, file, std::cerr);
-  if (!file.flush())
-    throw Failure(ErrorCode::Storage, "cannot write '" + line.output.string() + "'");
+  files::OutputFile output(line.output, std::cout);
+  write_shelf_problems(line.shelf, output.stream(), std::cerr);
+  output.keep();
 }
 
 int run(int argc, char** argv) {

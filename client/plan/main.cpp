@@ -2,11 +2,11 @@
 
 #include <atomic>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 
+#include "client/files/lines.hpp"
+#include "client/files/output_file.hpp"
 #include "client/plan/plan_options.hpp"
 #include "client/plan/plan_run.hpp"
 #include "proto/types/failure.hpp"
@@ -24,27 +24,22 @@ void interrupt(int number) {
 
 int run(const kinship::plan::PlanOptions& options) {
   std::ifstream problem_file;
-  if (options.problems != "-") {
-    problem_file.open(options.problems);
-    if (!problem_file)
-      throw kinship::Failure(kinship::ErrorCode::NotFound,
-                             "cannot read '" + options.problems.string() + "'");
-  }
-  std::ofstream result_file;
-  if (!options.output.empty()) {
-    std::error_code ignored;  // there is no output file yet
-    if (std::filesystem::equivalent(options.problems, options.output, ignored))
-      throw kinship::Failure(kinship::ErrorCode::InvalidInput,
-                             "--output '" + options.output.string() + "' is the problem file");
-    result_file.open(options.output);
-    if (!result_file)
-      throw kinship::Failure(kinship::ErrorCode::Storage,
-                             "cannot write '" + options.output.string() + "'");
-  }
+  if (options.problems != "-")
+    problem_file = kinship::files::open_input(options.problems);
+  if (kinship::files::overwrites(options.output, options.problems))
+    throw kinship::Failure(kinship::ErrorCode::InvalidInput,
+                           "--output '" + options.output.string() + "' is the problem file");
+  kinship::files::OutputFile output(options.output, std::cout);
   const kinship::plan::RunStreams streams = {options.problems == "-" ? std::cin : problem_file,
-                                             options.output.empty() ? std::cout : result_file,
-                                             std::cerr, isatty(STDERR_FILENO) == 1};
-  return kinship::plan::run_plan(options, streams, [] { return interrupted.load(); });
+                                             output.stream(), std::cerr,
+                                             isatty(STDERR_FILENO) == 1};
+  const int code = kinship::plan::run_plan(options, streams, [] { return interrupted.load(); });
+  if (code == kinship::kDone)
+    output.keep();
+  else if (!output.part().empty())
+    std::cerr << "kinship-plan: '" << options.output.string() << "' is left as it was; results of "
+              << "this run, if any, are in '" << output.part().string() << "'\n";
+  return code;
 }
 
 }  // namespace

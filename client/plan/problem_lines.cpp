@@ -1,21 +1,19 @@
 #include "client/plan/problem_lines.hpp"
 
-#include <istream>
 #include <string>
 
+#include "client/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
-#include "proto/types/failure.hpp"
 
 namespace kinship::plan {
 
 std::vector<ProblemLine> read_problem_lines(std::istream& stream) {
   std::vector<ProblemLine> lines;
-  std::string text;
-  for (std::size_t number = 1; std::getline(stream, text); ++number)
-    if (text.find_first_not_of(" \t\r") != std::string::npos)
-      lines.push_back({number, json::problem_from_json(text)});
-  if (stream.bad())
-    throw Failure(ErrorCode::Storage, "cannot read the problems: a directory, or a disk error");
+  files::for_each_line(stream, "problems", [&](const files::Line& line) {
+    lines.push_back({line.number, line.text ? json::problem_from_json(*line.text)
+                                            : Result<Problem>(line.text.error())});
+    return true;
+  });
   return lines;
 }
 
