@@ -4,11 +4,12 @@
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/failure.hpp"
+#include "proto/types/publications.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/uuid.hpp"
 
 /// The four conversations as types: what is asked, what is answered, and how a request that
-/// cannot be served is refused.
+/// cannot be served is refused. And the two publications: what is told without being asked.
 namespace kinship::codec {
 
 /// How a reply finds its request; the first members of every message.
@@ -46,6 +47,16 @@ struct AdminConversation {
   using Reply = AdminReply;
   static constexpr const char* kName = "admin";
   static Reply refuse(const Error& error);
+};
+
+struct AnnouncementPublication {
+  using Value = Announcement;
+  static constexpr const char* kName = "announcement";
+};
+
+struct EventPublication {
+  using Value = Event;
+  static constexpr const char* kName = "event";
 };
 
 }  // namespace kinship::codec

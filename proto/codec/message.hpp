@@ -16,6 +16,7 @@ struct Message {
   Wire wire{};
   std::unique_ptr<Arena> arena = std::make_unique<Arena>();
 
+  Message() = default;  ///< of a publication: it has no head
   explicit Message(const Head& head) {
     std::memcpy(wire.client_id, head.client_id.bytes.data(), sizeof wire.client_id);
     wire.sequence_number = head.sequence_number;

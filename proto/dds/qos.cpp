@@ -8,6 +8,7 @@ namespace kinship::dds {
 namespace {
 
 constexpr std::int32_t kReplyDepth = 64;
+constexpr std::int32_t kEventDepth = 64;
 
 Qos make_qos() {
   Qos qos(dds_create_qos());
@@ -45,6 +46,21 @@ Qos request_reader_qos() {
 Qos reply_qos() {
   Qos qos = reliable_volatile_qos();
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kReplyDepth);
+  return qos;
+}
+
+Qos announcement_qos() {
+  Qos qos = reliable_volatile_qos();
+  dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  return qos;
+}
+
+Qos event_qos() {
+  Qos qos = reliable_volatile_qos();
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kEventDepth);
   return qos;
 }
 

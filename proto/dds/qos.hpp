@@ -25,6 +25,14 @@ Qos request_reader_qos();
 /// is asked for again.
 Qos reply_qos();
 
+/// Both sides of announcements: reliable, the newest of each distribution, also for readers that
+/// come later (transient local), without autodispose.
+Qos announcement_qos();
+
+/// Both sides of events: reliable, keep last 64, volatile: who comes later, or does not keep up,
+/// misses some.
+Qos event_qos();
+
 /// Of a publisher or subscriber in one partition.
 Qos partition_qos(const std::string& partition);
 

@@ -9,10 +9,12 @@
 
 #include "proto/codec/admin_codec.hpp"
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/publication_codec.hpp"
 #include "proto/codec/register_codec.hpp"
 #include "proto/codec/report_codec.hpp"
+#include "proto/dds/qos.hpp"
 
-/// The messages and topics of each conversation. For sources of proto/dds only.
+/// The messages and topics of each conversation and publication. For sources of proto/dds only.
 namespace kinship::dds {
 
 /// What the type-erased parts need to know of a conversation.
@@ -64,7 +66,30 @@ struct Wire<codec::AdminConversation> {
   }
 };
 
-/// The first members of every message, in their place.
+/// What the type-erased parts need to know of a publication.
+struct PublicationTopic {
+  std::string name;
+  const dds_topic_descriptor_t& type;
+  Qos qos;  ///< of its writer and its readers
+};
+
+template <>
+struct Wire<codec::AnnouncementPublication> {
+  using Sample = kinship_wire_Announcement;
+  static PublicationTopic topic() {
+    return {"kinship/announcement", kinship_wire_Announcement_desc, announcement_qos()};
+  }
+};
+
+template <>
+struct Wire<codec::EventPublication> {
+  using Sample = kinship_wire_Event;
+  static PublicationTopic topic() {
+    return {"kinship/event", kinship_wire_Event_desc, event_qos()};
+  }
+};
+
+/// The first members of every message of a conversation, in their place.
 struct WireHead {
   std::uint8_t client_id[16];
   std::uint64_t sequence_number;

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "proto/codec/message.hpp"
+#include "proto/idl/publication.h"
+
+namespace kinship::codec {
+
+/// The rule of the contract that a publication breaks, if any.
+std::optional<Error> check(const Announcement& announcement);
+std::optional<Error> check(const Event& event);
+
+Result<Message<kinship_wire_Announcement>> encode(const Announcement& announcement);
+Result<Announcement> decode(const kinship_wire_Announcement& wire);
+
+/// Its text is made one line, and texts that are too long are cut: what happened is told in any
+/// case, also when it was that somebody sent an impossible name.
+Result<Message<kinship_wire_Event>> encode(const Event& event);
+Result<Event> decode(const kinship_wire_Event& wire);
+
+}  // namespace kinship::codec

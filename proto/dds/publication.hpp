@@ -1,0 +1,66 @@
+#pragma once
+
+#include <concepts>
+#include <functional>
+#include <memory>
+
+#include "proto/codec/conversation.hpp"
+#include "proto/dds/participant.hpp"
+
+namespace kinship::dds {
+
+/// The server's side of a publication. May be shared between threads.
+template <typename Publication>
+class Publisher {
+ public:
+  /// \throws Failure(Internal) if an entity cannot be created.
+  explicit Publisher(const Participant& participant);
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  /// Sends to whoever subscribes; a slow subscriber loses samples and holds nobody up. A value
+  /// that breaks a rule of the contract is not sent. Never throws.
+  void publish(const typename Publication::Value& value) const noexcept;
+
+  /// Forgets the announcement of a distribution: who subscribes from now on is not told of it.
+  /// Never throws.
+  void withdraw(const Digest& distribution_id)
+      const noexcept requires std::same_as<Publication, codec::AnnouncementPublication>;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The client's side of a publication, with a thread of its own that calls the handlers, one call
+/// at a time. A handler must not throw, may take its time and use other entities, but not destroy
+/// the subscriber.
+template <typename Publication>
+class Subscriber {
+ public:
+  struct Handlers {
+    std::function<void(const typename Publication::Value&)> on_sample;
+    /// There is a server that was not there before, at first or after a restart. May be empty.
+    std::function<void()> on_server;
+  };
+
+  /// \throws Failure(Internal) if an entity cannot be created.
+  Subscriber(const Participant& participant, Handlers handlers);
+
+  /// Waits for the handler that runs; none is called afterwards.
+  ~Subscriber();
+  Subscriber(const Subscriber&) = delete;
+  Subscriber& operator=(const Subscriber&) = delete;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+extern template class Publisher<codec::AnnouncementPublication>;
+extern template class Publisher<codec::EventPublication>;
+extern template class Subscriber<codec::AnnouncementPublication>;
+extern template class Subscriber<codec::EventPublication>;
+
+}  // namespace kinship::dds
