@@ -1,0 +1,56 @@
+#include "client/link/robot_names.hpp"
+
+#include <algorithm>
+
+#include "proto/json/summaries_json.hpp"
+
+namespace kinship::link {
+namespace {
+
+ErrorCode code_of(AdminStatus status) {
+  switch (status) {
+    case AdminStatus::NotFound:
+      return ErrorCode::NotFound;
+    case AdminStatus::Refused:
+      return ErrorCode::InvalidInput;
+    default:
+      return ErrorCode::Internal;
+  }
+}
+
+Result<Digest> resolve_robot(Client& client, const std::string& name) {
+  AdminRequest request;
+  request.verb = AdminVerb::ShowRobot;
+  request.argument = name;
+  const Result<AdminReply> reply = client.admin(request);
+  if (!reply)
+    return reply.error();
+  if (reply->status != AdminStatus::Ok)
+    return Error{code_of(reply->status), reply->message};
+  if (reply->rows.empty())
+    return Error{ErrorCode::Internal, "the server said nothing of robot '" + name + "'"};
+  const Result<RobotSummary> summary = json::robot_summary_from_json(reply->rows.front());
+  if (!summary)
+    return Error{ErrorCode::Internal,
+                 "robot '" + name + "': cannot read the server's row: " + summary.error().message};
+  return summary->robot;
+}
+
+}  // namespace
+
+Result<std::vector<Digest>> resolve_robots(Client& client, const std::vector<std::string>& names) {
+  std::vector<Digest> robots;
+  robots.reserve(names.size());
+  for (const std::string& name : names) {
+    const Result<Digest> robot = resolve_robot(client, name);
+    if (!robot)
+      return robot.error();
+    robots.push_back(*robot);
+  }
+  std::ranges::sort(robots);
+  const auto [first_again, end] = std::ranges::unique(robots);
+  robots.erase(first_again, end);
+  return robots;
+}
+
+}  // namespace kinship::link

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client/link/client.hpp"
+#include "proto/types/digest.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship::link {
+
+/// What the server knows robots by: one request per name, each up to the client's timeout.
+/// \param names  labels or beginnings of digests (four digits or more).
+/// \return       their digests, ascending and distinct, as Selection wants them; or NotFound,
+///               InvalidInput (more than one robot) or Unavailable for the first that has none.
+Result<std::vector<Digest>> resolve_robots(Client& client, const std::vector<std::string>& names);
+
+}  // namespace kinship::link

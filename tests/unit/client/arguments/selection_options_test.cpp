@@ -1,0 +1,105 @@
+#include "client/arguments/selection_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "proto/types/limits.hpp"
+
+namespace kinship::arguments {
+namespace {
+
+using Time = std::chrono::system_clock::time_point;
+
+constexpr std::int64_t kMidnight_ms = 1'795'219'200'000;  // 2026-11-21T00:00:00Z, date -d ... +%s
+const Time kNow{std::chrono::milliseconds(kMidnight_ms + 1)};
+
+SelectionArguments parse(const std::string& line) {
+  SelectionArguments arguments;
+  CLI::App app;
+  add_selection_options(app, arguments);
+  app.parse(line);
+  return arguments;
+}
+
+TEST(ParseSince, ReadsDatesAndTimesInUtc) {
+  EXPECT_EQ(*parse_since("2026-11-21", kNow), kMidnight_ms);
+  EXPECT_EQ(*parse_since("2026-11-21T00:00", kNow), kMidnight_ms);
+  EXPECT_EQ(*parse_since("2026-11-21T05:32:14Z", kNow),
+            kMidnight_ms + ((5 * 60 + 32) * 60 + 14) * 1000);
+  EXPECT_EQ(*parse_since("1970-01-01", kNow), 0);
+  EXPECT_EQ(*parse_since("2024-02-29", kNow), 1'709'164'800'000);
+}
+
+TEST(ParseSince, CountsAgesFromNow) {
+  EXPECT_EQ(*parse_since("0s", kNow), kMidnight_ms + 1);
+  EXPECT_EQ(*parse_since("90m", kNow), kMidnight_ms + 1 - 90 * 60'000);
+  EXPECT_EQ(*parse_since("12h", kNow), kMidnight_ms + 1 - 12 * 3'600'000);
+  EXPECT_EQ(*parse_since("14d", kNow), kMidnight_ms + 1 - 14 * std::int64_t{86'400'000});
+  EXPECT_EQ(*parse_since("2w", kNow), *parse_since("14d", kNow));
+  EXPECT_EQ(*parse_since("100d", Time(std::chrono::hours(24))), 0) << "before 1970";
+}
+
+TEST(ParseSince, RefusesWhatIsNoTimeAndShowsIt) {
+  for (const char* text : {"",
+                           "d",
+                           "14",
+                           "-3d",
+                           "1.5h",
+                           "14y",
+                           "yesterday",
+                           "2026-02-30",
+                           "2026-13-01",
+                           "1969-12-31",
+                           "2026-11-21T",
+                           "2026-11-21Z",
+                           "2026-11-21 05:32",
+                           "2026-11-21T24:00",
+                           "2026-11-21T05:60",
+                           "2026-11-21T05:32:60",
+                           "2026-11-21T05:32:14+01:00",
+                           "2026-11-2",
+                           "26-11-2100",
+                           "99999999w",
+                           "99999999999999999999s"}) {
+    const auto since = parse_since(text, kNow);
+    ASSERT_FALSE(since) << text;
+    EXPECT_EQ(since.error().code, ErrorCode::InvalidInput);
+    EXPECT_NE(since.error().message.find("'" + std::string(text) + "'"), std::string::npos) << text;
+  }
+}
+
+TEST(ParseRobotNames, SplitsAtCommasAndKeepsEachOnce) {
+  EXPECT_EQ(*parse_robot_names("panda,iiwa14,,panda,"),
+            (std::vector<std::string>{"panda", "iiwa14"}));
+}
+
+TEST(ParseRobotNames, RefusesNoneAndWhatIsNoLabel) {
+  for (const char* text : {"", ",", "panda,two words", "a\nb"})
+    EXPECT_FALSE(parse_robot_names(text)) << text;
+  std::string many;
+  for (std::size_t i = 0; i <= kMaxSelectedSources; ++i)
+    many += "r" + std::to_string(i) + ",";
+  EXPECT_FALSE(parse_robot_names(many));
+}
+
+TEST(SelectionOptions, FillASelection) {
+  const SelectionArguments arguments =
+      parse("--sources panda,iiwa14 --weighting paths --since 2026-11-21");
+  EXPECT_EQ(arguments.sources, "panda,iiwa14");
+  const Selection selection = *read_selection(arguments, kNow);
+  EXPECT_EQ(selection.weighting, Weighting::Paths);
+  EXPECT_EQ(selection.since_ms, kMidnight_ms);
+  EXPECT_TRUE(selection.sources.empty());
+  EXPECT_EQ(*read_selection(parse(""), kNow), Selection{});
+}
+
+TEST(SelectionOptions, RefuseWhileTheCommandLineIsParsed) {
+  EXPECT_THROW(parse("--sources ,"), CLI::ValidationError);
+  EXPECT_THROW(parse("--weighting heavy"), CLI::ValidationError);
+  EXPECT_THROW(parse("--since tomorrow"), CLI::ValidationError);
+}
+
+}  // namespace
+}  // namespace kinship::arguments
