@@ -9,7 +9,7 @@
 #include "proto/types/result.hpp"
 #include "proto/types/selection.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT: theirs
 class App;
 }  // namespace CLI
 

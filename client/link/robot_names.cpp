@@ -48,8 +48,7 @@ Result<std::vector<Digest>> resolve_robots(Client& client, const std::vector<std
     robots.push_back(*robot);
   }
   std::ranges::sort(robots);
-  const auto [first_again, end] = std::ranges::unique(robots);
-  robots.erase(first_again, end);
+  robots.erase(std::unique(robots.begin(), robots.end()), robots.end());
   return robots;
 }
 
