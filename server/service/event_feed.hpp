@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "proto/types/publications.hpp"
+#include "server/service/clock.hpp"
+
+namespace kinship::service {
+
+/// Tells people who watch what happens, at most so many events a second: the rest is counted, and
+/// the next event says how many were left out. May be shared between threads.
+class EventFeed {
+ public:
+  /// Called from any thread, without a lock; must not throw or block.
+  using Sink = std::function<void(const Event&)>;
+
+  /// \param clock  outlives the feed.
+  /// \param sink   empty: nobody watches, nothing is done.
+  EventFeed(const Clock& clock, Sink sink, std::size_t per_second = 1000)
+      : clock_(clock), sink_(std::move(sink)), per_second_(per_second) {}
+  EventFeed(const EventFeed&) = delete;
+  EventFeed& operator=(const EventFeed&) = delete;
+
+  /// \param text   makes the line; called only if the event is told. It is cut to kMaxEventBytes.
+  /// \param robot  label or short digest; may be empty, as may the task.
+  template <typename Text>
+  void tell(EventKind kind, std::string_view task, std::string_view robot, const Text& text) {
+    if (sink_ && may_tell())
+      send(kind, task, robot, text());
+  }
+
+  std::uint64_t dropped() const;  ///< since construction
+
+ private:
+  bool may_tell();
+  void send(EventKind kind, std::string_view task, std::string_view robot, std::string_view text);
+
+  const Clock& clock_;
+  const Sink sink_;
+  const std::size_t per_second_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::chrono::steady_clock::time_point second_began_{};
+  std::size_t told_ = 0;       // in this second
+  std::uint64_t dropped_ = 0;  // since construction
+  std::uint64_t unsaid_ = 0;   // of these, those no event has spoken of
+};
+
+}  // namespace kinship::service

@@ -1,0 +1,321 @@
+#include "server/service/jobs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+#include "proto/types/uuid.hpp"
+
+namespace kinship::service {
+namespace {
+
+bool has_ended(JobState state) { return state != JobState::Queued && state != JobState::Running; }
+
+Error no_job(const std::string& id) { return {ErrorCode::NotFound, "no job '" + id + "'"}; }
+
+std::string in_words(JobState state) {
+  switch (state) {
+    case JobState::Queued:
+      return "waits still";
+    case JobState::Running:
+      return "runs still";
+    case JobState::Done:
+      return "is done";
+    case JobState::Failed:
+      return "failed";
+    case JobState::Cancelled:
+      return "was cancelled";
+  }
+  return "is unknown";
+}
+
+}  // namespace
+
+struct Jobs::Entry {
+  Job job;
+  Task task;  // its function goes when the job has ended
+  std::stop_source stop;
+  std::shared_ptr<JobRun> result;  // changed by the thread of the jobs alone until the end
+  TimePoint forgotten_at{};        // once it has ended
+
+  Job now() const {
+    Job copy = job;
+    if (job.state == JobState::Running)
+      copy.progress = result->progress();
+    return copy;
+  }
+};
+
+Jobs::Jobs(const Clock& clock, Options options)
+    : clock_(clock),
+      options_(std::move(options)),
+      worker_({.threads = 1, .queue_limit = 2, .niceness = options_.niceness}) {}
+
+Result<Job> Jobs::begin(Task task) {
+  const std::lock_guard lock(mutex_);
+  forget_old(clock_.now());
+  if (const EntryPointer same = find_same(task))
+    return same->now();
+  if (is_stopping_)
+    return Error{ErrorCode::Unavailable, "the server is stopping"};
+  if (count(JobState::Queued) >= options_.limits.queued)
+    return Error{ErrorCode::Unavailable,
+                 "busy: " + std::to_string(options_.limits.queued) +
+                     " jobs wait already, the most there may be; cancel one or ask again later"};
+  const auto entry = std::make_shared<Entry>();
+  entry->job.id = new_id();
+  entry->job.verb = task.verb;
+  entry->job.argument = task.argument;
+  entry->job.started_ms = clock_.unix_ms();
+  entry->task = std::move(task);
+  entries_.push_back(entry);
+  if (!is_working_)
+    is_working_ = worker_.submit(WorkerPool::Priority::Background,
+                                 {.run = [this] { work(); }, .abandon = {}});
+  return entry->job;
+}
+
+void Jobs::work() {
+  while (const EntryPointer entry = next())
+    run(entry);
+}
+
+Jobs::EntryPointer Jobs::next() {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [](const auto& entry) {
+    return entry->job.state == JobState::Queued;
+  });
+  is_working_ = found != entries_.end();
+  if (!is_working_)
+    return nullptr;
+  Entry& entry = **found;
+  entry.result = std::make_shared<JobRun>(entry.stop.get_token(), options_.limits.row_bytes);
+  entry.job.state = JobState::Running;
+  return *found;
+}
+
+void Jobs::run(const EntryPointer& entry) {
+  JobRun& result = *entry->result;
+  JobState state = JobState::Failed;
+  std::string message;
+  try {
+    state = entry->task.run(result) ? JobState::Done : JobState::Cancelled;
+    message = state == JobState::Done || !result.message.empty() ? result.message : "cancelled";
+  } catch (const std::exception& exception) {
+    message = exception.what();
+  }
+  Calls calls;
+  {
+    const std::lock_guard lock(mutex_);
+    end(*entry, state, message, calls);
+  }
+  make(calls);
+}
+
+void Jobs::end(Entry& entry, JobState state, const std::string& message, Calls& calls) {
+  entry.task.run = nullptr;
+  entry.job.state = state;
+  entry.job.message = cut_text(message, kMaxMessageBytes);
+  entry.job.ended_ms = clock_.unix_ms();
+  if (entry.result)
+    entry.job.progress = entry.result->progress();
+  if (state == JobState::Done) {
+    entry.job.progress = 1;
+    entry.job.rows = entry.result->rows.size();
+  } else {
+    entry.result.reset();
+  }
+  const TimePoint now = clock_.now();
+  entry.forgotten_at = now + options_.limits.kept_for;
+  const auto its_own =
+      std::stable_partition(waiters_.begin(), waiters_.end(),
+                            [&entry](const Waiter& waiter) { return waiter.id != entry.job.id; });
+  for (auto waiter = its_own; waiter != waiters_.end(); ++waiter)
+    calls.answers.emplace_back(std::move(waiter->done), entry.job);
+  waiters_.erase(its_own, waiters_.end());
+  calls.ended.push_back(entry.job);
+  forget_old(now);
+}
+
+void Jobs::make(const Calls& calls) const {
+  for (const Job& job : calls.ended)
+    options_.on_end(job);
+  for (const auto& [done, job] : calls.answers)
+    done(job);
+}
+
+std::vector<Job> Jobs::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Job> jobs;
+  jobs.reserve(entries_.size());
+  for (const EntryPointer& entry : entries_)
+    jobs.push_back(entry->now());
+  return jobs;
+}
+
+Result<Job> Jobs::find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const EntryPointer entry = find_entry(id);
+  if (!entry)
+    return no_job(id);
+  return entry->now();
+}
+
+std::size_t Jobs::active() const {
+  const std::lock_guard lock(mutex_);
+  return count(JobState::Queued) + count(JobState::Running);
+}
+
+Result<Job> Jobs::cancel(const std::string& id) {
+  Calls calls;
+  Job job;
+  {
+    const std::lock_guard lock(mutex_);
+    const EntryPointer entry = find_entry(id);
+    if (!entry)
+      return no_job(id);
+    entry->stop.request_stop();
+    if (entry->job.state == JobState::Queued)
+      end(*entry, JobState::Cancelled, "cancelled before it began", calls);
+    job = entry->now();
+  }
+  make(calls);
+  return job;
+}
+
+Result<Jobs::RowPage> Jobs::rows(const std::string& id, std::size_t first, std::size_t limit,
+                                 std::size_t max_bytes) const {
+  std::shared_ptr<const JobRun> result;
+  {
+    const std::lock_guard lock(mutex_);
+    const EntryPointer entry = find_entry(id);
+    if (!entry)
+      return no_job(id);
+    const Job& job = entry->job;
+    if (job.state != JobState::Done)
+      return Error{ErrorCode::InvalidInput,
+                   "job '" + id + "' " + in_words(job.state) +
+                       (has_ended(job.state) ? ": it has no rows" : ": it has no rows yet") +
+                       (job.message.empty() ? "" : " (" + job.message + ")")};
+    result = entry->result;
+  }
+  RowPage page;
+  page.rows = result->rows.page(first, limit, max_bytes);
+  page.next = first + page.rows.size() < result->rows.size() ? first + page.rows.size() : 0;
+  return page;
+}
+
+void Jobs::wait(const std::string& id, TimePoint deadline, Done done) {
+  Result<Job> job = no_job(id);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const EntryPointer entry = find_entry(id)) {
+      job = entry->now();
+      const bool waits = !has_ended(entry->job.state) && deadline > clock_.now() &&
+                         waiters_.size() < options_.limits.waiters;
+      if (waits) {
+        waiters_.push_back({id, deadline, std::move(done)});
+        return;
+      }
+    }
+  }
+  done(job);
+}
+
+std::optional<Jobs::TimePoint> Jobs::next_deadline() const {
+  const std::lock_guard lock(mutex_);
+  std::optional<TimePoint> next;
+  const auto consider = [&next](TimePoint time) {
+    if (!next || time < *next)
+      next = time;
+  };
+  for (const Waiter& waiter : waiters_)
+    consider(waiter.deadline);
+  for (const EntryPointer& entry : entries_)
+    if (has_ended(entry->job.state))
+      consider(entry->forgotten_at);
+  return next;
+}
+
+void Jobs::expire(TimePoint now) {
+  Calls calls;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto due =
+        std::stable_partition(waiters_.begin(), waiters_.end(),
+                              [now](const Waiter& waiter) { return waiter.deadline > now; });
+    for (auto waiter = due; waiter != waiters_.end(); ++waiter)
+      calls.answers.emplace_back(std::move(waiter->done), find_entry(waiter->id)->now());
+    waiters_.erase(due, waiters_.end());
+    forget_old(now);
+  }
+  make(calls);
+}
+
+void Jobs::stop() {
+  Calls calls;
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+    const std::deque<EntryPointer> all = entries_;  // end() may forget some
+    for (const EntryPointer& entry : all) {
+      entry->stop.request_stop();
+      if (entry->job.state == JobState::Queued)
+        end(*entry, JobState::Cancelled, "the server is stopping", calls);
+    }
+  }
+  make(calls);
+  worker_.stop(WorkerPool::Leftovers::Abandon);
+}
+
+Jobs::EntryPointer Jobs::find_entry(const std::string& id) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&id](const auto& entry) { return entry->job.id == id; });
+  return found == entries_.end() ? nullptr : *found;
+}
+
+Jobs::EntryPointer Jobs::find_same(const Task& task) const {
+  if (task.asker.empty())
+    return nullptr;
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&task](const auto& entry) {
+    return entry->task.asker == task.asker && entry->task.verb == task.verb &&
+           entry->task.argument == task.argument;
+  });
+  return found == entries_.end() ? nullptr : *found;
+}
+
+std::string Jobs::new_id() const {
+  std::string id;
+  do {
+    id = Uuid::random().text().substr(0, 8);
+  } while (find_entry(id));
+  return id;
+}
+
+std::size_t Jobs::count(JobState state) const {
+  return static_cast<std::size_t>(
+      std::count_if(entries_.begin(), entries_.end(),
+                    [state](const auto& entry) { return entry->job.state == state; }));
+}
+
+void Jobs::forget_old(TimePoint now) {
+  std::size_t kept = 0, bytes = 0;
+  std::deque<EntryPointer> remaining;
+  // From the newest to the oldest: those that are too many or too much are the old ones.
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    if (has_ended((*entry)->job.state)) {
+      const std::size_t rows = (*entry)->result ? (*entry)->result->rows.bytes() : 0;
+      ++kept;
+      bytes += rows;
+      const bool is_too_much = kept > 1 && bytes > options_.limits.kept_bytes;
+      if ((*entry)->forgotten_at <= now || kept > options_.limits.kept || is_too_much)
+        continue;
+    }
+    remaining.push_front(*entry);
+  }
+  entries_ = std::move(remaining);
+}
+
+}  // namespace kinship::service

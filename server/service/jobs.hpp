@@ -1,0 +1,150 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "proto/types/result.hpp"
+#include "proto/types/summaries.hpp"
+#include "server/service/clock.hpp"
+#include "server/service/job_rows.hpp"
+#include "server/service/worker_pool.hpp"
+
+namespace kinship::service {
+
+/// What a job is given while it runs, on the thread of the jobs.
+class JobRun {
+ public:
+  JobRun(std::stop_token stop, std::size_t max_row_bytes)
+      : rows(max_row_bytes), stop_(std::move(stop)) {}
+
+  bool should_stop() const { return stop_.stop_requested(); }
+  const std::stop_token& stop_token() const noexcept { return stop_; }
+  void set_progress(double progress) noexcept { progress_ = progress; }  ///< 0 to 1
+  double progress() const noexcept { return progress_; }
+
+  JobRows rows;         ///< what JobRows of the admin conversation reads once the job is done
+  std::string message;  ///< what it made, in words
+
+ private:
+  std::stop_token stop_;
+  std::atomic<double> progress_{0};
+};
+
+/// Long verbs: a bounded queue, one at a time on a thread of their own, and the ended ones for a
+/// while. May be shared between threads.
+class Jobs {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  struct Limits {
+    std::size_t queued = 16;                          ///< that wait; more are refused
+    std::size_t kept = 64;                            ///< ended ones
+    std::chrono::milliseconds kept_for{3'600'000};    ///< from its end
+    std::size_t row_bytes = std::size_t{64} << 20U;   ///< of one job's rows
+    std::size_t kept_bytes = std::size_t{64} << 20U;  ///< of the rows of all ended jobs together
+    std::size_t waiters = 256;
+  };
+
+  struct Options {
+    Limits limits;
+    int niceness = 10;
+    /// Called when a job has ended, on the thread that ended it.
+    std::function<void(const Job&)> on_end = [](const Job&) {};
+  };
+
+  /// A long verb to be begun.
+  struct Task {
+    std::string verb, argument;
+    /// Who asks. Asked again by the same, as after a lost reply, there is still one job; empty:
+    /// always a new one.
+    std::string asker;
+    /// \return false if it ended early because it should stop. What it throws makes it Failed.
+    std::function<bool(JobRun&)> run;
+  };
+
+  Jobs(const Clock& clock, Options options);
+  ~Jobs() { stop(); }
+  Jobs(const Jobs&) = delete;
+  Jobs& operator=(const Jobs&) = delete;
+
+  /// \return the job as it stands; Unavailable, with the limit, if too many wait or jobs stop.
+  Result<Job> begin(Task task);
+
+  std::vector<Job> list() const;                  ///< in the order in which they were begun
+  Result<Job> find(const std::string& id) const;  ///< NotFound
+  std::size_t active() const;                     ///< not ended
+
+  /// A queued job ends at once and frees its place, a running one soon. One that finishes before
+  /// it notices is Done. Ended ones stay as they are. \return the job as it stands; NotFound.
+  Result<Job> cancel(const std::string& id);
+
+  /// Rows of a job that is done, from row `first` on; at most `limit`, and `max_bytes` together,
+  /// but at least one. \return InvalidInput, with its state, for any other job; NotFound.
+  struct RowPage {
+    std::vector<std::string> rows;
+    std::size_t next = 0;  ///< 0: no more
+  };
+  Result<RowPage> rows(const std::string& id, std::size_t first, std::size_t limit,
+                       std::size_t max_bytes) const;
+
+  /// `done` is called once with the job as it stands when it has ended or `deadline` has come: on
+  /// this thread, the jobs' own, in cancel(), expire() or stop(). It must not throw or block.
+  using Done = std::function<void(const Result<Job>&)>;
+  void wait(const std::string& id, TimePoint deadline, Done done);
+
+  /// When expire() has something to do next; empty: not before the next call.
+  std::optional<TimePoint> next_deadline() const;
+  /// Answers those who have waited long enough and forgets what was kept long enough.
+  void expire(TimePoint now);
+
+  /// Cancels everything and returns when the running job has ended. A second call returns at once.
+  void stop();
+
+ private:
+  struct Entry;
+  using EntryPointer = std::shared_ptr<Entry>;  // shared with the thread that runs it
+  struct Waiter {
+    std::string id;
+    TimePoint deadline;
+    Done done;
+  };
+  /// What is called once no lock is held.
+  struct Calls {
+    std::vector<std::pair<Done, Job>> answers;
+    std::vector<Job> ended;
+  };
+
+  void work();
+  EntryPointer next();
+  void run(const EntryPointer& entry);
+  void make(const Calls& calls) const;
+
+  // With the lock held.
+  EntryPointer find_entry(const std::string& id) const;
+  EntryPointer find_same(const Task& task) const;
+  std::string new_id() const;
+  std::size_t count(JobState state) const;
+  void end(Entry& entry, JobState state, const std::string& message, Calls& calls);
+  void forget_old(TimePoint now);
+
+  const Clock& clock_;
+  const Options options_;
+
+  mutable std::mutex mutex_;          // guards what follows, but for the worker
+  std::deque<EntryPointer> entries_;  // as begun; queued ones wait in this order
+  std::vector<Waiter> waiters_;
+  bool is_working_ = false;
+  bool is_stopping_ = false;
+  WorkerPool worker_;  // last: its thread uses all of the above
+};
+
+}  // namespace kinship::service
