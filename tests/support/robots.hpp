@@ -9,7 +9,7 @@
 
 namespace kinship::test {
 
-/// A robot of robots/models: "panda", "iiwa14" or "ur10e".
+/// A robot of robots/models, for example "panda".
 /// \throws Failure if it cannot be read.
 RobotDescription model_description(const std::string& name);
 

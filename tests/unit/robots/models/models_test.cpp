@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -62,15 +63,65 @@ Eigen::Isometry3d panda_dh(const Eigen::VectorXd& q) {
          shift(0, 0, 0.107);
 }
 
-Eigen::Isometry3d iiwa14_dh(const Eigen::VectorXd& q) {
-  return standard_dh({{0.36, 0, -kPi / 2},
+/// Spherical shoulder, elbow, spherical wrist: base to shoulder, upper arm, forearm, wrist to
+/// flange.
+Eigen::Isometry3d anthropomorphic_dh(const std::array<double, 4>& lengths_m,
+                                     const Eigen::VectorXd& q) {
+  return standard_dh({{lengths_m[0], 0, -kPi / 2},
                       {0, 0, kPi / 2},
-                      {0.42, 0, kPi / 2},
+                      {lengths_m[1], 0, kPi / 2},
                       {0, 0, -kPi / 2},
-                      {0.40, 0, -kPi / 2},
+                      {lengths_m[2], 0, -kPi / 2},
                       {0, 0, kPi / 2},
-                      {0.126, 0, 0}},
+                      {lengths_m[3], 0, 0}},
                      q);
+}
+
+Eigen::Isometry3d iiwa14_dh(const Eigen::VectorXd& q) {
+  return anthropomorphic_dh({0.36, 0.42, 0.40, 0.126}, q);
+}
+
+Eigen::Isometry3d iiwa7_dh(const Eigen::VectorXd& q) {
+  return anthropomorphic_dh({0.34, 0.40, 0.40, 0.126}, q);
+}
+
+Eigen::Isometry3d sara_like_dh(const Eigen::VectorXd& q) {
+  return anthropomorphic_dh({0.36, 0.55, 0.50, 0.20}, q);
+}
+
+/// From axis to axis of the straight arm, which points along x. Source: rpiRobotics/stereo-sew,
+/// sawyer.m.
+Eigen::Isometry3d sawyer_by_axes(const Eigen::VectorXd& q) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
+  Eigen::Isometry3d hand = Eigen::Isometry3d::Identity();
+  hand.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return shift(0, 0, 0.317) * rotation(q[0], Eigen::Vector3d::UnitZ()) * shift(0.081, 0, 0) *
+         rotation(q[1], y) * shift(0, 0.1925, 0) * rotation(q[2], x) * shift(0.4, 0, 0) *
+         rotation(q[3], y) * shift(0, -0.1685, 0) * rotation(q[4], x) * shift(0.4, 0, 0) *
+         rotation(q[5], y) * shift(0, 0.1363, 0) * rotation(q[6], x) * shift(0.1345, 0, 0) *
+         rotation(-0.17453, x) * hand;
+}
+
+Eigen::Isometry3d sum_of_links(const std::vector<double>& lengths_m, const Eigen::VectorXd& q) {
+  double x = 0, y = 0, angle = 0;
+  for (std::size_t i = 0; i < lengths_m.size(); ++i) {
+    angle += q[static_cast<Eigen::Index>(i)];
+    x += lengths_m[i] * std::cos(angle);
+    y += lengths_m[i] * std::sin(angle);
+  }
+  return shift(x, y, 0) * rotation(angle, Eigen::Vector3d::UnitZ());
+}
+
+Eigen::Isometry3d planar_5r_a(const Eigen::VectorXd& q) {
+  return sum_of_links({0.25, 0.25, 0.20, 0.15, 0.15}, q);
+}
+
+Eigen::Isometry3d planar_5r_b(const Eigen::VectorXd& q) {
+  return sum_of_links({0.15, 0.30, 0.25, 0.15, 0.15}, q);
+}
+
+Eigen::Isometry3d planar_7r_c(const Eigen::VectorXd& q) {
+  return sum_of_links({0.18, 0.17, 0.16, 0.15, 0.13, 0.11, 0.10}, q);
 }
 
 Eigen::Isometry3d ur10e_dh(const Eigen::VectorXd& q) {
@@ -85,9 +136,19 @@ Eigen::Isometry3d ur10e_dh(const Eigen::VectorXd& q) {
 
 struct Model {
   std::string name;
-  Eigen::Isometry3d (*dh)(const Eigen::VectorXd&);
-  double tolerance;  ///< the UR10e's URDF rounds its angles
+  Eigen::Isometry3d (*expected)(const Eigen::VectorXd&);  ///< pose of the tip, from another source
+  double tolerance;  ///< the URDFs of UR10e and Sawyer round their angles
 };
+
+const std::vector<Model> kArms = {
+    {"panda", panda_dh, 1e-12},       {"iiwa14", iiwa14_dh, 1e-12},
+    {"iiwa7", iiwa7_dh, 1e-12},       {"ur10e", ur10e_dh, 3e-9},
+    {"sawyer", sawyer_by_axes, 2e-5}, {"sara_like", sara_like_dh, 1e-12}};
+const std::vector<Model> kPlanarArms = {{"planar_5r_a", planar_5r_a, 1e-12},
+                                        {"planar_5r_b", planar_5r_b, 1e-12},
+                                        {"planar_7r_c", planar_7r_c, 1e-12}};
+
+std::string name_of(const testing::TestParamInfo<Model>& model) { return model.param.name; }
 
 class Models : public testing::TestWithParam<Model> {
  protected:
@@ -95,10 +156,11 @@ class Models : public testing::TestWithParam<Model> {
   std::mt19937_64 generator_{kSeed};
 };
 
-TEST_P(Models, ForwardKinematicsAgreesWithTheDhTable) {
+TEST_P(Models, ForwardKinematicsAgreesWithTheTableOfTheArm) {
   for (int i = 0; i < 1000; ++i) {
     const Eigen::VectorXd q = random_configuration(chain_, generator_);
-    const Eigen::Matrix4d error = (T_base_tip(chain_, q).matrix() - GetParam().dh(q).matrix());
+    const Eigen::Matrix4d error =
+        (T_base_tip(chain_, q).matrix() - GetParam().expected(q).matrix());
     ASSERT_LT(error.cwiseAbs().maxCoeff(), GetParam().tolerance);
   }
 }
@@ -120,7 +182,9 @@ TEST_P(Models, JacobianAgreesWithDifferenceQuotients) {
   }
 }
 
-TEST_P(Models, TransferFrameIsThePalmWhereverTheArmIs) {
+class ModelsWithGripper : public Models {};
+
+TEST_P(ModelsWithGripper, TransferFrameIsThePalmWhereverTheArmIs) {
   const auto palm = static_cast<std::size_t>(chain_.find_link("palm"));
   for (int i = 0; i < 20; ++i) {
     const Eigen::VectorXd q = random_configuration(chain_, generator_);
@@ -128,13 +192,13 @@ TEST_P(Models, TransferFrameIsThePalmWhereverTheArmIs) {
   }
 }
 
-TEST_P(Models, FlangeLies60MillimetresBehindThePalmAlongItsZAxis) {
+TEST_P(ModelsWithGripper, FlangeLies60MillimetresBehindThePalmAlongItsZAxis) {
   const Eigen::Isometry3d& T_tip_palm = chain_.T_tip_transfer();
   EXPECT_TRUE(T_tip_palm.translation().isApprox(Eigen::Vector3d(0, 0, 0.06)));
   EXPECT_TRUE(T_tip_palm.linear().col(2).isApprox(Eigen::Vector3d::UnitZ()));
 }
 
-TEST_P(Models, FingersStandOpenAlikeOnEveryRobot) {
+TEST_P(ModelsWithGripper, FingersStandOpenAlikeOnEveryRobot) {
   const auto poses = link_poses(chain_, Eigen::VectorXd::Zero(chain_.dof()));
   const auto pose_of = [&](const char* link) {
     return poses[static_cast<std::size_t>(chain_.find_link(link))];
@@ -145,11 +209,22 @@ TEST_P(Models, FingersStandOpenAlikeOnEveryRobot) {
   EXPECT_TRUE(T_palm_right.isApprox(shift(0, -0.0425, 0), 1e-12));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Models,
-                         testing::Values(Model{"panda", panda_dh, 1e-12},
-                                         Model{"iiwa14", iiwa14_dh, 1e-12},
-                                         Model{"ur10e", ur10e_dh, 3e-9}),
-                         [](const auto& model) { return model.param.name; });
+INSTANTIATE_TEST_SUITE_P(Arms, Models, testing::ValuesIn(kArms), name_of);
+INSTANTIATE_TEST_SUITE_P(Planar, Models, testing::ValuesIn(kPlanarArms), name_of);
+INSTANTIATE_TEST_SUITE_P(All, ModelsWithGripper, testing::ValuesIn(kArms), name_of);
+
+class PlanarModels : public Models {};
+
+TEST_P(PlanarModels, OnlyPlaceAndDirectionInThePlaneMatter) {
+  EXPECT_EQ(chain_.task_axes().matters, (std::array{true, true, false, false, false, true}));
+}
+
+TEST_P(PlanarModels, ReachOneMetreWithTheTransferFrameAtTheTip) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.dof());
+  EXPECT_TRUE(T_base_transfer(chain_, zero).isApprox(shift(1, 0, 0), 1e-12));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PlanarModels, testing::ValuesIn(kPlanarArms), name_of);
 
 TEST(ReferencePoses, Panda) {
   const Chain chain = model_chain("panda");
@@ -170,6 +245,25 @@ TEST(ReferencePoses, Iiwa14) {
                   .isApprox(shift(0, 0, 1.306), 1e-12));
 }
 
+TEST(ReferencePoses, Iiwa7) {
+  EXPECT_TRUE(T_base_tip(model_chain("iiwa7"), Eigen::VectorXd::Zero(7))
+                  .isApprox(shift(0, 0, 1.266), 1e-12));
+}
+
+/// The manufacturer's neutral pose.
+TEST(ReferencePoses, Sawyer) {
+  Eigen::VectorXd neutral(7);
+  neutral << 0, -1.18, 0, 2.18, 0, 0.57, 3.3161;
+  const Eigen::Isometry3d T = T_base_tip(model_chain("sawyer"), neutral);
+  EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(0.4496, 0.1603, 0.2158), 2e-4));
+  EXPECT_LT(T.linear()(2, 2), -0.9999);  // the hand points down
+}
+
+TEST(ReferencePoses, SaraLikeReaches1250MillimetresFromItsShoulder) {
+  EXPECT_TRUE(T_base_tip(model_chain("sara_like"), Eigen::VectorXd::Zero(7))
+                  .isApprox(shift(0, 0, 0.36 + 1.25), 1e-12));
+}
+
 TEST(ReferencePoses, Ur10e) {
   Eigen::Isometry3d expected = shift(1.18425, 0.2907, 0.06085);
   expected.linear() << -1, 0, 0, 0, 0, 1, 0, 1, 0;
@@ -179,6 +273,8 @@ TEST(ReferencePoses, Ur10e) {
 TEST(ReferenceLimits, AreThoseOfTheManufacturers) {
   EXPECT_EQ(model_chain("panda").upper()[3], -0.0698);
   EXPECT_NEAR(model_chain("iiwa14").lower()[6], -175 * kPi / 180, 1e-12);
+  EXPECT_NEAR(model_chain("iiwa7").upper()[1], 120 * kPi / 180, 1e-12);
+  EXPECT_EQ(model_chain("sawyer").lower()[1], -3.8095);
   EXPECT_NEAR(model_chain("ur10e").upper()[2], kPi, 1e-12);
   EXPECT_NEAR(model_chain("ur10e").upper()[0], 2 * kPi, 1e-12);
 }

@@ -110,7 +110,9 @@ TEST_F(Ur10eTwin, OtherNamesAndMoreDigitsAreTheSameArm) {
 }
 
 TEST(ModelArms, AreAllDifferent) {
-  const std::vector<std::string> names = {"panda", "iiwa14", "ur10e"};
+  const std::vector<std::string> names = {"panda",       "iiwa14",      "iiwa7",
+                                          "ur10e",       "sawyer",      "sara_like",
+                                          "planar_5r_a", "planar_5r_b", "planar_7r_c"};
   std::vector<Chain> chains;
   for (const std::string& name : names)
     chains.push_back(test::model_chain(name));
