@@ -31,6 +31,16 @@ inline std::vector<Attempt> golden_attempts() {
   return attempts;
 }
 
+/// Retired in stores of schema 2 and later; the only one of its task.
+inline Attempt golden_retired_attempt() {
+  return make_attempt(golden_robots()[0].digest, "drawer", 8);
+}
+
+/// Evicted after one fit in stores of schema 2 and later.
+inline Distribution golden_evicted_distribution() {
+  return make_distribution(golden_robots()[1].digest, "bin", 101);
+}
+
 inline Distribution golden_distribution() {
   return make_distribution(golden_robots()[0].digest, "shelf", 100);
 }

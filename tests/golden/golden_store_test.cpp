@@ -47,7 +47,7 @@ TEST_P(GoldenStore, StillHasEveryAttemptAndPath) {
     ASSERT_EQ(found->path.has_value(), wanted.path.has_value());
     EXPECT_TRUE(!wanted.path || found->path->waypoints() == wanted.path->waypoints());
   }
-  EXPECT_EQ(store_->status().attempts, 8U);
+  EXPECT_EQ(store_->status().attempts, GetParam() < 2 ? 8U : 9U);
   EXPECT_EQ(store_->status().paths, 7U);
   EXPECT_EQ(store_->generation(test::golden_robots()[0].digest, "bin"), 1U);
 }
@@ -61,6 +61,53 @@ TEST_P(GoldenStore, StillHasItsDistribution) {
   EXPECT_EQ(found->mixture->covariances(), wanted.mixture->covariances());
 }
 
+TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
+  const Digest robot = test::golden_robots()[0].digest;
+  const std::vector<PathSummary> listed = store_->list_paths(robot, "shelf", "", 10).rows;
+  const auto paths = store_->read_paths(robot, "shelf", {.after_id = 0, .limit = 10});
+  ASSERT_EQ(paths.size(), 2U);
+  ASSERT_EQ(listed.size(), 2U);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    EXPECT_GT(paths[i].received_ms, 1'790'000'000'000);
+    EXPECT_EQ(paths[i].received_ms, listed[i].received_ms);
+    EXPECT_EQ(listed[i].retired_ms, 0);
+  }
+  const store::AttemptTotals totals = store_->attempt_totals(robot, "shelf");
+  EXPECT_EQ(totals.control.attempts, 3U);
+  EXPECT_EQ(totals.control.solved, 2U);
+  EXPECT_EQ(totals.control.checks, 3 * 1234);
+  EXPECT_EQ(totals.control.checks_squared, 3 * 1234 * 1234);
+  EXPECT_EQ(totals.control.checks_of_solved, 2 * 1234);
+  EXPECT_EQ(totals.guided.attempts, 0U);
+  EXPECT_EQ(store_->experience("shelf")[0].retired_generation, 0U);
+}
+
+TEST_P(GoldenStore, RetiresExportsAndEvictsWhatItHad) {
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 8U);
+  const Attempt bad = test::golden_attempts()[6];
+  EXPECT_EQ(store_->retire_path(bad.report_uuid)->paths, 1U);
+  EXPECT_EQ(store_->reset_task("shelf")->paths, 5U);
+  EXPECT_EQ(store_->status().paths, 1U);
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 2U);
+  const Distribution distribution = test::golden_distribution();
+  EXPECT_TRUE(store_->evict_distribution(distribution.id));
+  EXPECT_EQ(store_->put_distribution(distribution), 3U);
+}
+
+TEST_P(GoldenStore, StillKnowsWhatWasRetiredAndEvicted) {
+  if (GetParam() < 2)
+    GTEST_SKIP() << "nothing could be retired then";
+  const Attempt retired = test::golden_retired_attempt();
+  const std::vector<PathSummary> listed = store_->list_paths({}, "drawer", "", 10).rows;
+  ASSERT_EQ(listed.size(), 1U);
+  EXPECT_GE(listed[0].retired_ms, listed[0].received_ms);
+  const store::ExperienceSummary experience = store_->experience("drawer").at(0);
+  EXPECT_EQ(experience.paths, 0U);
+  EXPECT_EQ(experience.retired_generation, 2U);
+  EXPECT_EQ(test::report(*store_, {retired})[0].status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->put_distribution(test::golden_evicted_distribution()), 2U);
+}
+
 TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   for (const Receipt& receipt : test::report(*store_, test::golden_attempts()))
     EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate) << receipt.message;
@@ -68,7 +115,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace kinship

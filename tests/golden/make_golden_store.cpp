@@ -22,6 +22,11 @@ int make(const std::filesystem::path& file) {
     test::report(*store, test::golden_attempts());
     store->put_distribution(test::golden_distribution());
     store->put_distribution(test::golden_distribution());
+    test::report(*store, {test::golden_retired_attempt()});
+    static_cast<void>(
+        store->retire_path(test::golden_retired_attempt().report_uuid).value_or_throw());
+    store->put_distribution(test::golden_evicted_distribution());
+    store->evict_distribution(test::golden_evicted_distribution().id);
   }
   store::Database(file, store::Access::ReadWrite)
       .execute("PRAGMA journal_mode = DELETE; PRAGMA page_size = 1024; VACUUM");

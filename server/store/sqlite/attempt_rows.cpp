@@ -3,6 +3,7 @@
 #include <string>
 
 #include "server/store/sqlite/clock.hpp"
+#include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
 
 namespace kinship::store {
@@ -37,8 +38,23 @@ std::optional<RobotRow> find_robot_row(Database& database, const Digest& robot) 
   return RobotRow{query->column_integer(0), query->column_integer(1)};
 }
 
+/// What became of an attempt's path.
+struct AttemptPath {
+  AttemptStatus status = AttemptStatus::Unsolved;
+  std::optional<std::int64_t> id;
+};
+
+AttemptPath keep_path(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
+                      std::int64_t received_ms) {
+  if (!prepared.path)
+    return {};
+  if (const auto same = find_path(database, key, prepared.path->content))
+    return {AttemptStatus::DuplicateContent, same};
+  return {AttemptStatus::Stored, insert_path(database, key, prepared, received_ms)};
+}
+
 void insert_row(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
-                AttemptStatus status, std::optional<std::int64_t> path_id) {
+                const AttemptPath& path, std::int64_t received_ms) {
   const Attempt& attempt = prepared.attempt;
   const PlanningRecord& record = attempt.record;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
@@ -53,14 +69,14 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
           " distribution_revision, received_ms) "
           "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id,
-                 key.robot_id, path_id, static_cast<std::int64_t>(status),
+                 key.robot_id, path.id, static_cast<std::int64_t>(path.status),
                  std::string_view(attempt.machine), blob_or_null(T_task_base),
                  code_of(record.outcome), std::string_view(record.planner),
                  std::string_view(record.planner_options), record.planning_time_s,
                  static_cast<std::int64_t>(record.collision_checks),
                  static_cast<std::int64_t>(record.projections), record.time_limit_s,
                  code_of(record.arm), record.share, distribution,
-                 static_cast<std::int64_t>(record.distribution_revision), now_ms())
+                 static_cast<std::int64_t>(record.distribution_revision), received_ms)
       .run();
 }
 
@@ -91,52 +107,18 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
                                             " has " + std::to_string(robot->dof));
 
   const ExperienceKey key{ensure_task(database, attempt.task), robot->id};
-  database
-      .cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
-      ->bind_all(key.task_id, key.robot_id)
-      .run();
-  AttemptStatus status = AttemptStatus::Unsolved;
-  std::optional<std::int64_t> path_id;
-  if (prepared.path) {
-    path_id = find_path(database, key, prepared.path->content);
-    status = path_id ? AttemptStatus::DuplicateContent : AttemptStatus::Stored;
-    if (!path_id)
-      path_id = insert_path(database, key, prepared);
-  }
-  insert_row(database, prepared, key, status, path_id);
-  const bool stored = status == AttemptStatus::Stored;
-  database
-      .cached(
-          "UPDATE experience SET attempts = attempts + 1, paths = paths + ? "
-          "WHERE task_id = ? AND robot_id = ?")
-      ->bind_all(std::int64_t{stored ? 1 : 0}, key.task_id, key.robot_id)
-      .run();
+  ensure_experience(database, key);
+  const std::int64_t received_ms = now_ms();
+  const AttemptPath path = keep_path(database, prepared, key, received_ms);
+  insert_row(database, prepared, key, path, received_ms);
+  const bool stored = path.status == AttemptStatus::Stored;
+  count_attempt(database, key, attempt.record, stored);
   if (stored) {
     batch.paths_changed(key.task_id, key.robot_id);
     return {attempt.report_uuid, ReceiptStatus::Stored, ""};
   }
   return {attempt.report_uuid, prepared.path ? ReceiptStatus::Duplicate : ReceiptStatus::Recorded,
           ""};
-}
-
-std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
-                                             std::string_view task) {
-  const auto query = database.cached(
-      "SELECT experience.task_id, experience.robot_id FROM experience "
-      "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
-      "WHERE task.name = ? AND robot.digest = ?");
-  if (!query->bind_all(task, Bytes(robot.bytes)).step())
-    return std::nullopt;
-  return ExperienceKey{query->column_integer(0), query->column_integer(1)};
-}
-
-std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task) {
-  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
-  if (!key)
-    return 0;
-  const auto query =
-      database.cached("SELECT generation FROM experience WHERE task_id = ? AND robot_id = ?");
-  return query->bind_all(key->task_id, key->robot_id).step() ? count_of(*query, 0) : 0;
 }
 
 PlanningRecord read_record(const Statement& row, int first_column) {

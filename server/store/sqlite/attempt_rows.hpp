@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/database.hpp"
 #include "server/store/sqlite/prepared_attempt.hpp"
 #include "server/store/sqlite/writer.hpp"
 #include "server/store/store.hpp"
@@ -16,13 +16,6 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared);
 
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Database& database, std::string_view task);
-
-/// The internal ids of a robot and a task that has experience with it.
-std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
-                                             std::string_view task);
-
-/// 0 if there is no experience.
-std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task);
 
 /// An attempt without its path, and the path's id.
 struct AttemptRow {

@@ -1,6 +1,7 @@
 #include "server/store/sqlite/distribution_blob.hpp"
 
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "proto/types/limits.hpp"
@@ -9,15 +10,37 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::uint64_t kFormat = 1;  // written first; a new one when the fields change
+// Written first. 1 knew neither the selection nor the details of a source; it is still read.
+constexpr std::uint64_t kFormat = 2;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
+
+template <typename Enum>
+Enum enumerator(ByteReader& in, Enum last) {
+  const std::uint64_t value = in.integer();
+  if (value > static_cast<std::uint64_t>(last))
+    throw std::out_of_range("distribution: enumerator " + std::to_string(value));
+  return static_cast<Enum>(value);
+}
 
 void add_source(ByteWriter& out, const Source& source) {
   out.add(std::span<const std::uint8_t>(source.robot.bytes)).add(source.label);
   out.add(source.paths).add(source.generation).add(source.poses).add(source.poses_solved);
+  out.add(static_cast<std::uint64_t>(source.relation)).add(source.paths_used);
+  out.add(source.out_of_reach).add(source.outside_limits).add(source.not_converged);
+  out.add(source.configurations).add(source.mass);
 }
 
-Source read_source(ByteReader& in) {
+void read_details(ByteReader& in, Source& source) {
+  source.relation = enumerator<Relation>(in, Relation::Identical);
+  source.paths_used = in.integer();
+  source.out_of_reach = in.integer();
+  source.outside_limits = in.integer();
+  source.not_converged = in.integer();
+  source.configurations = in.integer();
+  source.mass = in.real();
+}
+
+Source read_source(ByteReader& in, std::uint64_t format) {
   Source source;
   in.bytes(source.robot.bytes);
   source.label = in.text(kMaxTextBytes);
@@ -25,7 +48,34 @@ Source read_source(ByteReader& in) {
   source.generation = in.integer();
   source.poses = in.integer();
   source.poses_solved = in.integer();
+  if (format > 1)
+    read_details(in, source);
+  else
+    source.paths_used = source.paths;  // fits left none out then
   return source;
+}
+
+void add_selection(ByteWriter& out, const Selection& selection) {
+  out.add(std::uint64_t{selection.sources.size()});
+  for (const Digest& robot : selection.sources)
+    out.add(std::span<const std::uint8_t>(robot.bytes));
+  out.add(std::uint64_t{selection.weighting ? 1U : 0U});
+  if (selection.weighting)
+    out.add(static_cast<std::uint64_t>(*selection.weighting));
+  out.add(static_cast<std::uint64_t>(selection.since_ms));
+}
+
+Selection read_selection(ByteReader& in) {
+  Selection selection;
+  const std::uint64_t sources = in.integer();
+  if (sources > kMaxSelectedSources)
+    throw std::out_of_range("distribution: too many selected sources");
+  for (std::uint64_t i = 0; i < sources; ++i)
+    in.bytes(selection.sources.emplace_back().bytes);
+  if (in.integer() != 0)
+    selection.weighting = enumerator<Weighting>(in, Weighting::Paths);
+  selection.since_ms = static_cast<std::int64_t>(in.integer());
+  return selection;
 }
 
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
@@ -44,7 +94,8 @@ Mixture read_mixture(ByteReader& in) {
 }
 
 Distribution read_distribution(ByteReader& in) {
-  if (in.integer() != kFormat)
+  const std::uint64_t format = in.integer();
+  if (format < 1 || format > kFormat)
     throw std::out_of_range("distribution: another format");
   Distribution distribution;
   in.bytes(distribution.id.bytes);
@@ -68,9 +119,11 @@ Distribution read_distribution(ByteReader& in) {
   if (sources > kMaxSources)
     throw std::out_of_range("distribution: too many sources");
   for (std::uint64_t i = 0; i < sources; ++i)
-    distribution.sources.push_back(read_source(in));
+    distribution.sources.push_back(read_source(in, format));
   if (in.integer() != 0)
     distribution.mixture = read_mixture(in);
+  if (format > 1)
+    distribution.selection = read_selection(in);
   if (!in.at_end())
     throw std::out_of_range("distribution: bytes left over");
   return distribution;
@@ -98,6 +151,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   out.add(std::uint64_t{distribution.mixture ? 1U : 0U});
   if (distribution.mixture)
     add_mixture(out, *distribution.mixture);
+  add_selection(out, distribution.selection);
   return out.bytes();
 }
 

@@ -4,6 +4,7 @@
 
 #include "server/store/crc32c.hpp"
 #include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/distribution_blob.hpp"
 #include "server/store/sqlite/row_values.hpp"
 
@@ -30,7 +31,8 @@ std::uint64_t upsert_distribution(Database& database, const Distribution& distri
   const auto insert = database.cached(
       "INSERT INTO distribution (digest, revision, task_id, robot_id, profile, state, reason,"
       " components, configurations, paths, fitted_ms, crc32c, payload) "
-      "VALUES (?, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
+      "VALUES (?1, 1 + coalesce((SELECT revision FROM evicted_distribution WHERE digest = ?1), 0),"
+      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
       "ON CONFLICT (digest) DO UPDATE SET revision = revision + 1, task_id = excluded.task_id,"
       " robot_id = excluded.robot_id, profile = excluded.profile, state = excluded.state,"
       " reason = excluded.reason, components = excluded.components,"
@@ -46,7 +48,21 @@ std::uint64_t upsert_distribution(Database& database, const Distribution& distri
   insert->step();
   const std::uint64_t revision = count_of(*insert, 0);
   insert->run();
+  database.cached("DELETE FROM evicted_distribution WHERE digest = ?")
+      ->bind(1, Bytes(distribution.id.bytes))
+      .run();
   return revision;
+}
+
+bool delete_distribution(Database& database, const Digest& id) {
+  database
+      .cached(
+          "INSERT INTO evicted_distribution SELECT digest, revision, ? FROM distribution "
+          "WHERE digest = ?")
+      ->bind_all(now_ms(), Bytes(id.bytes))
+      .run();
+  database.cached("DELETE FROM distribution WHERE digest = ?")->bind(1, Bytes(id.bytes)).run();
+  return database.changed_rows() > 0;
 }
 
 DistributionRead select_distribution(Database& database, const Digest& id) {

@@ -8,8 +8,9 @@
 
 namespace kinship::store {
 
-/// \return the revision given: 1, then one more at each call for the same id.
-/// \throws Failure(NotFound) if its robot is not registered; Failure(InvalidInput) if it could not
+/// \return the revision given: 1, then one more at each call for the same id, also after an
+/// eviction. \throws Failure(NotFound) if its robot is not registered; Failure(InvalidInput) if it
+/// could not
 ///         be read back: more sources or components than the limits, a placement that is no pose.
 std::uint64_t upsert_distribution(Database& database, const Distribution& distribution);
 
@@ -19,5 +20,9 @@ struct DistributionRead {
   bool damaged = false;  ///< it is there, but cannot be used
 };
 DistributionRead select_distribution(Database& database, const Digest& id);
+
+/// Deletes a distribution; its revision is kept, so that the next one counts on.
+/// \return whether it was there.
+bool delete_distribution(Database& database, const Digest& id);
 
 }  // namespace kinship::store

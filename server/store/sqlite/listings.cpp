@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
 
 namespace kinship::store {
@@ -57,6 +58,11 @@ std::array<std::int64_t, 3> parse_path_cursor(std::string_view cursor) {
   return key;
 }
 
+std::string path_cursor(const ExperienceKey& key, std::int64_t path_id) {
+  return std::to_string(key.task_id) + "." + std::to_string(key.robot_id) + "." +
+         std::to_string(path_id);
+}
+
 std::vector<TaskRobotSummary> robots_of_task(Database& database, std::int64_t task_id) {
   const auto query = database.cached(
       "SELECT robot.digest, robot.label, experience.paths, experience.attempts,"
@@ -83,19 +89,19 @@ TaskSummary read_task(Database& database, const Statement& row) {
 }
 
 PathSummary read_path_summary(const Statement& row) {
-  constexpr int kFirstOfRecord = 11;
+  constexpr int kFirstOfRecord = 10;
   PathSummary summary;
-  summary.report_uuid = id_of<Uuid>(row.column_blob(3));
-  summary.robot = id_of<Digest>(row.column_blob(4));
-  summary.label = row.column_text(5);
-  summary.task = row.column_text(6);
-  summary.waypoints = count_of(row, 7);
-  summary.length = row.column_real(8);
-  summary.machine = row.column_text(9);
-  summary.received_ms = row.column_integer(10);
+  summary.retired_ms = row.column_integer(0);  // NULL: 0
+  summary.report_uuid = id_of<Uuid>(row.column_blob(1));
+  summary.robot = id_of<Digest>(row.column_blob(2));
+  summary.label = row.column_text(3);
+  summary.task = row.column_text(4);
+  summary.waypoints = count_of(row, 5);
+  summary.length = row.column_real(6);
+  summary.machine = row.column_text(7);
+  summary.received_ms = row.column_integer(8);
+  summary.T_task_base = pose_from_blob(row.column_blob(9));
   summary.record = read_record(row, kFirstOfRecord);
-  constexpr int kPose = kFirstOfRecord + 11;
-  summary.T_task_base = pose_from_blob(row.column_blob(kPose));
   return summary;
 }
 
@@ -133,18 +139,31 @@ void bind_filters(Statement& query, const std::optional<Digest>& robot, std::str
     query.bind(2, task);
 }
 
-/// The paths after a cursor (?3 task, ?4 robot, ?5 path), as a range of path_by_task_robot: what a
-/// filter fixes is left out of the comparison, so that SQLite seeks instead of scanning from the
-/// start. The robot alone is no prefix of that index: there it passes over the others' entries.
-std::string path_range(const std::optional<Digest>& robot, std::string_view task) {
-  const std::string one_robot = "path.robot_id = (SELECT id FROM robot WHERE digest = ?1)";
-  const std::string one_task = "path.task_id = (SELECT id FROM task WHERE name = ?2)";
-  if (robot && !task.empty())
-    return one_task + " AND " + one_robot + " AND path.id > ?5";
-  if (!task.empty())
-    return one_task + " AND (path.robot_id, path.id) > (?4, ?5)";
-  const std::string after = "(path.task_id, path.robot_id, path.id) > (?3, ?4, ?5)";
-  return robot ? after + " AND +" + one_robot : after;
+/// The ids of undamaged paths, retired ones too, in the order of arrival.
+std::vector<std::int64_t> path_ids(Database& database, const ExperienceKey& key,
+                                   std::int64_t after_id, std::int64_t limit) {
+  const auto query = database.cached(
+      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ?1 AND robot_id = ?2 "
+      "AND id > ?3 AND damaged = 0 AND retired_ms IS NULL UNION ALL "
+      "SELECT id FROM path INDEXED BY path_retired WHERE task_id = ?1 AND robot_id = ?2 "
+      "AND id > ?3 AND damaged = 0 AND retired_ms IS NOT NULL ORDER BY id LIMIT ?4");
+  query->bind_all(key.task_id, key.robot_id, after_id, limit);
+  std::vector<std::int64_t> ids;
+  while (query->step())
+    ids.push_back(query->column_integer(0));
+  return ids;
+}
+
+PathSummary select_path_summary(Database& database, std::int64_t id) {
+  const auto query = database.cached(
+      "SELECT path.retired_ms, path.report_uuid, robot.digest, robot.label,"
+      " task.name, path.waypoint_count, path.length, attempt.machine, attempt.received_ms,"
+      " path.T_task_base, " +
+      std::string(kRecordColumns) +
+      "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
+      "CROSS JOIN task ON task.id = path.task_id "
+      "CROSS JOIN attempt ON attempt.report_uuid = path.report_uuid WHERE path.id = ?");
+  return query->bind(1, id).step() ? read_path_summary(*query) : PathSummary{};
 }
 
 }  // namespace
@@ -194,21 +213,19 @@ Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>&
                                 std::string_view task, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   const auto [task_id, robot_id, path_id] = parse_path_cursor(cursor);
-  const auto query = database.cached(
-      "SELECT path.task_id, path.robot_id, path.id, path.report_uuid, robot.digest, robot.label,"
-      " task.name, path.waypoint_count, path.length, attempt.machine, attempt.received_ms, " +
-      std::string(kRecordColumns) +
-      ", path.T_task_base FROM path INDEXED BY path_by_task_robot "
-      "CROSS JOIN robot ON robot.id = path.robot_id CROSS JOIN task ON task.id = path.task_id "
-      "CROSS JOIN attempt ON attempt.report_uuid = path.report_uuid "
-      "WHERE path.damaged = 0 AND " +
-      path_range(robot, task) + " ORDER BY path.task_id, path.robot_id, path.id LIMIT ?6");
-  bind_filters(*query, robot, task);
-  query->bind(3, task_id).bind(4, robot_id).bind(5, path_id).bind(6, rows + 1);
-  return read_page<PathSummary>(*query, rows, read_path_summary, [](const Statement& row) {
-    return std::to_string(row.column_integer(0)) + "." + std::to_string(row.column_integer(1)) +
-           "." + std::to_string(row.column_integer(2));
-  });
+  Page<PathSummary> page;
+  for (const ExperienceKey& key : select_experience(database, robot, task, {task_id, robot_id})) {
+    const bool is_first = key.task_id == task_id && key.robot_id == robot_id;
+    const std::int64_t left = rows - std::ssize(page.rows);
+    for (const std::int64_t id : path_ids(database, key, is_first ? path_id : 0, left + 1)) {
+      if (std::ssize(page.rows) == rows)
+        return page;
+      page.rows.push_back(select_path_summary(database, id));
+      page.next_cursor = path_cursor(key, id);
+    }
+  }
+  page.next_cursor.clear();
+  return page;
 }
 
 Page<DistributionSummary> page_of_distributions(Database& database,
@@ -234,19 +251,6 @@ Page<DistributionSummary> page_of_distributions(Database& database,
   return read_page<DistributionSummary>(
       *query, rows, read_distribution_summary,
       [](const Statement& row) { return id_of<Digest>(row.column_blob(0)).hex(); });
-}
-
-std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task) {
-  const auto query = database.cached(
-      "SELECT robot.digest, experience.paths, experience.generation FROM experience "
-      "JOIN robot ON robot.id = experience.robot_id JOIN task ON task.id = experience.task_id "
-      "WHERE task.name = ? AND experience.paths > 0 ORDER BY robot.digest");
-  query->bind(1, task);
-  std::vector<ExperienceSummary> robots;
-  while (query->step())
-    robots.push_back(
-        {id_of<Digest>(query->column_blob(0)), count_of(*query, 1), count_of(*query, 2)});
-  return robots;
 }
 
 void count_rows(Database& database, StoreStatus& status) {

@@ -19,7 +19,7 @@ Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std
 
 std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task);
 
-/// By task, then robot, then arrival.
+/// By task, then robot, then arrival; retired paths too.
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
                                 std::string_view task, std::string_view cursor, std::size_t limit);
 
@@ -27,9 +27,6 @@ Page<DistributionSummary> page_of_distributions(Database& database,
                                                 const std::optional<Digest>& robot,
                                                 std::string_view task, std::string_view cursor,
                                                 std::size_t limit);
-
-/// The robots with paths of a task, by digest.
-std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task);
 
 /// Fills the counts, the schema version and the size; adds what is set aside to the message.
 void count_rows(Database& database, StoreStatus& status);

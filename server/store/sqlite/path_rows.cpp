@@ -10,8 +10,8 @@ namespace kinship::store {
 namespace {
 
 constexpr std::string_view kColumns =
-    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints "
-    "FROM path ";
+    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
+    " received_ms FROM path ";
 
 /// Everything that a transfer relies on is under the checksum, not the waypoints alone.
 struct PathContent {
@@ -47,8 +47,8 @@ std::optional<StoredPath> read_row(const Statement& row) {
     if (!T_task_base)
       return std::nullopt;
   }
-  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base, 0,
-                    std::move(*path)};
+  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
+                    row.column_integer(8), std::move(*path)};
 }
 
 void take_row(const Statement& row, PathsRead& read) {
@@ -58,21 +58,22 @@ void take_row(const Statement& row, PathsRead& read) {
     read.damaged.push_back(row.column_integer(0));
 }
 
-/// \return its robot and task, or nothing if it was set aside already.
+/// \return its robot and task, or nothing if it was in no fit any more.
 std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
   ExperienceKey key;
+  bool in_use = false;
   {
-    const auto query = database.cached("SELECT task_id, robot_id FROM path WHERE id = ?");
+    const auto query = database.cached(
+        "SELECT task_id, robot_id, retired_ms IS NULL FROM path WHERE id = ? AND damaged = 0");
     if (!query->bind(1, id).step())
       return std::nullopt;
     key = {query->column_integer(0), query->column_integer(1)};
+    in_use = query->column_integer(2) != 0;
   }
-  database.cached("UPDATE path SET damaged = 1 WHERE id = ? AND damaged = 0")->bind(1, id).run();
-  if (database.changed_rows() == 0)
+  database.cached("UPDATE path SET damaged = 1 WHERE id = ?")->bind(1, id).run();
+  if (!in_use)
     return std::nullopt;
-  database.cached("UPDATE experience SET paths = paths - 1 WHERE task_id = ? AND robot_id = ?")
-      ->bind_all(key.task_id, key.robot_id)
-      .run();
+  uncount_paths(database, key, 1);
   return key;
 }
 
@@ -82,7 +83,8 @@ std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& k
                                       const Digest& content) {
   const auto query = database.cached(
       "SELECT id FROM path "
-      "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND damaged = 0");
+      "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND damaged = 0 "
+      "AND retired_ms IS NULL");
   query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
   if (!query->step())
     return std::nullopt;
@@ -90,7 +92,7 @@ std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& k
 }
 
 std::int64_t insert_path(Database& database, const ExperienceKey& key,
-                         const PreparedAttempt& prepared) {
+                         const PreparedAttempt& prepared, std::int64_t received_ms) {
   const PreparedPath& path = *prepared.path;
   const auto T_task_base = optional_pose_blob(prepared.attempt.T_task_base);
   const PathContent content{Bytes(prepared.attempt.report_uuid.bytes),
@@ -102,23 +104,23 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
   database
       .cached(
           "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
-          " dof, waypoint_count, encoding, crc32c, waypoints) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
                  path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
-                 content.encoding, std::int64_t{content.crc()}, content.waypoints)
+                 content.encoding, std::int64_t{content.crc()}, content.waypoints, received_ms)
       .run();
   return database.last_insert_id();
 }
 
-PathsRead select_paths(Database& database, const ExperienceKey& key, std::int64_t after_id,
-                       std::int64_t limit) {
+PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
   const auto query =
       database.cached(std::string(kColumns) +
-                      "WHERE task_id = ? AND robot_id = ? AND id > ? AND damaged = 0 ORDER BY id");
-  query->bind_all(key.task_id, key.robot_id, after_id);
+                      "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
+                      "AND damaged = 0 AND retired_ms IS NULL ORDER BY id");
+  query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
   PathsRead read;
-  while (std::ssize(read.paths) < limit && query->step())
+  while (read.paths.size() < range.limit && query->step())
     take_row(*query, read);
   return read;
 }

@@ -5,18 +5,21 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <future>
 #include <type_traits>
 #include <utility>
 
 #include "server/store/sqlite/attempt_rows.hpp"
+#include "server/store/sqlite/call_item.hpp"
 #include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/distribution_rows.hpp"
+#include "server/store/sqlite/experience_rows.hpp"
+#include "server/store/sqlite/export_rows.hpp"
 #include "server/store/sqlite/listings.hpp"
 #include "server/store/sqlite/lock_file.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
+#include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -24,29 +27,6 @@
 
 namespace kinship::store {
 namespace {
-
-/// A function on the write batch whose result somebody waits for.
-template <typename Function>
-class CallItem : public WriteItem {
- public:
-  using Value = std::invoke_result_t<Function, Batch&>;
-
-  explicit CallItem(Function function) : function_(std::move(function)) {}
-
-  std::future<Value> result() { return promise_.get_future(); }
-  void apply(Batch& batch) override { value_.emplace(function_(batch)); }
-  void finish(const Error* error) override {
-    if (error != nullptr)
-      promise_.set_exception(std::make_exception_ptr(Failure(*error)));
-    else
-      promise_.set_value(std::move(*value_));
-  }
-
- private:
-  Function function_;
-  std::optional<Value> value_;
-  std::promise<Value> promise_;
-};
 
 /// Sets paths aside that a reader found damaged; if it fails, the next reader finds them again.
 class DamageItem : public WriteItem {
@@ -76,8 +56,6 @@ Uuid ensure_epoch(Database& database) {
     throw Failure(ErrorCode::Storage, "its epoch is no UUID");
   return *epoch;
 }
-
-Failure unbuilt() { return {ErrorCode::Internal, "being built"}; }
 
 class SqliteStore : public Store {
  public:
@@ -161,28 +139,37 @@ class SqliteStore : public Store {
     if (!key)
       return {};
     constexpr std::size_t kMaxPaths = 1'000'000;
-    return undamaged(select_paths(*reader, *key, range.after_id,
-                                  static_cast<std::int64_t>(std::min(range.limit, kMaxPaths))));
+    return undamaged(select_paths(
+        *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
   }
 
-  Result<Retirement> retire_path(const Uuid& /*report_uuid*/) override { throw unbuilt(); }
-  Result<Retirement> reset_task(std::string_view /*task*/) override { throw unbuilt(); }
-  AttemptTotals attempt_totals(const Digest& /*robot*/, std::string_view /*task*/) const override {
-    return {};
+  Result<Retirement> retire_path(const Uuid& report_uuid) override {
+    return write([&](Batch& batch) { return store::retire_path(batch, report_uuid); });
   }
-  bool evict_distribution(const Digest& /*id*/) override { throw unbuilt(); }
-  Page<Attempt> export_attempts(const std::optional<Digest>& /*robot*/, std::string_view /*task*/,
-                                std::string_view /*cursor*/, std::size_t /*limit*/,
-                                std::size_t /*max_bytes*/) const override {
-    throw unbuilt();
+
+  Result<Retirement> reset_task(std::string_view task) override {
+    const Result<TaskReset> reset =
+        write([&](Batch& batch) { return begin_reset(batch.database(), task); });
+    if (!reset)
+      return reset.error();
+    Retirement retired;
+    retired.task = task;
+    while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired); }))
+      continue;
+    return retired;
   }
-  Result<bool> backup(const std::filesystem::path& /*file*/,
-                      const std::function<bool(double)>& /*progress*/) const override {
-    throw unbuilt();
+
+  AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return totals_of(*reader, robot, task);
   }
 
   std::uint64_t put_distribution(const Distribution& distribution) override {
     return write([&](Batch& batch) { return upsert_distribution(batch.database(), distribution); });
+  }
+
+  bool evict_distribution(const Digest& id) override {
+    return write([&](Batch& batch) { return delete_distribution(batch.database(), id); });
   }
 
   std::optional<Distribution> find_distribution(const Digest& id) const override {
@@ -225,11 +212,25 @@ class SqliteStore : public Store {
     return std::move(row->attempt);
   }
 
+  Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                std::string_view cursor, std::size_t limit,
+                                std::size_t max_bytes) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
+    set_aside_later(std::move(read.damaged));
+    return std::move(read.page);
+  }
+
   Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
                                                std::string_view task, std::string_view cursor,
                                                std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
     return page_of_distributions(*reader, robot, task, cursor, limit);
+  }
+
+  Result<bool> backup(const std::filesystem::path& /*file*/,
+                      const std::function<bool(double)>& /*progress*/) const override {
+    throw Failure(ErrorCode::Internal, "being built");
   }
 
  private:
@@ -243,9 +244,12 @@ class SqliteStore : public Store {
   }
 
   std::vector<StoredPath> undamaged(PathsRead read) const {
-    if (!read.damaged.empty())
-      writer_->submit(std::make_unique<DamageItem>(std::move(read.damaged)));
+    set_aside_later(std::move(read.damaged));
     return std::move(read.paths);
+  }
+  void set_aside_later(std::vector<std::int64_t> damaged) const {
+    if (!damaged.empty())
+      writer_->submit(std::make_unique<DamageItem>(std::move(damaged)));
   }
 
   /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.

@@ -30,11 +30,13 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
 }  // namespace
 
 void Batch::raise_generations() {
-  for (const auto& [task_id, robot_id] : changed_)
+  for (const auto& [key, retired] : changed_)
     database_
         ->cached(
-            "UPDATE experience SET generation = generation + 1 WHERE task_id = ? AND robot_id = ?")
-        ->bind_all(task_id, robot_id)
+            "UPDATE experience SET generation = generation + 1,"
+            " retired_generation = iif(?, generation + 1, retired_generation) "
+            "WHERE task_id = ? AND robot_id = ?")
+        ->bind_all(std::int64_t{retired ? 1 : 0}, key.first, key.second)
         .run();
 }
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -28,13 +28,17 @@ class Batch {
 
   /// Says that the paths of a robot and task changed; the batch raises their generation once.
   void paths_changed(std::int64_t task_id, std::int64_t robot_id) {
-    changed_.emplace(task_id, robot_id);
+    changed_.try_emplace({task_id, robot_id}, false);
+  }
+  /// The same, and the new generation is that of the last retirement too.
+  void paths_retired(std::int64_t task_id, std::int64_t robot_id) {
+    changed_[{task_id, robot_id}] = true;
   }
   void raise_generations();
 
  private:
   Database* database_;
-  std::set<std::pair<std::int64_t, std::int64_t>> changed_;
+  std::map<std::pair<std::int64_t, std::int64_t>, bool> changed_;  // task, robot -> retired
 };
 
 /// Something to be written. Both methods run on the writer's thread.

@@ -220,8 +220,9 @@ TEST_F(WriterTest, AnswersItsItemsAlsoWhenItEndsInTrouble) {
 
 TEST_F(WriterTest, RaisesAGenerationOncePerBatch) {
   connect()->execute(
-      "CREATE TABLE experience (task_id INTEGER, robot_id INTEGER, generation INTEGER);"
-      "INSERT INTO experience VALUES (1, 1, 0), (1, 2, 0)");
+      "CREATE TABLE experience (task_id INTEGER, robot_id INTEGER, generation INTEGER,"
+      " retired_generation INTEGER);"
+      "INSERT INTO experience VALUES (1, 1, 0, 0), (1, 2, 0, 0)");
   const auto database = connect();
   Batch batch(*database);
   batch.paths_changed(1, 1);

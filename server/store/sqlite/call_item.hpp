@@ -1,0 +1,36 @@
+#pragma once
+
+#include <exception>
+#include <future>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "server/store/sqlite/writer.hpp"
+
+namespace kinship::store {
+
+/// A function on the write batch whose result somebody waits for.
+template <typename Function>
+class CallItem : public WriteItem {
+ public:
+  using Value = std::invoke_result_t<Function, Batch&>;
+
+  explicit CallItem(Function function) : function_(std::move(function)) {}
+
+  std::future<Value> result() { return promise_.get_future(); }
+  void apply(Batch& batch) override { value_.emplace(function_(batch)); }
+  void finish(const Error* error) override {
+    if (error != nullptr)
+      promise_.set_exception(std::make_exception_ptr(Failure(*error)));
+    else
+      promise_.set_value(std::move(*value_));
+  }
+
+ private:
+  Function function_;
+  std::optional<Value> value_;
+  std::promise<Value> promise_;
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,130 @@
+#include "server/store/sqlite/experience_rows.hpp"
+
+#include <string>
+
+#include "server/store/sqlite/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// Empty for an arm that nobody judges.
+std::string_view sums_of(Arm arm) {
+  switch (arm) {
+    case Arm::Guided:
+      return ", guided_attempts = guided_attempts + 1, guided_solved = guided_solved + ?4,"
+             " guided_checks = guided_checks + ?5,"
+             " guided_checks_squared = guided_checks_squared + ?5 * ?5,"
+             " guided_checks_of_solved = guided_checks_of_solved + ?4 * ?5";
+    case Arm::Control:
+      return ", control_attempts = control_attempts + 1, control_solved = control_solved + ?4,"
+             " control_checks = control_checks + ?5,"
+             " control_checks_squared = control_checks_squared + ?5 * ?5,"
+             " control_checks_of_solved = control_checks_of_solved + ?4 * ?5";
+    case Arm::Uniform:
+      break;
+  }
+  return "";
+}
+
+ArmTotals read_totals(const Statement& row, int first_column) {
+  return {count_of(row, first_column), count_of(row, first_column + 1),
+          row.column_real(first_column + 2), row.column_real(first_column + 3),
+          row.column_real(first_column + 4)};
+}
+
+}  // namespace
+
+void ensure_experience(Database& database, const ExperienceKey& key) {
+  database
+      .cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+}
+
+void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
+                   bool brought_path) {
+  const std::string_view sums = sums_of(record.arm);
+  const auto update =
+      database.cached("UPDATE experience SET attempts = attempts + 1, paths = paths + ?3" +
+                      std::string(sums) + " WHERE task_id = ?1 AND robot_id = ?2");
+  update->bind_all(key.task_id, key.robot_id, std::int64_t{brought_path ? 1 : 0});
+  if (!sums.empty())
+    update->bind(4, std::int64_t{record.outcome == Outcome::Solved ? 1 : 0})
+        .bind(5, static_cast<double>(record.collision_checks));
+  update->run();
+}
+
+void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths) {
+  database.cached("UPDATE experience SET paths = paths - ? WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(paths, key.task_id, key.robot_id)
+      .run();
+}
+
+std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
+                                             std::string_view task) {
+  const auto query = database.cached(
+      "SELECT experience.task_id, experience.robot_id FROM experience "
+      "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
+      "WHERE task.name = ? AND robot.digest = ?");
+  if (!query->bind_all(task, Bytes(robot.bytes)).step())
+    return std::nullopt;
+  return ExperienceKey{query->column_integer(0), query->column_integer(1)};
+}
+
+std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
+                                             std::string_view task, const ExperienceKey& first) {
+  std::string sql = "SELECT task_id, robot_id FROM experience WHERE (task_id, robot_id) >= (?, ?)";
+  if (!task.empty())
+    sql += " AND task_id = (SELECT id FROM task WHERE name = ?3)";
+  if (robot)
+    sql += " AND robot_id = (SELECT id FROM robot WHERE digest = ?4)";
+  const auto query = database.cached(sql + " ORDER BY task_id, robot_id");
+  query->bind_all(first.task_id, first.robot_id);
+  if (!task.empty())
+    query->bind(3, task);
+  if (robot)
+    query->bind(4, Bytes(robot->bytes));
+  std::vector<ExperienceKey> keys;
+  while (query->step())
+    keys.push_back({query->column_integer(0), query->column_integer(1)});
+  return keys;
+}
+
+std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task) {
+  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
+  if (!key)
+    return 0;
+  const auto query =
+      database.cached("SELECT generation FROM experience WHERE task_id = ? AND robot_id = ?");
+  return query->bind_all(key->task_id, key->robot_id).step() ? count_of(*query, 0) : 0;
+}
+
+std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task) {
+  const auto query = database.cached(
+      "SELECT robot.digest, experience.paths, experience.generation, experience.retired_generation "
+      "FROM experience JOIN robot ON robot.id = experience.robot_id "
+      "JOIN task ON task.id = experience.task_id "
+      "WHERE task.name = ? AND experience.generation > 0 ORDER BY robot.digest");
+  query->bind(1, task);
+  std::vector<ExperienceSummary> robots;
+  while (query->step())
+    robots.push_back({id_of<Digest>(query->column_blob(0)), count_of(*query, 1),
+                      count_of(*query, 2), count_of(*query, 3)});
+  return robots;
+}
+
+AttemptTotals totals_of(Database& database, const Digest& robot, std::string_view task) {
+  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
+  if (!key)
+    return {};
+  const auto query = database.cached(
+      "SELECT guided_attempts, guided_solved, guided_checks, guided_checks_squared,"
+      " guided_checks_of_solved, control_attempts, control_solved, control_checks,"
+      " control_checks_squared, control_checks_of_solved "
+      "FROM experience WHERE task_id = ? AND robot_id = ?");
+  if (!query->bind_all(key->task_id, key->robot_id).step())
+    return {};
+  return {read_totals(*query, 0), read_totals(*query, 5)};
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "server/store/sqlite/database.hpp"
+#include "server/store/store.hpp"
+
+/// One row per robot and task that somebody reported: its generations and its sums.
+namespace kinship::store {
+
+/// The internal ids of a robot and a task.
+struct ExperienceKey {
+  std::int64_t task_id = 0;
+  std::int64_t robot_id = 0;
+};
+
+/// Makes the row of a robot and task unless it is there.
+void ensure_experience(Database& database, const ExperienceKey& key);
+
+/// Counts an attempt, its path if it brought one, and what it cost its arm.
+void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
+                   bool brought_path);
+
+/// Takes paths out of the count.
+void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);
+
+/// Nothing if nobody reported an attempt of the robot for the task.
+std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
+                                             std::string_view task);
+
+/// The rows of a robot and a task, each empty for all, by task and robot; from `first` on.
+std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
+                                             std::string_view task,
+                                             const ExperienceKey& first = {});
+
+/// 0 if there is none.
+std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task);
+
+/// The robots that have, or had, paths of a task, by digest.
+std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task);
+
+AttemptTotals totals_of(Database& database, const Digest& robot, std::string_view task);
+
+}  // namespace kinship::store

@@ -1,0 +1,140 @@
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::size_t kManyBytes = 1'000'000;
+
+/// Its numbers are those of the attempts made for them.
+class Exported {
+ public:
+  explicit Exported(const Store& store) : store_(&store) {}
+
+  std::vector<Uuid> uuids(const std::optional<Digest>& robot, std::string_view task,
+                          std::size_t limit, std::size_t max_bytes = kManyBytes) {
+    std::vector<Uuid> uuids;
+    std::string cursor;
+    pages_ = 0;
+    do {
+      const Page<Attempt> page = store_->export_attempts(robot, task, cursor, limit, max_bytes);
+      EXPECT_TRUE(!page.rows.empty() || page.next_cursor.empty());
+      EXPECT_LE(page.rows.size(), limit);
+      for (const Attempt& attempt : page.rows)
+        uuids.push_back(attempt.report_uuid);
+      cursor = page.next_cursor;
+      ++pages_;
+    } while (!cursor.empty());
+    return uuids;
+  }
+  std::size_t pages() const { return pages_; }
+
+ private:
+  const Store* store_;
+  std::size_t pages_ = 0;
+};
+
+std::vector<Uuid> numbered(const std::vector<std::uint64_t>& numbers) {
+  std::vector<Uuid> uuids;
+  for (const std::uint64_t number : numbers)
+    uuids.push_back(test::id_from<Uuid>(number));
+  return uuids;
+}
+
+TEST_P(StoreConformance, ExportsAttemptsOldestFirstUnderEveryFilter) {
+  report(solved(1));
+  report(test::make_attempt(iiwa_.digest, "table", 2));
+  report(test::make_unsolved(panda_.digest, "table", 3));
+  report(test::make_attempt(iiwa_.digest, "shelf", 4));
+  report(solved(5));
+  Exported exported(*store_);
+  for (const std::size_t limit : {1U, 2U, 100U}) {
+    EXPECT_EQ(exported.uuids({}, "", limit), numbered({1, 2, 3, 4, 5}));
+    EXPECT_EQ(exported.uuids({}, "shelf", limit), numbered({1, 4, 5}));
+    EXPECT_EQ(exported.uuids(panda_.digest, "", limit), numbered({1, 3, 5}));
+    EXPECT_EQ(exported.uuids(iiwa_.digest, "table", limit), numbered({2}));
+    EXPECT_TRUE(exported.uuids({}, "nothing", limit).empty());
+  }
+}
+
+TEST_P(StoreConformance, ExportsManyAttemptsOnceEach) {
+  std::vector<Attempt> attempts;
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i <= 300; ++i) {
+    attempts.push_back(test::make_attempt(i % 2 == 0 ? panda_.digest : iiwa_.digest, "shelf", i));
+    numbers.push_back(i);
+  }
+  test::report(*store_, std::move(attempts));
+  EXPECT_EQ(Exported(*store_).uuids({}, "shelf", 7), numbered(numbers));
+  EXPECT_EQ(Exported(*store_).uuids({}, "", 1000), numbered(numbers));
+}
+
+TEST_P(StoreConformance, ExportsWhatItTookWithItsPath) {
+  const Attempt before = solved(1);
+  report(before);
+  const Attempt after = store_->export_attempts({}, "", "", 10, kManyBytes).rows.at(0);
+  EXPECT_EQ(after.robot, before.robot);
+  EXPECT_EQ(after.machine, before.machine);
+  EXPECT_EQ(after.record.collision_checks, before.record.collision_checks);
+  EXPECT_EQ(after.path->waypoints(), before.path->waypoints());
+  EXPECT_EQ(report(after), ReceiptStatus::Duplicate);  // what was exported is the same report
+}
+
+TEST_P(StoreConformance, ExportsNoRetiredPathAndNoReportOfItsContent) {
+  Attempt same = solved(2);
+  same.path = solved(1).path;
+  test::report(*store_, {solved(1), same, solved(3)});
+  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
+  Exported exported(*store_);
+  EXPECT_EQ(exported.uuids({}, "", 1), numbered({3}));
+  EXPECT_EQ(exported.uuids({}, "shelf", 10), numbered({3}));
+}
+
+TEST_P(StoreConformance, APageOfAnExportEndsBeforeItsBytesAreExceeded) {
+  constexpr std::size_t kPathBytes = std::size_t{8} * test::kDof * 20;
+  for (std::uint64_t i = 1; i <= 6; ++i)
+    report(solved(i));
+  Exported exported(*store_);
+  EXPECT_EQ(exported.uuids({}, "", 100, 2 * kPathBytes).size(), 6U);
+  EXPECT_EQ(exported.pages(), 3U);
+  EXPECT_EQ(exported.uuids({}, "", 100, 1).size(), 6U);  // one at least
+  EXPECT_EQ(exported.pages(), 6U);
+}
+
+TEST_P(StoreConformance, AnExportRefusesACursorOfSomethingElse) {
+  report(solved(1));
+  for (const char* const cursor : {"x", "1.2.3", "-1", "1 ", "99999999999999999999"})
+    EXPECT_THROW(store_->export_attempts({}, "", cursor, 10, kManyBytes), Failure) << cursor;
+}
+
+TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
+  const auto attempt = [this](std::uint64_t number, Arm arm, std::uint64_t checks, bool is_solved) {
+    Attempt made = is_solved ? solved(number) : test::make_unsolved(panda_.digest, "shelf", number);
+    made.record.arm = arm;
+    made.record.collision_checks = checks;
+    return made;
+  };
+  test::report(*store_, {attempt(1, Arm::Guided, 10, true), attempt(2, Arm::Guided, 30, false),
+                         attempt(3, Arm::Control, 100, true), attempt(4, Arm::Uniform, 7, true)});
+  test::report(*store_, {attempt(5, Arm::Guided, 20, true), attempt(1, Arm::Guided, 10, true)});
+  Attempt elsewhere = attempt(6, Arm::Guided, 1000, true);
+  elsewhere.task = "table";
+  report(elsewhere);
+  reopen();
+  const AttemptTotals totals = store_->attempt_totals(panda_.digest, "shelf");
+  EXPECT_EQ(totals.guided.attempts, 3U);
+  EXPECT_EQ(totals.guided.solved, 2U);
+  EXPECT_EQ(totals.guided.checks, 60);
+  EXPECT_EQ(totals.guided.checks_squared, 1400);
+  EXPECT_EQ(totals.guided.checks_of_solved, 30);
+  EXPECT_EQ(totals.control.attempts, 1U);
+  EXPECT_EQ(totals.control.solved, 1U);
+  EXPECT_EQ(totals.control.checks, 100);
+  EXPECT_EQ(totals.control.checks_squared, 10'000);
+  EXPECT_EQ(totals.control.checks_of_solved, 100);
+  EXPECT_EQ(store_->attempt_totals(panda_.digest, "table").guided.checks, 1000);
+  EXPECT_EQ(store_->attempt_totals(iiwa_.digest, "shelf").guided.attempts, 0U);
+  EXPECT_EQ(store_->attempt_totals(panda_.digest, "nothing").control.attempts, 0U);
+}
+
+}  // namespace
+}  // namespace kinship::store

@@ -1,0 +1,208 @@
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr PathRange kAll{.after_id = 0, .limit = 1000};
+
+TEST_P(StoreConformance, ARetiredPathIsInNoFitButOnRecord) {
+  test::report(*store_, {solved(1), solved(2), solved(3)});
+  const Result<Retirement> retired = store_->retire_path(solved(2).report_uuid);
+  ASSERT_TRUE(retired) << retired.error().message;
+  EXPECT_EQ(retired->task, "shelf");
+  EXPECT_EQ(retired->paths, 1U);
+  EXPECT_EQ(retired->robots, std::vector<Digest>{panda_.digest});
+  reopen();
+  const std::vector<StoredPath> left = store_->read_paths(panda_.digest, "shelf", kAll);
+  ASSERT_EQ(left.size(), 2U);
+  EXPECT_EQ(left[0].report_uuid, solved(1).report_uuid);
+  EXPECT_EQ(left[1].report_uuid, solved(3).report_uuid);
+  EXPECT_EQ(store_->status().paths, 2U);
+  EXPECT_EQ(store_->status().attempts, 3U);
+  EXPECT_EQ(store_->find_task("shelf")->paths, 2U);
+  EXPECT_EQ(store_->find_attempt(solved(2).report_uuid)->path->waypoints(),
+            solved(2).path->waypoints());
+  const std::vector<PathSummary> listed = store_->list_paths({}, "", "", 10).rows;
+  ASSERT_EQ(listed.size(), 3U);
+  EXPECT_EQ(listed[0].retired_ms, 0);
+  EXPECT_GE(listed[1].retired_ms, listed[1].received_ms);
+  EXPECT_EQ(listed[1].report_uuid, solved(2).report_uuid);
+}
+
+TEST_P(StoreConformance, ARetirementRaisesBothGenerationsOfItsRobotAndTask) {
+  report(solved(1));
+  report(solved(2));
+  report(test::make_attempt(iiwa_.digest, "shelf", 3));
+  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
+  for (const ExperienceSummary& summary : store_->experience("shelf")) {
+    const bool touched = summary.robot == panda_.digest;
+    EXPECT_EQ(summary.generation, touched ? 3U : 1U);
+    EXPECT_EQ(summary.retired_generation, touched ? 3U : 0U);
+    EXPECT_EQ(summary.paths, 1U);
+  }
+  report(solved(4));
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 4U);
+  EXPECT_EQ(store_->generation(panda_.digest, "table"), 0U);
+}
+
+TEST_P(StoreConformance, TheLastRetirementOfARobotStaysToBeSeen) {
+  report(solved(1));
+  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
+  const std::vector<ExperienceSummary> experience = store_->experience("shelf");
+  ASSERT_EQ(experience.size(), 1U);
+  EXPECT_EQ(experience[0].paths, 0U);
+  EXPECT_EQ(experience[0].generation, 2U);
+  EXPECT_EQ(experience[0].retired_generation, 2U);
+}
+
+TEST_P(StoreConformance, RetiringTwiceChangesNothing) {
+  report(solved(1));
+  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
+  const Result<Retirement> again = store_->retire_path(solved(1).report_uuid);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->paths, 0U);
+  EXPECT_TRUE(again->robots.empty());
+  EXPECT_EQ(store_->generation(panda_.digest, "shelf"), 2U);
+  EXPECT_EQ(store_->status().paths, 0U);
+}
+
+TEST_P(StoreConformance, OnlyAPathCanBeRetired) {
+  report(test::make_unsolved(panda_.digest, "shelf", 1));
+  const Result<Retirement> unsolved = store_->retire_path(test::id_from<Uuid>(1));
+  ASSERT_FALSE(unsolved);
+  EXPECT_EQ(unsolved.error().code, ErrorCode::InvalidInput);
+  EXPECT_NE(unsolved.error().message.find(test::id_from<Uuid>(1).text()), std::string::npos);
+  const Result<Retirement> unknown = store_->retire_path(test::id_from<Uuid>(2));
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, ErrorCode::NotFound);
+}
+
+TEST_P(StoreConformance, AReportOfTheSameContentRetiresThePathItFound) {
+  Attempt same = solved(2);
+  same.path = solved(1).path;
+  test::report(*store_, {solved(1), same});
+  ASSERT_TRUE(store_->retire_path(same.report_uuid));
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
+}
+
+TEST_P(StoreConformance, TheUuidOfARetiredReportStaysKnownButItsContentMayComeAnew) {
+  report(solved(1));
+  ASSERT_TRUE(store_->retire_path(solved(1).report_uuid));
+  EXPECT_EQ(report(solved(1)), ReceiptStatus::Duplicate);
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
+  Attempt anew = solved(2);
+  anew.path = solved(1).path;
+  EXPECT_EQ(report(anew), ReceiptStatus::Stored);
+  const std::vector<StoredPath> paths = store_->read_paths(panda_.digest, "shelf", kAll);
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].report_uuid, anew.report_uuid);
+  ASSERT_TRUE(store_->retire_path(anew.report_uuid));  // the same content is retired twice
+  EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.size(), 2U);
+}
+
+TEST_P(StoreConformance, AResetTaskLosesAllItsPathsAndNoOtherDoes) {
+  for (std::uint64_t i = 1; i <= 3; ++i)
+    report(solved(i));
+  report(test::make_attempt(iiwa_.digest, "shelf", 4));
+  report(test::make_unsolved(iiwa_.digest, "shelf", 5));
+  report(test::make_attempt(iiwa_.digest, "table", 6));
+  const Result<Retirement> reset = store_->reset_task("shelf");
+  ASSERT_TRUE(reset);
+  EXPECT_EQ(reset->task, "shelf");
+  EXPECT_EQ(reset->paths, 4U);
+  EXPECT_EQ(reset->robots.size(), 2U);
+  EXPECT_EQ(store_->find_task("shelf")->paths, 0U);
+  EXPECT_EQ(store_->find_task("shelf")->attempts, 5U);
+  EXPECT_EQ(store_->find_task("table")->paths, 1U);
+  for (const ExperienceSummary& summary : store_->experience("shelf"))
+    EXPECT_EQ(summary.retired_generation, summary.generation);
+  EXPECT_EQ(store_->experience("table")[0].retired_generation, 0U);
+  EXPECT_EQ(store_->reset_task("shelf")->paths, 0U);
+  EXPECT_EQ(store_->reset_task("nothing").error().code, ErrorCode::NotFound);
+}
+
+TEST_P(StoreConformance, AResetOfManyPathsMissesNone) {
+  constexpr std::uint64_t kPaths = 1200;
+  std::vector<Attempt> attempts;
+  for (std::uint64_t i = 0; i < kPaths; ++i)
+    attempts.push_back(solved(i));
+  test::report(*store_, std::move(attempts));
+  EXPECT_EQ(store_->reset_task("shelf")->paths, kPaths);
+  EXPECT_EQ(store_->status().paths, 0U);
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
+}
+
+TEST_P(StoreConformance, ListsRetiredPathsInTheirPlace) {
+  for (std::uint64_t i = 1; i <= 6; ++i)
+    report(solved(i));
+  for (const std::uint64_t i : {2U, 3U, 6U})
+    ASSERT_TRUE(store_->retire_path(solved(i).report_uuid));
+  std::uint64_t number = 0;
+  std::string cursor;
+  do {
+    const Page<PathSummary> page = store_->list_paths(panda_.digest, "", cursor, 2);
+    ASSERT_EQ(page.rows.size(), 2U);
+    for (const PathSummary& path : page.rows) {
+      EXPECT_EQ(path.report_uuid, solved(++number).report_uuid);
+      EXPECT_EQ(path.retired_ms > 0, number == 2 || number == 3 || number == 6) << number;
+    }
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
+  EXPECT_EQ(number, 6U);
+}
+
+TEST_P(StoreConformance, ReadsOnlyPathsThatArrivedSince) {
+  report(solved(1));
+  const std::int64_t first_ms = store_->read_paths(panda_.digest, "shelf", kAll)[0].received_ms;
+  EXPECT_EQ(first_ms, store_->list_paths({}, "", "", 1).rows[0].received_ms);
+  std::uint64_t number = 1;
+  std::int64_t later_ms = first_ms;
+  while (later_ms == first_ms) {  // until the clock has moved on
+    report(solved(++number));
+    later_ms = store_->read_paths(panda_.digest, "shelf", kAll).back().received_ms;
+  }
+  const auto count = [this](std::int64_t since_ms) {
+    return store_->read_paths(panda_.digest, "shelf", {0, 1000, since_ms}).size();
+  };
+  EXPECT_EQ(count(0), number);
+  EXPECT_EQ(count(first_ms), number);
+  EXPECT_EQ(count(later_ms), 1U);
+  EXPECT_EQ(count(later_ms + 1), 0U);
+}
+
+TEST_P(StoreConformance, AnEvictedDistributionIsGoneAndItsRevisionsGoOn) {
+  const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  store_->put_distribution(distribution);
+  store_->put_distribution(distribution);
+  EXPECT_TRUE(store_->evict_distribution(distribution.id));
+  EXPECT_FALSE(store_->evict_distribution(distribution.id));
+  EXPECT_FALSE(store_->find_distribution(distribution.id));
+  EXPECT_TRUE(store_->list_distributions({}, "", "", 10).rows.empty());
+  EXPECT_EQ(store_->status().distributions, 0U);
+  reopen();
+  EXPECT_EQ(store_->put_distribution(distribution), 3U);
+  EXPECT_EQ(store_->put_distribution(distribution), 4U);
+  EXPECT_TRUE(store_->evict_distribution(distribution.id));
+  EXPECT_EQ(store_->put_distribution(distribution), 5U);
+  EXPECT_EQ(store_->find_distribution(distribution.id)->revision, 5U);
+}
+
+TEST_P(StoreConformance, KeepsWhatAFitWasAskedForAndWhatItsSourcesGave) {
+  Distribution distribution = test::make_distribution(panda_.digest, "shelf", 1);
+  distribution.selection = {{panda_.digest, iiwa_.digest}, Weighting::Paths, 1'700'000'000'000};
+  distribution.sources[0].relation = Relation::SameArm;
+  distribution.sources[0].paths_used = 11;
+  distribution.sources[0].mass = 0.75;
+  distribution.advice.guided = ArmEvidence{10, 5, 100};
+  store_->put_distribution(distribution);
+  const std::optional<Distribution> found = store_->find_distribution(distribution.id);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->selection, distribution.selection);
+  EXPECT_EQ(found->sources[0].relation, Relation::SameArm);
+  EXPECT_EQ(found->sources[0].paths_used, 11U);
+  EXPECT_EQ(found->sources[0].mass, 0.75);
+  EXPECT_FALSE(found->advice.guided);  // of the moment, not of the fit
+}
+
+}  // namespace
+}  // namespace kinship::store
