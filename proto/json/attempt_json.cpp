@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/json/parts.hpp"
 #include "proto/json/reader.hpp"
 #include "proto/json/record_json.hpp"
 #include "proto/json/writer.hpp"
@@ -38,6 +39,8 @@ std::optional<Path> read_path(const Reader& reader, Outcome outcome) {
   return Path(std::move(matrix));
 }
 
+}  // namespace
+
 NamedAttempt read_attempt(const Reader& reader) {
   NamedAttempt named;
   Attempt& attempt = named.attempt;
@@ -59,8 +62,6 @@ NamedAttempt read_attempt(const Reader& reader) {
     scene->refuse("not supported yet, must be null");
   return named;
 }
-
-}  // namespace
 
 std::string to_json(const Attempt& attempt) {
   OrderedJson object;

@@ -1,8 +1,11 @@
 #include "proto/json/distribution_json.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "proto/json/parts.hpp"
 #include "proto/json/reader.hpp"
 #include "proto/json/writer.hpp"
 #include "proto/types/enum_text.hpp"
@@ -22,6 +25,13 @@ OrderedJson source_object(const Source& source) {
   object["generation"] = source.generation;
   object["poses"] = source.poses;
   object["poses_solved"] = source.poses_solved;
+  object["relation"] = to_text(source.relation);
+  object["paths_used"] = source.paths_used;
+  object["out_of_reach"] = source.out_of_reach;
+  object["outside_limits"] = source.outside_limits;
+  object["not_converged"] = source.not_converged;
+  object["configurations"] = source.configurations;
+  object["mass"] = source.mass;
   return object;
 }
 
@@ -34,7 +44,70 @@ Source read_source(const Reader& reader) {
   source.generation = reader.at("generation").count();
   source.poses = reader.at("poses").count();
   source.poses_solved = reader.at("poses_solved").count();
+  if (const auto relation = reader.find("relation"))
+    source.relation = parse_relation(relation->text(kMaxWordBytes)).value_or_throw();
+  const auto read_count = [&](std::string_view member, std::uint64_t& count) {
+    if (const auto value = reader.find(member))
+      count = value->count();
+  };
+  read_count("paths_used", source.paths_used);
+  read_count("out_of_reach", source.out_of_reach);
+  read_count("outside_limits", source.outside_limits);
+  read_count("not_converged", source.not_converged);
+  read_count("configurations", source.configurations);
+  if (const auto mass = reader.find("mass"))
+    source.mass = mass->number(0, 1);
   return source;
+}
+
+OrderedJson selection_object(const Selection& selection) {
+  OrderedJson object;
+  object["sources"] = OrderedJson::array();
+  for (const Digest& source : selection.sources)
+    object["sources"].push_back(source.hex());
+  object["weighting"] =
+      selection.weighting ? OrderedJson(to_text(*selection.weighting)) : OrderedJson(nullptr);
+  object["since_ms"] = selection.since_ms;
+  return object;
+}
+
+Selection read_selection(const Reader& reader) {
+  Selection selection;
+  if (const auto sources = reader.find("sources"))
+    for (const Reader& source : sources->elements(kMaxSelectedSources))
+      selection.sources.push_back(source.digest());
+  if (std::adjacent_find(selection.sources.begin(), selection.sources.end(),
+                         std::greater_equal<>()) != selection.sources.end())
+    reader.refuse("sources must be ascending and distinct");
+  if (const auto weighting = reader.find("weighting"))
+    selection.weighting = parse_weighting(weighting->text(kMaxWordBytes)).value_or_throw();
+  if (const auto since = reader.find("since_ms")) {
+    selection.since_ms = since->integer();
+    if (selection.since_ms < 0)
+      since->refuse(std::to_string(selection.since_ms) + " is negative");
+  }
+  return selection;
+}
+
+OrderedJson evidence_or_null(const std::optional<ArmEvidence>& evidence) {
+  if (!evidence)
+    return nullptr;
+  OrderedJson object;
+  object["attempts"] = evidence->attempts;
+  object["solved"] = evidence->solved;
+  object["checks_per_solution"] = evidence->checks_per_solution;
+  return object;
+}
+
+std::optional<ArmEvidence> read_evidence(const Reader& advice, std::string_view arm) {
+  const auto reader = advice.find(arm);
+  if (!reader)
+    return std::nullopt;
+  ArmEvidence evidence;
+  evidence.attempts = reader->at("attempts").count();
+  evidence.solved = reader->at("solved").count(evidence.attempts);
+  evidence.checks_per_solution = reader->at("checks_per_solution").number(0);
+  return evidence;
 }
 
 void add_mixture(const std::optional<Mixture>& mixture, OrderedJson& object) {
@@ -104,6 +177,10 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     distribution.held_out_score = score->number();
   if (const auto evidence = reader.find("evidence"))
     distribution.advice.evidence = evidence->text(kMaxMessageBytes);
+  distribution.advice.guided = read_evidence(reader, "guided");
+  distribution.advice.control = read_evidence(reader, "control");
+  if (const auto selection = reader.find("selection"))
+    distribution.selection = read_selection(*selection);
   if (const auto fitted = reader.find("fitted_ms"))
     distribution.fitted_ms = fitted->integer();
   if (const auto time = reader.find("transfer_time_s"))
@@ -112,7 +189,28 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     distribution.fit_time_s = time->number(0);
 }
 
-Distribution read_distribution(const Reader& reader) {
+/// Of a distribution with state and limits: a ready one has a mixture of as many joints.
+std::optional<Mixture> read_mixture_part(const Reader& reader, const Distribution& distribution,
+                                         MixturePart part) {
+  const auto weights = reader.find("weights");
+  if (distribution.state == DistributionState::Failed) {
+    if (weights)
+      weights->refuse("must be null if state is 'failed'");
+    return std::nullopt;
+  }
+  if (!weights && part == MixturePart::MayBeMissing)
+    return std::nullopt;
+  Mixture mixture = read_mixture(reader);
+  if (mixture.dimension() != distribution.limits.cols())
+    throw Failure(ErrorCode::InvalidInput, "limits: " + std::to_string(distribution.limits.cols()) +
+                                               " joints, means have " +
+                                               std::to_string(mixture.dimension()));
+  return mixture;
+}
+
+}  // namespace
+
+Distribution read_distribution(const Reader& reader, MixturePart mixture) {
   Distribution distribution;
   read_provenance(reader, distribution);
   read_optional_members(reader, distribution);
@@ -122,21 +220,11 @@ Distribution read_distribution(const Reader& reader) {
   distribution.advice.recommended_share = reader.at("recommended_share").number(0, 1);
   if (const auto cuts = reader.find("cuts"))
     cuts->refuse("not supported yet, must be null");
-  if (distribution.state == DistributionState::Ready) {
-    distribution.mixture = read_mixture(reader);
-    if (distribution.mixture->dimension() != distribution.limits.cols())
-      throw Failure(ErrorCode::InvalidInput,
-                    "limits: " + std::to_string(distribution.limits.cols()) +
-                        " joints, means have " + std::to_string(distribution.mixture->dimension()));
-  } else if (const auto weights = reader.find("weights")) {
-    weights->refuse("must be null if state is 'failed'");
-  }
+  distribution.mixture = read_mixture_part(reader, distribution, mixture);
   return distribution;
 }
 
-}  // namespace
-
-std::string to_json(const Distribution& distribution) {
+OrderedJson distribution_object(const Distribution& distribution) {
   OrderedJson object;
   object["id"] = distribution.id.hex();
   object["revision"] = distribution.revision;
@@ -145,6 +233,7 @@ std::string to_json(const Distribution& distribution) {
   object["robot"] = distribution.robot.hex();
   object["T_task_base"] = pose_or_null(distribution.T_task_base);
   object["profile"] = distribution.profile;
+  object["selection"] = selection_object(distribution.selection);
   object["engines"] = distribution.engines;
   OrderedJson sources = OrderedJson::array();
   for (const Source& source : distribution.sources)
@@ -159,16 +248,24 @@ std::string to_json(const Distribution& distribution) {
                                                          : OrderedJson(nullptr);
   object["recommended_share"] = distribution.advice.recommended_share;
   object["evidence"] = distribution.advice.evidence;
+  object["guided"] = evidence_or_null(distribution.advice.guided);
+  object["control"] = evidence_or_null(distribution.advice.control);
   object["state"] = to_text(distribution.state);
   object["reason"] = distribution.reason;
   object["fitted_ms"] = distribution.fitted_ms;
   object["transfer_time_s"] = distribution.transfer_time_s;
   object["fit_time_s"] = distribution.fit_time_s;
-  return write(object);
+  return object;
+}
+
+std::string to_json(const Distribution& distribution) {
+  return write(distribution_object(distribution));
 }
 
 Result<Distribution> distribution_from_json(std::string_view text) {
-  return read_document(text, "distribution", read_distribution);
+  return read_document(text, "distribution", [](const Reader& reader) {
+    return read_distribution(reader, MixturePart::Required);
+  });
 }
 
 }  // namespace kinship::json

@@ -46,6 +46,7 @@ std::string to_json(const RegisterReply& reply, const std::string& label) {
   document["known"] = reply.status == RegisterStatus::Known;
   document["dof"] = reply.dof;
   document["solver"] = reply.solver;
+  document["same_arms"] = reply.same_arms;
   return write(document);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proto/json/name_pairs_json.hpp"
+#include "proto/json/parts.hpp"
 #include "proto/json/reader.hpp"
 #include "proto/json/writer.hpp"
 #include "proto/types/limits.hpp"
@@ -23,7 +24,9 @@ TaskAxes read_axes(const Reader& reader) {
   return *axes;
 }
 
-RobotDescription read_description(const Reader& reader) {
+}  // namespace
+
+RobotDescription read_robot_description(const Reader& reader) {
   RobotDescription description;
   description.label = reader.at("label").text(kMaxLabelBytes);
   if (const auto error = check_label(description.label))
@@ -47,9 +50,7 @@ RobotDescription read_description(const Reader& reader) {
   return description;
 }
 
-}  // namespace
-
-std::string to_json(const RobotDescription& description) {
+OrderedJson robot_description_object(const RobotDescription& description) {
   OrderedJson object;
   object["label"] = description.label;
   object["urdf"] = description.urdf;
@@ -65,11 +66,15 @@ std::string to_json(const RobotDescription& description) {
   for (const auto& [joint, value] : description.held_joints)
     object["held_joints"][joint] = value;
   object["never_colliding"] = pair_list(description.never_colliding);
-  return write(object);
+  return object;
+}
+
+std::string to_json(const RobotDescription& description) {
+  return write(robot_description_object(description));
 }
 
 Result<RobotDescription> robot_description_from_json(std::string_view text) {
-  return read_document(text, "robot description", read_description);
+  return read_document(text, "robot description", read_robot_description);
 }
 
 }  // namespace kinship::json

@@ -61,6 +61,7 @@ PathSummary read_path(const Reader& reader) {
   summary.waypoints = reader.at("waypoints").count();
   summary.length = reader.at("length").number(0);
   summary.received_ms = reader.at("received_ms").integer();
+  summary.retired_ms = reader.at("retired_ms").integer();
   return summary;
 }
 
@@ -100,6 +101,8 @@ ServerStatus read_status(const Reader& reader) {
   status.fits = reader.at("fits").count();
   status.queued_reports = reader.at("queued_reports").count();
   status.queued_fits = reader.at("queued_fits").count();
+  status.followed = reader.at("followed").count();
+  status.jobs = reader.at("jobs").count();
   status.store_bytes = reader.at("store_bytes").count();
   status.writable = reader.at("writable").boolean();
   status.storage_message = reader.at("storage_message").text(kMaxPageBytes);
@@ -149,6 +152,7 @@ std::string to_json(const PathSummary& summary) {
   object["waypoints"] = summary.waypoints;
   object["length"] = summary.length;
   object["received_ms"] = summary.received_ms;
+  object["retired_ms"] = summary.retired_ms;
   return write(object);
 }
 
@@ -188,6 +192,8 @@ std::string to_json(const ServerStatus& status) {
   object["fits"] = status.fits;
   object["queued_reports"] = status.queued_reports;
   object["queued_fits"] = status.queued_fits;
+  object["followed"] = status.followed;
+  object["jobs"] = status.jobs;
   object["store_bytes"] = status.store_bytes;
   object["writable"] = status.writable;
   object["storage_message"] = status.storage_message;

@@ -50,6 +50,67 @@ TEST(DistributionJson, WritesTheDocumentOfTheFileFormat) {
     EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
 }
 
+Digest digest_of(std::uint8_t byte) {
+  Digest digest;
+  digest.bytes.fill(byte);
+  return digest;
+}
+
+Distribution with_details() {
+  Distribution distribution = two_components();
+  distribution.selection = {
+      .sources = {digest_of(1), digest_of(2)}, .weighting = Weighting::Paths, .since_ms = 99};
+  Source source{.robot = digest_of(1), .label = "panda", .paths = 60, .generation = 12};
+  source.poses = 900;
+  source.poses_solved = 800;
+  source.relation = Relation::SameArm;
+  source.paths_used = 50;
+  source.out_of_reach = 60;
+  source.outside_limits = 30;
+  source.not_converged = 10;
+  source.configurations = 4000;
+  source.mass = 0.625;
+  distribution.sources = {source};
+  distribution.advice.guided = ArmEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
+  return distribution;
+}
+
+TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
+  const std::string text = to_json(with_details());
+  for (const std::string& member :
+       {R"("selection":{"sources":[")" + digest_of(1).hex() + R"(",")" + digest_of(2).hex() +
+            R"("],"weighting":"paths","since_ms":99})",
+        std::string(
+            R"("relation":"same_arm","paths_used":50,"out_of_reach":60,)"
+            R"("outside_limits":30,"not_converged":10,"configurations":4000,"mass":0.625})"),
+        std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
+                    R"("control":null)")})
+    EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
+  const auto back = distribution_from_json(text);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->selection, with_details().selection);
+  EXPECT_EQ(back->advice.guided, with_details().advice.guided);
+}
+
+TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
+  const auto message_with = [](const std::string& from, const std::string& to) {
+    std::string text = to_json(with_details());
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    return message_of(text.replace(text.find(from), from.size(), to));
+  };
+  EXPECT_EQ(message_with("\"since_ms\":99", "\"since_ms\":-1"),
+            "selection.since_ms: -1 is negative");
+  EXPECT_EQ(message_with(digest_of(2).hex(), digest_of(1).hex()),
+            "selection: sources must be ascending and distinct");
+  EXPECT_EQ(message_with("\"weighting\":\"paths\"", "\"weighting\":\"age\""),
+            "weighting: 'age' is not one of sources, paths");
+  EXPECT_EQ(message_with("\"mass\":0.625", "\"mass\":1.5"), "sources[0].mass: 1.5 exceeds 1");
+  EXPECT_EQ(message_with("\"same_arm\"", "\"cousin\""),
+            "relation: 'cousin' is not one of other, same_arm, identical");
+  EXPECT_EQ(message_with("\"solved\":18", "\"solved\":21"), "guided.solved: 21 exceeds 20");
+}
+
 TEST(DistributionJson, FailedHasNoMixtureAndSaysWhy) {
   Distribution failed = two_components();
   failed.mixture.reset();

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "proto/json/robot_answers_json.hpp"
+
 namespace kinship::json {
 namespace {
 
@@ -51,6 +53,7 @@ TEST(SummariesJson, PathIsReadBack) {
   path.waypoints = 17;
   path.length = 1.0 / 3.0;
   path.received_ms = 5;
+  path.retired_ms = 6;
   expect_same_text_again(path, path_summary_from_json);
   path.T_task_base = Eigen::Isometry3d::Identity();
   expect_same_text_again(path, path_summary_from_json);
@@ -73,12 +76,25 @@ TEST(SummariesJson, StatusIsReadBack) {
        {&status.uptime_s, &status.robots, &status.tasks, &status.paths, &status.attempts,
         &status.distributions, &status.reports_received, &status.reports_refused, &status.fetches,
         &status.fetches_from_memory, &status.fits, &status.queued_reports, &status.queued_fits,
-        &status.store_bytes})
+        &status.followed, &status.jobs, &status.store_bytes})
     *counter = ++value;
   status.writable = false;
   status.storage_message = "disk full";
   expect_same_text_again(status, server_status_from_json);
   EXPECT_EQ(server_status_from_json(to_json(status))->store_bytes, value);
+}
+
+TEST(SummariesJson, RegisteredRobotNamesTheSameArms) {
+  RegisterReply reply;
+  reply.status = RegisterStatus::Known;
+  reply.robot = digest_of(8);
+  reply.dof = 6;
+  reply.solver = "closed form";
+  reply.same_arms = {"ur10e_1", "ur10e_2"};
+  EXPECT_EQ(to_json(reply, "ur10e_3"),
+            R"({"robot":")" + digest_of(8).hex() +
+                R"(","label":"ur10e_3","known":true,"dof":6,"solver":"closed form",)"
+                R"("same_arms":["ur10e_1","ur10e_2"]})");
 }
 
 TEST(SummariesJson, RowOfAnotherKindIsRefusedByItsMissingMember) {

@@ -1,0 +1,100 @@
+#include "proto/json/admin_rows_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kinship::json {
+namespace {
+
+Digest digest_of(std::uint8_t byte) {
+  Digest digest;
+  digest.bytes.fill(byte);
+  return digest;
+}
+
+Distribution fitted() {
+  Distribution distribution;
+  distribution.id = digest_of(1);
+  distribution.task = "bin_to_shelf";
+  distribution.profile = "default";
+  distribution.limits = (Eigen::Matrix2Xd(2, 1) << -1, 1).finished();
+  Eigen::MatrixXd one(1, 1);
+  one << 1;
+  distribution.mixture = Mixture(Eigen::VectorXd::Ones(1), one, {one});
+  return distribution;
+}
+
+TEST(AdminRowsJson, JobIsReadBack) {
+  Job job{.id = "0a1b2c3d",
+          .verb = "backup",
+          .argument = "/var/backups/fleet.db",
+          .state = JobState::Running,
+          .progress = 0.25,
+          .message = "page 3 of 12",
+          .rows = 7,
+          .started_ms = 1000,
+          .ended_ms = 2000};
+  const std::string text = to_json(job);
+  EXPECT_EQ(text, R"({"id":"0a1b2c3d","verb":"backup","argument":"/var/backups/fleet.db",)"
+                  R"("state":"running","progress":0.25,"message":"page 3 of 12","rows":7,)"
+                  R"("started_ms":1000,"ended_ms":2000})");
+  EXPECT_EQ(to_json(job_from_json(text).value_or_throw()), text);
+}
+
+TEST(AdminRowsJson, JobWithAnImpossibleMemberIsRefusedByName) {
+  const std::string text = to_json(Job{});
+  const auto message_with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return job_from_json(changed).error().message;
+  };
+  EXPECT_EQ(message_with(R"("queued")", R"("asleep")"),
+            "state: 'asleep' is not one of queued, running, done, failed, cancelled");
+  EXPECT_EQ(message_with(R"("progress":0.0)", R"("progress":1.5)"), "progress: 1.5 exceeds 1");
+  EXPECT_EQ(message_with(R"("rows":0)", R"("rows":-1)"),
+            "rows: must be an integer from 0 to 2^64 - 1");
+}
+
+TEST(AdminRowsJson, RetirementIsReadBack) {
+  const std::string text = to_json(Retirement{"bin_to_shelf", 12, {digest_of(1), digest_of(2)}});
+  EXPECT_EQ(text, R"({"task":"bin_to_shelf","paths":12,"robots":[")" + digest_of(1).hex() +
+                      R"(",")" + digest_of(2).hex() + R"("]})");
+  EXPECT_EQ(to_json(retirement_from_json(text).value_or_throw()), text);
+}
+
+TEST(AdminRowsJson, EvictionIsReadBack) {
+  const std::string text = eviction_to_json(digest_of(3));
+  EXPECT_EQ(text, R"({"evicted":")" + digest_of(3).hex() + R"("})");
+  EXPECT_EQ(eviction_from_json(text).value_or_throw(), digest_of(3));
+}
+
+TEST(AdminRowsJson, ExplanationIsReadBackWithAndWithoutItsMixture) {
+  Explanation explanation;
+  explanation.distribution = fitted();
+  explanation.experience = {{digest_of(4), "panda", 60, 12}, {digest_of(5), "iiwa14", 40, 11}};
+  explanation.behind = true;
+  explanation.next_fit = "at the next fetch: 12 new paths";
+  std::string text = to_json(explanation);
+  EXPECT_EQ(to_json(explanation_from_json(text).value_or_throw()), text);
+
+  explanation.distribution.mixture.reset();
+  text = to_json(explanation);
+  const auto back = explanation_from_json(text);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->experience[1].label, "iiwa14");
+}
+
+TEST(AdminRowsJson, RefusalInsideAnExplanationNamesThePlace) {
+  Explanation explanation;
+  explanation.distribution = fitted();
+  std::string text = to_json(explanation);
+  const std::string member = R"("recommended_share":0.0)";
+  text.replace(text.find(member), member.size(), R"("recommended_share":2)");
+  EXPECT_EQ(explanation_from_json(text).error().message,
+            "distribution.recommended_share: 2 exceeds 1");
+}
+
+}  // namespace
+}  // namespace kinship::json
