@@ -55,8 +55,12 @@ class Client::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   ~Implementation() {
-    register_.cancel();
+    cancel();
     report_.cancel();
+  }
+
+  void cancel() {
+    register_.cancel();
     fetch_.cancel();
     admin_.cancel();
   }
@@ -172,5 +176,7 @@ Result<FetchReply> Client::fetch(const FetchRequest& request) {
 Result<AdminReply> Client::admin(const AdminRequest& request) {
   return implementation_->admin(request);
 }
+
+void Client::cancel() { implementation_->cancel(); }
 
 }  // namespace kinship::link
