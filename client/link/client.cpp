@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "client/link/delivery.hpp"
 #include "client/link/outbox.hpp"
 #include "client/link/report_sender.hpp"
 #include "proto/codec/report_codec.hpp"
@@ -33,11 +34,12 @@ class Client::Implementation {
  public:
   explicit Implementation(const ClientOptions& options)
       : timeout_(options.timeout),
-        participant_({.domain = options.domain, .server = options.server}),
-        register_(participant_, client_id_),
-        report_(participant_, client_id_),
-        fetch_(participant_, client_id_),
-        admin_(participant_, client_id_) {
+        participant_(std::make_shared<const dds::Participant>(
+            dds::ParticipantOptions{.domain = options.domain, .server = options.server})),
+        register_(*participant_, client_id_),
+        report_(*participant_, client_id_),
+        fetch_(*participant_, client_id_),
+        admin_(*participant_, client_id_) {
     if (!options.has_outbox)
       return;
     outbox_.emplace(options.outbox.empty() ? default_outbox_folder(options.domain, options.server)
@@ -55,12 +57,8 @@ class Client::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   ~Implementation() {
-    cancel();
-    report_.cancel();
-  }
-
-  void cancel() {
     register_.cancel();
+    report_.cancel();
     fetch_.cancel();
     admin_.cancel();
   }
@@ -118,7 +116,23 @@ class Client::Implementation {
   }
 
   Result<AdminReply> admin(const AdminRequest& request) {
-    return admin_.call(request, Clock::now() + timeout_);
+    return admin_.call(request, Clock::now() + timeout_ + request.deadline);
+  }
+
+  std::unique_ptr<Follower> follow(const FetchRequest& request,
+                                   const FollowOptions& options) const {
+    return std::make_unique<Follower>(participant_, request, options);
+  }
+
+  std::unique_ptr<Watcher> watch(Watcher::Handlers handlers) const {
+    return std::make_unique<Watcher>(participant_, std::move(handlers));
+  }
+
+  Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts) {
+    return link::deliver(std::move(attempts), timeout_,
+                         [this](const ReportRequest& batch, Clock::time_point deadline) {
+                           return report_.call(batch, deadline);
+                         });
   }
 
  private:
@@ -144,7 +158,7 @@ class Client::Implementation {
   milliseconds timeout_;
   Uuid client_id_ = Uuid::random();
   std::optional<Outbox> outbox_;
-  dds::Participant participant_;
+  const std::shared_ptr<const dds::Participant> participant_;  // with followers and watchers
   dds::Requester<codec::RegisterConversation> register_;
   dds::Requester<codec::ReportConversation> report_;
   dds::Requester<codec::FetchConversation> fetch_;
@@ -173,10 +187,21 @@ Result<FetchReply> Client::fetch(const FetchRequest& request) {
   return implementation_->fetch(request);
 }
 
+std::unique_ptr<Follower> Client::follow(const FetchRequest& request,
+                                         const FollowOptions& options) const {
+  return implementation_->follow(request, options);
+}
+
+std::unique_ptr<Watcher> Client::watch(Watcher::Handlers handlers) const {
+  return implementation_->watch(std::move(handlers));
+}
+
+Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
+  return implementation_->deliver(std::move(attempts));
+}
+
 Result<AdminReply> Client::admin(const AdminRequest& request) {
   return implementation_->admin(request);
 }
-
-void Client::cancel() { implementation_->cancel(); }
 
 }  // namespace kinship::link

@@ -6,7 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "client/link/follower.hpp"
+#include "client/link/watcher.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
@@ -19,7 +22,7 @@ struct ClientOptions {
   std::string server = "127.0.0.1";         ///< host of kinshipd
   std::filesystem::path outbox;             ///< folder; empty: default_outbox_folder()
   bool has_outbox = true;                   ///< false: delivers nothing, report() is not allowed
-  std::chrono::milliseconds timeout{5000};  ///< of register and admin
+  std::chrono::milliseconds timeout{5000};  ///< of register, deliver (a batch) and admin
 };
 
 /// A fleet member's line to kinshipd: registers a robot, reports attempts, fetches distributions.
@@ -63,11 +66,23 @@ class Client {
   /// with what is there, and this waits for its answer up to the timeout of register and admin.
   Result<FetchReply> fetch(const FetchRequest& request);
 
-  Result<AdminReply> admin(const AdminRequest& request);
+  /// Holds the newest distribution for the request from now on. What is returned may outlive the
+  /// client. \throws Failure(InvalidInput or TooLarge) if the request breaks a rule.
+  std::unique_ptr<Follower> follow(const FetchRequest& request,
+                                   const FollowOptions& options = {}) const;
 
-  /// Ends every wait for a reply, from another thread; it and later ones bring Unavailable.
-  /// Reports are sent as before.
-  void cancel();
+  /// Subscribes to what happens at the server. What is returned may outlive the client.
+  std::unique_ptr<Watcher> watch(Watcher::Handlers handlers) const;
+
+  /// Hands attempts over at once, past the outbox, batch after batch: who still has them can hand
+  /// them over again.
+  /// \return one receipt per attempt, in order: Refused also for what the server would not even be
+  ///         sent, TryAgain for what it could not store within the timeout. Unavailable if no
+  ///         server answered; some may have arrived then.
+  Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts);
+
+  /// Waits up to the timeout, and for ShowJob up to the request's deadline more.
+  Result<AdminReply> admin(const AdminRequest& request);
 
  private:
   class Implementation;

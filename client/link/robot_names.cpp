@@ -2,34 +2,22 @@
 
 #include <algorithm>
 
+#include "client/link/admin_rows.hpp"
 #include "proto/json/summaries_json.hpp"
 
 namespace kinship::link {
 namespace {
 
-ErrorCode code_of(AdminStatus status) {
-  switch (status) {
-    case AdminStatus::NotFound:
-      return ErrorCode::NotFound;
-    case AdminStatus::Refused:
-      return ErrorCode::InvalidInput;
-    default:
-      return ErrorCode::Internal;
-  }
-}
-
 Result<Digest> resolve_robot(Client& client, const std::string& name) {
   AdminRequest request;
   request.verb = AdminVerb::ShowRobot;
   request.argument = name;
-  const Result<AdminReply> reply = client.admin(request);
-  if (!reply)
-    return reply.error();
-  if (reply->status != AdminStatus::Ok)
-    return Error{code_of(reply->status), reply->message};
-  if (reply->rows.empty())
+  const Result<std::vector<std::string>> rows = rows_of(client, request);
+  if (!rows)
+    return rows.error();
+  if (rows->empty())
     return Error{ErrorCode::Internal, "the server said nothing of robot '" + name + "'"};
-  const Result<RobotSummary> summary = json::robot_summary_from_json(reply->rows.front());
+  const Result<RobotSummary> summary = json::robot_summary_from_json(rows->front());
   if (!summary)
     return Error{ErrorCode::Internal,
                  "robot '" + name + "': cannot read the server's row: " + summary.error().message};

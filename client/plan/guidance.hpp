@@ -9,7 +9,6 @@
 #include <string>
 
 #include "client/plan/plan_problem.hpp"
-#include "client/planning/arm_choice.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
@@ -25,8 +24,7 @@ struct GuidanceWish {
   Digest robot;
   Eigen::Index dof = 0;
   std::string profile = "default";
-  Selection selection;
-  planning::ArmOptions arms;
+  std::optional<double> share;            ///< empty: the server's recommendation
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 

@@ -48,8 +48,7 @@ GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain)
   wish.robot = chain.digest();
   wish.dof = chain.dof();
   wish.profile = options.profile;
-  wish.selection = options.selection;
-  wish.arms = options.arms;
+  wish.share = options.share;
   wish.wait = options.wait;
   return wish;
 }
@@ -60,13 +59,11 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
              const std::function<bool()>& stop) {
   const LoadedRobot robot = load_robot(options.robot);
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
-  ServerLine server(options, robot.description, streams.messages, stop);
+  ServerLine server(options, robot.description, streams.messages);
   const GuidanceWish wish = wish_of(options, robot.planned.chain);
   const NoGuidance why_not = server.fetch_guidance(wish, lines);
-  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
-    streams.messages << "nothing is planned: --guidance require, and there is none\n";
+  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None)
     return exit_code_without(why_not);
-  }
 
   const std::string machine = options.machine.empty() ? host_name() : options.machine;
   const Reporter reporter{wish.robot, machine, options.task};
@@ -80,7 +77,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     if (!line.problem) {
       const ProblemResult broken = broken_line_result(line.number, line.problem.error());
       write_result(broken, streams.results);
-      progress.add(broken, false);
+      progress.add(broken);
       continue;
     }
     Problem problem = *std::move(line.problem);
@@ -94,7 +91,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     if (options.report && planned.attempted)
       server.report([&] { return make_attempt(reporter, problem, planned, options.settings); });
     write_result(planned.result, streams.results);  // after: what has a result is in the outbox
-    progress.add(planned.result, planned.attempted);
+    progress.add(planned.result);
   }
   progress.finish();
   server.finish();

@@ -15,8 +15,7 @@ class Progress {
   Progress(std::ostream& stream, bool terminal, std::size_t total)
       : stream_(stream), terminal_(terminal), total_(total) {}
 
-  /// \param attempted  false: answered without planning.
-  void add(const ProblemResult& result, bool attempted);
+  void add(const ProblemResult& result);
 
   /// Ends the line and writes the sums.
   void finish();
@@ -27,7 +26,6 @@ class Progress {
   std::size_t total_;
   std::size_t done_ = 0;
   std::size_t solved_ = 0;
-  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // attempts by arm
   std::uint64_t checks_ = 0;
   double planning_time_s_ = 0;
 };

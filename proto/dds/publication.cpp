@@ -101,8 +101,20 @@ class Subscriber<Publication>::Implementation {
   void notice_servers() const {
     dds_subscription_matched_status_t status{};
     require(dds_get_subscription_matched_status(reader_.get(), &status), "reader " + name_);
-    if (status.total_count_change > 0 && handlers_.on_server && !is_stopped_)
-      handlers_.on_server();
+    const bool has_one_gone = status.current_count_change < status.total_count_change;
+    const bool has_one_come = status.total_count_change > 0;
+    const bool is_one_there = status.current_count > 0;  // otherwise going was the last
+    if (has_one_gone && is_one_there)
+      call(handlers_.on_server_gone);
+    if (has_one_come)
+      call(handlers_.on_server);
+    if (has_one_gone && !is_one_there)
+      call(handlers_.on_server_gone);
+  }
+
+  void call(const std::function<void()>& handler) const {
+    if (handler && !is_stopped_)
+      handler();
   }
 
   /// \return whether there may be more.

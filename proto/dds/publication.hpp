@@ -43,6 +43,9 @@ class Subscriber {
     std::function<void(const typename Publication::Value&)> on_sample;
     /// There is a server that was not there before, at first or after a restart. May be empty.
     std::function<void()> on_server;
+    /// A server has gone: at once if it ended, after the lease of discovery if it died. May be
+    /// empty.
+    std::function<void()> on_server_gone = {};
   };
 
   /// \throws Failure(Internal) if an entity cannot be created.

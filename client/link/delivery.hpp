@@ -1,0 +1,22 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship::link {
+
+/// Hands attempts to a server in batches within its limits, and again what it could not store yet.
+/// \param timeout  of a batch, with its repetitions.
+/// \param send     sends a batch and waits for its reply until the deadline.
+/// \return one receipt per attempt, in order; an error if a batch had no reply at all.
+Result<std::vector<Receipt>> deliver(
+    std::vector<Attempt> attempts, std::chrono::milliseconds timeout,
+    const std::function<Result<ReportReply>(const ReportRequest&,
+                                            std::chrono::steady_clock::time_point deadline)>& send);
+
+}  // namespace kinship::link

@@ -1,0 +1,142 @@
+// Pages and jobs against an admin replier in this process, over loopback.
+
+#include "client/link/admin_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "proto/dds/replier.hpp"
+#include "proto/json/admin_rows_json.hpp"
+
+namespace kinship::link {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// Answers admin requests by a function.
+class AdminServer {
+ public:
+  using Answer = std::function<AdminReply(const AdminRequest&)>;
+
+  AdminServer(std::uint32_t domain, Answer answer)
+      : participant_({.domain = domain, .role = dds::Role::Server}),
+        loop_(participant_),
+        admin_(participant_, loop_,
+               [answer = std::move(answer)](const AdminRequest& request, const auto& reply) {
+                 reply(answer(request));
+               }),
+        thread_([this] { loop_.run([] { return Clock::time_point::max(); }); }) {}
+  ~AdminServer() {
+    loop_.stop();
+    thread_.join();
+  }
+
+ private:
+  dds::Participant participant_;
+  dds::WaitLoop loop_;
+  dds::Replier<codec::AdminConversation> admin_;
+  std::thread thread_;
+};
+
+Client client(std::uint32_t domain) {
+  return Client({.domain = domain, .outbox = {}, .has_outbox = false, .timeout = 30s});
+}
+
+AdminReply page(std::vector<std::string> rows, const std::string& next_cursor,
+                bool last_row_continues = false) {
+  AdminReply reply;
+  reply.status = AdminStatus::Ok;
+  reply.rows = std::move(rows);
+  reply.next_cursor = next_cursor;
+  reply.last_row_continues = last_row_continues;
+  return reply;
+}
+
+/// Rows a, bcd (in three pieces, one of them a page of its own), e, f.
+AdminReply pieces(const AdminRequest& request) {
+  if (request.cursor.empty())
+    return page({"a", "b"}, "1", true);
+  if (request.cursor == "1")
+    return page({"c"}, "2", true);
+  if (request.cursor == "2")
+    return page({"d", "e"}, "3");
+  return page({"f"}, "");
+}
+
+using Rows = std::vector<std::string>;
+
+TEST(AdminRows, RowsInPiecesComeWhole) {
+  const AdminServer server(160, pieces);
+  Client asker = client(160);
+  const auto rows = rows_of(asker, {});
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_EQ(*rows, (Rows{"a", "bcd", "e", "f"}));
+}
+
+TEST(AdminRows, EndsAtTheLimitOrWhenItsUserHasEnough) {
+  const AdminServer server(161, pieces);
+  Client asker = client(161);
+  Rows rows;
+  const auto use = [&](const std::string& row) {
+    rows.push_back(row);
+    return row != "e";
+  };
+  EXPECT_FALSE(for_each_row(asker, {}, use, 2));
+  EXPECT_EQ(rows, (Rows{"a", "bcd"}));
+  rows.clear();
+  EXPECT_FALSE(for_each_row(asker, {}, use));
+  EXPECT_EQ(rows, (Rows{"a", "bcd", "e"}));
+}
+
+TEST(AdminRows, ARefusalIsAnErrorWithTheServersWords) {
+  const AdminServer server(162, [](const AdminRequest&) {
+    AdminReply reply;
+    reply.status = AdminStatus::NotFound;
+    reply.message = "no task 'x'";
+    return reply;
+  });
+  Client asker = client(162);
+  const auto rows = rows_of(asker, {});
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(rows.error().message, "no task 'x'");
+}
+
+TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
+  int asked = 0;
+  const AdminServer server(163, [&](const AdminRequest& request) {
+    EXPECT_EQ(request.verb, AdminVerb::ShowJob);
+    EXPECT_EQ(request.argument, "00c0ffee");
+    Job job;
+    job.id = request.argument;
+    job.verb = "backup";
+    job.state = ++asked < 3 ? JobState::Running : JobState::Done;
+    job.progress = 0.25 * asked;
+    return page({json::to_json(job)}, "");
+  });
+  Client asker = client(163);
+  std::vector<double> told;
+  const auto job = wait_for_job(asker, "00c0ffee", Clock::now() + 60s,
+                                [&](const Job& now) { told.push_back(now.progress); });
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_EQ(job->state, JobState::Done);
+  EXPECT_EQ(told, (std::vector<double>{0.25, 0.5, 0.75}));
+}
+
+TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
+  const AdminServer server(164, [](const AdminRequest& request) {
+    Job job;
+    job.id = request.argument;
+    job.state = JobState::Running;
+    return page({json::to_json(job)}, "");
+  });
+  Client asker = client(164);
+  const auto job = wait_for_job(asker, "00c0ffee", Clock::now());
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_FALSE(has_ended(*job));
+}
+
+}  // namespace
+}  // namespace kinship::link

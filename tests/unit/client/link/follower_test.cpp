@@ -1,0 +1,197 @@
+// Followers against a server in this process, over loopback.
+
+#include "client/link/follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "client/link/client.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/support/random_values.hpp"
+#include "tests/unit/client/link/follow_server.hpp"
+
+namespace kinship::link {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kEnough = 60s;  // on a machine that does other things
+constexpr std::uint64_t kSeed = 41;
+
+class FollowerTest : public testing::Test {
+ protected:
+  FollowerTest() {
+    distribution_.task = "shelf_pick";
+    distribution_.robot = values_.digest();
+    distribution_.revision = 7;
+    distribution_.state = DistributionState::Ready;
+    distribution_.reason.clear();
+    if (!distribution_.mixture)
+      distribution_.mixture = values_.mixture(distribution_.limits.cols());
+  }
+  static Client client(std::uint32_t domain) {
+    return Client({.domain = domain, .outbox = {}, .has_outbox = false, .timeout = 5s});
+  }
+  FetchRequest request() const {
+    FetchRequest request;
+    request.task = distribution_.task;
+    request.robot = distribution_.robot;
+    return request;
+  }
+  FetchReply ready() const {
+    FetchReply reply;
+    reply.status = FetchStatus::Ready;
+    reply.distribution = distribution_;
+    return reply;
+  }
+  static FetchReply status(FetchStatus status, const std::string& message = "") {
+    FetchReply reply;
+    reply.status = status;
+    reply.message = message;
+    return reply;
+  }
+  /// Waits for it. \return whether it came.
+  static bool becomes(const Follower& follower, FollowStatus status) {
+    const auto deadline = Clock::now() + kEnough;
+    while (follower.state().status != status && Clock::now() < deadline)
+      std::this_thread::sleep_for(10ms);
+    return follower.state().status == status;
+  }
+
+  test::RandomValues values_{kSeed};
+  Distribution distribution_ = values_.distribution();
+};
+
+TEST_F(FollowerTest, HoldsWhatTheServerHasUnderALeaseOfAMinute) {
+  FollowServer server(141, ready());
+  const auto follower = client(141).follow(request());
+  const auto newest = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->revision, 7U);
+  EXPECT_EQ(follower->newest(), newest);
+  EXPECT_TRUE(becomes(*follower, FollowStatus::Ready));
+  EXPECT_EQ(server.last_request().follow, 60s);
+}
+
+TEST_F(FollowerTest, FetchesWhatIsAnnouncedAndKeepsWhatItGaveOut) {
+  FollowServer server(142, ready());
+  const auto follower = client(142).follow(request());
+  const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
+  ASSERT_TRUE(first);
+  distribution_.revision = 8;
+  server.set_reply(ready());
+  server.announce(distribution_);
+  const auto second = follower->wait_for_newer(first, Clock::now() + kEnough);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->revision, 8U);
+  EXPECT_EQ(first->revision, 7U);
+}
+
+TEST_F(FollowerTest, ALowerRevisionOfAnotherStoreEpochIsNews) {
+  FollowServer server(143, ready());
+  const auto follower = client(143).follow(request());
+  const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
+  ASSERT_TRUE(first);
+  distribution_.revision = 1;
+  distribution_.store_epoch = Uuid::random();
+  server.set_reply(ready());
+  server.announce(distribution_);
+  const auto second = follower->wait_for_newer(first, Clock::now() + kEnough);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->revision, 1U);
+}
+
+TEST_F(FollowerTest, AnnouncementsOfOthersAndOfWhatItHasAreNoReasonToFetch) {
+  FollowServer server(144, ready());
+  const auto follower = client(144).follow(request());
+  ASSERT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
+  ASSERT_TRUE(becomes(*follower, FollowStatus::Ready));
+  const int before = server.fetches();
+  Distribution other = distribution_;  // the same robot at another place
+  other.id = values_.digest();
+  other.revision = 99;
+  server.announce(other);
+  server.announce(distribution_);
+  std::this_thread::sleep_for(500ms);  // nothing is to happen: there is no event to wait for
+  const int after = server.fetches();
+  EXPECT_LE(after, before + 1);  // its first sight of the server may count as one
+  distribution_.revision = 8;    // but this is one, and comes after the others
+  server.set_reply(ready());
+  server.announce(distribution_);
+  EXPECT_TRUE(server.wait_for_fetches(after + 1, kEnough));
+}
+
+TEST_F(FollowerTest, RenewsItsLeaseAtAThird) {
+  FollowServer server(145, ready());
+  FetchRequest wanted = request();
+  wanted.follow = 3s;
+  const auto follower = client(145).follow(wanted);
+  EXPECT_TRUE(server.wait_for_fetches(4, kEnough));
+  EXPECT_EQ(server.last_request().follow, 3s);
+}
+
+TEST_F(FollowerTest, WithoutExperienceItSaysWhyAndHearsOfTheFirstFit) {
+  FollowServer server(146, status(FetchStatus::NoExperience, "no paths of task 'shelf_pick'"));
+  // So long a pause that only the announcement can end it.
+  const auto follower = client(146).follow(request(), {.longest_pause = 10min});
+  ASSERT_TRUE(becomes(*follower, FollowStatus::NoExperience));
+  EXPECT_EQ(follower->newest(), nullptr);
+  EXPECT_EQ(follower->state().reason, "no paths of task 'shelf_pick'");
+  server.set_reply(ready());
+  server.announce(distribution_);
+  EXPECT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + 15s));
+}
+
+TEST_F(FollowerTest, WithoutExperienceItAsksAgain) {
+  FollowServer server(147, status(FetchStatus::NoExperience));
+  const auto follower = client(147).follow(request(), {.longest_pause = 400ms});
+  ASSERT_TRUE(server.wait_for_fetches(5, kEnough));
+  server.set_reply(ready());  // and nobody announces it
+  EXPECT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
+}
+
+TEST_F(FollowerTest, WhatTheServerNoLongerStandsForIsDropped) {
+  FollowServer server(148, ready());
+  FetchRequest wanted = request();
+  wanted.follow = 2s;
+  const auto follower = client(148).follow(wanted, {.longest_pause = 100ms});
+  ASSERT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
+  server.set_reply(status(FetchStatus::NoExperience));  // all of it was retired
+  ASSERT_TRUE(becomes(*follower, FollowStatus::NoExperience));
+  EXPECT_EQ(follower->newest(), nullptr);
+}
+
+TEST_F(FollowerTest, KeepsWhatItHasWhileNobodyAnswersAndFindsTheNextServer) {
+  std::optional<FollowServer> server(std::in_place, 149U, ready());
+  const auto follower = client(149).follow(request());
+  const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
+  ASSERT_TRUE(first);
+  server.reset();
+  EXPECT_EQ(follower->newest(), first);
+  distribution_.revision = 8;
+  server.emplace(149U, ready());  // announces nothing
+  const auto second = follower->wait_for_newer(first, Clock::now() + 15s);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->revision, 8U);
+}
+
+TEST_F(FollowerTest, WithoutAServerItSaysSoAndEndsAtOnce) {
+  auto follower = client(168).follow(request());
+  EXPECT_EQ(follower->state().status, FollowStatus::NoServer);
+  EXPECT_NE(follower->state().reason.find("domain 168"), std::string::npos);
+  EXPECT_EQ(follower->wait_for_newer(nullptr, Clock::now() + 50ms), nullptr);
+  const auto start = Clock::now();
+  follower.reset();
+  EXPECT_LT(Clock::now() - start, 5s);  // a fetch under way would take 12 s
+}
+
+TEST_F(FollowerTest, ARequestThatBreaksARuleIsRefusedAtOnce) {
+  FetchRequest wanted = request();
+  wanted.task = "two words";
+  EXPECT_THROW(client(168).follow(wanted), Failure);
+}
+
+}  // namespace
+}  // namespace kinship::link
