@@ -2,8 +2,10 @@
 
 #include <variant>
 
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
+#include "proto/json/experience_line.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/limits.hpp"
@@ -21,13 +23,26 @@ std::size_t bytes_of(const AdminReply& reply) {
 
 bool is_listing(AdminVerb verb) {
   return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
-         verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions;
+         verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
+         verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs;
 }
+
+template <typename Value>
+std::string document(const Value& value) {
+  return json::to_json(value);
+}
+std::string document(const service::Eviction& eviction) {
+  return json::eviction_to_json(eviction.id);
+}
+std::string document(const service::ExportedRobot& robot) {
+  return json::to_experience_line(robot.description);
+}
+std::string document(const service::TextLine& line) { return line.text; }
 
 }  // namespace
 
 std::string to_json(const service::AdminRow& row) {
-  return std::visit([](const auto& value) { return json::to_json(value); }, row);
+  return std::visit([](const auto& value) { return document(value); }, row);
 }
 
 AdminReply to_reply(const service::AdminPage& page) {
@@ -35,16 +50,8 @@ AdminReply to_reply(const service::AdminPage& page) {
   reply.status = page.status;
   reply.next_cursor = page.next_cursor;
   reply.message = page.message;
-  for (const service::AdminRow& row : page.rows) {
+  for (const service::AdminRow& row : page.rows)
     reply.rows.push_back(to_json(row));
-    if (reply.rows.back().size() > kMaxPageBytes) {
-      AdminReply failed;
-      failed.status = AdminStatus::Failed;
-      failed.message = "a row of " + std::to_string(reply.rows.back().size()) +
-                       " bytes exceeds a page of " + std::to_string(kMaxPageBytes);
-      return failed;
-    }
-  }
   return reply;
 }
 
@@ -60,13 +67,13 @@ std::optional<AdminRequest> for_fewer_rows(const AdminRequest& request, std::siz
   return smaller;
 }
 
-AdminReply too_large(const AdminReply& reply) {
-  AdminReply failed;
-  failed.status = AdminStatus::Failed;
-  failed.message = std::to_string(reply.rows.size()) + " rows of " +
-                   std::to_string(bytes_of(reply)) + " bytes exceed a page of " +
-                   std::to_string(kMaxPageBytes);
-  return failed;
+AdminRequest for_rest(const AdminRequest& request, const RowCursor& begin) {
+  AdminRequest inner = request;
+  inner.cursor = begin.inner;
+  const bool is_rest = begin.row > 0 || begin.byte > 0;
+  if (is_rest && is_listing(request.verb))
+    inner.limit = 1;  // only a single row of a listing is cut
+  return inner;
 }
 
 }  // namespace kinship::app

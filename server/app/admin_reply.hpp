@@ -5,14 +5,15 @@
 #include <string>
 
 #include "proto/types/conversations.hpp"
-#include "server/service/administration.hpp"
+#include "server/app/row_cursor.hpp"
+#include "server/service/admin_page.hpp"
 
 namespace kinship::app {
 
 /// A row as the JSON document that goes over the wire and into `--json` output.
 std::string to_json(const service::AdminRow& row);
 
-/// The page as a reply. Failed if its only row exceeds kMaxPageBytes.
+/// The page as a reply, however large.
 AdminReply to_reply(const service::AdminPage& page);
 
 /// Whether the rows of a reply fit into one page.
@@ -22,7 +23,8 @@ bool fits_page(const AdminReply& reply);
 /// would not help: what is shown has the rows it has, and one row cannot be halved.
 std::optional<AdminRequest> for_fewer_rows(const AdminRequest& request, std::size_t rows);
 
-/// Failed, with the size of the rows and the limit, for a page that no smaller question makes fit.
-AdminReply too_large(const AdminReply& reply);
+/// The question to the service whose answer contains the rest of a row: for a listing that of the
+/// one row.
+AdminRequest for_rest(const AdminRequest& request, const RowCursor& begin);
 
 }  // namespace kinship::app

@@ -16,22 +16,28 @@ using codec::FetchConversation;
 using codec::RegisterConversation;
 using codec::ReportConversation;
 
-std::string waiter_of(const codec::Head& head) {
+std::string asker_of(const codec::Head& head) {
   return head.client_id.text() + ' ' + std::to_string(head.sequence_number);
 }
 
-/// Rows of one page can exceed what one message may carry: then it is asked for with fewer.
+/// Answers with the part of the service's answer that begins at a place. Rows of one page can
+/// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
+void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
+                const dds::Answer<AdminConversation>& answer) {
+  service.administer(request, asker_of(answer.head()),
+                     [=, &service](const service::AdminPage& page) {
+                       AdminReply reply = to_reply(page);
+                       if (!fits_page(reply))
+                         if (const auto smaller = for_fewer_rows(request, page.rows.size()))
+                           return administer(service, *smaller, begin, answer);
+                       answer(page_of(std::move(reply), begin));
+                     });
+}
+
 void administer(service::Service& service, const AdminRequest& request,
                 const dds::Answer<AdminConversation>& answer) {
-  service.administer(request, [&service, request, answer](const service::AdminPage& page) {
-    const AdminReply reply = to_reply(page);
-    if (fits_page(reply))
-      return answer(reply);
-    const std::optional<AdminRequest> smaller = for_fewer_rows(request, page.rows.size());
-    if (!smaller)
-      return answer(too_large(reply));
-    administer(service, *smaller, answer);
-  });
+  const RowCursor begin = read_row_cursor(request.cursor).value_or_throw();
+  administer(service, for_rest(request, begin), begin, answer);
 }
 
 }  // namespace
@@ -52,7 +58,7 @@ class Endpoints::Implementation {
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              service.fetch(request, waiter_of(answer.head()), answer);
+              service.fetch(request, asker_of(answer.head()), answer);
             }),
         admin_(
             participant, loop,

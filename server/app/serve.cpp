@@ -7,9 +7,12 @@
 #include <memory>
 #include <ostream>
 #include <string_view>
+#include <utility>
 
+#include "proto/codec/conversation.hpp"
 #include "proto/dds/log.hpp"
 #include "proto/dds/participant.hpp"
+#include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/service_manager.hpp"
@@ -51,7 +54,10 @@ int serve(const ServerOptions& options, std::ostream& out) {
   const dds::Participant participant({.domain = options.domain,
                                       .role = dds::Role::Server,
                                       .network_interface = options.network_interface});
-  service::Service service(store::open_sqlite_store(options.store), service_options(options));
+  const dds::Publisher<codec::EventPublication> events(participant);
+  service::ServiceOptions settings = service_options(options);
+  settings.on_event = [&events](const Event& event) { events.publish(event); };
+  service::Service service(store::open_sqlite_store(options.store), std::move(settings));
   dds::WaitLoop loop(participant);
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {

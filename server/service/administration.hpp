@@ -1,51 +1,49 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
-#include <variant>
-#include <vector>
+#include <utility>
 
-#include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
-#include "proto/types/distribution.hpp"
 #include "proto/types/result.hpp"
-#include "proto/types/robot_description.hpp"
 #include "proto/types/summaries.hpp"
+#include "server/service/admin_page.hpp"
+#include "server/service/jobs.hpp"
 #include "server/service/robot_registry.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
 
-/// What a verb answers with: Status one ServerStatus; a list verb its summaries; ShowRobot a
-/// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
-/// ShowDistribution a Distribution.
-using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
-                              PathSummary, Attempt, DistributionSummary, Distribution>;
-
-/// An AdminReply whose rows are values still.
-struct AdminPage {
-  AdminStatus status = AdminStatus::Failed;
-  std::vector<AdminRow> rows;
-  std::string next_cursor;
-  std::string message;
-};
-
-/// Answers the questions of administrators from the store. Robots are named by label or by a
-/// digest prefix of at least four digits, paths by report UUID, distributions by an id prefix. May
-/// be shared between threads.
+/// Answers the questions of administrators and does what they ask for. Robots are named by label
+/// or by a digest prefix of at least four digits, paths by report UUID, distributions by an id
+/// prefix. May be shared between threads.
 class Administration {
  public:
-  /// \param store, robots  outlive it.
-  /// \param status         answers the verb Status.
-  Administration(store::Store& store, RobotRegistry& robots, std::function<ServerStatus()> status)
-      : store_(store), robots_(robots), status_(std::move(status)) {}
+  /// What it works with; all of it outlives it.
+  struct Parts {
+    store::Store& store;
+    RobotRegistry& robots;
+    Jobs& jobs;
+    std::function<ServerStatus()> status;
+    /// A distribution was evicted from the store: nothing may serve it from memory.
+    std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
+    /// Paths of a task were retired: nothing that was made of them may be served.
+    std::function<void(const std::string& task)> forget_task = [](const std::string&) {};
+    /// What was changed, in words, with its task (may be empty).
+    std::function<void(const std::string& task, const std::string& what)> on_change =
+        [](const std::string&, const std::string&) {};
+  };
 
-  /// Never throws: what fails is said in the page.
-  AdminPage answer(const AdminRequest& request);
+  explicit Administration(Parts parts) : parts_(std::move(parts)) {}
+
+  /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
+  /// \param asker  the request's name: sent again, as after a lost reply, it begins no second job.
+  ///               Empty: it is never sent again.
+  AdminPage answer(const AdminRequest& request, const std::string& asker = {});
 
  private:
-  AdminPage dispatch(const AdminRequest& request);
+  AdminPage dispatch(const AdminRequest& request, const std::string& asker);
   AdminPage list_robots(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
   AdminPage list_distributions(const AdminRequest& request);
@@ -53,17 +51,20 @@ class Administration {
   AdminPage show_task(const std::string& task);
   AdminPage show_path(const std::string& uuid);
   AdminPage show_distribution(const std::string& prefix);
+  AdminPage evict_distribution(const std::string& prefix);
+  AdminPage export_paths(const AdminRequest& request);
+  AdminPage retire_path(const std::string& uuid);
+  AdminPage reset_task(const std::string& task);
+  AdminPage begin(Result<Jobs::Task> task);
 
-  Result<store::RobotRecord> find_robot(const std::string& name) const;
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   void check_task_filter(const AdminRequest& request) const;
-  Result<Digest> find_distribution_id(const std::string& prefix) const;
+  Distribution find_distribution(const std::string& prefix) const;
   RobotSummary summary_of(const Digest& robot) const;
   void name_solver(RobotSummary& summary);
+  AdminPage retired(Result<Retirement> retirement, const std::string& what);
 
-  store::Store& store_;
-  RobotRegistry& robots_;
-  std::function<ServerStatus()> status_;
+  const Parts parts_;
 };
 
 }  // namespace kinship::service

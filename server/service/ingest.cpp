@@ -24,7 +24,7 @@ ReceiptStatus status_of(bool is_robot_there, const Error& error) {
 /// A batch on its way. Shared by the callbacks of one submission, never used by two at a time.
 struct Ingest::Batch {
   std::vector<Attempt> attempts;  // until they are handed to the store
-  std::vector<std::string> tasks;
+  std::vector<AttemptCost> costs;
   std::vector<Receipt> receipts;
   std::vector<std::size_t> accepted;  // positions of what the store was given
   std::size_t bytes = 0;
@@ -40,7 +40,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   batch->done = std::move(done);
   for (const Attempt& attempt : attempts) {
     batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
-    batch->tasks.push_back(attempt.task);
+    batch->costs.push_back(cost_of(attempt));
     if (attempt.path)
       batch->bytes += sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
   }
@@ -116,7 +116,7 @@ void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
     const std::size_t position = batch.accepted[i];
     batch.receipts[position] = receipts[i];
     if (receipts[i].status == ReceiptStatus::Stored)
-      grown.insert(batch.tasks[position]);
+      grown.insert(batch.costs[position].task);
   }
   for (const std::string_view task : grown)
     options_.on_new_experience(task);
@@ -127,6 +127,7 @@ void Ingest::answer(Batch& batch) {
   refused_ += static_cast<std::uint64_t>(std::count_if(
       batch.receipts.begin(), batch.receipts.end(),
       [](const Receipt& receipt) { return receipt.status == ReceiptStatus::Refused; }));
+  options_.on_answer(batch.costs, batch.receipts);
   batch.done(batch.receipts);
   if (!batch.counted)
     return;

@@ -4,12 +4,15 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
+#include "server/service/advice_book.hpp"
 #include "server/service/robot_registry.hpp"
 #include "server/service/worker_pool.hpp"
 #include "server/store/store.hpp"
@@ -25,6 +28,10 @@ class Ingest {
     std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints
     /// Called on the store's writer thread for each task that has a new path, before the reply.
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
+    /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how
+    /// they fared. Must not throw or block.
+    std::function<void(std::span<const AttemptCost>, std::span<const Receipt>)> on_answer =
+        [](std::span<const AttemptCost>, std::span<const Receipt>) {};
   };
 
   /// \param store, robots, desk  outlive the ingest, which drains on destruction; `desk` reads

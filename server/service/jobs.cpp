@@ -56,7 +56,7 @@ Jobs::Jobs(const Clock& clock, Options options)
 Result<Job> Jobs::begin(Task task) {
   const std::lock_guard lock(mutex_);
   forget_old(clock_.now());
-  if (const EntryPointer same = find_same(task))
+  if (const EntryPointer same = find_begun(task.asker))
     return same->now();
   if (is_stopping_)
     return Error{ErrorCode::Unavailable, "the server is stopping"};
@@ -144,6 +144,12 @@ void Jobs::make(const Calls& calls) const {
     options_.on_end(job);
   for (const auto& [done, job] : calls.answers)
     done(job);
+}
+
+std::optional<Job> Jobs::begun_by(const std::string& asker) const {
+  const std::lock_guard lock(mutex_);
+  const EntryPointer entry = find_begun(asker);
+  return entry ? std::optional<Job>(entry->now()) : std::nullopt;
 }
 
 std::vector<Job> Jobs::list() const {
@@ -276,12 +282,9 @@ Jobs::EntryPointer Jobs::find_entry(const std::string& id) const {
   return found == entries_.end() ? nullptr : *found;
 }
 
-Jobs::EntryPointer Jobs::find_same(const Task& task) const {
-  if (task.asker.empty())
-    return nullptr;
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&task](const auto& entry) {
-    return entry->task.asker == task.asker && entry->task.verb == task.verb &&
-           entry->task.argument == task.argument;
+Jobs::EntryPointer Jobs::find_begun(const std::string& asker) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&asker](const auto& entry) {
+    return !asker.empty() && entry->task.asker == asker;
   });
   return found == entries_.end() ? nullptr : *found;
 }

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "server/service/told_events.hpp"
+
 namespace kinship::service {
 namespace {
 
@@ -21,7 +23,14 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       store_(std::move(store)),
       epoch_(store_->epoch()),
       robots_(*store_),
+      events_(options_.clock, options_.on_event),
       desk_({.threads = 1, .queue_limit = options_.desk_queue, .niceness = 0}),
+      advice_([this](const Digest& robot,
+                     const std::string& task) { return store_->attempt_totals(robot, task); },
+              [this](std::function<void()> run) {
+                return desk_.submit(WorkerPool::Priority::Background,
+                                    {.run = std::move(run), .abandon = {}});
+              }),
       fitters_({.threads = options_.fit_threads,
                 .queue_limit = options_.fit_queue,
                 .niceness = options_.fit_niceness}),
@@ -29,8 +38,11 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       ingest_(
           *store_, robots_, desk_,
           {.max_attempts = options_.max_queued_attempts,
-           .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); }}),
-      administration_(*store_, robots_, [this] { return status(); }) {}
+           .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); },
+           .on_answer = [this](std::span<const AttemptCost> costs,
+                               std::span<const Receipt> receipts) { answered(costs, receipts); }}),
+      jobs_(options_.clock, job_options(options_)),
+      administration_(administration_parts()) {}
 
 Service::~Service() { shutdown(); }
 
@@ -38,8 +50,37 @@ Catalog::Options Service::catalog_options(const ServiceOptions& options) {
   Catalog::Options catalog;
   catalog.memory = options.memory;
   catalog.fit = options.fit;
-  catalog.on_fit = [this](const Distribution& distribution) { log_fit(distribution); };
+  catalog.on_fit = [this](const Distribution& distribution) {
+    log_fit(distribution);
+    tell_fit(events_, robots_, distribution);
+  };
   return catalog;
+}
+
+Jobs::Options Service::job_options(const ServiceOptions& options) {
+  return {.limits = options.jobs,
+          .niceness = options.fit_niceness,
+          .on_end = [this](const Job& job) { tell_job(events_, job); }};
+}
+
+Administration::Parts Service::administration_parts() {
+  return {.store = *store_,
+          .robots = robots_,
+          .jobs = jobs_,
+          .status = [this] { return status(); },
+          .on_change =
+              [this](const std::string& task, const std::string& what) {
+                options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
+                events_.tell(EventKind::Administration, task, {}, [&] { return what; });
+              }};
+}
+
+void Service::answered(std::span<const AttemptCost> costs, std::span<const Receipt> receipts) {
+  for (std::size_t i = 0; i < std::min(costs.size(), receipts.size()); ++i)
+    if (receipts[i].status == ReceiptStatus::Stored ||
+        receipts[i].status == ReceiptStatus::Recorded)
+      advice_.add(costs[i]);
+  tell_report(events_, robots_, costs, receipts);
 }
 
 void Service::register_robot(RobotDescription description,
@@ -57,6 +98,7 @@ void Service::register_robot(RobotDescription description,
                   : reply.status == RegisterStatus::Known
                       ? "known as robot " + reply.robot.short_hex()
                       : "refused: " + reply.message));
+    tell_registered(events_, description, reply);
     done(reply);
   };
   if (!desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
@@ -65,6 +107,7 @@ void Service::register_robot(RobotDescription description,
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done) {
   refused_before_ += request.refused.size();
+  tell_refused(events_, request.refused);
   ingest_.submit(std::move(request.attempts),
                  [this, refused = std::move(request.refused),
                   done = std::move(done)](const std::vector<Receipt>& receipts) {
@@ -76,16 +119,41 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
 }
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
-  catalog_.fetch(request, waiter, std::move(done));
+  if (!options_.on_event)
+    return catalog_.fetch(request, waiter, std::move(done));
+  catalog_.fetch(request, waiter,
+                 [this, robot = request.robot, task = request.task,
+                  done = std::move(done)](const FetchReply& reply) {
+                   done(reply);
+                   tell_fetch(events_, name_of(robots_, robot), task, reply);
+                 });
 }
 
-void Service::administer(AdminRequest request, const std::function<void(const AdminPage&)>& done) {
-  auto run = [this, request = std::move(request), done] { done(administration_.answer(request)); };
+void Service::administer(AdminRequest request, const std::string& asker,
+                         const std::function<void(const AdminPage&)>& done) {
+  // From memory, and on the thread that then asks for the next deadline.
+  if (request.verb == AdminVerb::ShowJob)
+    return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
+                      [done](const Result<Job>& job) { done(page_of(job)); });
+  auto run = [this, request = std::move(request), asker, done] {
+    done(administration_.answer(request, asker));
+  };
   if (desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
     return;
   AdminPage page;
   page.message = "the server is busy or stopping";
   done(page);
+}
+
+std::optional<Catalog::TimePoint> Service::next_deadline() const {
+  const std::optional<Catalog::TimePoint> fetch = catalog_.next_deadline();
+  const std::optional<Catalog::TimePoint> job = jobs_.next_deadline();
+  return fetch && job ? std::min(fetch, job) : fetch ? fetch : job;
+}
+
+void Service::expire(Catalog::TimePoint now) {
+  catalog_.expire(now);
+  jobs_.expire(now);
 }
 
 ServerStatus Service::status() const {
@@ -107,6 +175,7 @@ ServerStatus Service::status() const {
   status.fetches = catalog_.fetches();
   status.fetches_from_memory = catalog_.fetches_from_memory();
   status.fits = catalog_.fits();
+  status.jobs = jobs_.active();
   status.queued_reports = ingest_.queued();
   status.queued_fits = fitters_.queued();
   status.store_bytes = store.bytes;
@@ -143,6 +212,7 @@ void Service::log_fit(const Distribution& distribution) const {
 
 void Service::shutdown() {
   catalog_.stop();
+  jobs_.stop();
   desk_.stop(WorkerPool::Leftovers::Run);
   fitters_.stop(WorkerPool::Leftovers::Abandon);
   ingest_.drain();

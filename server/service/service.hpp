@@ -5,14 +5,18 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "proto/types/conversations.hpp"
 #include "server/service/administration.hpp"
+#include "server/service/advice_book.hpp"
 #include "server/service/catalog.hpp"
 #include "server/service/clock.hpp"
+#include "server/service/event_feed.hpp"
 #include "server/service/ingest.hpp"
+#include "server/service/jobs.hpp"
 #include "server/service/robot_registry.hpp"
 #include "server/service/worker_pool.hpp"
 #include "server/store/store.hpp"
@@ -29,6 +33,10 @@ struct ServiceOptions {
   DistributionCache::Limits memory;
   Clock clock;
   Catalog::Fit fit;  ///< empty: fit_distribution
+  Jobs::Limits jobs;
+  /// Something happened, for people who watch; at most 1000 a second (event_feed.hpp). Called from
+  /// any thread, must not block. Empty: nobody watches.
+  std::function<void(const Event&)> on_event;
   /// A line for people, without a line feed. Called from any thread, must not block for long.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
@@ -50,21 +58,26 @@ class Service {
   void report(ReportRequest request, std::function<void(const ReportReply&)> done);
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
-  void administer(AdminRequest request, const std::function<void(const AdminPage&)>& done);
+  /// \param asker  the request's name; see Administration::answer.
+  void administer(AdminRequest request, const std::string& asker,
+                  const std::function<void(const AdminPage&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
-  std::optional<Catalog::TimePoint> next_deadline() const { return catalog_.next_deadline(); }
-  void expire(Catalog::TimePoint now) { catalog_.expire(now); }
+  std::optional<Catalog::TimePoint> next_deadline() const;
+  void expire(Catalog::TimePoint now);
 
   ServerStatus status() const;
 
   /// Accepts nothing more, makes what was reported durable and answers it, answers waiting
-  /// fetches Busy, gives up fits, and returns when all of that is done. A second call returns at
-  /// once. Not to be called from a `done`.
+  /// fetches Busy, gives up fits and jobs, and returns when all of that is done. A second call
+  /// returns at once. Not to be called from a `done`.
   void shutdown();
 
  private:
   Catalog::Options catalog_options(const ServiceOptions& options);
+  Jobs::Options job_options(const ServiceOptions& options);
+  Administration::Parts administration_parts();
+  void answered(std::span<const AttemptCost> costs, std::span<const Receipt> receipts);
   void log_refused(const std::vector<Receipt>& receipts) const;
   void log_fit(const Distribution& distribution) const;
 
@@ -74,10 +87,13 @@ class Service {
   const Uuid epoch_;
   RobotRegistry robots_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
+  EventFeed events_;
   WorkerPool desk_;
+  AdviceBook advice_;
   WorkerPool fitters_;
   Catalog catalog_;
   Ingest ingest_;
+  Jobs jobs_;
   Administration administration_;
 };
 

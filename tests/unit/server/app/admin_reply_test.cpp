@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/summaries_json.hpp"
@@ -38,6 +39,11 @@ TEST(AdminReply, EveryKindOfRowIsItsOwnDocument) {
   distribution.state = DistributionState::Failed;
   distribution.limits = Eigen::Matrix2Xd::Zero(2, 3);
   EXPECT_EQ(to_json(distribution), json::to_json(distribution));
+  const Digest id = Digest::from_hex(std::string(64, 'a')).value();
+  EXPECT_EQ(json::eviction_from_json(to_json(service::Eviction{id})).value_or_throw(), id);
+  const service::AdminRow exported = service::ExportedRobot{robot};
+  EXPECT_TRUE(to_json(exported).starts_with("{\"robot_description\":")) << to_json(exported);
+  EXPECT_EQ(to_json(service::TextLine{"1,2,3"}), "1,2,3");
 }
 
 TEST(AdminReply, MessagesOfFailuresArePassedOn) {
@@ -47,18 +53,6 @@ TEST(AdminReply, MessagesOfFailuresArePassedOn) {
   const AdminReply reply = to_reply(page);
   EXPECT_EQ(reply.status, AdminStatus::NotFound);
   EXPECT_EQ(reply.message, "no task 'bin'");
-}
-
-TEST(AdminReply, ARowThatNoPageCanCarryFailsWithItsSize) {
-  RobotDescription robot;
-  robot.urdf = std::string(kMaxPageBytes, 'x');
-  service::AdminPage page;
-  page.status = AdminStatus::Ok;
-  page.rows.emplace_back(robot);
-  const AdminReply reply = to_reply(page);
-  EXPECT_EQ(reply.status, AdminStatus::Failed);
-  EXPECT_TRUE(reply.rows.empty());
-  EXPECT_NE(reply.message.find("exceeds a page of"), std::string::npos) << reply.message;
 }
 
 TEST(AdminReply, TheRowsOfAPageHaveALimitTogether) {
@@ -93,14 +87,17 @@ TEST(AdminReply, WhatDoesNotFollowTheLimitIsNotAskedForAgain) {
   EXPECT_FALSE(for_fewer_rows(request, 2));
 }
 
-TEST(AdminReply, APageThatNothingMakesFitNamesItsSizeAndTheLimit) {
-  AdminReply reply;
-  reply.status = AdminStatus::Ok;
-  reply.rows = {std::string(kMaxPageBytes, 'x'), "y"};
-  const AdminReply failed = too_large(reply);
-  EXPECT_EQ(failed.status, AdminStatus::Failed);
-  EXPECT_TRUE(failed.rows.empty());
-  EXPECT_EQ(failed.message, "2 rows of 524289 bytes exceed a page of 524288");
+TEST(AdminReply, TheRestOfARowIsAskedForAsItWas) {
+  AdminRequest request;
+  request.verb = AdminVerb::ExportPaths;
+  request.limit = 100;
+  request.cursor = "whatever";
+  const AdminRequest rest = for_rest(request, {.inner = "17", .row = 0, .byte = 9, .check = 1});
+  EXPECT_EQ(rest.cursor, "17");
+  EXPECT_EQ(rest.limit, 1U);
+  EXPECT_EQ(for_rest(request, {.inner = "17"}).limit, 100U);
+  request.verb = AdminVerb::ShowRobot;
+  EXPECT_EQ(for_rest(request, {.inner = "", .row = 1, .byte = 9, .check = 1}).limit, 100U);
 }
 
 }  // namespace

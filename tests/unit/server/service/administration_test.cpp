@@ -45,14 +45,29 @@ class AdministrationTest : public testing::Test {
     return std::get<Row>(page.rows.at(index));
   }
 
+  Administration::Parts parts(RobotRegistry& robots) {
+    return {.store = *store_,
+            .robots = robots,
+            .jobs = jobs_,
+            .status =
+                [] {
+                  ServerStatus status;
+                  status.version = "7";
+                  return status;
+                },
+            .forget_distribution = [this](const Digest& id) { forgotten_ += id.hex() + "\n"; },
+            .forget_task = [this](const std::string& task) { forgotten_ += task + "\n"; },
+            .on_change = [this](const std::string& task,
+                                const std::string& what) { changes_ += task + "|" + what + "\n"; }};
+  }
+
+  std::string forgotten_, changes_;
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
   RobotRegistry registry_{*store_};
-  Administration administration_{*store_, registry_, [] {
-                                   ServerStatus status;
-                                   status.version = "7";
-                                   return status;
-                                 }};
+  Clock clock_;
+  Jobs jobs_{clock_, {}};
+  Administration administration_{parts(registry_)};
   const Robot teacher_ = fleet::robot_of(fleet::teacher());
   const Robot pupil_ = fleet::robot_of(fleet::pupil());
 };
@@ -171,7 +186,7 @@ TEST_F(AdministrationTest, AForeignCursorIsRefused) {
 TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
   damage_robot(directory_ / "fleet.db", "pupil");
   RobotRegistry cold(*store_);
-  Administration administration(*store_, cold, [] { return ServerStatus(); });
+  Administration administration(parts(cold));
   const AdminPage page = administration.answer(fleet::question(AdminVerb::ListRobots));
   ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
   ASSERT_EQ(page.rows.size(), 2U);

@@ -361,13 +361,13 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   wait_for_desk();
 
   std::promise<void> begun, release, emptied;  // the desk is held, then full
-  service_->administer(fleet::question(AdminVerb::Status), [&](const AdminPage&) {
+  service_->administer(fleet::question(AdminVerb::Status), "one", [&](const AdminPage&) {
     begun.set_value();
     release.get_future().wait();
   });
   begun.get_future().wait();
-  service_->administer(fleet::question(AdminVerb::Status), [](const AdminPage&) {});
-  service_->administer(fleet::question(AdminVerb::Status),
+  service_->administer(fleet::question(AdminVerb::Status), "one", [](const AdminPage&) {});
+  service_->administer(fleet::question(AdminVerb::Status), "one",
                        [&](const AdminPage&) { emptied.set_value(); });
   teach(1, 100);  // its robot is in memory: no need of the desk
   release.set_value();

@@ -195,17 +195,19 @@ TEST_F(JobsTest, AJobThatFinishesBeforeItNoticesIsDone) {
   EXPECT_EQ(jobs_->rows(id, 0, 10, 1000).value_or_throw().rows.size(), 1U);
 }
 
-TEST_F(JobsTest, TheSameAskerGetsTheSameJob) {
+TEST_F(JobsTest, ARequestSentAgainGetsTheSameJob) {
   Jobs::Task task = held("a");
-  task.asker = "client 1";
+  task.asker = "client 1, request 7";
   const std::string id = begin(task);
   EXPECT_EQ(begin(task), id);
-  task.asker = "client 2";
+  task.asker = "client 1, request 8";
   const std::string other = begin(task);
   EXPECT_NE(other, id);
   let_go();
   end_of(other);
   EXPECT_EQ(begin(task), other);  // also when it has ended
+  EXPECT_EQ(jobs_->begun_by(task.asker).value().id, other);
+  EXPECT_FALSE(jobs_->begun_by(""));
   EXPECT_EQ(begun_, 2);
 }
 

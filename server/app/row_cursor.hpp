@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "proto/types/conversations.hpp"
+#include "proto/types/result.hpp"
+
+/// Rows that are longer than a page go out in pieces: `AdminReply::last_row_continues`.
+namespace kinship::app {
+
+/// Where a page begins: in the middle of the rows of one answer of the service.
+struct RowCursor {
+  std::string inner;        ///< the service's cursor of that answer
+  std::size_t row = 0;      ///< of its rows
+  std::size_t byte = 0;     ///< of that row
+  std::uint64_t check = 0;  ///< fingerprint() of that row
+};
+
+/// Tells a row that changed between two pages from one that did not.
+std::uint64_t fingerprint(const std::string& row);
+
+std::string to_text(const RowCursor& cursor);
+
+/// \return the place, if the cursor is one of to_text(); otherwise the begin of the answer to it.
+///         InvalidInput if it looks like one and is not.
+Result<RowCursor> read_row_cursor(const std::string& cursor);
+
+/// The part of a reply that a page carries: all of it if it fits, else as much as does from
+/// `begin` on, the last row cut between two characters, with the cursor of the rest.
+/// \param reply  the whole answer of the service, its next_cursor being the service's.
+/// \return       Failed if the row in which the page begins is another one by now.
+AdminReply page_of(AdminReply reply, const RowCursor& begin);
+
+}  // namespace kinship::app

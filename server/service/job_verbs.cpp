@@ -1,0 +1,56 @@
+#include "server/service/job_verbs.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "proto/types/limits.hpp"
+
+namespace kinship::service {
+namespace {
+
+/// Where a page of a job's rows begins: after the `cursor` rows before it.
+Result<std::size_t> first_row(const std::string& cursor) {
+  std::size_t first = 0;
+  const char* const end = cursor.data() + cursor.size();
+  const auto [rest, error] = std::from_chars(cursor.data(), end, first);
+  if (!cursor.empty() && (error != std::errc() || rest != end))
+    return Error{ErrorCode::InvalidInput, "'" + cursor + "' is no cursor of a job's rows"};
+  return first;
+}
+
+}  // namespace
+
+AdminPage list_jobs(const Jobs& jobs, const AdminRequest& request) {
+  const std::vector<Job> all = jobs.list();
+  // The oldest are forgotten first: if the last one of the page before is gone, so are those before
+  // it, and what is left begins with the next.
+  const auto last = std::find_if(all.begin(), all.end(),
+                                 [&](const Job& job) { return job.id == request.cursor; });
+  auto next = last == all.end() ? all.begin() : last + 1;
+  AdminPage page;
+  page.status = AdminStatus::Ok;
+  for (; next != all.end() && page.rows.size() < page_size(request); ++next)
+    page.rows.emplace_back(*next);
+  if (next != all.end())
+    page.next_cursor = (next - 1)->id;
+  return page;
+}
+
+AdminPage job_rows(const Jobs& jobs, const AdminRequest& request) {
+  const Result<std::size_t> first = first_row(request.cursor);
+  if (!first)
+    return page_of(first.error());
+  Result<Jobs::RowPage> rows =
+      jobs.rows(request.argument, *first, page_size(request), kMaxPageBytes);
+  if (!rows)
+    return page_of(rows.error());
+  AdminPage page;
+  page.status = AdminStatus::Ok;
+  for (const std::string& row : rows->rows)
+    page.rows.emplace_back(TextLine{row});
+  if (rows->next > 0)
+    page.next_cursor = std::to_string(rows->next);
+  return page;
+}
+
+}  // namespace kinship::service
