@@ -57,8 +57,12 @@ class Client::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   ~Implementation() {
-    register_.cancel();
+    cancel();
     report_.cancel();
+  }
+
+  void cancel() {
+    register_.cancel();
     fetch_.cancel();
     admin_.cancel();
   }
@@ -203,5 +207,7 @@ Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
 Result<AdminReply> Client::admin(const AdminRequest& request) {
   return implementation_->admin(request);
 }
+
+void Client::cancel() { implementation_->cancel(); }
 
 }  // namespace kinship::link

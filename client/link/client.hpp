@@ -84,6 +84,10 @@ class Client {
   /// Waits up to the timeout, and for ShowJob up to the request's deadline more.
   Result<AdminReply> admin(const AdminRequest& request);
 
+  /// Ends every wait for a reply, from another thread; it and later ones bring Unavailable.
+  /// Reports are sent as before.
+  void cancel();
+
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;

@@ -10,13 +10,23 @@ GuidanceAnswer refusal(NoGuidance why, std::string message) {
   return {std::nullopt, why, std::move(message)};
 }
 
-std::string share_text(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2f", share);
+std::string formatted(const char* format, double value) {
+  char text[24];
+  std::snprintf(text, sizeof text, format, value);
   return text;
 }
 
-std::string describe(const Distribution& distribution, double share) {
+/// How the run's queries will be planned.
+std::string describe(const planning::ArmPlan& arms) {
+  constexpr double kPercent = 100;
+  const std::string share = "share " + formatted("%.2f", arms.share);
+  const std::string part = formatted("%.3g", kPercent * arms.trial_part) + " % of the queries ";
+  if (arms.is_guided)
+    return share + (arms.trial_part > 0 ? ", " + part + "uniform as control" : "");
+  return "uniform" + (arms.trial_part > 0 ? ", " + part + "guided as trials, " + share : "");
+}
+
+std::string describe(const Distribution& distribution, const planning::ArmPlan& arms) {
   std::string text = "distribution " + distribution.id.short_hex() + " revision " +
                      std::to_string(distribution.revision) + ", " +
                      std::to_string(distribution.mixture->size()) + " components fitted to " +
@@ -27,7 +37,7 @@ std::string describe(const Distribution& distribution, double share) {
             (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
             std::to_string(source.paths) + " paths)";
   }
-  text += "; share " + share_text(share);
+  text += "; " + describe(arms);
   if (!distribution.advice.evidence.empty())
     text += " (" + distribution.advice.evidence + ")";
   if (!distribution.reason.empty())
@@ -40,14 +50,15 @@ GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceWish&
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has no mixture over " + std::to_string(wish.dof) +
                                            " joints");
-  const double share = wish.share.value_or(distribution.advice.recommended_share);
+  const double share = distribution.advice.recommended_share;
   if (!(share >= 0 && share <= 1))
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " recommends share " + std::to_string(share) +
                                            ", must be 0 to 1");
+  const planning::ArmPlan arms = planning::plan_arms(distribution.advice, wish.arms);
   GuidanceAnswer answer;
-  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
-  answer.message = describe(distribution, share);
+  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, arms};
+  answer.message = describe(distribution, arms);
   return answer;
 }
 
@@ -64,6 +75,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
   request.robot = wish.robot;
   request.T_task_base = T_task_base;
   request.profile = wish.profile;
+  request.selection = wish.selection;
   request.deadline = wish.wait;
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {

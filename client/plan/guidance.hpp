@@ -9,6 +9,7 @@
 #include <string>
 
 #include "client/plan/plan_problem.hpp"
+#include "client/planning/arm_choice.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
@@ -24,7 +25,8 @@ struct GuidanceWish {
   Digest robot;
   Eigen::Index dof = 0;
   std::string profile = "default";
-  std::optional<double> share;            ///< empty: the server's recommendation
+  Selection selection;
+  planning::ArmOptions arms;
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "client/arguments/selection_options.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
@@ -20,7 +21,9 @@ Examples:
   kinship-plan problems.jsonl --model robots/models/panda --task box_to_shelf --report --output results.jsonl
       ask kinshipd for guidance, plan uniformly if there is none, report every attempt
   kinship-plan problems.jsonl --model robots/models/ur10e --task box_to_shelf --guidance require --share 0.9
-      plan only with guidance; exit code 3 if the fleet has no experience, 4 if no server answers
+      fail without guidance: exit code 3 if the fleet has no experience, 4 if no server answers
+  kinship-plan problems.jsonl --model robots/models/ur10e --task box_to_shelf --sources panda,iiwa14 --since 14d
+      guidance from these robots' experience of the last two weeks only
   kinship-plan - cell3.urdf --base base_link --tip tool0 --transfer "0 0 0.12 0 0 0 1" --label cell3
       a robot without a model folder; problems on standard input
 
@@ -34,6 +37,8 @@ struct RawOptions {
   double timeout_s = 5;
   double wait_s = 30;
   double share = 0;
+  double control_share = 0;
+  arguments::SelectionArguments selection;
 };
 
 void add_robot_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
@@ -73,12 +78,17 @@ void add_planning_options(CLI::App& app, PlanOptions& options) {
 void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   app.add_option("--task", options.task, "task under which experience is kept");
   app.add_option("--guidance", raw.guidance,
-                 "none: uniform; auto: guided if possible; require: guided or not at all "
+                 "none: uniform; auto: guided if possible; require: fails without guidance "
                  "(default: auto with --task, otherwise none)")
       ->check(CLI::IsMember({"none", "auto", "require"}));
   app.add_option("--profile", options.profile, "profile of the distribution")
       ->capture_default_str();
+  arguments::add_selection_options(app, raw.selection);
   app.add_option("--share", raw.share, "share of guided samples; the server's advice if missing")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--control-share", raw.control_share,
+                 "part of the queries planned against the advice, to judge it (default: 0.1 until "
+                 "the server knows 20 of them, then 0.02; 0: none)")
       ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--report", options.report, "report every attempt to the server");
   app.add_option("--machine", options.machine, "name of this robot or cell in reports");
@@ -119,6 +129,13 @@ void require_name(const std::optional<Error>& error, const std::string& option) 
     throw CLI::ValidationError(option, error->message);
 }
 
+void complete_selection(const arguments::SelectionArguments& raw, PlanOptions& options) {
+  options.selection =
+      arguments::read_selection(raw, std::chrono::system_clock::now()).value_or_throw();
+  if (!raw.sources.empty())
+    options.sources = arguments::parse_robot_names(raw.sources).value_or_throw();
+}
+
 /// What CLI11 cannot say by itself.
 void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) {
   RobotFiles& robot = options.robot;
@@ -146,7 +163,10 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) 
     require_name(check_task(options.task), "--task");
   require_name(check_machine(options.machine), "--machine");
   if (app.count("--share") > 0)
-    options.share = raw.share;
+    options.arms.share = raw.share;
+  if (app.count("--control-share") > 0)
+    options.arms.control_share = raw.control_share;
+  complete_selection(raw.selection, options);
   options.timeout = milliseconds_of(raw.timeout_s);
   options.wait = milliseconds_of(raw.wait_s);
 }

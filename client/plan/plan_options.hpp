@@ -8,8 +8,11 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "client/plan/plan_settings.hpp"
+#include "client/planning/arm_choice.hpp"
+#include "proto/types/selection.hpp"
 
 namespace kinship::plan {
 
@@ -30,7 +33,9 @@ struct PlanOptions {
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
-  std::optional<double> share;
+  planning::ArmOptions arms;
+  Selection selection;               ///< without its sources
+  std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
   bool report = false;
   std::string machine;  ///< empty: the host's name
   PlanSettings settings;

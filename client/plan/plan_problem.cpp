@@ -71,10 +71,10 @@ std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Pro
 
 planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
                                             const Eigen::Matrix2Xd& bounds,
-                                            const Guidance* guidance) {
-  if (guidance == nullptr)
+                                            const Guidance* guidance, double share) {
+  if (guidance == nullptr || share == 0)
     return planning::ConfigurationSampler(bounds);
-  return {bounds, chain, guidance->mixture, guidance->share};
+  return {bounds, chain, guidance->mixture, share};
 }
 
 Outcome outcome_of(const planning::PlanSummary& summary) {
@@ -112,7 +112,7 @@ class Planning {
     options.overshoot = settings_.overshoot;
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
-    const auto sampler = make_sampler(robot_.chain, bounds_, guidance);
+    const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
     const planning::PlanSummary summary =
         planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
     planned.outcome = outcome_of(summary);
@@ -187,7 +187,9 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   if (guidance != nullptr) {
     planned.result.distribution_id = guidance->distribution_id;
     planned.result.distribution_revision = guidance->revision;
-    planned.result.share = guidance->share;
+    const auto choice = planning::choose_arm(guidance->arms, planning::arm_seed(problem));
+    planned.result.arm = choice.arm;
+    planned.result.share = choice.share;
   }
   if (const auto misfit = find_misfit(robot.chain, problem)) {
     planned.result.reason = *misfit;

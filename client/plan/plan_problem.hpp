@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/plan/plan_settings.hpp"
+#include "client/planning/arm_choice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
@@ -26,7 +27,7 @@ struct Guidance {
   Digest distribution_id;
   std::uint64_t revision = 0;
   Mixture mixture;
-  double share = 0;  ///< of samples drawn from the mixture, 0 to 1
+  planning::ArmPlan arms;  ///< which queries use it, and with what share of samples
 };
 
 struct PlannedProblem {
@@ -40,7 +41,9 @@ struct PlannedProblem {
 /// settings.max_goals), BiRRT, light shortcutting. A problem that does not fit the robot, or cannot
 /// be solved, is answered with its reason. Equal problem, guidance and settings give an equal path
 /// and equal checks, as long as the time limit does not end it.
-/// \param guidance  null: uniform.
+/// \param guidance  null: uniform. Otherwise the problem's arm is chosen by its plan: a query of
+/// the
+///                  control arm is planned exactly as if there were no guidance.
 /// \param stop      asked before every check; true gives up.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const Guidance* guidance, const PlanSettings& settings,

@@ -48,7 +48,8 @@ GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain)
   wish.robot = chain.digest();
   wish.dof = chain.dof();
   wish.profile = options.profile;
-  wish.share = options.share;
+  wish.selection = options.selection;
+  wish.arms = options.arms;
   wish.wait = options.wait;
   return wish;
 }
@@ -59,11 +60,13 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
              const std::function<bool()>& stop) {
   const LoadedRobot robot = load_robot(options.robot);
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
-  ServerLine server(options, robot.description, streams.messages);
+  ServerLine server(options, robot.description, streams.messages, stop);
   const GuidanceWish wish = wish_of(options, robot.planned.chain);
   const NoGuidance why_not = server.fetch_guidance(wish, lines);
-  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None)
+  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
+    streams.messages << "nothing is planned: --guidance require, and there is none\n";
     return exit_code_without(why_not);
+  }
 
   const std::string machine = options.machine.empty() ? host_name() : options.machine;
   const Reporter reporter{wish.robot, machine, options.task};
@@ -77,7 +80,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     if (!line.problem) {
       const ProblemResult broken = broken_line_result(line.number, line.problem.error());
       write_result(broken, streams.results);
-      progress.add(broken);
+      progress.add(broken, false);
       continue;
     }
     Problem problem = *std::move(line.problem);
@@ -91,7 +94,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     if (options.report && planned.attempted)
       server.report([&] { return make_attempt(reporter, problem, planned, options.settings); });
     write_result(planned.result, streams.results);  // after: what has a result is in the outbox
-    progress.add(planned.result);
+    progress.add(planned.result, planned.attempted);
   }
   progress.finish();
   server.finish();

@@ -11,13 +11,15 @@ constexpr std::size_t kLines = 10;  // where the output is not a terminal
 
 }  // namespace
 
-void Progress::add(const ProblemResult& result) {
+void Progress::add(const ProblemResult& result, bool attempted) {
   const std::size_t lines_before = done_ * kLines / total_;
   ++done_;
   if (result.solved)
     ++solved_;
   checks_ += result.collision_checks;
   planning_time_s_ += result.planning_time_s;
+  if (attempted)
+    ++(result.arm == Arm::Guided ? guided_ : result.arm == Arm::Control ? control_ : uniform_);
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
@@ -29,14 +31,18 @@ void Progress::add(const ProblemResult& result) {
 void Progress::finish() {
   if (terminal_)
     stream_ << "\r\033[K";
-  stream_ << "planned " << done_ << " of " << total_ << " problems, solved " << solved_;
-  if (done_ > 0) {
+  const std::size_t attempted = guided_ + control_ + uniform_;
+  stream_ << "planned " << attempted << " of " << total_ << " problems, " << solved_ << " solved";
+  if (attempted > 0) {
     char text[96];
     std::snprintf(text, sizeof text, "; on average %.0f checks and %.3f s",
-                  static_cast<double>(checks_) / static_cast<double>(done_),
-                  planning_time_s_ / static_cast<double>(done_));
-    stream_ << text;
+                  static_cast<double>(checks_) / static_cast<double>(attempted),
+                  planning_time_s_ / static_cast<double>(attempted));
+    stream_ << "; " << guided_ << " guided, " << control_ << " control, " << uniform_ << " uniform"
+            << text;
   }
+  if (done_ > attempted)
+    stream_ << "; " << done_ - attempted << " could not be attempted";
   stream_ << std::endl;
 }
 

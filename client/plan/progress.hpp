@@ -15,7 +15,8 @@ class Progress {
   Progress(std::ostream& stream, bool terminal, std::size_t total)
       : stream_(stream), terminal_(terminal), total_(total) {}
 
-  void add(const ProblemResult& result);
+  /// \param attempted  false: answered without planning.
+  void add(const ProblemResult& result, bool attempted);
 
   /// Ends the line and writes the sums.
   void finish();
@@ -26,6 +27,7 @@ class Progress {
   std::size_t total_;
   std::size_t done_ = 0;
   std::size_t solved_ = 0;
+  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // attempts by arm
   std::uint64_t checks_ = 0;
   double planning_time_s_ = 0;
 };

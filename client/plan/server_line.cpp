@@ -1,24 +1,31 @@
 #include "client/plan/server_line.hpp"
 
 #include <exception>
+#include <future>
 #include <ostream>
+#include <utility>
+
+#include "client/link/robot_names.hpp"
 
 namespace kinship::plan {
 namespace {
 
-Result<RegisterReply> ask_to_register(link::Client& client, const RobotDescription& description) {
-  try {
-    return client.register_robot(description);
-  } catch (const std::exception& exception) {
-    return Error{ErrorCode::Internal, exception.what()};
+NoGuidance why_not(const Error& error) {
+  switch (error.code) {
+    case ErrorCode::Unavailable:
+      return NoGuidance::NoServer;
+    case ErrorCode::NotFound:
+      return NoGuidance::NotFound;
+    default:
+      return NoGuidance::Failed;
   }
 }
 
 }  // namespace
 
 ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
-                       std::ostream& messages)
-    : options_(options), description_(description), messages_(messages) {
+                       std::ostream& messages, const std::function<bool()>& stop)
+    : options_(options), description_(description), messages_(messages), stop_(stop) {
   if (options_.guidance == GuidanceMode::None && !options_.report)
     return;
   link::ClientOptions client;
@@ -35,8 +42,23 @@ ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& descr
   }
 }
 
+template <typename Reply>
+Result<Reply> ServerLine::wait_for(const std::function<Result<Reply>()>& call) {
+  constexpr std::chrono::milliseconds kPatience{50};
+  auto reply = std::async(std::launch::async, call);
+  while (reply.wait_for(kPatience) != std::future_status::ready)
+    if (stop_())
+      client_->cancel();
+  try {
+    return reply.get();
+  } catch (const std::exception& exception) {
+    return Error{ErrorCode::Internal, exception.what()};
+  }
+}
+
 void ServerLine::register_robot() {
-  const Result<RegisterReply> reply = ask_to_register(*client_, description_);
+  const Result<RegisterReply> reply =
+      wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
   trouble_.reset();
   if (!reply)
     trouble_ = reply.error();
@@ -47,18 +69,35 @@ void ServerLine::register_robot() {
               << '\n';
 }
 
-NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
-                                      const std::vector<ProblemLine>& lines) {
+/// \return nothing, or why the named robots cannot be the sources.
+std::optional<Error> ServerLine::find_sources(Selection& selection) {
+  if (options_.sources.empty())
+    return std::nullopt;
+  Result<std::vector<Digest>> robots = wait_for<std::vector<Digest>>(
+      [this] { return link::resolve_robots(*client_, options_.sources); });
+  if (!robots)
+    return robots.error();
+  selection.sources = *std::move(robots);
+  return std::nullopt;
+}
+
+NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines) {
   if (options_.guidance == GuidanceMode::None)
     return NoGuidance::None;
-  if (trouble_) {
-    messages_ << "no guidance: " << trouble_->message << '\n';
-    return trouble_->code == ErrorCode::Unavailable ? NoGuidance::NoServer : NoGuidance::Failed;
+  const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wish.selection);
+  if (trouble) {
+    messages_ << "no guidance: " << trouble->message << '\n';
+    return why_not(*trouble);
   }
   guidance_ = std::make_unique<GuidanceBook>(
-      [this](const FetchRequest& request) { return client_->fetch(request); }, wish);
-  NoGuidance why_not = NoGuidance::None;
+      [this](const FetchRequest& request) {
+        return wait_for<FetchReply>([&] { return client_->fetch(request); });
+      },
+      std::move(wish));
+  NoGuidance first_reason = NoGuidance::None;
   for (const ProblemLine& line : lines) {
+    if (stop_())
+      break;
     if (!line.problem)
       continue;
     const auto [answer, is_new] = guidance_->ask(line.problem->T_task_base);
@@ -67,10 +106,10 @@ NoGuidance ServerLine::fetch_guidance(const GuidanceWish& wish,
     const std::string outcome = answer.guidance ? "" : "none, ";
     messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
               << answer.message << '\n';
-    if (why_not == NoGuidance::None)
-      why_not = answer.why_not;
+    if (first_reason == NoGuidance::None)
+      first_reason = answer.why_not;
   }
-  return why_not;
+  return first_reason;
 }
 
 const Guidance* ServerLine::guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const {

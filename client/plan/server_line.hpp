@@ -22,12 +22,13 @@ class ServerLine {
   /// Registers the robot if the options need the server. A line that cannot be had, or a refused
   /// registration, is said and means no guidance; it never throws.
   /// \param messages  for people; borrowed.
+  /// \param stop      asked while a server is waited for; true ends the waiting. Borrowed.
   ServerLine(const PlanOptions& options, const RobotDescription& description,
-             std::ostream& messages);
+             std::ostream& messages, const std::function<bool()>& stop);
 
   /// Asks for guidance for every placement of the problems, and says what came of it.
   /// \return why guidance that the options require is missing.
-  NoGuidance fetch_guidance(const GuidanceWish& wish, const std::vector<ProblemLine>& lines);
+  NoGuidance fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines);
 
   /// Never waits. \return null: plan uniformly.
   const Guidance* guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const;
@@ -40,12 +41,18 @@ class ServerLine {
   void finish();
 
  private:
+  /// What `call` brings, or that it was cancelled, soon after `stop` says so.
+  template <typename Reply>
+  Result<Reply> wait_for(const std::function<Result<Reply>()>& call);
+
   void register_robot();
+  std::optional<Error> find_sources(Selection& selection);
   void flush();
 
   const PlanOptions options_;
   const RobotDescription description_;
   std::ostream& messages_;
+  const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had
   std::unique_ptr<GuidanceBook> guidance_;
   std::optional<Error> trouble_;  // why the robot is not registered

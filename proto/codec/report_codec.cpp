@@ -3,6 +3,7 @@
 #include "proto/codec/reader.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/number_text.hpp"
 
 namespace kinship::codec {
 namespace {
@@ -69,7 +70,8 @@ std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) 
   for (std::size_t i = 0; i < numbers.size() && !reader.rules.broken(); ++i)
     if (!std::isfinite(numbers[i]))
       reader.rules.that(false, "waypoint " + std::to_string(i / wire.dof + 1) + ", joint " +
-                                   std::to_string(i % wire.dof + 1) + ": is not finite");
+                                   std::to_string(i % wire.dof + 1) + ": " +
+                                   number_text(numbers[i]) + " is not finite");
   if (reader.rules.broken())
     return std::nullopt;
   return Path(Eigen::Map<const Eigen::MatrixXd>(numbers.data(), wire.dof,

@@ -1,23 +1,13 @@
 #include "proto/codec/rules.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "proto/types/names.hpp"
+#include "proto/types/number_text.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::codec {
-namespace {
-
-/// As short as it can be read: 7, 0.1, -1e+300.
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-}  // namespace
 
 void Rules::breaks(ErrorCode code, std::string message) {
   if (!broken_)
@@ -50,7 +40,8 @@ Rules& Rules::between(std::string_view what, double value, double lowest, double
 
 Rules& Rules::finite(std::string_view what, double value) {
   if (!std::isfinite(value))
-    breaks(ErrorCode::InvalidInput, std::string(what) + ": is not finite");
+    breaks(ErrorCode::InvalidInput,
+           std::string(what) + ": " + number_text(value) + " is not finite");
   return *this;
 }
 

@@ -6,12 +6,14 @@
 #include "proto/json/reader.hpp"
 #include "proto/json/scene_json.hpp"
 #include "proto/json/writer.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::json {
 namespace {
 
 constexpr std::size_t kMaxAttached = 64;
+constexpr std::size_t kMaxWordBytes = 64;
 constexpr double kMaxTimeLimit = 86400;  // s
 
 void read_goal(const Reader& reader, Problem& problem) {
@@ -77,6 +79,9 @@ ProblemResult read_problem_result(const Reader& reader) {
     result.distribution_id = guidance->at("distribution_id").digest();
     result.distribution_revision = guidance->at("revision").count();
     result.share = guidance->at("share").number(0, 1);
+    result.arm = result.share > 0 ? Arm::Guided : Arm::Control;
+    if (const auto arm = guidance->find("arm"))
+      result.arm = parse_arm(arm->text(kMaxWordBytes)).value_or_throw();
   }
   if (const auto reason = reader.find("reason"))
     result.reason = reason->text(kMaxMessageBytes);
@@ -126,7 +131,8 @@ std::string to_json(const ProblemResult& result) {
   if (result.distribution_id)
     object["guidance"] = {{"distribution_id", result.distribution_id->hex()},
                           {"revision", result.distribution_revision},
-                          {"share", result.share}};
+                          {"share", result.share},
+                          {"arm", to_text(result.arm)}};
   object["reason"] = result.reason;
   return write(object);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/number_text.hpp"
 
 namespace kinship {
 
@@ -36,14 +37,14 @@ Result<Eigen::Isometry3d> from_pose_array(const PoseArray& pose) {
                    "pose: number " + std::to_string(i + 1) + " of 7 is not finite"};
   for (std::size_t i = 0; i < 3; ++i)
     if (std::abs(pose[i]) > kMaxPlacement_m)
-      return Error{ErrorCode::InvalidInput, "pose: coordinate " + std::to_string(pose[i]) +
-                                                " m exceeds " + std::to_string(kMaxPlacement_m) +
+      return Error{ErrorCode::InvalidInput, "pose: coordinate " + number_text(pose[i]) +
+                                                " m exceeds " + number_text(kMaxPlacement_m) +
                                                 " m"};
   Eigen::Quaterniond q(pose[6], pose[3], pose[4], pose[5]);
   constexpr double kNormTolerance = 1e-3;
   if (std::abs(q.norm() - 1) > kNormTolerance)
     return Error{ErrorCode::InvalidInput,
-                 "pose: quaternion (x y z w) has norm " + std::to_string(q.norm()) + ", must be 1"};
+                 "pose: quaternion (x y z w) has norm " + number_text(q.norm()) + ", must be 1"};
   q.normalize();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = q.toRotationMatrix();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/scene.hpp"
 
@@ -38,10 +39,11 @@ struct ProblemResult {
   double planning_time_s = 0;  ///< without goal configurations and shortcutting
   double time_limit_s = 0;
   std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n
-  std::optional<Digest> distribution_id;     ///< with revision and share: present if guided
+  std::optional<Digest> distribution_id;     ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
-  double share = 0;
-  std::string reason;  ///< why not solved
+  Arm arm = Arm::Uniform;  ///< with guidance: Guided or Control
+  double share = 0;        ///< of guided samples; 0 unless Guided
+  std::string reason;      ///< why not solved
 };
 
 }  // namespace kinship

@@ -166,7 +166,8 @@ class Store {
   /// Copies the store as of one instant into a new file, while reports go on. A file that is not
   /// complete never has that name.
   /// \param progress  called now and then with 0 to 1; false ends the copy with nothing kept.
-  /// \return false if `progress` ended it; Conflict if the file is there already.
+  /// \return false if `progress` ended it; Conflict if the file is there already; Unavailable if
+  ///         another backup is on its way.
   /// \throws Failure(Storage) that names the file.
   virtual Result<bool> backup(const std::filesystem::path& file,
                               const std::function<bool(double)>& progress) const = 0;

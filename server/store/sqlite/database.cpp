@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include "server/store/sqlite/online_backup.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
@@ -36,6 +37,8 @@ Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3_db_config(connection, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
 }
+
+Database::~Database() = default;
 
 void Database::execute(const std::string& script) {
   if (sqlite3_exec(connection_.get(), script.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)

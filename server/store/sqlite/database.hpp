@@ -14,6 +14,8 @@ namespace kinship::store {
 
 enum class Access { ReadOnly, ReadWrite, Create };
 
+class OnlineBackup;
+
 /// A connection to an SQLite file: the owner of one sqlite3. Used by one thread at a time (it is
 /// opened without SQLite's own mutex). Every method throws SqliteError.
 class Database {
@@ -22,6 +24,7 @@ class Database {
   Database(const std::filesystem::path& file, Access access);
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
+  ~Database();
 
   void execute(const std::string& script);     ///< runs statements without parameters, drops rows
   std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none
@@ -39,6 +42,8 @@ class Database {
   std::int64_t changed_rows() const noexcept;  ///< by the last INSERT, UPDATE or DELETE
   bool in_transaction() const noexcept;
   sqlite3& connection() noexcept { return *connection_; }
+  /// A backup that reads from this connection, or nothing; it ends before the connection closes.
+  std::unique_ptr<OnlineBackup>& backup() noexcept { return backup_; }
 
  private:
   struct Close {
@@ -46,6 +51,7 @@ class Database {
   };
   std::unique_ptr<sqlite3, Close> connection_;
   std::map<std::string, Statement, std::less<>> statements_;  // destroyed before the connection
+  std::unique_ptr<OnlineBackup> backup_;                      // and this too
 };
 
 }  // namespace kinship::store

@@ -21,6 +21,7 @@
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
+#include "server/store/sqlite/store_backup.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
 #include "server/store/sqlite/writer.hpp"
@@ -228,9 +229,9 @@ class SqliteStore : public Store {
     return page_of_distributions(*reader, robot, task, cursor, limit);
   }
 
-  Result<bool> backup(const std::filesystem::path& /*file*/,
-                      const std::function<bool(double)>& /*progress*/) const override {
-    throw Failure(ErrorCode::Internal, "being built");
+  Result<bool> backup(const std::filesystem::path& file,
+                      const std::function<bool(double)>& progress) const override {
+    return back_up(*writer_, file, progress);
   }
 
  private:

@@ -53,7 +53,8 @@ class WriteItem {
   /// does not concern one row: that one undoes the batch.
   virtual void apply(Batch& batch) = 0;
 
-  /// Called once, when the item is durable (no error) or undone. Must not throw or block.
+  /// Called once, when the item is durable (no error) or undone, outside of any transaction. Must
+  /// not throw or block.
   virtual void finish(const Error* error) = 0;
 };
 

@@ -51,12 +51,22 @@ TEST(AttemptRecord, AGuidedAttemptNamesItsDistribution) {
   PlannedProblem planned = solved();
   planned.result.distribution_id = Digest{};
   planned.result.distribution_revision = 4;
+  planned.result.arm = Arm::Guided;
   planned.result.share = 0.9;
   const Attempt attempt = make_attempt(kReporter, {}, planned, {});
   EXPECT_EQ(attempt.record.arm, Arm::Guided);
   EXPECT_EQ(attempt.record.distribution_id, Digest{});
   EXPECT_EQ(attempt.record.distribution_revision, 4U);
   EXPECT_EQ(attempt.record.share, 0.9);
+}
+
+TEST(AttemptRecord, AControlAttemptIsTold) {
+  PlannedProblem planned = solved();
+  planned.result.distribution_id = Digest{};
+  planned.result.arm = Arm::Control;
+  const Attempt attempt = make_attempt(kReporter, {}, planned, {});
+  EXPECT_EQ(attempt.record.arm, Arm::Control);
+  EXPECT_EQ(attempt.record.share, 0);
 }
 
 TEST(AttemptRecord, SaysHowWasPlannedAndUnderWhichUuid) {

@@ -48,23 +48,37 @@ GuidanceAnswer answer_to(const Result<FetchReply>& reply, const GuidanceWish& fo
 }
 
 TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
-  EXPECT_EQ(answer_to(ready(0.9)).guidance->share, 0.9);
+  EXPECT_EQ(answer_to(ready(0.9)).guidance->arms.share, 0.9);
   GuidanceWish own_share = wish();
-  own_share.share = 0.25;
-  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->share, 0.25);
+  own_share.arms.share = 0.25;
+  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->arms.share, 0.25);
 }
 
 TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
   const GuidanceAnswer answer = answer_to(ready());
   EXPECT_EQ(answer.message,
             "distribution ab0000000000 revision 3, 1 components fitted to 400 configurations from "
-            "panda (60 paths); share 0.90");
+            "panda (60 paths); share 0.90, 10 % of the queries uniform as control");
   EXPECT_EQ(answer.guidance->revision, 3U);
   EXPECT_EQ(answer.why_not, NoGuidance::None);
 }
 
-TEST(FetchGuidance, AsksForTaskRobotPlacementAndProfile) {
+TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
+  const auto tail = [](double recommended_share, const planning::ArmOptions& arms) {
+    GuidanceWish told = wish();
+    told.arms = arms;
+    const std::string message = answer_to(ready(recommended_share), told).message;
+    return message.substr(message.find("; ") + 2);
+  };
+  EXPECT_EQ(tail(0.9, {{}, 0.0}), "share 0.90");
+  EXPECT_EQ(tail(0.9, {0.5, 0.025}), "share 0.50, 2.5 % of the queries uniform as control");
+  EXPECT_EQ(tail(0, {}), "uniform, 10 % of the queries guided as trials, share 0.90");
+  EXPECT_EQ(tail(0, {{}, 0.0}), "uniform");
+}
+
+TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
   GuidanceWish special = wish();
+  special.selection.since_ms = 77;
   special.profile = "paper";
   special.robot.bytes[5] = 7;
   special.wait = std::chrono::milliseconds(1234);
@@ -77,6 +91,7 @@ TEST(FetchGuidance, AsksForTaskRobotPlacementAndProfile) {
       special, placement(0.5));
   EXPECT_EQ(seen.task, "box_to_shelf");
   EXPECT_EQ(seen.profile, "paper");
+  EXPECT_EQ(seen.selection, special.selection);
   EXPECT_EQ(seen.robot, special.robot);
   EXPECT_EQ(seen.deadline.count(), 1234);
   EXPECT_EQ(seen.T_task_base->translation().x(), 0.5);

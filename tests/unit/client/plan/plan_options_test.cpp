@@ -37,7 +37,10 @@ TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
 TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
   const PlanOptions options = parsed({"p", "--model", "m", "--task", "a"}).options();
   EXPECT_EQ(options.guidance, GuidanceMode::Auto);
-  EXPECT_FALSE(options.share);
+  EXPECT_FALSE(options.arms.share);
+  EXPECT_FALSE(options.arms.control_share);
+  EXPECT_EQ(options.selection, Selection{});
+  EXPECT_TRUE(options.sources.empty());
 }
 
 TEST(PlanOptions, ReadsARobotFromAUrdf) {
@@ -49,14 +52,34 @@ TEST(PlanOptions, ReadsARobotFromAUrdf) {
 }
 
 TEST(PlanOptions, ReadsWhatConcernsTheServer) {
-  const PlanOptions options =
-      parsed({"p",        "--model", "m",         "--task",   "a",         "--guidance",
-              "require",  "--share", "0",         "--report", "--machine", "cell 3",
-              "--domain", "7",       "--timeout", "0.5",      "--wait",    "2",
-              "--outbox", "box",     "--profile", "paper"})
-          .options();
+  const PlanOptions options = parsed({"p",
+                                      "--model",
+                                      "m",
+                                      "--task",
+                                      "a",
+                                      "--guidance",
+                                      "require",
+                                      "--share",
+                                      "0",
+                                      "--report",
+                                      "--machine",
+                                      "cell 3",
+                                      "--domain",
+                                      "7",
+                                      "--timeout",
+                                      "0.5",
+                                      "--wait",
+                                      "2",
+                                      "--outbox",
+                                      "box",
+                                      "--profile",
+                                      "paper",
+                                      "--control-share",
+                                      "0.5"})
+                                  .options();
   EXPECT_EQ(options.guidance, GuidanceMode::Require);
-  EXPECT_EQ(options.share, 0.0);
+  EXPECT_EQ(options.arms.share, 0.0);
+  EXPECT_EQ(options.arms.control_share, 0.5);
   EXPECT_TRUE(options.report);
   EXPECT_EQ(options.machine, "cell 3");
   EXPECT_EQ(options.domain, 7U);
@@ -64,6 +87,16 @@ TEST(PlanOptions, ReadsWhatConcernsTheServer) {
   EXPECT_EQ(options.wait.count(), 2000);
   EXPECT_EQ(options.outbox, "box");
   EXPECT_EQ(options.profile, "paper");
+}
+
+TEST(PlanOptions, ReadsWhichExperienceIsWanted) {
+  const PlanOptions options =
+      parsed({"p", "--model", "m", "--task", "a", "--sources", "panda,iiwa14", "--weighting",
+              "paths", "--since", "1970-01-02"})
+          .options();
+  EXPECT_EQ(options.sources, (std::vector<std::string>{"panda", "iiwa14"}));
+  EXPECT_EQ(options.selection.weighting, Weighting::Paths);
+  EXPECT_EQ(options.selection.since_ms, 86'400'000);
 }
 
 TEST(PlanOptions, HelpShowsExamplesAndEndsWell) {
@@ -84,6 +117,8 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--task", "a b"},
       {"p", "--model", "m", "--task", "a", "--guidance", "perhaps"},
       {"p", "--model", "m", "--task", "a", "--share", "1.5"},
+      {"p", "--model", "m", "--task", "a", "--control-share", "-0.1"},
+      {"p", "--model", "m", "--task", "a", "--since", "yesterday"},
       {"p", "--model", "m", "--resolution", "0"},
       {"p", "--model", "m", "--domain", "300"},
       {"p", "arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0"},

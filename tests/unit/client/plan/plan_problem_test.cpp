@@ -41,9 +41,10 @@ int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
 
 Guidance guidance_towards(const Eigen::VectorXd& q) {
   Guidance guidance{
-      Digest{}, 5,
+      Digest{},
+      5,
       Mixture(Eigen::VectorXd::Ones(1), q, {0.1 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
-      0.9};
+      {0.9, true, 0}};
   guidance.distribution_id.bytes[3] = 9;
   return guidance;
 }
@@ -106,13 +107,27 @@ TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   const PlannedProblem answer = planned(wall_problem(), {}, &guidance);
   EXPECT_EQ(answer.result.distribution_id, guidance.distribution_id);
   EXPECT_EQ(answer.result.distribution_revision, 5U);
+  EXPECT_EQ(answer.result.arm, Arm::Guided);
   EXPECT_EQ(answer.result.share, 0.9);
   EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
+}
+
+TEST(PlanProblem, AControlQueryIsPlannedAsWithoutGuidance) {
+  Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  guidance.arms.trial_part = 1;
+  const ProblemResult control = planned(wall_problem(), {}, &guidance).result;
+  const ProblemResult uniform = planned(wall_problem()).result;
+  EXPECT_EQ(control.arm, Arm::Control);
+  EXPECT_EQ(control.share, 0);
+  EXPECT_EQ(control.distribution_id, guidance.distribution_id);
+  EXPECT_EQ(control.collision_checks, uniform.collision_checks);
+  EXPECT_EQ(*control.waypoints, *uniform.waypoints);
 }
 
 TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {
   const ProblemResult result = planned(wall_problem()).result;
   EXPECT_FALSE(result.distribution_id);
+  EXPECT_EQ(result.arm, Arm::Uniform);
   EXPECT_EQ(result.share, 0);
 }
 

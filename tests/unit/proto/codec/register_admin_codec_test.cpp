@@ -37,7 +37,7 @@ TEST(RegisterCodec, NamesTheRuleThatADescriptionBreaks) {
   EXPECT_EQ(complaint(bad).find("T_tip_transfer: pose: coordinate 1001"), 0U);
   bad = robot();
   bad.held_joints["finger"] = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(complaint(bad), "position of held joint: is not finite");
+  EXPECT_EQ(complaint(bad), "position of held joint: inf is not finite");
 }
 
 TEST(RegisterCodec, UrdfOfTheLargestSizeFitsIntoASample) {

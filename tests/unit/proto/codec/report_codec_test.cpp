@@ -36,7 +36,7 @@ TEST(ReportCodec, NamesTheRuleThatAnAttemptBreaks) {
   EXPECT_EQ(complaint(bad), "share: 1.5 is not between 0 and 1");
   bad = good;
   bad.record.planning_time_s = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(complaint(bad), "planning_time_s: is not finite");
+  EXPECT_EQ(complaint(bad), "planning_time_s: nan is not finite");
   bad = good;
   bad.path.reset();
   EXPECT_EQ(complaint(bad), "waypoints: missing although solved");
@@ -85,7 +85,7 @@ TEST(ReportCodec, BadAttemptOfABatchIsRefusedAloneByUuid) {
   ASSERT_EQ(read.refused.size(), 1U);
   EXPECT_EQ(read.refused[0].report_uuid, request.attempts[1].report_uuid);
   EXPECT_EQ(read.refused[0].status, ReceiptStatus::Refused);
-  EXPECT_EQ(read.refused[0].message, "waypoint 2, joint 3: is not finite");
+  EXPECT_EQ(read.refused[0].message, "waypoint 2, joint 3: inf is not finite");
 }
 
 TEST(ReportCodec, WaypointsMustFitTheDof) {

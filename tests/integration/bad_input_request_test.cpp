@@ -1,0 +1,187 @@
+// Fetches and admin requests that no client of ours would send, put onto the wire past its checks.
+
+#include <functional>
+#include <limits>
+
+#include "tests/support/bad_input_test.hpp"
+
+namespace kinship::test {
+namespace {
+
+using codec::Arena;
+using FetchWire = kinship_wire_FetchRequest;
+using AdminWire = kinship_wire_AdminRequest;
+
+template <typename Wire>
+struct Case {
+  const char* name;
+  std::function<void(Wire&, Arena&)> damage;
+  std::vector<std::string> words;  // of the refusal
+};
+
+kinship_wire_Selection& add_selection(FetchWire& wire, Arena& arena, std::size_t source_bytes) {
+  arena.resize(wire.selection, 1);
+  arena.resize(wire.selection._buffer[0].sources, source_bytes);
+  return wire.selection._buffer[0];
+}
+
+std::vector<Case<FetchWire>> selection_cases() {
+  return {
+      {"sources out of order",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 64).sources._buffer[0] = 9; },
+       {"sources of the selection", "ascending"}},
+      {"a source twice",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 64); },
+       {"sources of the selection", "distinct"}},
+      {"257 sources",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, std::size_t{257} * 32); },
+       {"sources of the selection", "257", "256"}},
+      {"a million bytes of sources",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 1'000'000); },
+       {"sources of the selection", "31250", "256"}},
+      {"31 bytes of a source",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 31); },
+       {"sources of the selection", "31", "32"}},
+      {"weighting 7",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 0).weighting = 7; },
+       {"weighting", "7", "2"}},
+      {"negative since",
+       [](FetchWire& w, Arena& a) { add_selection(w, a, 0).since_ms = -1; },
+       {"since", "-1"}},
+      {"followed for ever",
+       [](FetchWire& w, Arena&) { w.follow_s = 0xFFFFFFFF; },
+       {"follow", "4294967295", "86400"}},
+  };
+}
+
+std::vector<Case<FetchWire>> fetch_cases() {
+  return {
+      {"an empty task", [](FetchWire& w, Arena& a) { w.task = a.text(""); }, {"task", "empty"}},
+      {"a task with a space",
+       [](FetchWire& w, Arena& a) { w.task = a.text("a b"); },
+       {"task", "byte 2"}},
+      {"no profile", [](FetchWire& w, Arena& a) { w.profile = a.text(""); }, {"profile", "empty"}},
+      {"an unknown profile",
+       [](FetchWire& w, Arena& a) { w.profile = a.text("fastest"); },
+       {"profile", "'fastest'"}},
+      {"a profile with an escape",
+       [](FetchWire& w, Arena& a) { w.profile = a.text("\x1B]0;"); },
+       {"profile", "control character"}},
+      {"a deadline of 49 days",
+       [](FetchWire& w, Arena&) { w.deadline_ms = 0xFFFFFFFF; },
+       {"deadline", "4294967295", "3600000"}},
+      {"a placement of 1e300",
+       [](FetchWire& w, Arena& a) {
+         a.resize(w.T_task_base, 7);
+         w.T_task_base._buffer[1] = 1e300;
+         w.T_task_base._buffer[6] = 1;
+       },
+       {"T_task_base", "1000"}},
+      {"a zero quaternion",
+       [](FetchWire& w, Arena& a) { a.resize(w.T_task_base, 7); },
+       {"T_task_base", "quaternion"}},
+      {"a placement of a million numbers",
+       [](FetchWire& w, Arena& a) { a.resize(w.T_task_base, 100'000); },
+       {"T_task_base", "100000", "7"}},
+  };
+}
+
+std::vector<Case<AdminWire>> admin_cases() {
+  const auto verb = [](std::uint32_t number, const std::string& argument = "") {
+    return [number, argument](AdminWire& w, Arena& a) {
+      w.verb = number;
+      w.argument = a.text(argument);
+    };
+  };
+  return {
+      {"verb 99", verb(99), {"verb", "99"}},
+      {"verb 2^32 - 1", verb(0xFFFFFFFF), {"verb", "4294967295"}},
+      {"no rows", [](AdminWire& w, Arena&) { w.limit = 0; }, {"limit", "0", "1"}},
+      {"1001 rows", [](AdminWire& w, Arena&) { w.limit = 1001; }, {"limit", "1001", "1000"}},
+      {"a cursor of 513 bytes",
+       [](AdminWire& w, Arena& a) { w.cursor = a.text(std::string(513, 'c')); },
+       {"cursor", "513", "512"}},
+      {"a garbage cursor",
+       [verb](AdminWire& w, Arena& a) {
+         verb(5)(w, a);
+         w.cursor = a.text("\"; DROP TABLE path; --");
+       },
+       {"cursor"}},
+      {"an argument with a control character", verb(2, "pan\x01"), {"argument", "byte 4"}},
+      {"an argument of 129 bytes", verb(2, std::string(129, 'r')), {"argument", "129", "128"}},
+      {"a filter that is not UTF-8",
+       [verb](AdminWire& w, Arena& a) {
+         verb(1)(w, a);
+         w.robot = a.text("\xC0\x80");
+       },
+       {"robot", "UTF-8"}},
+      {"a path that is no UUID", verb(6, "not-a-uuid"), {"not-a-uuid"}},
+      {"a wait of 49 days",
+       [verb](AdminWire& w, Arena& a) {
+         verb(17, "1")(w, a);
+         w.deadline_ms = 0xFFFFFFFF;
+       },
+       {"deadline", "4294967295", "3600000"}},
+  };
+}
+
+class BadRequest : public BadInput {
+ protected:
+  void expect_refusals(const std::vector<Case<FetchWire>>& cases) {
+    FetchRequest request;
+    request.task = "sweep";
+    request.robot = panda_;
+    for (const auto& bad : cases) {
+      SCOPED_TRACE(bad.name);
+      auto message = codec::encode({}, request).value_or_throw();
+      bad.damage(message.wire, *message.arena);
+      const auto reply = fetch_.call(message.wire);
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, FetchStatus::Refused);
+      expect_words(reply->message, bad.words);
+    }
+    expect_untouched();
+  }
+
+  AdminReply reply_to(const std::function<void(AdminWire&, Arena&)>& damage) {
+    auto message = codec::encode({}, AdminRequest{}).value_or_throw();
+    damage(message.wire, *message.arena);
+    return admin_.call(message.wire).value();
+  }
+
+  RawConversation<codec::FetchConversation> fetch_{participant_};
+  RawConversation<codec::AdminConversation> admin_{participant_};
+};
+
+TEST_F(BadRequest, SelectionsThatCannotBeAreRefused) { expect_refusals(selection_cases()); }
+
+TEST_F(BadRequest, FetchesThatCannotBeAreRefused) { expect_refusals(fetch_cases()); }
+
+TEST_F(BadRequest, FetchesOfAnUnknownRobotOrTaskSaySo) {
+  FetchRequest request;
+  request.task = "nobody.did:this";
+  request.robot = panda_;
+  auto message = codec::encode({}, request).value_or_throw();
+  EXPECT_EQ(fetch_.call(message.wire)->status, FetchStatus::NoExperience);
+  message.wire.robot[31] ^= 1;
+  const auto reply = fetch_.call(message.wire);
+  EXPECT_EQ(reply->status, FetchStatus::UnknownRobot);
+  Digest unknown = panda_;
+  unknown.bytes[31] ^= 1;
+  expect_words(reply->message, {unknown.short_hex()});
+  expect_untouched();
+}
+
+TEST_F(BadRequest, AdminRequestsThatCannotBeAreNotDone) {
+  for (const auto& bad : admin_cases()) {
+    SCOPED_TRACE(bad.name);
+    const AdminReply reply = reply_to(bad.damage);
+    EXPECT_NE(reply.status, AdminStatus::Ok);
+    expect_words(reply.message, bad.words);
+    EXPECT_TRUE(reply.rows.empty());
+  }
+  expect_untouched();
+}
+
+}  // namespace
+}  // namespace kinship::test

@@ -1,0 +1,139 @@
+#include <fstream>
+#include <thread>
+
+#include "tests/unit/server/store/store_conformance.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr auto kGoOn = [](double) { return true; };
+
+/// The directory of a copy, in which the engine finds it by its usual name.
+std::filesystem::path copy_in(const test::TemporaryDirectory& directory) {
+  return directory / "store.db";
+}
+
+std::size_t files_in(const test::TemporaryDirectory& directory) {
+  const std::filesystem::directory_iterator files(directory.path());
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+TEST_P(StoreConformance, ABackupIsAStoreWithAllThatWasThere) {
+  test::report(*store_, {solved(1), solved(2), test::make_unsolved(iiwa_.digest, "table", 3)});
+  const Distribution distribution = test::make_distribution(iiwa_.digest, "shelf", 3);
+  store_->put_distribution(distribution);
+  const test::TemporaryDirectory elsewhere;
+  double last = 0;
+  const Result<bool> done = store_->backup(copy_in(elsewhere), [&](double progress) {
+    EXPECT_GE(progress, last);
+    last = progress;
+    return progress <= 1;
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_TRUE(*done);
+  EXPECT_EQ(last, 1);
+  EXPECT_EQ(files_in(elsewhere), 1U);
+  report(solved(4));  // not in the copy
+  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path());
+  EXPECT_EQ(copy->status().paths, 2U);
+  EXPECT_EQ(copy->status().attempts, 3U);
+  EXPECT_EQ(copy->robots().size(), 2U);
+  EXPECT_TRUE(copy->find_distribution(distribution.id));
+  EXPECT_EQ(test::report(*copy, {solved(1)})[0].status, ReceiptStatus::Duplicate);
+}
+
+TEST_P(StoreConformance, ABackupReplacesNoFile) {
+  const test::TemporaryDirectory elsewhere;
+  std::ofstream(copy_in(elsewhere)) << "mine";
+  const Result<bool> refused = store_->backup(copy_in(elsewhere), kGoOn);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::Conflict);
+  EXPECT_NE(refused.error().message.find(copy_in(elsewhere).string()), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(copy_in(elsewhere)), 4U);
+  EXPECT_EQ(files_in(elsewhere), 1U);
+}
+
+TEST_P(StoreConformance, AFileThatAppearsDuringABackupStays) {
+  const test::TemporaryDirectory elsewhere;
+  const Result<bool> refused = store_->backup(copy_in(elsewhere), [&](double progress) {
+    if (progress == 1)
+      std::ofstream(copy_in(elsewhere)) << "mine";
+    return true;
+  });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::Conflict);
+  EXPECT_EQ(std::filesystem::file_size(copy_in(elsewhere)), 4U);
+  EXPECT_EQ(files_in(elsewhere), 1U);
+}
+
+TEST_P(StoreConformance, ABackupThatIsEndedLeavesNothing) {
+  report(solved(1));
+  const test::TemporaryDirectory elsewhere;
+  const Result<bool> ended = store_->backup(copy_in(elsewhere), [](double) { return false; });
+  ASSERT_TRUE(ended);
+  EXPECT_FALSE(*ended);
+  EXPECT_EQ(files_in(elsewhere), 0U);
+  EXPECT_THROW(store_->backup(copy_in(elsewhere),
+                              [](double) -> bool { throw std::runtime_error("of the caller"); }),
+               std::runtime_error);
+  EXPECT_EQ(files_in(elsewhere), 0U);
+  EXPECT_TRUE(*store_->backup(copy_in(elsewhere), kGoOn));
+}
+
+TEST_P(StoreConformance, ABackupThatCannotBeMadeNamesTheFile) {
+  const std::filesystem::path nowhere = directory_ / "no such directory" / "copy.db";
+  try {
+    static_cast<void>(store_->backup(nowhere, kGoOn));
+    FAIL() << "a backup in no directory";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Storage);
+    EXPECT_NE(std::string(failure.what()).find(nowhere.string()), std::string::npos);
+  }
+  EXPECT_EQ(report(solved(1)), ReceiptStatus::Stored);
+}
+
+TEST_P(StoreConformance, OnlyOneBackupIsMadeAtATime) {
+  const test::TemporaryDirectory elsewhere;
+  EXPECT_TRUE(*store_->backup(copy_in(elsewhere), [&](double progress) {
+    if (progress == 1)
+      return true;  // the copying is over
+    const Result<bool> second = store_->backup(elsewhere / "second.db", kGoOn);
+    EXPECT_FALSE(second);
+    EXPECT_EQ(second.error().code, ErrorCode::Unavailable);
+    return true;
+  }));
+  EXPECT_EQ(files_in(elsewhere), 1U);
+}
+
+TEST_P(StoreConformance, ReportsGoOnDuringABackupThatIsOfOneInstant) {
+  for (std::uint64_t batch = 0; batch < 10; ++batch) {
+    std::vector<Attempt> attempts;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      attempts.push_back(solved(1000 * batch + i));
+      attempts.back().path = test::make_path(1000 * batch + i, test::kDof, 200);
+    }
+    test::report(*store_, std::move(attempts));
+  }
+  constexpr std::uint64_t kFirst = 1'000'000;
+  std::uint64_t number = kFirst;
+  std::uint64_t acknowledged_at_end = 0;
+  const test::TemporaryDirectory elsewhere;
+  // A pair of paths in each batch: a copy of one instant has both or none.
+  ASSERT_TRUE(*store_->backup(copy_in(elsewhere), [&](double progress) {
+    if (progress == 1)
+      acknowledged_at_end = number - kFirst;
+    EXPECT_EQ(test::statuses(test::report(*store_, {solved(number), solved(number + 1)})),
+              std::vector<ReceiptStatus>(2, ReceiptStatus::Stored));
+    number += 2;
+    return true;
+  }));
+  EXPECT_GT(acknowledged_at_end, 10U);  // it was in steps
+  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path());
+  EXPECT_EQ(copy->status().paths, 2000 + acknowledged_at_end);
+  EXPECT_EQ(copy->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 10'000}).size(),
+            2000 + acknowledged_at_end);
+  EXPECT_EQ(store_->status().paths, 2000 + number - kFirst);
+}
+
+}  // namespace
+}  // namespace kinship::store
