@@ -84,7 +84,8 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   wire.machine = arena.text(attempt.machine);
   wire.task = arena.text(attempt.task);
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
-  write_record(attempt.record, arena, wire.record);
+  arena.resize(wire.record, 1);
+  write_record(attempt.record, arena, wire.record._buffer[0]);
   if (!attempt.path)
     return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -101,7 +102,10 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   attempt.machine = reader.text("machine", wire.machine, kMaxMachineBytes);
   attempt.task = reader.text("task", wire.task, kMaxTaskBytes);
   attempt.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
-  attempt.record = read_record(wire.record, reader);
+  if (const auto record = elements(wire.record); !record.empty())
+    attempt.record = read_record(record[0], reader);
+  else
+    reader.rules.that(false, "record: is missing");
   attempt.path = read_path(wire, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();

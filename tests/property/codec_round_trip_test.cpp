@@ -5,11 +5,14 @@
 
 #include <limits>
 
+#include "proto/codec/admin_codec.hpp"
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/publication_codec.hpp"
 #include "proto/codec/register_codec.hpp"
 #include "proto/codec/report_codec.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
+#include "proto/json/event_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "tests/support/random_values.hpp"
 
@@ -78,6 +81,42 @@ TEST(CodecRoundTrip, DistributionComesBack) {
   }
 }
 
+TEST(CodecRoundTrip, FetchRequestComesBack) {
+  test::RandomValues values(kSeed);
+  for (int i = 0; i < kCases; ++i) {
+    FetchRequest written;
+    written.task = values.name(128);
+    written.robot = values.digest();
+    written.profile = values.name(64);
+    written.minimum_generation = values.count();
+    written.deadline = std::chrono::milliseconds(values.below(3'600'001));
+    written.selection = values.selection();
+    written.follow = std::chrono::seconds(values.below(86'401));
+    const auto read = decode(encode(kHead, written).value_or_throw().wire).value_or_throw();
+    EXPECT_EQ(read.selection, written.selection);
+    EXPECT_EQ(read.follow, written.follow);
+    EXPECT_EQ(read.deadline, written.deadline);
+    EXPECT_EQ(read.task + read.profile, written.task + written.profile);
+    EXPECT_EQ(read.minimum_generation, written.minimum_generation);
+  }
+}
+
+TEST(CodecRoundTrip, PublicationsComeBack) {
+  test::RandomValues values(kSeed);
+  for (int i = 0; i < kCases; ++i) {
+    const Announcement written = values.announcement();
+    const auto read = decode(encode(written).value_or_throw().wire).value_or_throw();
+    EXPECT_EQ(read.distribution_id, written.distribution_id);
+    EXPECT_EQ(read.task, written.task);
+    EXPECT_EQ(read.robot, written.robot);
+    EXPECT_EQ(read.revision, written.revision);
+    EXPECT_EQ(read.store_epoch, written.store_epoch);
+    const Event event = values.event();
+    EXPECT_EQ(json::to_json(decode(encode(event).value_or_throw().wire).value_or_throw()),
+              json::to_json(event));
+  }
+}
+
 /// Changes one member of a message that decoding reads, within the memory that it has.
 class Vandal {
  public:
@@ -92,34 +131,98 @@ class Vandal {
       case 2:
         return spoil(wire.T_task_base);
       case 3:
-        return spoil(wire.record.outcome);
+        return shorten(wire.record);
       case 4:
-        return spoil(wire.record.planner);
-      case 5:
-        return spoil(wire.record.planner_options);
-      case 6:
-        return spoil(wire.record.planning_time_s);
-      case 7:
-        return spoil(wire.record.arm);
-      case 8:
-        return spoil(wire.record.share);
-      case 9:
-        return spoil(wire.record.distribution_id);
-      case 10:
         return spoil(wire.dof);
-      default:
+      case 5:
         return spoil(wire.waypoints);
+      default:
+        return spoil(wire.record._buffer[0]);
     }
   }
 
+  void spoil(kinship_wire_PlanningRecord& wire) {
+    switch (values_.below(7)) {
+      case 0:
+        return spoil(wire.outcome);
+      case 1:
+        return spoil(wire.planner);
+      case 2:
+        return spoil(wire.planner_options);
+      case 3:
+        return spoil(wire.planning_time_s);
+      case 4:
+        return spoil(wire.arm);
+      case 5:
+        return spoil(wire.share);
+      default:
+        return spoil(wire.distribution_id);
+    }
+  }
+
+  void spoil(kinship_wire_Selection& wire) {
+    switch (values_.below(4)) {
+      case 0:
+        return shorten(wire.sources);
+      case 1:  // no longer ascending
+        for (std::uint32_t i = 0; i < wire.sources._length; ++i)
+          wire.sources._buffer[i] = static_cast<std::uint8_t>(values_.below(256));
+        return;
+      case 2:
+        return spoil(wire.weighting);
+      default:
+        wire.since_ms = -1;
+        return;
+    }
+  }
+
+  void spoil(kinship_wire_ArmEvidence& wire) {
+    if (values_.coin())
+      wire.solved = wire.attempts + 1;
+    else
+      spoil(wire.checks_per_solution);
+  }
+
+  void spoil(kinship_wire_Source& wire) {
+    switch (values_.below(3)) {
+      case 0:
+        return spoil(wire.label);
+      case 1:
+        return spoil(wire.relation);
+      default:
+        return spoil(wire.mass);
+    }
+  }
+
+  void spoil(kinship_wire_Event& wire) {
+    switch (values_.below(4)) {
+      case 0:
+        return spoil(wire.kind);
+      case 1:
+        return spoil(wire.task);
+      case 2:
+        return spoil(wire.robot);
+      default:
+        return spoil(wire.text);
+    }
+  }
+
+  void spoil(kinship_wire_Announcement& wire) { spoil(wire.task); }
+
   void spoil(kinship_wire_Distribution& wire) {
-    switch (values_.below(11)) {
+    switch (values_.below(15)) {
       case 0:
         return spoil(wire.task);
       case 1:
         return spoil(wire.T_task_base);
       case 2:
         return spoil(wire.state);
+      case 8:
+        return wire.selection._length > 0 ? spoil(wire.selection._buffer[0]) : void();
+      case 9:
+        return wire.guided._length > 0 ? spoil(wire.guided._buffer[0]) : void();
+      case 10:
+        return wire.sources._length > 0 ? spoil(wire.sources._buffer[0]) : void();
       case 3:
         return spoil(wire.limits);
       case 4:
@@ -213,6 +316,44 @@ TEST(CodecGarbage, SpoiledDistributionIsRefusedOrKeepsTheRules) {
       ++refused;
   }
   EXPECT_GT(refused, 3 * kCases);
+}
+
+TEST(CodecGarbage, SpoiledSelectionIsRefusedOrKeepsTheRules) {
+  test::RandomValues values(kSeed);
+  Vandal vandal(values);
+  int refused = 0;
+  for (int i = 0; i < 20 * kCases; ++i) {
+    FetchRequest written;
+    written.task = "t";
+    written.selection = values.selection();
+    written.selection.since_ms = 1;  // so that there is one
+    auto message = encode(kHead, written).value_or_throw();
+    vandal.spoil(message.wire.selection._buffer[0]);
+    const auto read = decode(message.wire);
+    if (read)
+      EXPECT_FALSE(check(*read));
+    else
+      ++refused;
+  }
+  EXPECT_GT(refused, 5 * kCases);
+}
+
+TEST(CodecGarbage, SpoiledPublicationIsRefusedOrKeepsTheRules) {
+  test::RandomValues values(kSeed);
+  Vandal vandal(values);
+  int refused = 0;
+  for (int i = 0; i < 10 * kCases; ++i) {
+    auto event = encode(values.event()).value_or_throw();
+    vandal.spoil(event.wire);
+    auto announcement = encode(values.announcement()).value_or_throw();
+    vandal.spoil(announcement.wire);
+    const auto read_event = decode(event.wire);
+    const auto read_announcement = decode(announcement.wire);
+    EXPECT_FALSE(read_event && check(*read_event));
+    EXPECT_FALSE(read_announcement && check(*read_announcement));
+    refused += static_cast<int>(!read_event) + static_cast<int>(!read_announcement);
+  }
+  EXPECT_GT(refused, 10 * kCases);
 }
 
 }  // namespace

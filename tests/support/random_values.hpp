@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
+#include "proto/types/publications.hpp"
 #include "proto/types/robot_description.hpp"
 
 namespace kinship::test {
@@ -104,6 +106,55 @@ class RandomValues {
     return {weights, matrix(dof, components), covariances};
   }
 
+  Selection selection() {
+    Selection selection;
+    for (int i = below(5); i > 0; --i)
+      selection.sources.push_back(digest());
+    std::sort(selection.sources.begin(), selection.sources.end());
+    if (coin())
+      selection.weighting = static_cast<Weighting>(below(2));
+    if (coin())
+      selection.since_ms = static_cast<std::int64_t>(count() / 2);
+    return selection;
+  }
+
+  Source source() {
+    return {.robot = digest(),
+            .label = name(64),
+            .paths = count(),
+            .generation = count(),
+            .poses = count(),
+            .poses_solved = count(),
+            .relation = static_cast<Relation>(below(3)),
+            .paths_used = count(),
+            .out_of_reach = count(),
+            .outside_limits = count(),
+            .not_converged = count(),
+            .configurations = count(),
+            .mass = share()};
+  }
+
+  ArmEvidence evidence() {
+    const std::uint64_t attempts = count();
+    return {.attempts = attempts, .solved = attempts / 2, .checks_per_solution = 1000 * share()};
+  }
+
+  Announcement announcement() {
+    return {.distribution_id = digest(),
+            .task = name(128),
+            .robot = digest(),
+            .revision = count(),
+            .store_epoch = Uuid::random()};
+  }
+
+  Event event() {
+    return {.kind = static_cast<EventKind>(below(6)),
+            .time_ms = static_cast<std::int64_t>(count() / 2),
+            .task = coin() ? name(128) : "",
+            .robot = coin() ? name(64) : "",
+            .text = name(512)};
+  }
+
   Distribution distribution() {
     Distribution distribution;
     distribution.id = digest();
@@ -118,7 +169,8 @@ class RandomValues {
     distribution.state = coin() ? DistributionState::Ready : DistributionState::Failed;
     distribution.reason = name(100);
     for (int i = below(5); i > 0; --i)
-      distribution.sources.push_back({digest(), name(64), count(), count(), count(), count()});
+      distribution.sources.push_back(source());
+    distribution.selection = selection();
     distribution.configurations = count();
     const Eigen::Index dof = 1 + below(32);
     distribution.limits.resize(2, dof);
@@ -130,6 +182,10 @@ class RandomValues {
       distribution.held_out_score = number();
     distribution.advice.recommended_share = share();
     distribution.advice.evidence = name(100);
+    if (coin())
+      distribution.advice.guided = evidence();
+    if (coin())
+      distribution.advice.control = evidence();
     distribution.fitted_ms = static_cast<std::int64_t>(count() / 2);
     distribution.transfer_time_s = share();
     distribution.fit_time_s = share();

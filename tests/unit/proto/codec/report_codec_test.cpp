@@ -102,6 +102,18 @@ TEST(ReportCodec, WaypointsMustFitTheDof) {
   EXPECT_EQ(decode(message.wire)->refused[0].message, "waypoints: 1, must be at least 2");
 }
 
+TEST(ReportCodec, AttemptWithoutARecordIsRefused) {
+  ReportRequest request;
+  request.attempts = {solved_attempt(7, 3), solved_attempt(7, 3)};
+  auto message = encode({}, request).value_or_throw();
+  message.wire.attempts._buffer[0].record._length = 0;
+  message.wire.attempts._buffer[1].record._buffer = nullptr;  // what a shorter message leaves
+  const auto read = decode(message.wire).value_or_throw();
+  ASSERT_EQ(read.refused.size(), 2U);
+  EXPECT_EQ(read.refused[0].message, "record: is missing");
+  EXPECT_EQ(read.refused[1].message, "record: is missing");
+}
+
 TEST(ReportCodec, ReceiptsComeBack) {
   ReportReply written{Uuid::random(),
                       {{Uuid::random(), ReceiptStatus::Stored, ""},

@@ -4,9 +4,9 @@
 //   withdraw N
 //   event TEXT
 //   flood COUNT           as many announcements, of ids of their own, and events; answers with the
-//                         milliseconds of the slowest
+//                         number of times that took 90 ms or more
+//   churn COUNT           announces and withdraws as many distributions
 
-#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <iostream>
@@ -15,7 +15,6 @@
 
 #include "proto/dds/publication.hpp"
 #include "proto/dds/replier.hpp"
-#include "proto/types/limits.hpp"
 
 namespace kinship {
 namespace {
@@ -55,6 +54,8 @@ class Server {
     words >> number >> revision;
     if (verb == "flood")
       return std::to_string(flood(number));
+    if (verb == "churn")
+      return churn(number);
     Announcement announcement{.distribution_id = {},
                               .task = "bin_to_shelf",
                               .robot = {},
@@ -68,20 +69,35 @@ class Server {
     return "done";
   }
 
-  std::int64_t flood(unsigned count) {
-    using Clock = std::chrono::steady_clock;
+  static Announcement numbered(unsigned number) {
     Announcement announcement;
     announcement.task = "bin_to_shelf";
-    event_.text = std::string(kMaxEventBytes, 'x');
-    Clock::duration slowest{0};
+    std::memcpy(announcement.distribution_id.bytes.data(), &number, sizeof number);
+    announcement.distribution_id.bytes.back() = 1;
+    return announcement;
+  }
+
+  int flood(unsigned count) {
+    using Clock = std::chrono::steady_clock;
+    event_.text = "flood";
+    int slow = 0;
     for (unsigned i = 0; i < count; ++i) {
-      std::memcpy(announcement.distribution_id.bytes.data(), &i, sizeof i);
       const Clock::time_point start = Clock::now();
-      announcements_.publish(announcement);
+      announcements_.publish(numbered(i << 8U));
       events_.publish(event_);
-      slowest = std::max(slowest, Clock::now() - start);
+      if (Clock::now() - start >= std::chrono::milliseconds(90))
+        ++slow;
     }
-    return std::chrono::duration_cast<std::chrono::milliseconds>(slowest).count();
+    return slow;
+  }
+
+  std::string churn(unsigned count) {
+    for (unsigned i = 0; i < count; ++i) {
+      const Announcement announcement = numbered(++churned_ << 8U);
+      announcements_.publish(announcement);
+      announcements_.withdraw(announcement.distribution_id);
+    }
+    return "done";
   }
 
   dds::Participant participant_;
@@ -90,6 +106,7 @@ class Server {
   dds::WaitLoop loop_;
   dds::Replier<codec::AdminConversation> admin_;
   Event event_;
+  unsigned churned_ = 0;
 };
 
 }  // namespace

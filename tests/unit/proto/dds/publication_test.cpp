@@ -3,16 +3,21 @@
 
 #include "proto/dds/publication.hpp"
 
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
-#include <map>
+#include <future>
 #include <mutex>
-#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "proto/dds/requester.hpp"
+#include "proto/dds/wire.hpp"
+#include "proto/types/limits.hpp"
 #include "tests/support/child_process.hpp"
 
 namespace kinship::dds {
@@ -158,6 +163,98 @@ TEST(Publication, SubscriberHearsTheServerAfterOneThatWasKilled) {
   EXPECT_TRUE(heard.wait_for_servers(2));
   second.tell("announce 1 2");  // an older store: told as it is, epoch and revision say so
   EXPECT_TRUE(heard.wait_for_revision(1, 2));
+}
+
+TEST(Publication, EventReachesWhoListensButNotWhoComesLater) {
+  const Participant participant({.domain = 154});
+  PublishingServer server(participant, 154);
+  server.tell("event before");
+  Heard<Event> heard;
+  const Subscriber<codec::EventPublication> subscriber(
+      participant, {.on_sample = [&](const Event& event) { heard.add(event); },
+                    .on_server = [&] { heard.add_server(); }});
+  ASSERT_TRUE(heard.wait_for_servers(1));
+  // The server may match its side a moment later: it tells until it is heard.
+  for (int i = 0; i < 300 && heard.values().empty(); ++i) {
+    server.tell("event after");
+    std::this_thread::sleep_for(100ms);
+  }
+  ASSERT_FALSE(heard.values().empty());
+  for (const Event& event : heard.values())
+    EXPECT_EQ(event.text, "after");
+}
+
+TEST(Publication, NoHandlerRunsAfterTheSubscriberIsGone) {
+  const Participant participant({.domain = 155});
+  PublishingServer server(participant, 155);
+  auto flood = std::async(std::launch::async, [&] { return server.tell("flood 20000"); });
+  std::atomic<int> calls = 0;
+  while (flood.wait_for(0ms) != std::future_status::ready) {
+    std::atomic<bool> is_gone = false;
+    {
+      const Subscriber<codec::EventPublication> subscriber(participant,
+                                                           {.on_sample =
+                                                                [&](const Event&) {
+                                                                  ++calls;
+                                                                  std::this_thread::yield();
+                                                                  EXPECT_FALSE(is_gone);
+                                                                },
+                                                            .on_server = {}});
+      std::this_thread::sleep_for(5ms);
+    }
+    is_gone = true;
+  }
+  EXPECT_NE(flood.get(), "");
+}
+
+TEST(Publication, StoppedSubscriberHoldsNobodyUpAndHearsTheNewestWhenItGoesOn) {
+  const Participant participant({.domain = 156});
+  PublishingServer server(participant, 156);
+  server.tell("announce 1 5");
+  test::ChildProcess listener({KINSHIP_PUBLICATION_LISTENER, "156"});
+  ASSERT_EQ(listener.read_line(), "announcement 1 5");
+  listener.signal(SIGSTOP);
+  const std::string slow = server.tell("flood 20000");
+  EXPECT_LT(std::stoi(slow), 20) << slow;  // a writer that blocks: 100 ms each time
+  server.tell("announce 1 6");
+  listener.signal(SIGCONT);
+  std::string line = listener.read_line();
+  while (line.starts_with("event") || line == "announcement 1 5")
+    line = listener.read_line();
+  EXPECT_EQ(line, "announcement 1 6");
+}
+
+/// Bytes of a publication on the wire.
+template <typename Publication>
+std::size_t size_of(const Participant& participant, const typename Publication::Value& value) {
+  const PublicationTopic type = Wire<Publication>::topic();
+  const Entity topic(
+      dds_create_topic(participant.get(), &type.type, type.name.c_str(), nullptr, nullptr),
+      type.name);
+  const Entity reader(dds_create_reader(participant.get(), topic.get(), type.qos.get(), nullptr),
+                      type.name);
+  const Publisher<Publication> publisher(participant);
+  publisher.publish(value);  // within a participant it arrives before this returns
+  ddsi_serdata* sample = nullptr;
+  dds_sample_info_t info{};
+  if (dds_takecdr(reader.get(), &sample, 1, &info, DDS_ANY_STATE) != 1)
+    return 0;
+  const std::size_t bytes = ddsi_serdata_size(sample);
+  ddsi_serdata_unref(sample);
+  return bytes;
+}
+
+TEST(Publication, IsShortOnTheWire) {
+  const Participant participant({.domain = 157, .role = Role::Server});
+  Announcement announcement;
+  announcement.task = "bin_to_shelf";
+  EXPECT_EQ(size_of<codec::AnnouncementPublication>(participant, announcement), 116U);
+  announcement.task = std::string(kMaxTaskBytes, 't');
+  EXPECT_EQ(size_of<codec::AnnouncementPublication>(participant, announcement), 232U);
+  const std::string text(10'000, 'x');  // is cut
+  const Event event{
+      .kind = EventKind::Refusal, .time_ms = 1, .task = text, .robot = text, .text = text};
+  EXPECT_EQ(size_of<codec::EventPublication>(participant, event), 748U);
 }
 
 }  // namespace
