@@ -95,6 +95,23 @@ TEST(FetchCodec, MixtureThatDoesNotFitIntoASampleIsTooLarge) {
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
 }
 
+TEST(FetchCodec, EvidenceAndSourcesMustBePossible) {
+  FetchReply reply = ready_reply();
+  reply.distribution->advice.guided = ArmEvidence{.attempts = 5, .solved = 6};
+  EXPECT_EQ(encode({}, reply).error().message, "guided: 6 solved of 5");
+  reply.distribution->advice.guided->solved = 5;
+  reply.distribution->advice.guided->checks_per_solution = -1;
+  EXPECT_EQ(encode({}, reply).error().message, "guided: checks_per_solution: -1 is negative");
+  reply = ready_reply();
+  reply.distribution->sources = {test::RandomValues(kSeed).source()};
+  reply.distribution->sources[0].mass = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(encode({}, reply).error().message, "mass of a source: nan is not between 0 and 1");
+  reply.distribution->sources[0].mass = 1;
+  auto message = encode({}, reply).value_or_throw();
+  message.wire.distribution._buffer[0].sources._buffer[0].relation = 3;
+  EXPECT_EQ(decode(message.wire).error().message, "relation of a source: 3 is not between 0 and 2");
+}
+
 TEST(FetchCodec, StatusOutOfRangeIsRefused) {
   FetchReply reply;
   reply.status = FetchStatus::Pending;

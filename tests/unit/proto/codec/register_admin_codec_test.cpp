@@ -61,13 +61,27 @@ TEST(RegisterCodec, JointHeldTwiceIsRefused) {
 }
 
 TEST(RegisterCodec, ReplyComesBack) {
-  const RegisterReply written{RegisterStatus::Known, test::RandomValues(kSeed).digest(), 7,
-                              "numeric", ""};
+  const RegisterReply written{
+      RegisterStatus::Known, test::RandomValues(kSeed).digest(), 7, "numeric", "",
+      {"ur10e_1", "ur10e_2"}};
   const auto read = decode(encode({}, written)->wire).value_or_throw();
   EXPECT_EQ(read.status, written.status);
   EXPECT_EQ(read.robot, written.robot);
   EXPECT_EQ(read.dof, 7U);
   EXPECT_EQ(read.solver, "numeric");
+  EXPECT_EQ(read.same_arms, written.same_arms);
+}
+
+TEST(RegisterCodec, SameArmsAreLimited) {
+  RegisterReply reply;
+  reply.same_arms.assign(1025, "ur10e");
+  EXPECT_EQ(encode({}, reply).error().message, "same_arms: 1025 exceeds 1024");
+  reply.same_arms = {std::string(65, 'x')};
+  EXPECT_EQ(encode({}, reply).error().message, "same_arms: 65 bytes exceed 64");
+  reply.same_arms = {"ur10e"};
+  auto message = encode({}, reply).value_or_throw();
+  message.wire.same_arms._length = 1025;  // refused before any is read
+  EXPECT_EQ(decode(message.wire).error().message, "same_arms: 1025 exceeds 1024");
 }
 
 TEST(AdminCodec, RequestComesBack) {
@@ -85,6 +99,42 @@ TEST(AdminCodec, ReplyComesBack) {
   EXPECT_EQ(read.rows, written.rows);
   EXPECT_EQ(read.next_cursor, "next");
   EXPECT_EQ(read.message, "ü");
+}
+
+AdminRequest request_of(AdminVerb verb, const std::string& argument) {
+  AdminRequest request;
+  request.verb = verb;
+  request.argument = argument;
+  return request;
+}
+
+TEST(AdminCodec, DeadlineOfARequestComesBackAndIsLimited) {
+  AdminRequest request = request_of(AdminVerb::ShowJob, "0a1b2c3d");
+  request.deadline = std::chrono::hours(1);
+  EXPECT_EQ(decode(encode({}, request)->wire)->deadline, std::chrono::hours(1));
+  request.deadline += std::chrono::milliseconds(1);
+  EXPECT_EQ(encode({}, request).error().message,
+            "deadline (ms): 3600001 is not between 0 and 3600000");
+  request.deadline = std::chrono::milliseconds(-1);
+  EXPECT_FALSE(encode({}, request));
+}
+
+TEST(AdminCodec, OnlyAFileNameMayBeLong) {
+  AdminRequest request = request_of(AdminVerb::Backup, std::string(1024, 'f'));
+  EXPECT_EQ(decode(encode({}, request)->wire)->argument, request.argument);
+  request.argument += 'f';
+  EXPECT_FALSE(encode({}, request));
+  request = request_of(AdminVerb::ShowRobot, std::string(129, 'f'));
+  EXPECT_FALSE(encode({}, request));
+}
+
+TEST(AdminCodec, LastRowMayContinueOnTheNextPage) {
+  AdminReply reply{AdminStatus::Ok, {"{\"a\":"}, "next", "", true};
+  EXPECT_TRUE(decode(encode({}, reply)->wire)->last_row_continues);
+  reply.next_cursor.clear();
+  EXPECT_EQ(encode({}, reply).error().message, "last_row_continues: without a row or a next page");
+  reply = {AdminStatus::Ok, {}, "next", "", true};
+  EXPECT_FALSE(encode({}, reply));
 }
 
 TEST(AdminCodec, PageIsLimited) {
