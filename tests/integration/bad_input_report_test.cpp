@@ -22,6 +22,15 @@ struct Case {
   std::vector<std::string> words;  // of the refusal
 };
 
+/// The attempt's planning record, whichever way the IDL holds it.
+template <typename Attempt>
+auto& record_of(Attempt& attempt) {
+  if constexpr (requires { attempt.record._buffer; })
+    return attempt.record._buffer[0];
+  else
+    return attempt.record;
+}
+
 void set_placement(kinship_wire_Attempt& attempt, Arena& arena, std::vector<double> numbers) {
   arena.resize(attempt.T_task_base, numbers.size());
   std::copy(numbers.begin(), numbers.end(), attempt.T_task_base._buffer);
@@ -64,7 +73,7 @@ std::vector<Case> waypoint_cases() {
        [](auto& a, Arena& arena) { set_waypoints(a, arena, 0, 0); },
        {"waypoints", "missing", "solved"}},
       {"a path although not solved",
-       [](auto& a, Arena&) { a.record.outcome = 1; },
+       [](auto& a, Arena&) { record_of(a).outcome = 1; },
        {"waypoints", "not solved"}},
       {"16 385 waypoints of one joint",
        [](auto& a, Arena& arena) { set_waypoints(a, arena, 1, 16385); },
@@ -114,22 +123,26 @@ std::vector<Case> record_cases() {
        [](auto& a, Arena& arena) { a.machine = arena.text("\x1B[2J"); },
        {"machine", "control character"}},
       {"planner options of 1025 bytes",
-       [](auto& a, Arena& arena) { a.record.planner_options = arena.text(std::string(1025, 'o')); },
+       [](auto& a, Arena& arena) {
+         record_of(a).planner_options = arena.text(std::string(1025, 'o'));
+       },
        {"planner_options", "1025", "1024"}},
-      {"outcome 7", [](auto& a, Arena&) { a.record.outcome = 7; }, {"outcome", "7", "2"}},
+      {"outcome 7", [](auto& a, Arena&) { record_of(a).outcome = 7; }, {"outcome", "7", "2"}},
       {"arm 2^32 - 1",
-       [](auto& a, Arena&) { a.record.arm = 0xFFFFFFFF; },
+       [](auto& a, Arena&) { record_of(a).arm = 0xFFFFFFFF; },
        {"arm", "4294967295", "2"}},
-      {"a share of 1.5", [](auto& a, Arena&) { a.record.share = 1.5; }, {"share", "1.5", "1"}},
-      {"a share of NaN", [](auto& a, Arena&) { a.record.share = kNan; }, {"share", "nan", "0", "1"}},
+      {"a share of 1.5", [](auto& a, Arena&) { record_of(a).share = 1.5; }, {"share", "1.5", "1"}},
+      {"a share of NaN",
+       [](auto& a, Arena&) { record_of(a).share = kNan; },
+       {"share", "nan", "0", "1"}},
       {"negative planning time",
-       [](auto& a, Arena&) { a.record.planning_time_s = -1; },
+       [](auto& a, Arena&) { record_of(a).planning_time_s = -1; },
        {"planning_time_s", "-1", "negative"}},
       {"an infinite time limit",
-       [](auto& a, Arena&) { a.record.time_limit_s = kInfinity; },
+       [](auto& a, Arena&) { record_of(a).time_limit_s = kInfinity; },
        {"time_limit_s", "finite"}},
       {"a distribution id of 31 bytes",
-       [](auto& a, Arena& arena) { arena.resize(a.record.distribution_id, 31); },
+       [](auto& a, Arena& arena) { arena.resize(record_of(a).distribution_id, 31); },
        {"distribution_id", "31", "32"}},
       {"a report without UUID",
        [](auto& a, Arena&) { std::fill_n(a.report_uuid, 16, 0); },
