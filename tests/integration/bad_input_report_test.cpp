@@ -22,13 +22,8 @@ struct Case {
   std::vector<std::string> words;  // of the refusal
 };
 
-/// The attempt's planning record, whichever way the IDL holds it.
-template <typename Attempt>
-auto& record_of(Attempt& attempt) {
-  if constexpr (requires { attempt.record._buffer; })
-    return attempt.record._buffer[0];
-  else
-    return attempt.record;
+kinship_wire_PlanningRecord& record_of(kinship_wire_Attempt& attempt) {
+  return attempt.record._buffer[0];
 }
 
 void set_placement(kinship_wire_Attempt& attempt, Arena& arena, std::vector<double> numbers) {

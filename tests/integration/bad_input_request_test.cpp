@@ -116,6 +116,17 @@ std::vector<Case<AdminWire>> admin_cases() {
        },
        {"robot", "UTF-8"}},
       {"a path that is no UUID", verb(6, "not-a-uuid"), {"not-a-uuid"}},
+      {"retiring what is no UUID", verb(13, "../../etc"), {"../../etc"}},
+      {"resetting a task that cannot be", verb(14, "a task"), {"task"}},
+      {"a garbage job", verb(17, "job -1"), {"job -1"}},
+      {"rows of a garbage job", verb(19, "99999999999999999999"), {"99999999999999999999"}},
+      {"cancelling nothing", verb(18, ""), {"job"}},
+      {"a backup to a device", verb(15, "/dev/null"), {"/dev/null"}},
+      {"a backup to a relative path", verb(15, "backup.db"), {"backup.db", "begin with '/'"}},
+      {"a backup to a folder that is not there", verb(15, "/nowhere/at/all.db"), {"/nowhere"}},
+      {"a backup to a name of 1025 bytes",
+       verb(15, "/" + std::string(1024, 'b')),
+       {"argument", "1025", "1024"}},
       {"a wait of 49 days",
        [verb](AdminWire& w, Arena& a) {
          verb(17, "1")(w, a);
@@ -180,6 +191,17 @@ TEST_F(BadRequest, AdminRequestsThatCannotBeAreNotDone) {
     expect_words(reply.message, bad.words);
     EXPECT_TRUE(reply.rows.empty());
   }
+  expect_untouched();
+}
+
+TEST_F(BadRequest, ABackupOntoTheStoreItselfLeavesItAsItWas) {
+  const std::string store = directory_ / "fleet.db";
+  const AdminReply reply = reply_to([&](AdminWire& w, Arena& a) {
+    w.verb = 15;
+    w.argument = a.text(store);
+  });
+  EXPECT_NE(reply.status, AdminStatus::Ok);
+  expect_words(reply.message, {store});
   expect_untouched();
 }
 
