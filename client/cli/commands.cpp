@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include "client/arguments/robot_options.hpp"
 #include "client/cli/exit_code.hpp"
 #include "client/cli/fetch_command.hpp"
 #include "client/cli/inverse_commands.hpp"
@@ -96,15 +97,7 @@ void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
   command
       .add_option("robot", robot.source, "URDF file, or a folder with chain.toml and robot.urdf")
       ->required();
-  command.add_option("--base", robot.base_link, "Base link (required with a URDF file)");
-  command.add_option("--tip", robot.tip_link, "Tip link (required with a URDF file)");
-  command.add_option("--label", robot.label, "Name for people (default: the folder's or file's)");
-  command.add_option("--transfer", robot.transfer,
-                     "Transfer frame in the tip link, \"x y z qx qy qz qw\"");
-  command.add_option("--axes", robot.axes,
-                     "Coordinates that matter, of x,y,z,roll,pitch,yaw (default: all)");
-  command.add_option("--hold", robot.held, "JOINT=VALUE of a joint off the chain; may be repeated")
-      ->allow_extra_args(false);
+  arguments::add_robot_options(command, robot);
 }
 
 /// The options of all commands; each lives as long as the parse and the run.

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "client/cli/exit_code.hpp"
+#include "client/cli/robot_geometry.hpp"
 #include "client/cli/table.hpp"
 #include "client/files/lines.hpp"
 #include "proto/json/robot_answers_json.hpp"
@@ -37,12 +38,17 @@ Error in_line(const std::filesystem::path& file, std::size_t number, const Error
           "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
 }
 
-/// The chain that the arguments describe. Empty with an exit code in `code` if there is none:
+struct DescribedRobot {
+  RobotDescription description;
+  kinematics::Chain chain;
+};
+
+/// The robot that the arguments describe. Empty with an exit code in `code` if there is none:
 /// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
-std::optional<kinematics::Chain> read_robot(const char* command,
-                                            const models::RobotArguments& arguments,
-                                            std::ostream& err, int& code) {
-  const auto description = models::describe_robot(arguments);
+std::optional<DescribedRobot> read_robot(const char* command,
+                                         const models::RobotArguments& arguments, std::ostream& err,
+                                         int& code) {
+  auto description = models::describe_robot(arguments);
   if (!description) {
     code = refuse(command, description.error(), err);
     return std::nullopt;
@@ -53,7 +59,7 @@ std::optional<kinematics::Chain> read_robot(const char* command,
     code = kFailed;
     return std::nullopt;
   }
-  return *std::move(chain);
+  return DescribedRobot{*std::move(description), *std::move(chain)};
 }
 
 const char* reason_text(inverse::NoSolution reason) {
@@ -153,17 +159,20 @@ void print_check(const RobotCheck& check, std::ostream& out) {
 
 int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err) {
   int code = kDone;
-  const auto chain = read_robot("robots check", options.robot, err, code);
-  if (!chain)
+  constexpr const char* kCommand = "robots check";
+  const auto robot = read_robot(kCommand, options.robot, err, code);
+  if (!robot)
     return code;
+  const kinematics::Chain& chain = robot->chain;
+  note_missing_geometry(kCommand, options.robot, robot->description, err);
   RobotCheck check;
-  check.robot = chain->digest();
-  check.base_link = chain->base_link();
-  check.tip_link = chain->tip_link();
-  check.solver = inverse::solver_name(*chain);
-  for (const kinematics::Joint& joint : chain->joints())
+  check.robot = chain.digest();
+  check.base_link = chain.base_link();
+  check.tip_link = chain.tip_link();
+  check.solver = inverse::solver_name(chain);
+  for (const kinematics::Joint& joint : chain.joints())
     check.joints.push_back({joint.name, type_text(joint.type), joint.lower, joint.upper});
-  measure(options, *chain, check);
+  measure(options, chain, check);
   if (options.json)
     out << json::to_json(check) << '\n';
   else
@@ -174,9 +183,10 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
 int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "robots ik";
   int code = kDone;
-  const auto chain = read_robot(kCommand, options.robot, err, code);
-  if (!chain)
+  const auto robot = read_robot(kCommand, options.robot, err, code);
+  if (!robot)
     return code;
+  const kinematics::Chain& chain = robot->chain;
   const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
                                                    .min_distance = options.min_distance,
                                                    .seed = options.seed};
@@ -184,7 +194,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     const auto T_base_tip = models::parse_pose(options.pose);
     if (!T_base_tip)
       return refuse(kCommand, T_base_tip.error(), err);
-    print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
+    print_answer(solve(chain, *T_base_tip, inverse_options), options.json, out);
     return kDone;
   }
   std::ifstream stream = files::open_input(options.poses);
@@ -192,7 +202,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     const Result<Eigen::Isometry3d> T_base_tip =
         line.text ? json::pose_from_json(*line.text) : line.text.error();
     if (T_base_tip)
-      print_answer(solve(*chain, *T_base_tip, inverse_options), options.json, out);
+      print_answer(solve(chain, *T_base_tip, inverse_options), options.json, out);
     else
       code = refuse(kCommand, in_line(options.poses, line.number, T_base_tip.error()), err);
     return T_base_tip.has_value();

@@ -3,9 +3,22 @@
 #include <ostream>
 
 #include "client/cli/exit_code.hpp"
+#include "client/cli/robot_geometry.hpp"
 #include "proto/json/robot_answers_json.hpp"
 
 namespace kinship::cli {
+namespace {
+
+void print_same_arms(const std::vector<std::string>& labels, std::ostream& out) {
+  if (labels.empty())
+    return;
+  out << "the same arm as";
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    out << (i == 0 ? " " : ", ") << labels[i];
+  out << ": experience passes between them as it is\n";
+}
+
+}  // namespace
 
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
                    std::ostream& out, std::ostream& err) {
@@ -14,6 +27,7 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     err << "robots register: " << description.error().message << '\n';
     return exit_code(description.error().code);
   }
+  note_missing_geometry("robots register", arguments, *description, err);
   const auto reply = server.register_robot(*description);
   if (!reply) {
     err << "robots register: " << reply.error().message << '\n';
@@ -32,6 +46,8 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     out << (reply->message.empty() ? description->label + " is " : "") << "robot "
         << reply->robot.short_hex() << ": " << reply->dof << " joints, " << reply->solver
         << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
+  if (!json)
+    print_same_arms(reply->same_arms, out);
   return kDone;
 }
 

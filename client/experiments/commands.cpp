@@ -9,24 +9,13 @@
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
-#include "robots/kinematics/urdf.hpp"
-#include "robots/models/model_folder.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::experiments {
-namespace {
-
-ExperimentRobot load_robot(const std::filesystem::path& model) {
-  const RobotDescription description = models::read_model_folder(model).value_or_throw();
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
-  return {description.label, std::move(chain), std::move(shapes)};
-}
-
-}  // namespace
-
 void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages) {
-  const ExperimentRobot robot = load_robot(options.model);
-  const Eigen::Isometry3d T_task_base = options.T_task_base.value_or(shelf_placement(robot.label));
+  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  const std::string& label = robot.description.label;
+  const Eigen::Isometry3d T_task_base = options.T_task_base.value_or(shelf_placement(label));
   std::uint32_t redrawn = 0;
   for (std::uint32_t index = 0; index < options.count; ++index) {
     const Problem problem = draw_shelf_problem(robot, T_task_base, options.seed, index);
@@ -36,12 +25,13 @@ void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::o
     if (!out)
       throw Failure(ErrorCode::Storage, "cannot write the problems");
   }
-  messages << options.count << " problems for " << robot.label << ", " << redrawn
+  messages << options.count << " problems for " << label << ", " << redrawn
            << " of them in a scene drawn again\n";
 }
 
-void write_placement(const std::filesystem::path& model, std::ostream& out) {
-  const PoseArray pose = to_pose_array(shelf_placement(load_robot(model).label));
+void write_placement(const models::RobotArguments& robot, std::ostream& out) {
+  const RobotDescription description = models::describe_robot(robot).value_or_throw();
+  const PoseArray pose = to_pose_array(shelf_placement(description.label));
   for (std::size_t i = 0; i < pose.size(); ++i)
     out << (i == 0 ? "" : " ") << pose[i];
   out << '\n';

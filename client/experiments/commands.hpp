@@ -6,11 +6,13 @@
 #include <iosfwd>
 #include <optional>
 
+#include "robots/models/robot_arguments.hpp"
+
 /// The commands of kinship-experiment: options in, streams out. They throw Failure.
 namespace kinship::experiments {
 
 struct ShelfOptions {
-  std::filesystem::path model;
+  models::RobotArguments robot;
   std::uint32_t count = 40;
   std::uint64_t seed = 1;
   std::optional<Eigen::Isometry3d> T_task_base;  ///< empty: shelf_placement of the robot's label
@@ -20,7 +22,7 @@ struct ShelfOptions {
 void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages);
 
 /// Writes "x y z qx qy qz qw" of the robot's placement in the shelf task.
-void write_placement(const std::filesystem::path& model, std::ostream& out);
+void write_placement(const models::RobotArguments& robot, std::ostream& out);
 
 struct CompareOptions {
   std::filesystem::path uniform;

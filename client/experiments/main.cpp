@@ -3,6 +3,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "client/arguments/robot_options.hpp"
 #include "client/experiments/commands.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/types/exit_code.hpp"
@@ -26,14 +27,18 @@ struct CommandLine {
   ShelfOptions shelf;
   std::string placement;
   std::filesystem::path output;
-  std::filesystem::path placed_model;
+  models::RobotArguments placed;
   CompareOptions compare;
 };
 
 void add_shelf(CLI::App& app, CommandLine& line) {
   CLI::App* const shelf = app.add_subcommand(
       "shelf", "write planning problems: a held box goes from a table into a shelf");
-  shelf->add_option("--model", line.shelf.model, "model folder of the robot")->required();
+  shelf
+      ->add_option("--model", line.shelf.robot.source,
+                   "model folder of the robot, or a URDF file with --base and --tip")
+      ->required();
+  arguments::add_robot_options(*shelf, line.shelf.robot);
   shelf->add_option("--count", line.shelf.count, "problems to write")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -48,7 +53,11 @@ void add_shelf(CLI::App& app, CommandLine& line) {
 void add_placement(CLI::App& app, CommandLine& line) {
   CLI::App* const placement =
       app.add_subcommand("placement", "print where the robot stands in the shelf task");
-  placement->add_option("--model", line.placed_model, "model folder of the robot")->required();
+  placement
+      ->add_option("--model", line.placed.source,
+                   "model folder of the robot, or a URDF file with --base and --tip")
+      ->required();
+  arguments::add_robot_options(*placement, line.placed);
 }
 
 void add_compare(CLI::App& app, CommandLine& line) {
@@ -97,7 +106,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("shelf"))
     write_shelf(line);
   else if (app.got_subcommand("placement"))
-    write_placement(line.placed_model, std::cout);
+    write_placement(line.placed, std::cout);
   else
     write_comparison(line.compare, std::cout);
   return kDone;

@@ -67,7 +67,7 @@ std::vector<Eigen::VectorXd> configurations_at(const kinematics::Chain& chain,
 }
 
 /// The first free one of the configurations at a pose.
-std::optional<Eigen::VectorXd> free_configuration(const ExperimentRobot& robot,
+std::optional<Eigen::VectorXd> free_configuration(const models::LoadedRobot& robot,
                                                   const Problem& problem,
                                                   const Eigen::Isometry3d& T_task_transfer,
                                                   std::mt19937_64& generator) {
@@ -82,8 +82,9 @@ std::optional<Eigen::VectorXd> free_configuration(const ExperimentRobot& robot,
 }
 
 /// The instance of one sub-seed; empty if the robot cannot start or end it.
-std::optional<Problem> try_draw(const ExperimentRobot& robot, const Eigen::Isometry3d& T_task_base,
-                                std::uint64_t seed, std::uint32_t index, std::uint32_t draw) {
+std::optional<Problem> try_draw(const models::LoadedRobot& robot,
+                                const Eigen::Isometry3d& T_task_base, std::uint64_t seed,
+                                std::uint32_t index, std::uint32_t draw) {
   std::mt19937_64 scene_generator = generator_for(seed, index, draw, Use::Scene);
   const ShelfScene instance = draw_shelf_scene(scene_generator);
   Problem problem;
@@ -122,15 +123,15 @@ Eigen::Isometry3d shelf_placement(std::string_view label) {
   return T;
 }
 
-Problem draw_shelf_problem(const ExperimentRobot& robot, const Eigen::Isometry3d& T_task_base,
+Problem draw_shelf_problem(const models::LoadedRobot& robot, const Eigen::Isometry3d& T_task_base,
                            std::uint64_t seed, std::uint32_t index) {
   for (std::uint32_t draw = 0; draw < kMaxDraws; ++draw)
     if (std::optional<Problem> problem = try_draw(robot, T_task_base, seed, index, draw))
       return *std::move(problem);
-  throw Failure(ErrorCode::NotFound, "robot '" + robot.label + "' has no free start and goal in " +
-                                         std::to_string(kMaxDraws) + " draws of " +
-                                         instance_name(seed, index, 0) +
-                                         ": is its placement right?");
+  throw Failure(ErrorCode::NotFound,
+                "robot '" + robot.description.label + "' has no free start and goal in " +
+                    std::to_string(kMaxDraws) + " draws of " + instance_name(seed, index, 0) +
+                    ": is its placement right?");
 }
 
 }  // namespace kinship::experiments

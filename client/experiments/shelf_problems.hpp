@@ -6,17 +6,9 @@
 #include <string_view>
 
 #include "proto/types/problem.hpp"
-#include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::experiments {
-
-/// A robot of an experiment.
-struct ExperimentRobot {
-  std::string label;
-  kinematics::Chain chain;
-  geometry::RobotShapes shapes;
-};
 
 /// Pose of a robot's base in the task frame from which the shelf task is comfortable: known for
 /// the robots of robots/models, identity for others.
@@ -30,7 +22,7 @@ Eigen::Isometry3d shelf_placement(std::string_view label);
 /// instance is drawn again with the next sub-seed, and its name ends in ".1", ".2" and so on:
 /// equal names, equal scenes.
 /// \throws Failure(NotFound) if no draw out of kMaxDraws can be done by the robot.
-Problem draw_shelf_problem(const ExperimentRobot& robot, const Eigen::Isometry3d& T_task_base,
+Problem draw_shelf_problem(const models::LoadedRobot& robot, const Eigen::Isometry3d& T_task_base,
                            std::uint64_t seed, std::uint32_t index);
 
 inline constexpr std::uint32_t kMaxDraws = 50;

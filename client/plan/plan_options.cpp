@@ -1,15 +1,12 @@
 #include "client/plan/plan_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <map>
 #include <ostream>
-#include <sstream>
 
+#include "client/arguments/robot_options.hpp"
 #include "client/arguments/selection_options.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
-#include "proto/types/pose.hpp"
 
 namespace kinship::plan {
 namespace {
@@ -32,7 +29,6 @@ Exit codes: 0 every line was answered (unsolved is an answer), 1 failed or inter
 
 /// What needs a second look after parsing.
 struct RawOptions {
-  std::string transfer;
   std::string guidance;
   double timeout_s = 5;
   double wait_s = 30;
@@ -41,21 +37,14 @@ struct RawOptions {
   arguments::SelectionArguments selection;
 };
 
-void add_robot_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
-  RobotFiles& robot = options.robot;
+void add_inputs(CLI::App& app, PlanOptions& options) {
   app.add_option("problems", options.problems, "problems, JSON Lines; - is standard input")
       ->required();
-  CLI::Option* const urdf =
-      app.add_option("urdf", robot.urdf, "URDF of a robot without a model folder");
-  CLI::Option* const model =
-      app.add_option("--model", robot.model, "model folder: robot.urdf and chain.toml");
-  model->excludes(urdf);
-  app.add_option("--base", robot.base_link, "base link, with a URDF")->needs(urdf);
-  app.add_option("--tip", robot.tip_link, "tip link, with a URDF")->needs(urdf);
-  app.add_option("--transfer", raw.transfer,
-                 "transfer frame in the tip link, \"x y z qx qy qz qw\", with a URDF")
-      ->needs(urdf);
-  app.add_option("--label", robot.label, "name of the robot for people, with a URDF")->needs(urdf);
+  CLI::Option* const robot =
+      app.add_option("robot", options.robot.source, "URDF file of the robot, or its model folder");
+  app.add_option("--model", options.robot.source, "model folder: robot.urdf and chain.toml")
+      ->excludes(robot);
+  arguments::add_robot_options(app, options.robot);
 }
 
 void add_planning_options(CLI::App& app, PlanOptions& options) {
@@ -105,21 +94,6 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged");
 }
 
-Eigen::Isometry3d read_pose(const std::string& text) {
-  std::istringstream stream(text);
-  PoseArray numbers{};
-  for (double& number : numbers)
-    if (!(stream >> number))
-      throw CLI::ValidationError("--transfer", "'" + text + "' is not seven numbers");
-  std::string rest;
-  if (stream >> rest)
-    throw CLI::ValidationError("--transfer", "more than seven numbers");
-  const Result<Eigen::Isometry3d> pose = from_pose_array(numbers);
-  if (!pose)
-    throw CLI::ValidationError("--transfer", pose.error().message);
-  return *pose;
-}
-
 std::chrono::milliseconds milliseconds_of(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
 }
@@ -138,17 +112,10 @@ void complete_selection(const arguments::SelectionArguments& raw, PlanOptions& o
 
 /// What CLI11 cannot say by itself.
 void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) {
-  RobotFiles& robot = options.robot;
-  if (robot.model.empty() && robot.urdf.empty())
+  if (options.robot.source.empty())
     throw CLI::ValidationError("robot", "give --model DIR, or a URDF with --base and --tip");
-  if (!robot.urdf.empty() && (robot.base_link.empty() || robot.tip_link.empty()))
-    throw CLI::ValidationError("robot", "a URDF needs --base and --tip");
-  if (!raw.transfer.empty())
-    robot.T_tip_transfer = read_pose(raw.transfer);
-  if (robot.label.empty() && !robot.urdf.empty())
-    robot.label = robot.urdf.stem().string();
-  if (!robot.urdf.empty())
-    require_name(check_label(robot.label), "--label");
+  if (!options.robot.label.empty())
+    require_name(check_label(options.robot.label), "--label");
 
   const std::string guidance =
       raw.guidance.empty() ? (options.task.empty() ? "none" : "auto") : raw.guidance;
@@ -179,7 +146,7 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
   RawOptions raw;
   CLI::App app{"kinship-plan: plans motions of one robot, guided by the experience of its fleet"};
   app.footer(kExamples);
-  add_robot_options(app, options, raw);
+  add_inputs(app, options);
   add_planning_options(app, options);
   add_server_options(app, options, raw);
   try {

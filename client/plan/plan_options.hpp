@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -13,23 +12,16 @@
 #include "client/plan/plan_settings.hpp"
 #include "client/planning/arm_choice.hpp"
 #include "proto/types/selection.hpp"
+#include "robots/models/robot_arguments.hpp"
 
 namespace kinship::plan {
 
 enum class GuidanceMode { None, Auto, Require };
 
-/// Where the robot's description is: a model folder, or a URDF file and what it does not say.
-struct RobotFiles {
-  std::filesystem::path model;
-  std::filesystem::path urdf;
-  std::string base_link, tip_link, label;
-  Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
-};
-
 /// The command line of kinship-plan.
 struct PlanOptions {
   std::filesystem::path problems;  ///< "-": standard input
-  RobotFiles robot;
+  models::RobotArguments robot;
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";

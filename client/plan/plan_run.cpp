@@ -10,9 +10,9 @@
 #include "client/plan/attempt_record.hpp"
 #include "client/plan/problem_lines.hpp"
 #include "client/plan/progress.hpp"
-#include "client/plan/robot_files.hpp"
 #include "client/plan/server_line.hpp"
 #include "proto/json/problem_json.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::plan {
 namespace {
@@ -58,10 +58,11 @@ GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain)
 
 int run_plan(const PlanOptions& options, const RunStreams& streams,
              const std::function<bool()>& stop) {
-  const LoadedRobot robot = load_robot(options.robot);
+  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  const PlannedRobot planned_robot = {robot.chain, robot.shapes};
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
   ServerLine server(options, robot.description, streams.messages, stop);
-  const GuidanceWish wish = wish_of(options, robot.planned.chain);
+  const GuidanceWish wish = wish_of(options, robot.chain);
   const NoGuidance why_not = server.fetch_guidance(wish, lines);
   if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
     streams.messages << "nothing is planned: --guidance require, and there is none\n";
@@ -86,7 +87,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     Problem problem = *std::move(line.problem);
     problem.seed += options.seed_offset;
     const PlannedProblem planned = plan_problem(
-        robot.planned, problem, server.guidance(problem.T_task_base), options.settings, stop);
+        planned_robot, problem, server.guidance(problem.T_task_base), options.settings, stop);
     if (planned.interrupted) {
       complete = false;
       break;

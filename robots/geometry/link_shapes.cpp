@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "robots/geometry/capsule_fusion.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/shape_rules.hpp"
 #include "robots/kinematics/urdf_model.hpp"
 
@@ -24,6 +25,20 @@ std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   return std::nullopt;
 }
 
+/// The solid around a scaled mesh; nothing if it is to be left out.
+Result<std::optional<FittedShape>> fit_mesh(const urdf::Mesh& mesh, const MeshSource& meshes) {
+  const auto corners = meshes(mesh.filename);
+  if (!corners)
+    return corners.error();
+  if (!*corners)
+    return std::optional<FittedShape>();
+  const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
+  const Eigen::Matrix3Xd scaled = scale.asDiagonal() * **corners;
+  if (!scaled.allFinite() || scaled.cols() == 0)
+    return invalid("mesh '" + mesh.filename + "': no corners, or not finite once scaled");
+  return std::optional<FittedShape>(fit_shape(scaled));
+}
+
 Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() << pose.position.x, pose.position.y, pose.position.z;
@@ -33,24 +48,38 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   return T;
 }
 
-/// The shape of one collision element; nothing if the element is empty.
-Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision,
-                                                const std::string& link_name, int link) {
+/// The shape of one collision element; nothing if the element is empty or its mesh left out.
+Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision, int link,
+                                                const MeshSource& meshes) {
   if (!collision.geometry)
     return std::optional<LinkShape>();
-  const auto shape = to_shape(*collision.geometry);
-  if (!shape)
-    return invalid("link '" + link_name + "': collision meshes are not supported yet");
-  if (const auto why = broken_rule(*shape))
-    return invalid("link '" + link_name + "': " + *why);
-  const LinkShape result{link, *shape, to_isometry(collision.origin)};
+  LinkShape result;
+  result.link = link;
+  result.T_link_shape = to_isometry(collision.origin);
+  if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(collision.geometry.get())) {
+    const auto fitted = fit_mesh(*mesh, meshes);
+    if (!fitted)
+      return fitted.error();
+    if (!*fitted)
+      return std::optional<LinkShape>();
+    result.shape = (*fitted)->shape;
+    result.T_link_shape = result.T_link_shape * (*fitted)->T_points_shape;
+    result.approximate = true;
+  } else if (const auto shape = to_shape(*collision.geometry)) {
+    result.shape = *shape;
+  } else {
+    return invalid("its collision geometry is of no known kind");
+  }
+  if (const auto why = broken_rule(result.shape))
+    return invalid(*why);
   if (!result.T_link_shape.matrix().allFinite())
-    return invalid("link '" + link_name + "': collision origin is not finite");
+    return invalid("collision origin is not finite");
   return std::optional<LinkShape>(result);
 }
 
 Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
-                                          const kinematics::Chain& chain) {
+                                          const kinematics::Chain& chain,
+                                          const MeshSource& meshes) {
   std::vector<LinkShape> shapes;
   for (const auto& [name, link] : model.links_) {
     const int index = chain.find_link(name);
@@ -59,9 +88,9 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
     for (const auto& collision : link->collision_array) {
       if (!collision)
         continue;
-      const auto shape = read_collision(*collision, name, index);
+      const auto shape = read_collision(*collision, index, meshes);
       if (!shape)
-        return shape.error();
+        return Error{shape.error().code, "link '" + name + "': " + shape.error().message};
       if (*shape)
         shapes.push_back(**shape);
     }
@@ -94,12 +123,20 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
 
 }  // namespace
 
-Result<RobotShapes> read_shapes(const RobotDescription& description,
-                                const kinematics::Chain& chain) {
+Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri) {
+  return invalid("mesh '" + uri + "' is out of reach here");
+}
+
+Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& /*uri*/) {
+  return std::optional<Eigen::Matrix3Xd>();
+}
+
+Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
+                                const MeshSource& meshes) {
   const auto model = kinematics::parse_urdf(description.urdf);
   if (!model)
     return model.error();
-  auto shapes = read_links(**model, chain);
+  auto shapes = read_links(**model, chain, meshes);
   if (!shapes)
     return shapes.error();
   auto pairs = read_pairs(description, chain);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +19,7 @@ struct LinkShape {
   int link = 0;  ///< index into Chain::links()
   Shape shape;
   Eigen::Isometry3d T_link_shape = Eigen::Isometry3d::Identity();  ///< of the shape's centre
+  bool approximate = false;  ///< fitted around a mesh, which lies inside
 };
 
 /// The collision geometry of a robot and the pairs of links that are never checked.
@@ -25,12 +28,26 @@ struct RobotShapes {
   std::vector<std::pair<int, int>> never_colliding;  ///< link indices, first < second
 };
 
+/// Where the corners of a mesh come from, by the URI or file name that the URDF gives.
+/// \return 3 x n, m, in the mesh's frame, not scaled; nothing if the mesh is to be left out; or
+///         why it cannot be had, which names the URI.
+using MeshSource = std::function<Result<std::optional<Eigen::Matrix3Xd>>(const std::string& uri)>;
+
+/// A MeshSource for who must not miss a solid: InvalidInput for every mesh.
+Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri);
+
+/// A MeshSource for who has the URDF's text only and can do without: the links' meshes are missing
+/// among the shapes.
+Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
+
 /// Reads the collision elements of a description's URDF for the links of its chain: boxes,
-/// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule.
+/// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule;
+/// a mesh becomes the box or capsule that fit_shape puts around it, scaled as the URDF says.
 /// Shapes come in the order of the links; a link paired with itself is left out.
-/// \return InvalidInput with the link named for a mesh (not supported yet), a size that is not
-///         finite and positive, or a pair that names no link; what parse_urdf says of the text.
-Result<RobotShapes> read_shapes(const RobotDescription& description,
-                                const kinematics::Chain& chain);
+/// \return InvalidInput with the link named for a size that is not finite and positive, or a pair
+///         that names no link; what parse_urdf says of the text; what `meshes` says of a mesh,
+///         with the link named.
+Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
+                                const MeshSource& meshes = refuse_mesh);
 
 }  // namespace kinship::geometry

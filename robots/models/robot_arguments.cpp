@@ -8,6 +8,9 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/geometry/srdf.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/mesh_files.hpp"
 #include "robots/models/model_folder.hpp"
 #include "robots/models/text_file.hpp"
 
@@ -73,6 +76,21 @@ void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& d
 }
 
 /// \throws Failure with what is wrong.
+void add_pairs(const std::filesystem::path& srdf, RobotDescription& description) {
+  const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
+  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  const auto pairs = geometry::read_srdf(text, chain);
+  if (!pairs)
+    throw Failure(pairs.error().code, srdf.string() + ": " + pairs.error().message);
+  auto& all = description.never_colliding;
+  all.insert(all.end(), pairs->begin(), pairs->end());
+  if (all.size() > kMaxCollisionPairs)
+    throw Failure(ErrorCode::TooLarge,
+                  srdf.string() + ": with the folder's " + std::to_string(all.size()) +
+                      " never-colliding pairs exceed " + std::to_string(kMaxCollisionPairs));
+}
+
+/// \throws Failure with what is wrong.
 RobotDescription put_together(const RobotArguments& arguments) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
@@ -89,9 +107,12 @@ RobotDescription put_together(const RobotArguments& arguments) {
     description.tip_link = arguments.tip_link;
   if (!arguments.label.empty())
     description.label = arguments.label;
+  parse_packages(arguments.packages).value_or_throw();
   replace_frame_and_axes(arguments, description);
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);
+  if (!arguments.srdf.empty())
+    add_pairs(arguments.srdf, description);
   return description;
 }
 

@@ -20,10 +20,13 @@ struct RobotArguments {
   std::string transfer =
       {};                 ///< T_tip_transfer, "x y z qx qy qz qw"; empty: the folder's or identity
   std::string axes = {};  ///< e.g. "x,y,yaw"; empty: the folder's or all six
-  std::vector<std::string> held = {};  ///< "JOINT=VALUE" each
+  std::vector<std::string> held = {};      ///< "JOINT=VALUE" each
+  std::filesystem::path srdf = {};         ///< its disabled pairs are added to the folder's
+  std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
 };
 
-/// Reads the files and puts the description together.
+/// Reads the files and puts the description together. The URDF is taken as text, unless an SRDF
+/// asks for its links.
 /// \return InvalidInput, NotFound or TooLarge with the argument or file named.
 Result<RobotDescription> describe_robot(const RobotArguments& arguments);
 

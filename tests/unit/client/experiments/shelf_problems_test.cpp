@@ -9,8 +9,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/urdf.hpp"
-#include "robots/models/model_folder.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -18,20 +17,16 @@ namespace {
 constexpr std::uint64_t kSeed = 3;
 constexpr std::uint32_t kInstances = 6;
 
-ExperimentRobot robot_named(const std::string& name) {
-  const RobotDescription description =
-      models::read_model_folder(std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name)
-          .value_or_throw();
-  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
-  return {description.label, std::move(chain), std::move(shapes)};
+models::LoadedRobot robot_named(const std::string& name) {
+  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  return models::load_robot({.source = folder}).value_or_throw();
 }
 
-Problem drawn(const ExperimentRobot& robot, std::uint32_t index) {
-  return draw_shelf_problem(robot, shelf_placement(robot.label), kSeed, index);
+Problem drawn(const models::LoadedRobot& robot, std::uint32_t index) {
+  return draw_shelf_problem(robot, shelf_placement(robot.description.label), kSeed, index);
 }
 
-collision::CollisionWorld world_of(const ExperimentRobot& robot, const Problem& problem) {
+collision::CollisionWorld world_of(const models::LoadedRobot& robot, const Problem& problem) {
   return {robot.chain,
           robot.shapes,
           {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}};
@@ -40,7 +35,7 @@ collision::CollisionWorld world_of(const ExperimentRobot& robot, const Problem& 
 class ShelfProblems : public testing::TestWithParam<const char*> {};
 
 TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
-  const ExperimentRobot robot = robot_named(GetParam());
+  const models::LoadedRobot robot = robot_named(GetParam());
   for (std::uint32_t index = 0; index < kInstances; ++index) {
     const Problem problem = drawn(robot, index);
     EXPECT_TRUE(robot.chain.within_limits(problem.start));
@@ -52,7 +47,7 @@ TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
 }
 
 TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
-  const ExperimentRobot robot = robot_named(GetParam());
+  const models::LoadedRobot robot = robot_named(GetParam());
   for (std::uint32_t index = 0; index < kInstances; ++index) {
     const Problem problem = drawn(robot, index);
     collision::CollisionWorld world = world_of(robot, problem);
@@ -70,7 +65,7 @@ TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
 }
 
 TEST_P(ShelfProblems, EqualSeedsGiveEqualProblems) {
-  const ExperimentRobot robot = robot_named(GetParam());
+  const models::LoadedRobot robot = robot_named(GetParam());
   const Problem first = drawn(robot, 1);
   const Problem second = drawn(robot, 1);
   EXPECT_EQ(first.start, second.start);
@@ -83,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(EveryModel, ShelfProblems, testing::Values("panda", "ii
                          [](const auto& model) { return std::string(model.param); });
 
 TEST(ShelfProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
-  const ExperimentRobot panda = robot_named("panda");
-  const ExperimentRobot ur10e = robot_named("ur10e");
+  const models::LoadedRobot panda = robot_named("panda");
+  const models::LoadedRobot ur10e = robot_named("ur10e");
   int compared = 0;
   for (std::uint32_t index = 0; index < kInstances; ++index) {
     const Problem one = drawn(panda, index);
@@ -103,7 +98,7 @@ TEST(ShelfProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
 }
 
 TEST(ShelfProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
-  const ExperimentRobot robot = robot_named("panda");
+  const models::LoadedRobot robot = robot_named("panda");
   Eigen::Isometry3d far_away = Eigen::Isometry3d::Identity();
   far_away.translation().x() = -5;
   try {

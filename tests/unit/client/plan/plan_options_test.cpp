@@ -27,7 +27,7 @@ Parsed parsed(std::vector<const char*> arguments) {
 TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
   const PlanOptions options = parsed({"problems.jsonl", "--model", "panda"}).options();
   EXPECT_EQ(options.problems, "problems.jsonl");
-  EXPECT_EQ(options.robot.model, "panda");
+  EXPECT_EQ(options.robot.source, "panda");
   EXPECT_EQ(options.guidance, GuidanceMode::None);
   EXPECT_FALSE(options.report);
   EXPECT_EQ(options.settings.resolution, 0.05);
@@ -44,11 +44,32 @@ TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
 }
 
 TEST(PlanOptions, ReadsARobotFromAUrdf) {
-  const PlanOptions options =
-      parsed({"p", "dir/arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0.1 0 0 0 1"})
-          .options();
-  EXPECT_EQ(options.robot.label, "arm");
-  EXPECT_EQ(options.robot.T_tip_transfer.translation().z(), 0.1);
+  const models::RobotArguments robot = parsed({"p",          "dir/arm.urdf",
+                                               "--base",     "b",
+                                               "--tip",      "t",
+                                               "--transfer", "0 0 0.1 0 0 0 1",
+                                               "--axes",     "x,y,yaw",
+                                               "--hold",     "finger=0.1",
+                                               "--hold",     "lid=1",
+                                               "--srdf",     "arm.srdf",
+                                               "--package",  "a=/a",
+                                               "--package",  "b=/b"})
+                                           .options()
+                                           .robot;
+  EXPECT_EQ(robot.source, "dir/arm.urdf");
+  EXPECT_EQ(robot.base_link, "b");
+  EXPECT_EQ(robot.tip_link, "t");
+  EXPECT_EQ(robot.transfer, "0 0 0.1 0 0 0 1");
+  EXPECT_EQ(robot.axes, "x,y,yaw");
+  EXPECT_EQ(robot.held, (std::vector<std::string>{"finger=0.1", "lid=1"}));
+  EXPECT_EQ(robot.srdf, "arm.srdf");
+  EXPECT_EQ(robot.packages, (std::vector<std::string>{"a=/a", "b=/b"}));
+}
+
+TEST(PlanOptions, TakesAModelFolderByPlaceAndReplacesWhatItSays) {
+  const models::RobotArguments robot = parsed({"p", "panda", "--label", "cell3"}).options().robot;
+  EXPECT_EQ(robot.source, "panda");
+  EXPECT_EQ(robot.label, "cell3");
 }
 
 TEST(PlanOptions, ReadsWhatConcernsTheServer) {
@@ -110,8 +131,7 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {},
       {"p"},
       {"p", "--model", "m", "arm.urdf"},
-      {"p", "arm.urdf", "--base", "b"},
-      {"p", "--model", "m", "--base", "b"},
+      {"p", "--model", "m", "--label", "two words"},
       {"p", "--model", "m", "--report"},
       {"p", "--model", "m", "--guidance", "auto"},
       {"p", "--model", "m", "--task", "a b"},
@@ -121,8 +141,6 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--task", "a", "--since", "yesterday"},
       {"p", "--model", "m", "--resolution", "0"},
       {"p", "--model", "m", "--domain", "300"},
-      {"p", "arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0"},
-      {"p", "arm.urdf", "--base", "b", "--tip", "t", "--transfer", "0 0 0 0 0 0 9"},
       {"p", "--model", "m", "--bogus"}};
   for (const auto& arguments : wrong) {
     const Parsed answer = parsed(arguments);

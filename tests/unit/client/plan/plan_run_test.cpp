@@ -27,7 +27,7 @@ class PlanRun : public testing::Test {
     std::filesystem::create_directories(folder_);
     const RobotDescription description = test::planar_description();
     std::ofstream(folder_ / "planar.urdf") << description.urdf;
-    options_.robot.urdf = folder_ / "planar.urdf";
+    options_.robot.source = folder_ / "planar.urdf";
     options_.robot.label = "planar";
     options_.robot.base_link = description.base_link;
     options_.robot.tip_link = description.tip_link;
@@ -100,7 +100,7 @@ TEST_F(PlanRun, AnInterruptKeepsWhatIsPlanned) {
 }
 
 TEST_F(PlanRun, AMissingRobotIsNamed) {
-  options_.robot.urdf = folder_ / "nobody.urdf";
+  options_.robot.source = folder_ / "nobody.urdf";
   try {
     run(line("a"));
     FAIL() << "planned without a robot";

@@ -59,11 +59,64 @@ TEST(ReadShapes, FusesCapsules) {
   EXPECT_TRUE(std::holds_alternative<CapsuleShape>(shapes->shapes[0].shape));
 }
 
-TEST(ReadShapes, RefusesAMeshByLinkName) {
-  const auto shapes = read(describe(collision("<mesh filename='package://a/b.stl'/>")));
+const std::string kMesh =
+    collision("<mesh filename='package://a/b.stl' scale='1 2 -0.5'/>", "<origin xyz='1 0 0'/>");
+
+/// A cube of 2 m whose middle lies at z = 10.
+Result<std::optional<Eigen::Matrix3Xd>> cube_for(const std::string& uri) {
+  EXPECT_EQ(uri, "package://a/b.stl");
+  Eigen::Matrix3Xd corners(3, 8);
+  for (Eigen::Index i = 0; i < 8; ++i)
+    corners.col(i) << (i & 1 ? 1 : -1), (i & 2 ? 1 : -1), (i & 4 ? 11 : 9);
+  return std::optional<Eigen::Matrix3Xd>(corners);
+}
+
+Result<RobotShapes> read_with(const std::string& collisions, const MeshSource& meshes) {
+  const RobotDescription description = describe(collisions);
+  return read_shapes(description, kinematics::read_chain(description).value_or_throw(), meshes);
+}
+
+TEST(ReadShapes, RefusesAMeshByLinkNameUnlessToldWhereItIs) {
+  const auto shapes = read(describe(kMesh));
   ASSERT_FALSE(shapes);
   EXPECT_EQ(shapes.error().code, ErrorCode::InvalidInput);
-  EXPECT_EQ(shapes.error().message, "link 'arm': collision meshes are not supported yet");
+  EXPECT_EQ(shapes.error().message, "link 'arm': mesh 'package://a/b.stl' is out of reach here");
+}
+
+TEST(ReadShapes, FitsASolidAroundAScaledMesh) {
+  const auto shapes = read_with(kMesh + collision("<sphere radius='1'/>"), cube_for);
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  ASSERT_EQ(shapes->shapes.size(), 2u);
+  const LinkShape& fitted = shapes->shapes[0];
+  EXPECT_TRUE(fitted.approximate);
+  EXPECT_FALSE(shapes->shapes[1].approximate);
+  const Eigen::Vector3d size = fitted.T_link_shape.linear() * std::get<BoxShape>(fitted.shape).size;
+  EXPECT_TRUE(size.cwiseAbs().isApprox(Eigen::Vector3d(2, 4, 1), 1e-6)) << size.transpose();
+  EXPECT_TRUE(fitted.T_link_shape.translation().isApprox(Eigen::Vector3d(1, 0, -5), 1e-6));
+}
+
+TEST(ReadShapes, LeavesOutMeshesForWhoHasTheTextOnly) {
+  const auto shapes = read_with(kMesh + collision("<sphere radius='1'/>"), leave_out_mesh);
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  ASSERT_EQ(shapes->shapes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<SphereShape>(shapes->shapes[0].shape));
+}
+
+TEST(ReadShapes, NamesTheLinkOfAMeshThatCannotBeHad) {
+  const auto shapes = read_with(kMesh, [](const std::string&) {
+    return Error{ErrorCode::NotFound, "gone"};
+  });
+  ASSERT_FALSE(shapes);
+  EXPECT_EQ(shapes.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(shapes.error().message, "link 'arm': gone");
+}
+
+TEST(ReadShapes, RefusesAScaleThatMakesAMeshEndless) {
+  const auto shapes = read_with(
+      collision("<mesh filename='package://a/b.stl' scale='1e308 1e308 1e308'/>"), cube_for);
+  ASSERT_FALSE(shapes);
+  EXPECT_EQ(shapes.error().message,
+            "link 'arm': mesh 'package://a/b.stl': no corners, or not finite once scaled");
 }
 
 TEST(ReadShapes, TakesAVisualMesh) {

@@ -1,0 +1,89 @@
+#include "robots/geometry/fitted_shape.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace kinship::geometry {
+namespace {
+
+constexpr double kSlack_m = 1e-9;  // rounding must not leave a point outside
+
+struct Candidate {
+  FittedShape fitted;
+  double volume_m3 = 0;
+};
+
+/// Right-handed axes, longest spread last, as columns.
+Eigen::Matrix3d principal_axes(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const Eigen::Vector3d mean = points.rowwise().mean();
+  const Eigen::Matrix3Xd centred = points.colwise() - mean;
+  const Eigen::Matrix3d covariance = centred * centred.transpose();
+  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  if (axes.determinant() < 0)
+    axes.col(0) = -axes.col(0);
+  return axes;
+}
+
+/// Axes with `axes.col(last)` as z, right-handed.
+Eigen::Matrix3d with_z(const Eigen::Matrix3d& axes, Eigen::Index last) {
+  Eigen::Matrix3d turned;
+  turned << axes.col((last + 1) % 3), axes.col((last + 2) % 3), axes.col(last);
+  return turned;
+}
+
+Eigen::Isometry3d pose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& p_axes_center) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = axes;
+  T.translation() = axes * p_axes_center;
+  return T;
+}
+
+Candidate fit_box(const Eigen::Ref<const Eigen::Matrix3Xd>& points, const Eigen::Matrix3d& axes) {
+  const Eigen::Matrix3Xd turned = axes.transpose() * points;
+  const Eigen::Vector3d low = turned.rowwise().minCoeff();
+  const Eigen::Vector3d high = turned.rowwise().maxCoeff();
+  const Eigen::Vector3d size = (high - low).cwiseMax(kMinFitted_m).array() + 2 * kSlack_m;
+  return {{BoxShape{size}, pose(axes, (low + high) / 2)}, size.prod()};
+}
+
+/// A capsule along z of `axes`, about the middle of the points' extents across it.
+Candidate fit_capsule(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                      const Eigen::Matrix3d& axes) {
+  Eigen::Matrix3Xd turned = axes.transpose() * points;
+  Eigen::Vector3d center = (turned.rowwise().minCoeff() + turned.rowwise().maxCoeff()) / 2;
+  turned.colwise() -= center;
+  const Eigen::ArrayXd squared_m2 = turned.topRows<2>().colwise().squaredNorm();
+  const double radius_m = std::max(std::sqrt(squared_m2.maxCoeff()), kMinFitted_m / 2) + kSlack_m;
+  // A point at height z is inside if the end of the axis reaches z less what the sphere covers.
+  const Eigen::ArrayXd covered_m = (radius_m * radius_m - squared_m2).sqrt();
+  const Eigen::ArrayXd z = turned.row(2).transpose();
+  double top = (z - covered_m).maxCoeff(), bottom = (z + covered_m).minCoeff();
+  if (top < bottom)
+    top = bottom = (top + bottom) / 2;
+  center.z() += (top + bottom) / 2;
+  const double length_m = top - bottom + 2 * kSlack_m;
+  const double volume_m3 =
+      std::numbers::pi * radius_m * radius_m * (length_m + 4.0 / 3.0 * radius_m);
+  return {{CapsuleShape{radius_m, length_m}, pose(axes, center)}, volume_m3};
+}
+
+}  // namespace
+
+FittedShape fit_shape(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  std::vector<Candidate> candidates;
+  for (const Eigen::Matrix3d& axes :
+       {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), principal_axes(points)}) {
+    candidates.push_back(fit_box(points, axes));
+    for (Eigen::Index z = 0; z < 3; ++z)
+      candidates.push_back(fit_capsule(points, with_z(axes, z)));
+  }
+  return std::min_element(
+             candidates.begin(), candidates.end(),
+             [](const Candidate& a, const Candidate& b) { return a.volume_m3 < b.volume_m3; })
+      ->fitted;
+}
+
+}  // namespace kinship::geometry

@@ -1,0 +1,59 @@
+#include "robots/geometry/srdf.hpp"
+
+#include <tinyxml2.h>
+
+#include "proto/types/limits.hpp"
+
+namespace kinship::geometry {
+namespace {
+
+Error invalid(int line, const std::string& message) {
+  return {ErrorCode::InvalidInput, "line " + std::to_string(line) + ": " + message};
+}
+
+/// The name in an attribute of a disable_collisions element.
+Result<std::string> read_link(const tinyxml2::XMLElement& element, const char* attribute,
+                              const kinematics::Chain& chain) {
+  const char* const name = element.Attribute(attribute);
+  if (name == nullptr)
+    return invalid(element.GetLineNum(), std::string("disable_collisions has no ") + attribute);
+  if (chain.find_link(name) < 0)
+    return invalid(element.GetLineNum(), std::string("disable_collisions: ") + attribute + " '" +
+                                             name + "' is not a link of the robot");
+  return std::string(name);
+}
+
+}  // namespace
+
+Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_view text,
+                                                                   const kinematics::Chain& chain) {
+  if (text.size() > kMaxSrdfBytes)
+    return Error{ErrorCode::TooLarge, "SRDF of " + std::to_string(text.size()) + " bytes exceeds " +
+                                          std::to_string(kMaxSrdfBytes)};
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    return invalid(document.ErrorLineNum(), std::string("not well-formed XML: ") +
+                                                document.ErrorIDToName(document.ErrorID()));
+  const tinyxml2::XMLElement* const robot = document.FirstChildElement("robot");
+  if (robot == nullptr)
+    return Error{ErrorCode::InvalidInput, "no <robot> element"};
+
+  constexpr const char* kElement = "disable_collisions";
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const auto* element = robot->FirstChildElement(kElement); element != nullptr;
+       element = element->NextSiblingElement(kElement)) {
+    if (pairs.size() == kMaxCollisionPairs)
+      return Error{ErrorCode::TooLarge,
+                   "more than " + std::to_string(kMaxCollisionPairs) + " disable_collisions"};
+    auto first = read_link(*element, "link1", chain);
+    if (!first)
+      return first.error();
+    auto second = read_link(*element, "link2", chain);
+    if (!second)
+      return second.error();
+    pairs.emplace_back(*std::move(first), *std::move(second));
+  }
+  return pairs;
+}
+
+}  // namespace kinship::geometry

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/types/result.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::geometry {
+
+inline constexpr std::size_t kMaxSrdfBytes = 1'000'000;
+
+/// The pairs of links that an SRDF excepts from collision checking: its `disable_collisions`
+/// elements, in their order, whatever their reason. The rest of the document is not looked at;
+/// entities are not expanded.
+/// \param text   untrusted.
+/// \param chain  of the robot that the document is about; its links are those of the URDF.
+/// \return       the pairs; TooLarge above kMaxSrdfBytes or kMaxCollisionPairs; InvalidInput with
+///               the line for what is no XML, no <robot>, a pair without link1 or link2, or a link
+///               that the robot does not have.
+Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_view text,
+                                                                   const kinematics::Chain& chain);
+
+}  // namespace kinship::geometry

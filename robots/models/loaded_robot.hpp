@@ -1,0 +1,28 @@
+#pragma once
+
+#include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+namespace kinship::models {
+
+/// What a server is told of a robot, and what planning needs of it.
+struct LoadedRobot {
+  RobotDescription description;
+  kinematics::Chain chain;
+  geometry::RobotShapes shapes;
+};
+
+/// A robot as a command line names it, with its collision meshes.
+/// \return what describe_robot, kinematics::read_chain, geometry::read_shapes and MeshFiles say.
+Result<LoadedRobot> load_robot(const RobotArguments& arguments);
+
+/// The shapes of a robot that these arguments describe.
+/// \param description, chain  made of the arguments.
+Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
+                                          const RobotDescription& description,
+                                          const kinematics::Chain& chain);
+
+}  // namespace kinship::models

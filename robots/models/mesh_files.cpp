@@ -1,0 +1,85 @@
+#include "robots/models/mesh_files.hpp"
+
+#include <string_view>
+#include <system_error>
+
+#include "robots/geometry/mesh.hpp"
+#include "robots/models/text_file.hpp"
+
+namespace kinship::models {
+namespace {
+
+constexpr std::string_view kPackage = "package://";
+constexpr std::string_view kFile = "file://";
+
+Error wrong(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
+
+}  // namespace
+
+Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments) {
+  PackageFolders folders;
+  for (const std::string& argument : arguments) {
+    const std::string what = "--package '" + argument + "': ";
+    const std::size_t equals = argument.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == argument.size())
+      return wrong(what + "must be NAME=DIR");
+    const std::filesystem::path folder = argument.substr(equals + 1);
+    std::error_code unreadable;
+    if (!std::filesystem::is_directory(folder, unreadable))
+      return Error{ErrorCode::NotFound, what + "no such folder"};
+    if (!folders.emplace(argument.substr(0, equals), folder).second)
+      return wrong(what + "the package is named twice");
+  }
+  return folders;
+}
+
+Result<std::filesystem::path> MeshFiles::find(const std::string& uri) const {
+  const std::string_view text = uri;
+  const auto wrong_uri = [&](const std::string& problem) {
+    return wrong("mesh '" + uri + "': " + problem);
+  };
+  if (text.starts_with(kPackage)) {
+    const std::string_view rest = text.substr(kPackage.size());
+    const std::size_t slash = rest.find('/');
+    if (slash == 0 || slash == std::string_view::npos || slash + 1 == rest.size())
+      return wrong_uri("must be package://NAME/FILE");
+    const std::string name(rest.substr(0, slash));
+    const auto folder = packages_.find(name);
+    if (folder == packages_.end())
+      return wrong_uri("the folder of package '" + name + "' is not known; give --package " + name +
+                       "=DIR");
+    return folder->second / rest.substr(slash + 1);
+  }
+  if (text.starts_with(kFile)) {
+    const std::string_view file = text.substr(kFile.size());
+    if (!file.starts_with('/'))
+      return wrong_uri("must be file:///FILE with a path from the root");
+    return std::filesystem::path(file);
+  }
+  if (text.find("://") != std::string_view::npos)
+    return wrong_uri("is not package://, file:// or a file name");
+  if (text.empty())
+    return wrong_uri("names no file");
+  return urdf_folder_ / uri;
+}
+
+Result<std::optional<Eigen::Matrix3Xd>> MeshFiles::read(const std::string& uri) const {
+  const auto file = find(uri);
+  if (!file)
+    return file.error();
+  const auto named = [&](const Error& error, const std::string& name) {
+    return Error{error.code, "mesh '" + uri + "': " + name + error.message};
+  };
+  try {
+    const std::string ending = file->extension().string();
+    auto corners = geometry::read_mesh(read_text(*file, geometry::kMaxMeshBytes),
+                                       ending.empty() ? ending : ending.substr(1));
+    if (!corners)
+      return named(corners.error(), file->string() + ": ");
+    return std::optional<Eigen::Matrix3Xd>(*std::move(corners));
+  } catch (const Failure& failure) {
+    return named(failure.error(), "");
+  }
+}
+
+}  // namespace kinship::models

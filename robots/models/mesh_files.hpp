@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/types/result.hpp"
+
+namespace kinship::models {
+
+/// Where packages of robot descriptions are, by name.
+using PackageFolders = std::map<std::string, std::filesystem::path>;
+
+/// "NAME=DIR" each.
+/// \return InvalidInput or NotFound with the argument if one is malformed, names a package twice
+///         or a folder that does not exist.
+Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments);
+
+/// The files of a URDF's meshes.
+class MeshFiles {
+ public:
+  /// \param urdf_folder  of the URDF file: relative names start there.
+  MeshFiles(std::filesystem::path urdf_folder, PackageFolders packages)
+      : urdf_folder_(std::move(urdf_folder)), packages_(std::move(packages)) {}
+
+  /// The file of a mesh: package://NAME/FILE, file:///FILE, or a file name.
+  /// \return InvalidInput with the URI, and with the option that helps if it names a package whose
+  ///         folder is not known.
+  Result<std::filesystem::path> find(const std::string& uri) const;
+
+  /// The corners of a mesh: a geometry::MeshSource.
+  /// \return NotFound, InvalidInput or TooLarge with URI, file and limit.
+  Result<std::optional<Eigen::Matrix3Xd>> read(const std::string& uri) const;
+
+ private:
+  std::filesystem::path urdf_folder_;
+  PackageFolders packages_;
+};
+
+}  // namespace kinship::models

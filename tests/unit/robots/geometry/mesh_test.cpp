@@ -1,0 +1,107 @@
+#include "robots/geometry/mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/box_mesh.hpp"
+
+namespace kinship::geometry {
+namespace {
+
+const Eigen::Vector3d kSize(0.25, 0.5, 2);
+const test::BoxMesh kBox(kSize);
+
+/// The smallest and largest corner, or the message.
+std::string extents(std::string_view bytes, std::string_view format) {
+  const auto corners = read_mesh(bytes, format);
+  if (!corners)
+    return corners.error().message;
+  std::ostringstream text;
+  text << corners->rowwise().minCoeff().transpose() << " to "
+       << corners->rowwise().maxCoeff().transpose();
+  return text.str();
+}
+
+const std::string kExtents = "0 0 0 to 0.25  0.5    2";
+
+TEST(ReadMesh, ReadsEveryFormat) {
+  EXPECT_EQ(extents(kBox.binary_stl(), "stl"), kExtents);
+  EXPECT_EQ(extents(kBox.text_stl(), "stl"), kExtents);
+  EXPECT_EQ(extents(kBox.obj(), "obj"), kExtents);
+  EXPECT_EQ(extents(kBox.dae(), "dae"), kExtents);
+}
+
+TEST(ReadMesh, EndingsMayBeInCapitals) {
+  EXPECT_EQ(extents(kBox.binary_stl(), "STL"), kExtents);
+  EXPECT_EQ(extents(kBox.obj(), "Obj"), kExtents);
+  EXPECT_EQ(extents(kBox.dae(), "DAE"), kExtents);
+}
+
+TEST(ReadMesh, AppliesTheUnitOfADaeFileButNotItsUpAxis) {
+  EXPECT_EQ(extents(test::BoxMesh(1000 * kSize).dae(0.001), "dae"), kExtents);
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP"})
+    EXPECT_EQ(extents(kBox.dae(1, up), "dae"), kExtents) << up;
+}
+
+TEST(ReadMesh, PutsMeshesWhereTheNodesOfADaeFilePutThem) {
+  EXPECT_EQ(extents(kBox.dae(1, "Z_UP", "0 -1 0 0 1 0 0 0 0 0 1 5 0 0 0 1"), "dae"),
+            "-0.5    0    5 to    0 0.25    7");
+}
+
+TEST(ReadMesh, RefusesOtherFormats) {
+  EXPECT_EQ(extents("ply\n", "ply"), "format 'ply' is not one of stl, obj, dae");
+  EXPECT_EQ(extents("", ""), "format '' is not one of stl, obj, dae");
+}
+
+TEST(ReadMesh, RefusesWhatIsNoMesh) {
+  for (const char* format : {"stl", "obj", "dae"})
+    for (const std::string& bytes : {std::string(), std::string("x"), std::string(1000, '\xff'),
+                                     std::string("<?xml version='1.0'?><a/>")}) {
+      const auto corners = read_mesh(bytes, format);
+      ASSERT_FALSE(corners) << format;
+      EXPECT_EQ(corners.error().code, ErrorCode::InvalidInput);
+    }
+  EXPECT_EQ(extents("v 0 0 0\nv 1 0 0\nl 1 2\n", "obj"), "holds no triangles");
+}
+
+TEST(ReadMesh, RefusesATruncatedFile) {
+  const std::string whole = kBox.binary_stl();
+  EXPECT_NE(extents(whole.substr(0, whole.size() / 2), "stl"), kExtents);
+  EXPECT_FALSE(read_mesh(whole.substr(0, whole.size() / 2), "stl"));
+  EXPECT_FALSE(read_mesh(kBox.dae().substr(0, 700), "dae"));
+}
+
+TEST(ReadMesh, RefusesCoordinatesThatAreNotFinite) {
+  std::string bytes = kBox.binary_stl();
+  bytes.replace(84 + 12, 4, std::string("\x00\x00\xc0\x7f", 4));  // the first coordinate: NaN
+  EXPECT_EQ(extents(bytes, "stl"), "holds a coordinate that is not finite");
+}
+
+TEST(ReadMesh, RefusesTooManyBytesAndTriangles) {
+  const auto too_long = read_mesh(std::string(kMaxMeshBytes + 1, ' '), "stl");
+  ASSERT_FALSE(too_long);
+  EXPECT_EQ(too_long.error().code, ErrorCode::TooLarge);
+  EXPECT_EQ(too_long.error().message, "64000001 bytes exceed 64000000");
+
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";  // one polygon of many corners
+  many += "f";
+  for (std::size_t i = 0; i < kMaxMeshTriangles + 3; ++i)
+    many += " 1";
+  const auto polygon = read_mesh(many, "obj");
+  ASSERT_FALSE(polygon);
+  EXPECT_EQ(polygon.error().code, ErrorCode::TooLarge) << polygon.error().message;
+  EXPECT_EQ(polygon.error().message, "2000001 triangles or more exceed 2000000");
+}
+
+TEST(ReadMesh, DoesNotExpandEntitiesOfADaeFile) {
+  std::string bomb = "<?xml version='1.0'?><!DOCTYPE COLLADA [<!ENTITY a0 'x'>";
+  for (int i = 1; i < 40; ++i)
+    bomb += "<!ENTITY a" + std::to_string(i) + " '&a" + std::to_string(i - 1) + ";&a" +
+            std::to_string(i - 1) + ";'>";
+  bomb += "]><COLLADA>&a39;</COLLADA>";
+  EXPECT_FALSE(read_mesh(bomb, "dae"));
+}
+
+}  // namespace
+}  // namespace kinship::geometry

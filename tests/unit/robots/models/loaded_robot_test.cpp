@@ -1,0 +1,108 @@
+#include "robots/models/loaded_robot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::models {
+namespace {
+
+const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+
+/// A URDF file of one joint whose arm is a mesh, and an SRDF beside it.
+class MeshRobot : public testing::Test {
+ protected:
+  MeshRobot() {
+    std::ofstream(folder_ / "arm.urdf") << R"(<robot name="arm"><link name="base">
+      <visual><geometry><mesh filename="package://nowhere/base.dae"/></geometry></visual></link>
+      <link name="arm"><collision><geometry>
+        <mesh filename="package://arm/l1.STL" scale="0.001 0.001 0.001"/>
+      </geometry></collision></link>
+      <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+        <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)";
+    std::ofstream(folder_ / "l1.STL", std::ios::binary)
+        << test::BoxMesh({100, 100, 500}).binary_stl();
+    write_srdf("arm");
+    arguments_.source = folder_ / "arm.urdf";
+    arguments_.base_link = "base";
+    arguments_.tip_link = "arm";
+    arguments_.packages = {"arm=" + folder_.path().string()};
+  }
+
+  void write_srdf(const std::string& link2) {
+    std::ofstream(folder_ / "arm.srdf")
+        << "<robot name='arm'><disable_collisions link1='base' link2='" << link2 << "'/></robot>";
+  }
+
+  std::string message() const {
+    const auto robot = load_robot(arguments_);
+    return robot ? "fine" : robot.error().message;
+  }
+
+  test::TemporaryDirectory folder_;
+  RobotArguments arguments_;
+};
+
+TEST_F(MeshRobot, HasSolidsFittedAroundItsMeshes) {
+  const LoadedRobot robot = load_robot(arguments_).value_or_throw();
+  EXPECT_EQ(robot.description.label, "arm");
+  EXPECT_EQ(robot.chain.dof(), 1);
+  ASSERT_EQ(robot.shapes.shapes.size(), 1U);
+  const geometry::LinkShape& shape = robot.shapes.shapes[0];
+  EXPECT_TRUE(shape.approximate);
+  EXPECT_NEAR(std::get<BoxShape>(shape.shape).size.prod(), 0.1 * 0.1 * 0.5, 1e-6);
+  EXPECT_TRUE(shape.T_link_shape.translation().isApprox(Eigen::Vector3d(0.05, 0.05, 0.25), 1e-4));
+}
+
+TEST_F(MeshRobot, WithoutThePackageIsRefusedByLinkUriAndOption) {
+  arguments_.packages.clear();
+  EXPECT_EQ(message(),
+            "link 'arm': mesh 'package://arm/l1.STL': the folder of package 'arm' is not known; "
+            "give --package arm=DIR");
+  EXPECT_TRUE(describe_robot(arguments_));  // whoever needs no geometry is not in the way
+}
+
+TEST_F(MeshRobot, AMalformedPackageIsRefusedEvenIfNothingNeedsIt) {
+  arguments_.packages.emplace_back("unused");
+  EXPECT_EQ(message(), "--package 'unused': must be NAME=DIR");
+  EXPECT_FALSE(describe_robot(arguments_));
+}
+
+TEST_F(MeshRobot, TakesPairsFromAnSrdf) {
+  arguments_.srdf = folder_ / "arm.srdf";
+  const LoadedRobot robot = load_robot(arguments_).value_or_throw();
+  EXPECT_EQ(robot.shapes.never_colliding, (std::vector<std::pair<int, int>>{{0, 1}}));
+}
+
+TEST_F(MeshRobot, NamesTheSrdfThatIsWrong) {
+  const std::string file = (folder_ / "arm.srdf").string();
+  arguments_.srdf = file;
+  write_srdf("leg");
+  EXPECT_EQ(message(),
+            file + ": line 1: disable_collisions: link2 'leg' is not a link of the robot");
+  std::filesystem::remove(file);
+  EXPECT_EQ(message(), file + ": no such file");
+}
+
+TEST(LoadRobot, AnSrdfAddsToThePairsOfAFolder) {
+  const test::TemporaryDirectory folder;
+  std::ofstream(folder / "more.srdf")
+      << "<robot><disable_collisions link1='panda_link0' link2='panda_link7'/></robot>";
+  const LoadedRobot plain = load_robot({.source = kModels + "panda"}).value_or_throw();
+  const LoadedRobot more =
+      load_robot({.source = kModels + "panda", .srdf = folder / "more.srdf"}).value_or_throw();
+  EXPECT_EQ(more.shapes.never_colliding.size(), plain.shapes.never_colliding.size() + 1);
+}
+
+TEST(LoadRobot, SaysWhatIsWrongWithFilesChainAndShapes) {
+  EXPECT_EQ(load_robot({.source = "/nowhere"}).error().code, ErrorCode::NotFound);
+  const auto no_link = load_robot({.source = kModels + "panda", .base_link = "nothing"});
+  ASSERT_FALSE(no_link);
+  EXPECT_NE(no_link.error().message.find("'nothing'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kinship::models

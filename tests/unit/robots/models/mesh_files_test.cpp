@@ -1,0 +1,85 @@
+#include "robots/models/mesh_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "robots/geometry/mesh.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::models {
+namespace {
+
+std::string found(const MeshFiles& files, const std::string& uri) {
+  const auto file = files.find(uri);
+  return file ? file->string() : file.error().message;
+}
+
+TEST(MeshFiles, FindsFilesByPackageRootAndName) {
+  const MeshFiles files("/robots/arm", {{"arm_description", "/opt/arm"}, {"hand", "rel"}});
+  EXPECT_EQ(found(files, "package://arm_description/meshes/l1.STL"), "/opt/arm/meshes/l1.STL");
+  EXPECT_EQ(found(files, "package://hand/h.dae"), "rel/h.dae");
+  EXPECT_EQ(found(files, "file:///opt/l2.stl"), "/opt/l2.stl");
+  EXPECT_EQ(found(files, "meshes/l3.obj"), "/robots/arm/meshes/l3.obj");
+  EXPECT_EQ(found(files, "/opt/l4.obj"), "/opt/l4.obj");
+}
+
+TEST(MeshFiles, NamesUriAndOptionOfWhatItCannotFind) {
+  const MeshFiles files("", {{"arm", "/opt/arm"}});
+  EXPECT_EQ(found(files, "package://hand/h.dae"),
+            "mesh 'package://hand/h.dae': the folder of package 'hand' is not known; give "
+            "--package hand=DIR");
+  EXPECT_EQ(found(files, "package://arm"), "mesh 'package://arm': must be package://NAME/FILE");
+  EXPECT_EQ(found(files, "file://host/h.dae"),
+            "mesh 'file://host/h.dae': must be file:///FILE with a path from the root");
+  EXPECT_EQ(found(files, "http://a/h.dae"),
+            "mesh 'http://a/h.dae': is not package://, file:// or a file name");
+  EXPECT_EQ(found(files, ""), "mesh '': names no file");
+}
+
+TEST(MeshFiles, ReadsAFileByItsEnding) {
+  const test::TemporaryDirectory folder;
+  const test::BoxMesh box({0.25, 0.5, 1});
+  std::ofstream(folder / "box.STL", std::ios::binary) << box.binary_stl();
+  const MeshFiles files(folder.path(), {});
+  const auto corners = files.read("box.STL");
+  ASSERT_TRUE(corners) << corners.error().message;
+  EXPECT_TRUE((*corners)->rowwise().maxCoeff().isApprox(Eigen::Vector3d(0.25, 0.5, 1)));
+}
+
+TEST(MeshFiles, NamesFileAndLimitOfWhatItCannotRead) {
+  const test::TemporaryDirectory folder;
+  const std::string place = folder.path().string() + "/";
+  const MeshFiles files(folder.path(), {{"p", folder.path()}});
+  EXPECT_EQ(files.read("package://p/no.stl").error().message,
+            "mesh 'package://p/no.stl': " + place + "no.stl: no such file");
+  EXPECT_EQ(files.read("package://p/no.stl").error().code, ErrorCode::NotFound);
+
+  std::ofstream(folder / "mesh.ply") << "ply";
+  EXPECT_EQ(files.read("mesh.ply").error().message,
+            "mesh 'mesh.ply': " + place + "mesh.ply: format 'ply' is not one of stl, obj, dae");
+
+  std::ofstream(folder / "huge.stl").close();
+  std::filesystem::resize_file(folder / "huge.stl", geometry::kMaxMeshBytes + 1);  // sparse
+  EXPECT_EQ(files.read("huge.stl").error().message,
+            "mesh 'huge.stl': " + place + "huge.stl: exceeds 64000000 bytes");
+  EXPECT_EQ(files.read("huge.stl").error().code, ErrorCode::TooLarge);
+}
+
+TEST(ParsePackages, ReadsNamesAndFolders) {
+  const test::TemporaryDirectory folder;
+  const std::string place = folder.path().string();
+  const auto packages = parse_packages({"a=" + place, "b=" + place});
+  ASSERT_TRUE(packages) << packages.error().message;
+  EXPECT_EQ(packages->at("a"), place);
+  EXPECT_EQ(parse_packages({"a=" + place, "a=" + place}).error().message,
+            "--package 'a=" + place + "': the package is named twice");
+  EXPECT_EQ(parse_packages({"a=" + place + "/no"}).error().message,
+            "--package 'a=" + place + "/no': no such folder");
+  for (const std::string text : {"a", "=/tmp", "a=", ""})
+    EXPECT_EQ(parse_packages({text}).error().message, "--package '" + text + "': must be NAME=DIR");
+}
+
+}  // namespace
+}  // namespace kinship::models
