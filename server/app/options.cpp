@@ -16,15 +16,39 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     R"(Prints 'ready domain=N store=FILE' when it serves; the log goes to stderr. SIGTERM, SIGINT and
-SIGHUP end it after what was reported is durable. Exit codes: 0 done, 1 failed, 2 wrong usage.
+SIGHUP end it after what was reported is durable. With a verb it does that to the store and ends: no
+server may have the store open. Exit codes: 0 done, 1 failed or damage found, 2 wrong usage, 3 no such file.
 
 Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
-  kinshipd --config /etc/kinship/kinshipd.ini    lines like: store=/var/lib/kinship/fleet.db)";
+  kinshipd --config /etc/kinship/kinshipd.ini    lines like: store=/var/lib/kinship/fleet.db
+  kinshipd check --store fleet.db                reads all of it; --json for programs
+  kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
+  kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>)";
 
 std::size_t default_workers() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+/// The verbs, as subcommands that fill `options`.
+void add_verbs(CLI::App& app, OfflineOptions& options) {
+  const auto add = [&](const char* name, OfflineVerb verb, const char* description) {
+    CLI::App* const command = app.add_subcommand(name, description)->configurable(false);
+    command->add_option("--store", options.store, "SQLite file")->capture_default_str();
+    command->callback([&options, verb] { options.verb = verb; });
+    return command;
+  };
+  app.require_subcommand(0, 1);
+  add("check", OfflineVerb::Check, "Read every page, row and checksum of the store")
+      ->add_flag("--json", options.json, "One document on stdout");
+  add("backup", OfflineVerb::Backup, "Copy the store into a new file")
+      ->add_option("FILE", options.file, "The copy; must not be there yet")
+      ->required();
+  add("restore", OfflineVerb::Restore, "Put a backup in the place of the store; keeps the old one")
+      ->add_option("FILE", options.file, "The backup; it stays as it is")
+      ->required();
+  add("migrate", OfflineVerb::Migrate, "Bring the store to this version's schema; copies it first");
 }
 
 }  // namespace
@@ -44,8 +68,7 @@ std::filesystem::path default_store() {
   return state / "kinship" / "experience.db";
 }
 
-std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* argv,
-                                                 std::ostream& out, std::ostream& err) {
+Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   constexpr std::size_t kMostWorkers = 256;
   ServerOptions options;
   options.store = default_store();
@@ -70,19 +93,31 @@ std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* ar
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
+  OfflineOptions offline;
+  offline.store = options.store;
+  add_verbs(app, offline);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
   }
-  if (options.store.empty() && app.count("--store") > 0) {
+  const bool is_offline = !app.get_subcommands().empty();
+  const bool store_given = app.count("--store") > 0;
+  if (is_offline && store_given) {
+    err << "kinshipd: --store belongs behind the verb\n";
+    return kWrongUsage;
+  }
+  const bool is_empty = is_offline ? offline.store.empty() : options.store.empty();
+  if (is_empty && (store_given || is_offline)) {
     err << "kinshipd: --store is empty; it needs a file\n";
     return kWrongUsage;
   }
-  if (options.store.empty()) {
+  if (is_empty) {
     err << "kinshipd: neither XDG_STATE_HOME nor HOME is set; say where with --store FILE\n";
     return kWrongUsage;
   }
+  if (is_offline)
+    return offline;
   return options;
 }
 

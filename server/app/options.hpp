@@ -21,11 +21,22 @@ struct ServerOptions {
   std::string log_level = "info";
 };
 
+enum class OfflineVerb { Check, Backup, Restore, Migrate };
+
+/// What is to be done to a store that no server has open.
+struct OfflineOptions {
+  OfflineVerb verb = OfflineVerb::Check;
+  std::filesystem::path store;
+  std::filesystem::path file;  ///< the backup that is made, or restored
+  bool json = false;
+};
+
+using Options = std::variant<ServerOptions, OfflineOptions, int>;
+
 /// Options from the command line; what is not there from the file of --config; the domain then
 /// from the environment (KINSHIP_DOMAIN).
 /// \return the options, or an exit code after help or a message was written.
-std::variant<ServerOptions, int> parse_arguments(int argc, const char* const* argv,
-                                                 std::ostream& out, std::ostream& err);
+Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
 /// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither
 /// variable says where that is.

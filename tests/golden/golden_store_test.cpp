@@ -57,6 +57,9 @@ TEST_P(GoldenStore, StillHasItsDistribution) {
   const std::optional<Distribution> found = store_->find_distribution(wanted.id);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->revision, 2U);
+  EXPECT_EQ(found->selection, wanted.selection);
+  EXPECT_EQ(found->sources[0].relation, Relation::Other);
+  EXPECT_EQ(found->sources[0].paths_used, GetParam() < 2 ? 12U : 0U);
   EXPECT_EQ(found->mixture->means(), wanted.mixture->means());
   EXPECT_EQ(found->mixture->covariances(), wanted.mixture->covariances());
 }

@@ -1,15 +1,12 @@
 #include "server/store/sqlite/migrations.hpp"
 
-#include <fcntl.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <string>
 
 #include "proto/types/sha256.hpp"
 #include "server/store/sqlite/clock.hpp"
+#include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -71,25 +68,16 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
                      std::to_string(expected));
 }
 
-void sync_file(const std::filesystem::path& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0)
-    close(descriptor);
-  if (!synced)
-    throw Failure(ErrorCode::Storage, "backup '" + file.string() + "': " + std::strerror(reason));
-}
-
 /// Under its final name there is never half a backup.
 void back_up(Database& database, const std::filesystem::path& file, std::int64_t version) {
-  const std::filesystem::path backup = file.string() + ".backup-" + std::to_string(version);
+  const std::filesystem::path backup = backup_of_version(file, version);
   const std::filesystem::path partial = backup.string() + ".partial";
   std::filesystem::remove(partial);
   make_for_owner(partial);  // VACUUM takes an empty file and keeps its mode
   Statement(database.connection(), "VACUUM INTO ?").bind(1, partial.string()).run();
   sync_file(partial);
   std::filesystem::rename(partial, backup);
+  sync_directory_of(backup);
 }
 
 void apply(Database& database, const Migration& migration) {
@@ -106,16 +94,31 @@ void apply(Database& database, const Migration& migration) {
 
 }  // namespace
 
-void migrate(Database& database, const std::filesystem::path& file,
-             std::span<const Migration> migrations) {
+std::int64_t known_schema(Database& database, const std::filesystem::path& file,
+                          std::span<const Migration> migrations) {
   const std::int64_t version = checked_version(database, file, migrations);
   if (version > 0)
     check_history(database, file, version, migrations);
-  const auto done = static_cast<std::size_t>(version);
-  if (version > 0 && done < migrations.size())
-    back_up(database, file, version);
-  for (const Migration& migration : migrations.subspan(done))
+  return version;
+}
+
+void apply_missing(Database& database, const std::filesystem::path& file,
+                   std::span<const Migration> migrations) {
+  const std::int64_t version = known_schema(database, file, migrations);
+  for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
     apply(database, migration);
+}
+
+std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version) {
+  return file.string() + ".backup-" + std::to_string(version);
+}
+
+void migrate(Database& database, const std::filesystem::path& file,
+             std::span<const Migration> migrations) {
+  const std::int64_t version = known_schema(database, file, migrations);
+  if (version > 0 && version < std::ssize(migrations))
+    back_up(database, file, version);
+  apply_missing(database, file, migrations);
 }
 
 void check_schema(Database& database, const std::filesystem::path& file,

@@ -19,11 +19,24 @@ struct Migration {
 /// All migrations that this binary knows, by version (written by embed_migrations.cmake).
 std::span<const Migration> embedded_migrations();
 
-/// Brings a database to the newest of `migrations`, each in one transaction, and records it with
-/// the SHA-256 of its text. A database that holds something is first copied to
-/// FILE.backup-<its version>.
+/// The schema of a file that this binary can read or migrate; 0 if the file is empty.
 /// \throws Failure(Storage) if the file is no Kinship store, is newer than `migrations`, or was
-///         made by a migration of another text; nothing is changed then.
+///         made by a migration of another text.
+std::int64_t known_schema(Database& database, const std::filesystem::path& file,
+                          std::span<const Migration> migrations);
+
+/// Applies those of `migrations` that a database lacks, each in one transaction, and records each
+/// with the SHA-256 of its text. Keeps no copy.
+/// \throws Failure(Storage) as known_schema() does; nothing is changed then.
+void apply_missing(Database& database, const std::filesystem::path& file,
+                   std::span<const Migration> migrations);
+
+/// Where migrate() copies a database of this version to.
+std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version);
+
+/// Brings a database to the newest of `migrations`, like apply_missing(). A database that holds
+/// something is first copied to FILE.backup-<its version>.
+/// \throws Failure(Storage) as known_schema() does; nothing is changed then.
 void migrate(Database& database, const std::filesystem::path& file,
              std::span<const Migration> migrations);
 

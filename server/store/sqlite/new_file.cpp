@@ -29,6 +29,16 @@ bool is_named(int descriptor, const fs::path& name) {
          open_file.st_dev == named_file.st_dev && open_file.st_ino == named_file.st_ino;
 }
 
+void sync_opened(const fs::path& name, int flags, const std::string& kind) {
+  const int descriptor = open(name.c_str(), flags);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0)
+    close(descriptor);
+  if (!synced)
+    throw Failure(ErrorCode::Storage, kind + " '" + name.string() + "': " + std::strerror(reason));
+}
+
 }  // namespace
 
 NewFile::NewFile(fs::path file) : file_(std::move(file)), part_(file_.string() + ".part") {
@@ -92,16 +102,10 @@ int rename_new(const fs::path& from, const fs::path& to) {
   return unlink(from.c_str()) == 0 ? 0 : errno;
 }
 
+void sync_file(const fs::path& file) { sync_opened(file, O_RDONLY | O_CLOEXEC, "file"); }
+
 void sync_directory_of(const fs::path& file) {
-  const fs::path directory = fs::absolute(file).parent_path();
-  const int descriptor = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0)
-    close(descriptor);
-  if (!synced)
-    throw Failure(ErrorCode::Storage,
-                  "directory '" + directory.string() + "': " + std::strerror(reason));
+  sync_opened(fs::absolute(file).parent_path(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, "directory");
 }
 
 }  // namespace kinship::store

@@ -40,6 +40,9 @@ class NewFile {
 /// Renames without replacing. \return 0, or errno: EEXIST if `to` is there.
 int rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// Brings a file to the disk. \throws Failure(Storage).
+void sync_file(const std::filesystem::path& file);
+
 /// Makes the names in the directory of `file` durable. \throws Failure(Storage).
 void sync_directory_of(const std::filesystem::path& file);
 

@@ -43,4 +43,16 @@ void make_plain(const std::filesystem::path& copy) {
   Database(copy, Access::ReadWrite).execute("PRAGMA journal_mode = DELETE");
 }
 
+void copy_database(Database& source, const std::filesystem::path& target,
+                   const std::function<void(double)>& progress) {
+  constexpr int kPagesOfAStep = 1024;
+  {
+    OnlineBackup backup(source, target);
+    while (!backup.step(kPagesOfAStep))
+      progress(backup.progress());
+  }
+  make_plain(target);
+  progress(1);
+}
+
 }  // namespace kinship::store

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "server/store/sqlite/database.hpp"
@@ -36,5 +37,9 @@ class OnlineBackup {
 
 /// Makes a finished copy one plain file, without a WAL beside it.
 void make_plain(const std::filesystem::path& copy);
+
+/// Copies a whole database that nobody writes to into an empty file, and makes it plain.
+void copy_database(Database& source, const std::filesystem::path& target,
+                   const std::function<void(double)>& progress);
 
 }  // namespace kinship::store

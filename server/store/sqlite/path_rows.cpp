@@ -9,6 +9,8 @@
 namespace kinship::store {
 namespace {
 
+constexpr std::string_view kContentColumns =
+    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
 constexpr std::string_view kColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
     " received_ms FROM path ";
@@ -138,6 +140,21 @@ void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
   for (const std::int64_t path : paths)
     if (const auto key = mark_damaged(batch.database(), path))
       batch.paths_changed(key->task_id, key->robot_id);
+}
+
+PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {
+  // Of every schema: the column that schema 1 lacks is not among these.
+  const auto query = database.cached(std::string(kContentColumns) +
+                                     "FROM path WHERE id > ? AND damaged = 0 ORDER BY id LIMIT ?");
+  query->bind_all(after_id, limit);
+  PathsChecked checked;
+  while (query->step()) {
+    checked.last_id = query->column_integer(0);
+    ++checked.paths;
+    if (!read_row(*query))
+      checked.damaged.push_back(checked.last_id);
+  }
+  return checked;
 }
 
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {

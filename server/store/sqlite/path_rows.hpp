@@ -38,6 +38,17 @@ PathsRead select_path(Database& database, std::int64_t id);
 /// is aside already stays so; one that is retired was out of the counts before.
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
 
+/// A part of a full check.
+struct PathsChecked {
+  std::int64_t last_id = 0;
+  std::uint64_t paths = 0;
+  std::vector<std::int64_t> damaged;
+};
+
+/// Decodes the next paths with id > after_id, at most `limit`, retired ones too; those set aside
+/// are left out.
+PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit);
+
 /// Those of the newest `count` paths of all that are damaged and not set aside yet.
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);
 

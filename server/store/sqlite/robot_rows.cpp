@@ -163,7 +163,7 @@ RobotsRead select_robots(Database& database) {
     if (std::optional<RobotRecord> robot = read_row(database, *query))
       read.robots.push_back(std::move(*robot));
     else
-      ++read.damaged;
+      read.damaged.emplace_back(query->column_text(2));
   }
   return read;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "proto/types/result.hpp"
@@ -16,10 +17,10 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
 /// \throws Failure(Storage) if the row is damaged.
 std::optional<RobotRecord> select_robot(Database& database, const Digest& robot);
 
-/// Robots by label, and how many more there are whose rows are damaged.
+/// Robots by label, and the labels of those whose rows are damaged.
 struct RobotsRead {
   std::vector<RobotRecord> robots;
-  std::size_t damaged = 0;
+  std::vector<std::string> damaged;
 };
 RobotsRead select_robots(Database& database);
 

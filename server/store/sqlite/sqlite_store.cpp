@@ -111,7 +111,7 @@ class SqliteStore : public Store {
   std::vector<RobotRecord> robots() const override {
     const ReaderPool::Lease reader = readers_.lease();
     RobotsRead read = select_robots(*reader);
-    damaged_robots_ = read.damaged;
+    damaged_robots_ = read.damaged.size();
     return std::move(read.robots);
   }
 

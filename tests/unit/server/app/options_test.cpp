@@ -19,7 +19,7 @@ class Options : public testing::Test {
     setenv("XDG_STATE_HOME", "/state", 1);
   }
 
-  std::variant<ServerOptions, int> parse(std::vector<const char*> arguments) {
+  std::variant<ServerOptions, OfflineOptions, int> parse(std::vector<const char*> arguments) {
     arguments.insert(arguments.begin(), "kinshipd");
     out_.str("");
     err_.str("");
@@ -81,6 +81,30 @@ TEST_F(Options, WrongUsageIsSaidOnTheErrorStream) {
                                              {"serve"}}) {
     EXPECT_EQ(code(arguments), kWrongUsage);
     EXPECT_EQ(out_.str(), "");
+    EXPECT_NE(err_.str(), "");
+  }
+}
+
+TEST_F(Options, AVerbComesWithItsStoreAndFile) {
+  const auto verb = [this](const std::vector<const char*>& arguments) {
+    return std::get<OfflineOptions>(parse(arguments));
+  };
+  const OfflineOptions restore = verb({"restore", "--store", "fleet.db", "copy.db"});
+  EXPECT_EQ(restore.verb, OfflineVerb::Restore);
+  EXPECT_EQ(restore.store, "fleet.db");
+  EXPECT_EQ(restore.file, "copy.db");
+  EXPECT_EQ(verb({"backup", "copy.db"}).store, "/state/kinship/experience.db");
+  EXPECT_TRUE(verb({"check", "--json"}).json);
+  EXPECT_EQ(verb({"migrate"}).verb, OfflineVerb::Migrate);
+  for (const std::vector<const char*>& arguments :
+       std::vector<std::vector<const char*>>{{"backup"},
+                                             {"restore", "--store", "fleet.db"},
+                                             {"check", "copy.db"},
+                                             {"check", "migrate"},
+                                             {"check", "--store", ""},
+                                             {"migrate", "--json"},
+                                             {"--store", "fleet.db", "check"}}) {
+    EXPECT_EQ(code(arguments), kWrongUsage) << arguments[0];
     EXPECT_NE(err_.str(), "");
   }
 }

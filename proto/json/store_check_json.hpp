@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "proto/types/store_check.hpp"
+
+namespace kinship::json {
+
+/// The document of `kinshipd check --json`. Member names are those of the struct and stay.
+std::string to_json(const StoreCheck& check);
+
+}  // namespace kinship::json

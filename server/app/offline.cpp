@@ -1,0 +1,119 @@
+#include "server/app/offline.hpp"
+
+#include <iomanip>
+#include <ostream>
+#include <string>
+
+#include "proto/json/store_check_json.hpp"
+#include "proto/types/failure.hpp"
+#include "server/store/maintenance.hpp"
+
+namespace kinship::app {
+namespace {
+
+/// Whole percents on one line of a terminal, which is empty again at the end.
+class ProgressLine {
+ public:
+  ProgressLine(std::ostream& err, bool show) : err_(&err), show_(show) {}
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() {
+    if (percent_ >= 0)
+      *err_ << "\r     \r" << std::flush;
+  }
+
+  void show(double progress) {
+    const int percent = static_cast<int>(100 * progress);
+    if (!show_ || percent == percent_)
+      return;
+    percent_ = percent;
+    *err_ << '\r' << std::setw(3) << percent << " %" << std::flush;
+  }
+
+ private:
+  std::ostream* err_;
+  bool show_;
+  int percent_ = -1;
+};
+
+void print(const StoreCheck& check, std::ostream& out) {
+  out << "store '" << check.file << "': schema " << check.schema_version << ", epoch "
+      << check.epoch.text() << ", " << check.bytes << " bytes\n";
+  for (const StoreCheck::Table& table : check.tables)
+    out << "  " << std::left << std::setw(24) << table.name << std::right << std::setw(12)
+        << table.rows << " rows" << std::setw(8) << table.problems << " problems\n";
+  out << check.retired_paths << " paths are retired, " << check.damaged_paths
+      << " were set aside as damaged before\n";
+  for (const std::string& message : check.messages)
+    out << message << '\n';
+  if (check.problems > check.messages.size())
+    out << "and " << check.problems - check.messages.size() << " more\n";
+  out << (check.problems == 0 ? "sound" : std::to_string(check.problems) + " problems") << '\n';
+}
+
+int check(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  const StoreCheck found = store::check_store(options.store, progress);
+  if (options.json)
+    out << json::to_json(found) << '\n';
+  else
+    print(found, out);
+  return found.problems == 0 ? kDone : kFailed;
+}
+
+int backup(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  const std::uint64_t bytes = store::backup_store(options.store, options.file, progress);
+  out << "backup '" << options.file.string() << "': " << bytes << " bytes\n";
+  return kDone;
+}
+
+int restore(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  const store::Restored restored = store::restore_store(options.file, options.store, progress);
+  out << "store '" << options.store.string() << "': restored from '" << options.file.string()
+      << "', epoch " << restored.epoch.text() << '\n';
+  if (!restored.replaced.empty())
+    out << "the store that was there is now '" << restored.replaced.string() << "'\n";
+  for (const std::filesystem::path& leftover : restored.leftovers)
+    out << "left by an earlier restore: '" << leftover.string() << "'\n";
+  return kDone;
+}
+
+int migrate(const OfflineOptions& options, std::ostream& out) {
+  const store::Migrated migrated = store::migrate_store(options.store);
+  out << "store '" << options.store.string() << "': schema " << migrated.to;
+  if (migrated.from == migrated.to)
+    out << " already\n";
+  else
+    out << ", was " << migrated.from << "; as it was: '" << migrated.backup.string() << "'\n";
+  return kDone;
+}
+
+int run(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  switch (options.verb) {
+    case OfflineVerb::Check:
+      return check(options, progress, out);
+    case OfflineVerb::Backup:
+      return backup(options, progress, out);
+    case OfflineVerb::Restore:
+      return restore(options, progress, out);
+    case OfflineVerb::Migrate:
+      return migrate(options, out);
+  }
+  return kWrongUsage;
+}
+
+}  // namespace
+
+int run_offline(const OfflineOptions& options, std::ostream& out, std::ostream& err,
+                bool show_progress) {
+  try {
+    ProgressLine line(err, show_progress);
+    return run(
+        options, [&line](double progress) { line.show(progress); }, out);
+  } catch (const Failure& failure) {
+    err << "kinshipd: " << failure.what() << '\n';
+    // A server that has the store open is a failure here; code 4 speaks of servers that answer.
+    return failure.code() == ErrorCode::Unavailable ? kFailed : exit_code(failure.code());
+  }
+}
+
+}  // namespace kinship::app

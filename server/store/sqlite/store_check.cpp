@@ -1,0 +1,240 @@
+#include "server/store/sqlite/store_check.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/sqlite/distribution_rows.hpp"
+#include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/robot_rows.hpp"
+#include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::size_t kMostMessages = 100;
+constexpr double kPagesShare = 0.5;  // of the time: SQLite's own check, which tells no progress
+constexpr double kPathsShare = 0.4;
+
+/// A rule that rows must not break, as a query for the words about each row that does.
+struct Rule {
+  std::string table;
+  std::string query;
+};
+
+std::vector<Rule> rules_of(std::int64_t schema) {
+  const std::string in_use = schema > 1 ? "damaged = 0 AND retired_ms IS NULL" : "damaged = 0";
+  const std::string pair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
+  std::vector<Rule> rules = {
+      {"path",
+       "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
+       " 'its attempt does not name it') FROM path "
+       "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid "
+       "WHERE damaged = 0 AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id)"},
+      {"attempt",
+       "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
+       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL"},
+      {"attempt",
+       "SELECT 'attempt ' || attempt.id || ': its path is of another robot or task' FROM attempt "
+       "JOIN path ON path.id = attempt.path_id "
+       "WHERE (path.task_id, path.robot_id) <> (attempt.task_id, attempt.robot_id)"},
+      {"experience",
+       "SELECT " + pair +
+           "'says ' || paths || ' paths, has ' || found FROM (SELECT *, (SELECT count(*) FROM path "
+           "WHERE path.task_id = experience.task_id AND path.robot_id = experience.robot_id AND " +
+           in_use + ") AS found FROM experience) WHERE paths <> found"},
+      {"experience",
+       "SELECT " + pair +
+           "'says ' || attempts || ' attempts, has ' || found FROM (SELECT *, (SELECT count(*) "
+           "FROM attempt WHERE attempt.task_id = experience.task_id "
+           "AND attempt.robot_id = experience.robot_id) AS found FROM experience) "
+           "WHERE attempts <> found"}};
+  if (schema < 2)
+    return rules;
+  rules.push_back({"path",
+                   "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
+                   "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                   "WHERE damaged = 0 AND path.received_ms <> attempt.received_ms"});
+  rules.push_back({"evicted_distribution",
+                   "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
+                   "FROM evicted_distribution JOIN distribution USING (digest)"});
+  for (const auto& [arm, code] : {std::pair("guided", "1"), std::pair("control", "2")}) {
+    const std::string name = arm;
+    // Sums of doubles depend on their order in the last bits.
+    const auto differs = [&](const std::string& sum) {
+      return "abs(" + name + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
+    };
+    rules.push_back(
+        {"experience",
+         "SELECT " + pair + "'the sums of its " + name +
+             " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
+             " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
+             " total(collision_checks) AS found_checks,"
+             " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
+             " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
+             "FROM attempt WHERE arm = " +
+             code +
+             " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
+             "WHERE " +
+             name + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
+             differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
+             differs("_checks_of_solved")});
+  }
+  return rules;
+}
+
+class Checker {
+ public:
+  Checker(Database& database, const std::function<void(double)>& progress)
+      : database_(&database), progress_(&progress) {}
+
+  StoreCheck run(const std::filesystem::path& file);
+
+ private:
+  void note(const std::string& table, const std::string& message);
+  /// What SQLite cannot read is a problem of the table; the rest is checked all the same.
+  template <typename Part>
+  void guarded(const std::string& table, Part part);
+  void count_tables();
+  void check_structure();
+  void check_robots();
+  void check_paths();
+  void check_distributions();
+  void check_epoch();
+
+  Database* database_;
+  const std::function<void(double)>* progress_;
+  std::int64_t schema_ = 0;
+  StoreCheck check_;
+};
+
+StoreCheck Checker::run(const std::filesystem::path& file) {
+  check_.file = file.string();
+  schema_ = known_schema(*database_, file, embedded_migrations());
+  if (schema_ == 0)
+    throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
+  check_.schema_version = static_cast<std::uint32_t>(schema_);
+  count_tables();
+  guarded("", [&] { check_structure(); });
+  guarded("setting", [&] { check_epoch(); });
+  guarded("robot", [&] { check_robots(); });
+  (*progress_)(kPagesShare);
+  guarded("path", [&] { check_paths(); });
+  guarded("distribution", [&] { check_distributions(); });
+  for (const Rule& rule : rules_of(schema_))
+    guarded(rule.table, [&] {
+      Statement query(database_->connection(), rule.query);
+      while (query.step())
+        note(rule.table, std::string(query.column_text(0)));
+    });
+  (*progress_)(1);
+  return std::move(check_);
+}
+
+void Checker::note(const std::string& table, const std::string& message) {
+  ++check_.problems;
+  const auto found = std::ranges::find(check_.tables, table, &StoreCheck::Table::name);
+  if (found != check_.tables.end())
+    ++found->problems;
+  if (check_.messages.size() < kMostMessages)
+    check_.messages.push_back((table.empty() ? "" : table + ": ") + message);
+}
+
+template <typename Part>
+void Checker::guarded(const std::string& table, Part part) {
+  try {
+    part();
+  } catch (const SqliteError& error) {
+    note(table, error.what());
+  }
+}
+
+void Checker::count_tables() {
+  std::vector<std::string> names;
+  Statement tables(database_->connection(),
+                   "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (tables.step())
+    names.emplace_back(tables.column_text(0));
+  for (const std::string& name : names) {
+    check_.tables.push_back({name, 0, 0});
+    guarded(name, [&] {
+      check_.tables.back().rows =
+          static_cast<std::uint64_t>(database_->integer("SELECT count(*) FROM \"" + name + "\""));
+    });
+  }
+  guarded("path", [&] {
+    check_.damaged_paths = static_cast<std::uint64_t>(
+        database_->integer("SELECT count(*) FROM path WHERE damaged = 1"));
+    if (schema_ > 1)
+      check_.retired_paths = static_cast<std::uint64_t>(
+          database_->integer("SELECT count(*) FROM path WHERE retired_ms IS NOT NULL"));
+  });
+  check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
+                                            database_->integer("PRAGMA page_size"));
+}
+
+void Checker::check_structure() {
+  Statement integrity(database_->connection(), "PRAGMA integrity_check");
+  while (integrity.step())
+    if (integrity.column_text(0) != "ok")
+      note("", std::string(integrity.column_text(0)));
+  Statement foreign(database_->connection(), "PRAGMA foreign_key_check");
+  while (foreign.step()) {
+    const std::string table(foreign.column_text(0));
+    const std::string row =
+        foreign.column_is_null(1) ? "a row" : "row " + std::to_string(foreign.column_integer(1));
+    note(table, row + " names a " + std::string(foreign.column_text(2)) + " that is not there");
+  }
+}
+
+void Checker::check_epoch() {
+  Statement epoch(database_->connection(), "SELECT value FROM setting WHERE key = 'epoch'");
+  const std::optional<Uuid> parsed =
+      epoch.step() ? Uuid::parse(epoch.column_text(0)) : std::nullopt;
+  if (parsed)
+    check_.epoch = *parsed;
+  else
+    note("setting", "the store's epoch is missing or no UUID");
+}
+
+void Checker::check_robots() {
+  for (const std::string& label : select_robots(*database_).damaged)
+    note("robot", "'" + label + "': its row is damaged (checksum)");
+}
+
+void Checker::check_paths() {
+  constexpr std::int64_t kPage = 1000;
+  const std::int64_t last =
+      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM path"), 1);
+  for (PathsChecked page = store::check_paths(*database_, 0, kPage); page.paths > 0;
+       page = store::check_paths(*database_, page.last_id, kPage)) {
+    for (const std::int64_t id : page.damaged)
+      note("path", std::to_string(id) + ": damaged (checksum)");
+    (*progress_)(kPagesShare +
+                 kPathsShare * static_cast<double>(page.last_id) / static_cast<double>(last));
+  }
+}
+
+void Checker::check_distributions() {
+  std::vector<Digest> ids;
+  Statement query(database_->connection(), "SELECT digest FROM distribution ORDER BY id");
+  while (query.step())
+    ids.push_back(id_of<Digest>(query.column_blob(0)));
+  for (const Digest& id : ids)
+    guarded("distribution", [&] {
+      if (!select_distribution(*database_, id).distribution)
+        note("distribution", id.hex() + ": damaged (checksum)");
+    });
+}
+
+}  // namespace
+
+StoreCheck check_database(Database& database, const std::filesystem::path& file,
+                          const std::function<void(double)>& progress) {
+  return Checker(database, progress).run(file);
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,67 @@
+#include "server/app/offline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Offline : public testing::Test {
+ protected:
+  Offline() { fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", store_); }
+
+  int run(OfflineVerb verb, const fs::path& store, const fs::path& file = {}, bool json = false) {
+    out_.str("");
+    err_.str("");
+    return run_offline({verb, store, file, json}, out_, err_, false);
+  }
+
+  const test::TemporaryDirectory directory_;
+  const fs::path store_ = directory_ / "store.db";
+  const fs::path copy_ = directory_ / "copy.db";
+  std::ostringstream out_, err_;
+};
+
+TEST_F(Offline, TheVerbsDoWhatTheySay) {
+  EXPECT_EQ(run(OfflineVerb::Migrate, store_), kDone) << err_.str();
+  EXPECT_NE(out_.str().find("was 1; as it was: '" + store_.string() + ".backup-1'"),
+            std::string::npos)
+      << out_.str();
+  EXPECT_EQ(run(OfflineVerb::Backup, store_, copy_), kDone) << err_.str();
+  EXPECT_EQ(run(OfflineVerb::Restore, store_, copy_), kDone) << err_.str();
+  EXPECT_NE(out_.str().find(store_.string() + ".replaced-"), std::string::npos) << out_.str();
+  EXPECT_EQ(run(OfflineVerb::Check, store_), kDone);
+  EXPECT_NE(out_.str().find("sound"), std::string::npos) << out_.str();
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(Offline, ACheckIsOneDocumentForPrograms) {
+  EXPECT_EQ(run(OfflineVerb::Check, store_, {}, true), kDone);
+  EXPECT_EQ(out_.str().find("{\"file\":\"" + store_.string() + "\",\"epoch\":\""), 0U);
+  EXPECT_NE(out_.str().find("{\"name\":\"path\",\"rows\":7,\"problems\":0}"), std::string::npos);
+  EXPECT_NE(out_.str().find("\"problems\":0,\"messages\":[]}\n"), std::string::npos) << out_.str();
+}
+
+TEST_F(Offline, ExitCodesTellWhatWentWrong) {
+  EXPECT_EQ(run(OfflineVerb::Check, directory_ / "none.db"), kNotFound);
+  EXPECT_NE(err_.str().find("none.db"), std::string::npos);
+  EXPECT_EQ(run(OfflineVerb::Restore, store_, directory_ / "none.db"), kNotFound);
+  EXPECT_EQ(run(OfflineVerb::Backup, store_, store_), kFailed);  // is there already
+  EXPECT_EQ(run(OfflineVerb::Restore, store_, store_), kWrongUsage);
+  EXPECT_EQ(out_.str(), "");
+}
+
+TEST_F(Offline, ATerminalSeesHowFarItIs) {
+  EXPECT_EQ(run_offline({OfflineVerb::Check, store_, {}, false}, out_, err_, true), kDone);
+  EXPECT_NE(err_.str().find("100 %"), std::string::npos);
+  EXPECT_EQ(err_.str().substr(err_.str().size() - 7), "\r     \r");
+}
+
+}  // namespace
+}  // namespace kinship::app
