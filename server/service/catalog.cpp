@@ -9,6 +9,7 @@
 #include "proto/types/names.hpp"
 #include "server/service/fetch_reply.hpp"
 #include "server/service/freshness.hpp"
+#include "server/service/selected_experience.hpp"
 
 namespace kinship::service {
 namespace {
@@ -17,14 +18,6 @@ using Stage = Flight::Stage;
 using Priority = WorkerPool::Priority;
 
 constexpr std::chrono::milliseconds kLookRetry(50);  // after the desk had no room
-
-/// Whether a fit could say more than this distribution: a mixture grows old by growth, a failure
-/// by any change.
-bool is_behind(const Distribution& distribution,
-               const std::vector<store::ExperienceSummary>& experience) {
-  return distribution.state == DistributionState::Ready ? has_grown(distribution, experience)
-                                                        : has_changed(distribution, experience);
-}
 
 }  // namespace
 
@@ -148,9 +141,17 @@ void Catalog::look(const Digest& id) {
     if (!known)
       if (std::optional<Distribution> stored = parts_.store.find_distribution(id))
         known = with_distribution(std::move(*stored));
-    const std::vector<store::ExperienceSummary> experience = parts_.store.experience(key.task);
-    if (experience.empty() && !known)
-      return end_flight(id, no_experience(key.task));
+    for (const Digest& source : key.sources)
+      if (const auto found = parts_.robots.find(source);
+          !found && found.error().code == ErrorCode::NotFound)
+        return end_flight(id, without_distribution(FetchStatus::Refused,
+                                                   "selected source: " + found.error().message));
+    const std::vector<store::ExperienceSummary> all = parts_.store.experience(key.task);
+    if (known && is_retired(*known->distribution, all))
+      known = nullptr;
+    const std::vector<store::ExperienceSummary> experience = selected_experience(key, all);
+    if (count_paths(experience) == 0 && !known)
+      return end_flight(id, no_experience(key));
     settle(id, known, experience, changes);
   } catch (const std::exception& exception) {
     end_flight(id, busy(exception.what()));
@@ -233,7 +234,7 @@ void Catalog::run_fit(const Digest& id) {
     if (outcome.kind == FitOutcome::Kind::Abandoned)
       return end_flight(id, busy("the server is stopping"));
     if (outcome.kind == FitOutcome::Kind::NoExperience)
-      return end_flight(id, no_experience(key.task));
+      return end_flight(id, no_experience(key));
     land(id, keep(std::move(outcome.distribution).value()), changes);
   } catch (const std::exception& exception) {  // the store cannot be read
     end_flight(id, busy(exception.what()));

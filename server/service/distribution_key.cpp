@@ -1,5 +1,6 @@
 #include "server/service/distribution_key.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include "proto/types/limits.hpp"
@@ -15,6 +16,18 @@ namespace {
 
 std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{value}); }
 
+/// What is wrong with a selection, or nothing.
+std::optional<Error> check_selection(const Selection& selection) {
+  if (selection.sources.size() > kMaxSelectedSources)
+    return Error{ErrorCode::InvalidInput, std::to_string(selection.sources.size()) +
+                                              " selected sources exceed " +
+                                              std::to_string(kMaxSelectedSources)};
+  if (selection.since_ms < 0)
+    return Error{ErrorCode::InvalidInput,
+                 "since: " + std::to_string(selection.since_ms) + " ms is below 0"};
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<DistributionKey> make_key(const FetchRequest& request) {
@@ -24,7 +37,18 @@ Result<DistributionKey> make_key(const FetchRequest& request) {
   if (!profile)
     return Error{ErrorCode::InvalidInput,
                  "profile '" + request.profile + "' is not one of default, paper"};
-  DistributionKey key{request.task, request.robot, std::nullopt, *profile};
+  if (const auto error = check_selection(request.selection))
+    return *error;
+  DistributionKey key{request.task,
+                      request.robot,
+                      std::nullopt,
+                      *profile,
+                      request.selection.sources,
+                      request.selection.since_ms};
+  if (request.selection.weighting)
+    key.profile.density.weighting = *request.selection.weighting;
+  std::sort(key.sources.begin(), key.sources.end());
+  key.sources.erase(std::unique(key.sources.begin(), key.sources.end()), key.sources.end());
   if (!request.T_task_base)
     return key;
   const Eigen::Isometry3d& T_task_base = *request.T_task_base;
@@ -50,14 +74,20 @@ Digest identify(const DistributionKey& key) {
   const DensityParameters& density = key.profile.density;
   sha.add(bits(density.components)).add(density.covariance_floor);
   sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
+  sha.add(static_cast<std::uint64_t>(density.weighting));
   sha.add(key.profile.recommended_share).add(key.profile.seed);
+  sha.add(std::uint64_t{key.sources.size()});
+  for (const Digest& source : key.sources)
+    sha.add(source);
+  sha.add(static_cast<std::uint64_t>(key.since_ms)).add(bits(kPoolVersion));
   sha.add(bits(transfer::kTransferVersion)).add(bits(inverse::kInverseVersion));
   sha.add(bits(density::kDensityVersion));
   return sha.finish();
 }
 
 std::string engines() {
-  return "transfer " + std::to_string(transfer::kTransferVersion) + ", inverse " +
+  return "pool " + std::to_string(kPoolVersion) + ", transfer " +
+         std::to_string(transfer::kTransferVersion) + ", inverse " +
          std::to_string(inverse::kInverseVersion) + ", density " +
          std::to_string(density::kDensityVersion);
 }

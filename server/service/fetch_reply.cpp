@@ -14,8 +14,13 @@ FetchReply without_distribution(FetchStatus status, const std::string& message) 
   return reply;
 }
 
-FetchReply no_experience(const std::string& task) {
-  return without_distribution(FetchStatus::NoExperience, "no paths of task '" + task + "'");
+FetchReply no_experience(const DistributionKey& key) {
+  std::string message = "no paths of task '" + key.task + "'";
+  if (!key.sources.empty())
+    message += " of the " + std::to_string(key.sources.size()) + " selected robots";
+  if (key.since_ms > 0)
+    message += " received since " + std::to_string(key.since_ms) + " ms";
+  return without_distribution(FetchStatus::NoExperience, message);
 }
 
 SharedReply shared(FetchReply reply) {

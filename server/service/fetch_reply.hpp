@@ -3,6 +3,7 @@
 #include <string>
 
 #include "proto/types/conversations.hpp"
+#include "server/service/distribution_key.hpp"
 #include "server/service/flight.hpp"
 
 namespace kinship::service {
@@ -10,7 +11,8 @@ namespace kinship::service {
 /// Pending, NoExperience, UnknownRobot, Busy or Refused, and why.
 FetchReply without_distribution(FetchStatus status, const std::string& message);
 
-FetchReply no_experience(const std::string& task);
+/// NoExperience, and of what.
+FetchReply no_experience(const DistributionKey& key);
 
 SharedReply shared(FetchReply reply);
 SharedReply shared_pending();

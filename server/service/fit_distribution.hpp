@@ -17,8 +17,8 @@ struct FitContext {
   const store::Store& store;
   RobotRegistry& robots;
   const Clock& clock;
-  /// Of all sources together. From more than that each source contributes its share, evenly over
-  /// the order of arrival, and the distribution's reason says so.
+  /// Of all sources together. From more than that each source contributes its share (share_paths),
+  /// evenly over the order of arrival, and the distribution's reason says so.
   std::size_t max_paths = 4000;
 };
 
@@ -28,12 +28,11 @@ struct FitOutcome {
   std::optional<Distribution> distribution;  ///< present exactly if Fitted; its state may be Failed
 };
 
-/// Reads the experience of a task, transfers it to the target robot and fits a mixture. The
-/// revision is left 0. Paths and robots that cannot be used are left out, and the reason says so.
-/// Equal store content and key: equal distribution, but for the times.
-/// \param stop  looked at between paths: Abandoned.
-/// \throws Failure(NotFound or InvalidInput) for the target robot; Failure(Storage).
-/// Source: Lehner et al., ICRA 2022, section IV.
+/// Reads the selected experience of a task, transfers it to the target robot and fits a mixture.
+/// The revision is left 0. Paths and robots that cannot be used are left out, and the reason says
+/// so. Equal store content and key: equal distribution, but for the times. \param stop  looked at
+/// between paths: Abandoned. \throws Failure(NotFound or InvalidInput) for the target robot;
+/// Failure(Storage). Source: Lehner et al., ICRA 2022, section IV.
 FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
                             const std::stop_token& stop);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/service/selected_experience.hpp"
+
 namespace kinship::service {
 namespace {
 
@@ -12,13 +14,13 @@ constexpr std::uint64_t kGrowthDivisor = 20;  // 5 %
 
 bool has_grown(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience) {
-  std::uint64_t then = 0;
-  for (const Source& source : distribution.sources)
+  std::uint64_t then = 0, used = 0;
+  for (const Source& source : distribution.sources) {
     then += source.paths;
-  std::uint64_t now = 0;
-  for (const store::ExperienceSummary& source : experience)
-    now += source.paths;
-  return now >= then + std::max(kGrowthPaths, then / kGrowthDivisor);
+    used += source.paths_used;
+  }
+  const std::uint64_t base = distribution.selection.since_ms > 0 ? used : then;
+  return count_paths(experience) >= then + std::max(kGrowthPaths, base / kGrowthDivisor);
 }
 
 bool has_changed(const Distribution& distribution,
@@ -31,6 +33,23 @@ bool has_changed(const Distribution& distribution,
                             [&now](const Source& then) {
                               return then.robot == now.robot && then.generation == now.generation;
                             });
+      });
+}
+
+bool is_behind(const Distribution& distribution,
+               const std::vector<store::ExperienceSummary>& experience) {
+  return distribution.state == DistributionState::Ready ? has_grown(distribution, experience)
+                                                        : has_changed(distribution, experience);
+}
+
+bool is_retired(const Distribution& distribution,
+                const std::vector<store::ExperienceSummary>& experience) {
+  return std::any_of(
+      distribution.sources.begin(), distribution.sources.end(), [&experience](const Source& then) {
+        const auto now = std::find_if(
+            experience.begin(), experience.end(),
+            [&then](const store::ExperienceSummary& other) { return other.robot == then.robot; });
+        return now == experience.end() || then.generation < now->retired_generation;
       });
 }
 

@@ -13,13 +13,27 @@ namespace kinship::service {
 /// A distribution is fitted again at most this often, unless somebody waits for a generation.
 inline constexpr std::chrono::milliseconds kRefitInterval{10'000};
 
-/// Whether the paths of a task grew by max(5, 5 %) since the distribution was fitted.
+// `experience` is that of the distribution's selection (selected_experience) unless it says other.
+
+/// Whether the paths grew by max(5, 5 %) since the distribution was fitted. The 5 % are of the
+/// paths that it could use: of those since its date, if it has one.
 bool has_grown(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience);
 
 /// Whether any source's experience is another than the one the distribution was made of.
 bool has_changed(const Distribution& distribution,
                  const std::vector<store::ExperienceSummary>& experience);
+
+/// Whether a fit could say more than this distribution: a mixture grows old by growth, a failure
+/// by any change.
+bool is_behind(const Distribution& distribution,
+               const std::vector<store::ExperienceSummary>& experience);
+
+/// Whether paths it may have been made of were taken out of every fit since: such a distribution
+/// is neither served nor kept.
+/// \param experience  all of the task's. A source that is not there any more counts as retired.
+bool is_retired(const Distribution& distribution,
+                const std::vector<store::ExperienceSummary>& experience);
 
 /// Whether kRefitInterval has passed since the fit; a clock that was set back counts as passed.
 bool may_refit(const Distribution& distribution, std::int64_t now_ms);

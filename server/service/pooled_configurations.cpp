@@ -5,37 +5,65 @@
 
 namespace kinship::service {
 
+void PooledConfigurations::begin_source(bool own) { sources_.push_back({.paths = 0, .own = own}); }
+
 void PooledConfigurations::add(transfer::TransferredPath path) {
   const Eigen::Index count = path.configurations.cols();
   if (path.weights.size() != count || (count > 0 && path.configurations.rows() != dof_))
     throw std::invalid_argument("PooledConfigurations: need dof x n configurations and n weights");
+  if (sources_.empty())
+    throw std::logic_error("PooledConfigurations: a path before the first source");
   if (count == 0)
     return;
   size_ += count;
-  paths_.push_back(std::move(path));
+  ++sources_.back().paths;
+  paths_.push_back({sources_.size() - 1, std::move(path)});
 }
 
 Eigen::MatrixXd PooledConfigurations::configurations() const {
   Eigen::MatrixXd pooled(dof_, size_);
   Eigen::Index column = 0;
-  for (const transfer::TransferredPath& path : paths_) {
-    pooled.middleCols(column, path.configurations.cols()) = path.configurations;
-    column += path.configurations.cols();
+  for (const PooledPath& pooled_path : paths_) {
+    const Eigen::MatrixXd& configurations = pooled_path.path.configurations;
+    pooled.middleCols(column, configurations.cols()) = configurations;
+    column += configurations.cols();
   }
   return pooled;
 }
 
-Eigen::VectorXd PooledConfigurations::weights(bool equal_path_weights) const {
+Eigen::VectorXd PooledConfigurations::weights(const DensityParameters& parameters) const {
   Eigen::VectorXd pooled(size_);
+  std::vector<double> sum_of_source(sources_.size(), 0);
   Eigen::Index row = 0;
-  for (const transfer::TransferredPath& path : paths_) {
-    const double total = equal_path_weights ? path.weights.sum() : 1.0;
-    pooled.segment(row, path.weights.size()) = path.weights / total;
+  for (const auto& [source, path] : paths_) {
+    const double total = parameters.equal_path_weights ? path.weights.sum() : 1.0;
+    auto segment = pooled.segment(row, path.weights.size());
+    segment = path.weights / total;
+    sum_of_source[source] += segment.sum();
     row += path.weights.size();
+  }
+  if (parameters.weighting == Weighting::Sources) {
+    const std::vector<double> masses = source_masses(sources_);
+    row = 0;
+    for (const auto& [source, path] : paths_) {
+      pooled.segment(row, path.weights.size()) *= masses[source] / sum_of_source[source];
+      row += path.weights.size();
+    }
   }
   if (size_ > 0)
     pooled *= static_cast<double>(size_) / pooled.sum();
   return pooled;
+}
+
+std::vector<double> PooledConfigurations::masses(
+    const Eigen::Ref<const Eigen::VectorXd>& weights) const {
+  std::vector<double> masses(sources_.size(), 0);
+  Eigen::Index row = 0;
+  for (const auto& [source, path] : paths_) {
+    masses[source] += weights.segment(row, path.weights.size()).sum() / weights.sum();
+    row += path.weights.size();
+  }
+  return masses;
 }
 
 }  // namespace kinship::service

@@ -3,32 +3,48 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "proto/types/profile.hpp"
+#include "server/service/source_masses.hpp"
 #include "server/transfer/transfer.hpp"
 
 namespace kinship::service {
 
-/// Collects the configurations that paths became, and decides what each weighs in a fit.
-/// Not shared between threads.
+/// Collects the configurations that paths became, source by source, and decides what each weighs
+/// in a fit. Not shared between threads.
 class PooledConfigurations {
  public:
   /// \param dof  of the target robot.
   explicit PooledConfigurations(Eigen::Index dof) : dof_(dof) {}
 
+  /// The paths that are added from now on are of another source.
+  /// \param own  it is the target robot itself.
+  void begin_source(bool own);
+
   /// \throws std::invalid_argument if the configurations have another number of joints, or as
-  ///         many weights as configurations are not there.
+  ///         many weights as configurations are not there; std::logic_error without a source.
   void add(transfer::TransferredPath path);
 
   Eigen::Index size() const noexcept { return size_; }  ///< number of configurations
   Eigen::MatrixXd configurations() const;               ///< dof x N, in the order of addition
 
-  /// N weights with sum N. Equal path weights: those of every path with configurations sum to the
-  /// same. Otherwise: as the transfer gave them, scaled.
-  Eigen::VectorXd weights(bool equal_path_weights) const;
+  /// N weights with sum N. Equal path weights: those of every path with configurations of a source
+  /// sum to the same; otherwise as the transfer gave them. Weighting::Sources: each source then
+  /// has its mass (source_masses.hpp). Weighting::Paths: sources make no difference.
+  Eigen::VectorXd weights(const DensityParameters& parameters) const;
+
+  /// The share of each source in such weights; sum 1, or all 0 without configurations.
+  std::vector<double> masses(const Eigen::Ref<const Eigen::VectorXd>& weights) const;
 
  private:
+  struct PooledPath {
+    std::size_t source = 0;
+    transfer::TransferredPath path;  // with at least one configuration
+  };
+
   Eigen::Index dof_;
   Eigen::Index size_ = 0;
-  std::vector<transfer::TransferredPath> paths_;  // with at least one configuration
+  std::vector<PooledSource> sources_;
+  std::vector<PooledPath> paths_;
 };
 
 }  // namespace kinship::service

@@ -1,69 +1,17 @@
 #include "server/transfer/transfer.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "server/transfer/resample.hpp"
+#include "server/transfer/take_over.hpp"
 
 namespace kinship::transfer {
 namespace {
-
-using inverse::NoSolution;
-
-constexpr double kSamePlacement = 1e-9;  // m and rad
-
-bool same_robot_and_place(const kinematics::Chain& source, const kinematics::Chain& target,
-                          const Eigen::Isometry3d& T_target_source) {
-  const double difference =
-      (T_target_source.matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff();
-  return difference <= kSamePlacement && source.digest() == target.digest();
-}
-
-/// Turns continuous joints into [-pi, pi], where the limits of what is sampled lie.
-void unwind(const kinematics::Chain& robot, Eigen::MatrixXd& waypoints) {
-  for (Eigen::Index joint = 0; joint < robot.dof(); ++joint)
-    if (robot.joints()[static_cast<std::size_t>(joint)].type == kinematics::JointType::Continuous)
-      waypoints.row(joint) = waypoints.row(joint).unaryExpr(
-          [](double value) { return std::remainder(value, 2 * std::numbers::pi); });
-}
-
-TransferredPath taken_over(const kinematics::Chain& robot, Eigen::MatrixXd waypoints) {
-  const Eigen::Index count = waypoints.cols();
-  unwind(robot, waypoints);
-  TransferredPath result;
-  result.configurations = std::move(waypoints);
-  result.pose_index = Eigen::VectorXi::LinSpaced(count, 0, static_cast<int>(count) - 1);
-  result.solution_index = Eigen::VectorXi::Zero(count);
-  result.weights = Eigen::VectorXd::Ones(count);
-  result.summary.poses = static_cast<std::uint64_t>(count);
-  result.summary.poses_solved = result.summary.poses;
-  result.summary.configurations = result.summary.poses;
-  return result;
-}
-
-void count(const inverse::InverseSolutions& solutions, TransferSummary& summary) {
-  ++summary.poses;
-  summary.configurations += static_cast<std::uint64_t>(solutions.configurations.cols());
-  switch (solutions.reason) {
-    case NoSolution::None:
-      ++summary.poses_solved;
-      return;
-    case NoSolution::OutOfReach:
-      ++summary.out_of_reach;
-      return;
-    case NoSolution::Limits:
-      ++summary.outside_limits;
-      return;
-    case NoSolution::NotConverged:
-      ++summary.not_converged;
-      return;
-  }
-}
 
 /// One row per solution, in the order of poses.
 TransferredPath stacked(const std::vector<Eigen::MatrixXd>& solutions_of_pose,
@@ -89,18 +37,18 @@ TransferredPath stacked(const std::vector<Eigen::MatrixXd>& solutions_of_pose,
 
 }  // namespace
 
-TransferredPath transfer_path(const Path& path, const kinematics::Chain& source,
-                              const kinematics::Chain& target,
+TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Eigen::Isometry3d& T_target_source,
                               const TransferParameters& parameters, std::uint64_t seed) {
-  if (path.dof() != source.dof())
+  if (path.dof() != pair.source().dof())
     throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
-                                " joints for a source robot of " + std::to_string(source.dof()));
-  Eigen::MatrixXd waypoints = resample(path, parameters);
-  if (same_robot_and_place(source, target, T_target_source))
-    return taken_over(target, std::move(waypoints));
+                                " joints for a source robot of " +
+                                std::to_string(pair.source().dof()));
+  const Eigen::MatrixXd waypoints = resample(path, parameters);
+  if (pair.takes_over(T_target_source))
+    return take_over(waypoints, pair);
 
-  const Eigen::Isometry3d T_transfer_tip = target.T_tip_transfer().inverse();
+  const Eigen::Isometry3d T_transfer_tip = pair.target().T_tip_transfer().inverse();
   const inverse::InverseOptions options{.max_solutions = parameters.max_solutions,
                                         .min_distance = parameters.min_distance,
                                         .seed = seed};
@@ -108,12 +56,13 @@ TransferredPath transfer_path(const Path& path, const kinematics::Chain& source,
   TransferSummary summary;
   for (Eigen::Index i = 0; i < waypoints.cols(); ++i) {
     const Eigen::Isometry3d T_target_tip =
-        T_target_source * kinematics::T_base_transfer(source, waypoints.col(i)) * T_transfer_tip;
-    inverse::InverseSolutions solutions = inverse::inverse(target, T_target_tip, options);
-    count(solutions, summary);
+        T_target_source * kinematics::T_base_transfer(pair.source(), waypoints.col(i)) *
+        T_transfer_tip;
+    inverse::InverseSolutions solutions = inverse::inverse(pair.target(), T_target_tip, options);
+    summary.count(solutions.configurations.cols(), solutions.reason);
     solutions_of_pose.push_back(std::move(solutions.configurations));
   }
-  return stacked(solutions_of_pose, summary, target.dof());
+  return stacked(solutions_of_pose, summary, pair.target().dof());
 }
 
 }  // namespace kinship::transfer

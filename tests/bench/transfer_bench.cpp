@@ -28,13 +28,14 @@ void transfer_pair(benchmark::State& state, const std::string& from, const std::
   const kinematics::Chain source = test::model_chain(from);
   const kinematics::Chain target = test::model_chain(to);
   const std::vector<Path> paths = random_paths(source, 50);
+  const transfer::ArmPair pair(source, target);
   std::size_t next = 0;
   double configurations = 0;
   double poses = 0;
   double solved = 0;
   for (auto step : state) {
     const auto moved =
-        transfer::transfer_path(paths[next], source, target, Eigen::Isometry3d::Identity(), {}, 0);
+        transfer::transfer_path(paths[next], pair, Eigen::Isometry3d::Identity(), {}, 0);
     next = (next + 1) % paths.size();
     configurations += static_cast<double>(moved.summary.configurations);
     poses += static_cast<double>(moved.summary.poses);

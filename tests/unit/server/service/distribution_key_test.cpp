@@ -34,7 +34,11 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.density.components = 7; },
       [](DistributionKey& k) { k.profile.density.covariance_floor = 1e-3; },
       [](DistributionKey& k) { k.profile.density.equal_path_weights = false; },
+      [](DistributionKey& k) { k.profile.density.weighting = Weighting::Paths; },
       [](DistributionKey& k) { k.profile.recommended_share = 0.5; },
+      [](DistributionKey& k) { k.sources = {Digest{}}; },
+      [](DistributionKey& k) { k.sources = {k.robot}; },
+      [](DistributionKey& k) { k.since_ms = 1; },
       [](DistributionKey& k) { k.profile.seed = 9; }};
   std::set<Digest> ids;
   for (const auto& change : changes) {
@@ -68,6 +72,29 @@ TEST(DistributionKey, WantsAndDeadlinesAreNotPartOfIt) {
             identify(make_key(request()).value_or_throw()));
 }
 
+TEST(DistributionKey, TheWeightingIsTheRequestsOrElseTheProfiles) {
+  FetchRequest asked = request();
+  EXPECT_EQ(make_key(asked).value_or_throw().profile.density.weighting, Weighting::Sources);
+  const Digest id = identify(make_key(asked).value_or_throw());
+  asked.selection.weighting = Weighting::Sources;
+  EXPECT_EQ(identify(make_key(asked).value_or_throw()), id);
+  asked.selection.weighting = Weighting::Paths;
+  EXPECT_EQ(make_key(asked).value_or_throw().profile.density.weighting, Weighting::Paths);
+  asked.selection.weighting.reset();
+  asked.profile = "paper";
+  EXPECT_EQ(make_key(asked).value_or_throw().profile.density.weighting, Weighting::Paths);
+}
+
+TEST(DistributionKey, TheOrderOfSelectedSourcesIsNotPartOfIt) {
+  Digest a, b;
+  a.bytes[0] = 1;
+  b.bytes[0] = 2;
+  FetchRequest one = request(), other = request();
+  one.selection.sources = {a, b};
+  other.selection.sources = {b, a, b};
+  EXPECT_EQ(identify(make_key(one).value_or_throw()), identify(make_key(other).value_or_throw()));
+}
+
 TEST(DistributionKey, RequestsThatBreakARuleAreRefused) {
   FetchRequest bad = request();
   bad.task = "";
@@ -75,6 +102,12 @@ TEST(DistributionKey, RequestsThatBreakARuleAreRefused) {
   bad = request();
   bad.profile = "best";
   EXPECT_EQ(make_key(bad).error().message, "profile 'best' is not one of default, paper");
+  bad = request();
+  bad.selection.since_ms = -1;
+  EXPECT_EQ(make_key(bad).error().message, "since: -1 ms is below 0");
+  bad = request();
+  bad.selection.sources.resize(257);
+  EXPECT_EQ(make_key(bad).error().message, "257 selected sources exceed 256");
   bad = request();
   bad.T_task_base->translation().y() = 2000;
   EXPECT_EQ(make_key(bad).error().code, ErrorCode::InvalidInput);

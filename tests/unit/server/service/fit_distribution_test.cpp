@@ -6,6 +6,7 @@
 #include <future>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/pose.hpp"
@@ -14,6 +15,7 @@
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/support/twins.hpp"
 #include "tests/unit/server/service/fleet.hpp"
 
 namespace kinship::service {
@@ -64,12 +66,28 @@ class FitDistribution : public testing::Test {
     return {.task = "shelf",
             .robot = robot.digest,
             .T_task_base = std::nullopt,
-            .profile = *find_profile("default")};
+            .profile = *find_profile("default"),
+            .sources = {},
+            .since_ms = 0};
+  }
+  /// For tests that count paths and masses only.
+  static DistributionKey quick_key_of(const Robot& robot) {
+    DistributionKey key = key_of(robot);
+    key.profile.density.components = 2;
+    key.profile.transfer.pose_spacing = 1;
+    key.profile.transfer.max_solutions = 1;
+    return key;
   }
   FitOutcome fit(const DistributionKey& key) {
     return fit_distribution(key, context_, std::stop_token());
   }
   Distribution fitted(const DistributionKey& key) { return fit(key).distribution.value(); }
+  static Source source(const Distribution& distribution, const Robot& robot) {
+    for (const Source& source : distribution.sources)
+      if (source.robot == robot.digest)
+        return source;
+    throw std::logic_error("'" + robot.label + "' is no source");
+  }
 
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
@@ -238,16 +256,111 @@ TEST_F(FitDistribution, RobotsThatCannotBeReadAreLeftOutAndNamed) {
       << distribution.reason;
 }
 
-TEST_F(FitDistribution, MorePathsThanItMayReadAreThinnedOutEvenly) {
+TEST_F(FitDistribution, OfMorePathsThanItMayReadEachSourceGivesAsMany) {
   report(fleet::solved(teacher_, "shelf", 90, 1));
   report(fleet::solved(pupil_, "shelf", 10, 200));
   context_.max_paths = 50;
-  const Distribution distribution = fitted(key_of(pupil_));
-  EXPECT_NE(distribution.reason.find("'teacher': 45 of 90 paths read"), std::string::npos)
-      << distribution.reason;
-  EXPECT_NE(distribution.reason.find("'pupil': 5 of 10 paths read"), std::string::npos)
-      << distribution.reason;
-  EXPECT_EQ(distribution.sources[0].paths + distribution.sources[1].paths, 100U);
+  const Distribution distribution = fitted(quick_key_of(pupil_));
+  EXPECT_EQ(distribution.reason, "'teacher': 40 of 90 paths read");
+  EXPECT_EQ(source(distribution, teacher_).paths, 90U);
+  EXPECT_EQ(source(distribution, teacher_).paths_used, 40U);
+  EXPECT_EQ(source(distribution, pupil_).paths_used, 10U);
+
+  DistributionKey by_paths = quick_key_of(pupil_);
+  by_paths.profile.density.weighting = Weighting::Paths;
+  const Distribution proportional = fitted(by_paths);
+  EXPECT_EQ(source(proportional, teacher_).paths_used, 45U);
+  EXPECT_EQ(source(proportional, pupil_).paths_used, 5U);
+}
+
+TEST_F(FitDistribution, SourcesWeighTheSameAndOwnExperienceHalf) {
+  report(fleet::solved(teacher_, "shelf", 40, 1));
+  report(fleet::solved(pupil_, "shelf", 5, 200));
+  const Distribution few = fitted(quick_key_of(pupil_));
+  EXPECT_NEAR(source(few, teacher_).mass, 0.5, 1e-9);
+  EXPECT_NEAR(source(few, pupil_).mass, 0.5, 1e-9);
+
+  const Robot third = fleet::robot_of(fleet::planar("third", {0.4, 0.32, 0.2}));
+  registry_.register_robot(fleet::planar("third", {0.4, 0.32, 0.2}), 1);
+  report(fleet::solved(third, "shelf", 1, 300));
+  report(fleet::solved(pupil_, "shelf", 30, 400));
+  const Distribution distribution = fitted(quick_key_of(pupil_));
+  EXPECT_NEAR(source(distribution, pupil_).mass, 0.5, 1e-9);
+  EXPECT_NEAR(source(distribution, teacher_).mass, 0.5 * 5 / 6, 1e-9);
+  EXPECT_NEAR(source(distribution, third).mass, 0.5 * 1 / 6, 1e-9);
+}
+
+TEST_F(FitDistribution, ByPathsASourceWeighsWhatItHas) {
+  report(fleet::solved(teacher_, "shelf", 30, 1));
+  report(fleet::solved(pupil_, "shelf", 10, 200));
+  DistributionKey key = quick_key_of(pupil_);
+  key.profile.density.weighting = Weighting::Paths;
+  const Distribution distribution = fitted(key);
+  EXPECT_NEAR(source(distribution, teacher_).mass, 0.75, 1e-9);
+  EXPECT_EQ(distribution.selection.weighting, Weighting::Paths);
+}
+
+TEST_F(FitDistribution, OnlySelectedSourcesAreUsed) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  report(fleet::solved(pupil_, "shelf", 6, 200));
+  DistributionKey key = key_of(pupil_);
+  key.sources = {teacher_.digest};
+  const Distribution distribution = fitted(key);
+  ASSERT_EQ(distribution.sources.size(), 1U);
+  EXPECT_EQ(distribution.sources[0].robot, teacher_.digest);
+  EXPECT_EQ(distribution.selection.sources, key.sources);
+  key.sources = {dwarf_.digest};
+  EXPECT_EQ(fit(key).kind, FitOutcome::Kind::NoExperience);
+}
+
+TEST_F(FitDistribution, EverySourceSaysWhatBecameOfItsPoses) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  report(fleet::solved(pupil_, "shelf", 6, 200));
+  for (const Source& source : fitted(key_of(pupil_)).sources) {
+    EXPECT_EQ(source.paths_used, 6U);
+    EXPECT_EQ(source.poses, source.poses_solved + source.out_of_reach + source.outside_limits +
+                                source.not_converged);
+    const bool own = source.robot == pupil_.digest;
+    EXPECT_EQ(source.relation, own ? Relation::Identical : Relation::Other);
+    if (own)
+      EXPECT_EQ(source.configurations, source.poses);
+    else
+      EXPECT_GT(source.configurations, source.poses_solved);
+  }
+}
+
+TEST_F(FitDistribution, ACalibratedUr10eTakesItsTwinsWaypointsOverInEveryProfile) {
+  const RobotDescription model = test::model_description("ur10e");
+  const RobotDescription twins[] = {test::calibrated_twin(model, "twin_a", 2e-4, kSeed),
+                                    test::calibrated_twin(model, "twin_b", 2e-4, kSeed + 1)};
+  const Digest a = registry_.register_robot(twins[0], 1).robot;
+  const Digest b = registry_.register_robot(twins[1], 1).robot;
+  ASSERT_NE(a, b);
+  std::vector<Attempt> attempts;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    attempts.push_back(fleet::solved(pupil_, "shelf", seed));
+    attempts.back().robot = a;
+    attempts.back().path = fleet::path(6, seed);
+  }
+  report(attempts);
+  for (const char* profile : {"default", "paper"}) {
+    DistributionKey key = key_of(pupil_);
+    key.robot = b;
+    key.profile = *find_profile(profile);
+    key.profile.density.components = 3;
+    key.profile.transfer.pose_spacing = 0.5;
+    const Distribution distribution = fitted(key);
+    ASSERT_EQ(distribution.state, DistributionState::Ready) << distribution.reason;
+    const Source& source = distribution.sources.at(0);
+    EXPECT_EQ(source.relation, Relation::SameArm);
+    EXPECT_EQ(source.configurations, source.poses_solved) << "one each: not by random solutions";
+    EXPECT_GT(source.poses_solved * 10, source.poses * 9);
+    // At another place the same arm is any other.
+    key.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.05, 0, 0));
+    const Source elsewhere = fitted(key).sources.at(0);
+    EXPECT_EQ(elsewhere.relation, Relation::SameArm);
+    EXPECT_GT(elsewhere.configurations, elsewhere.poses_solved);
+  }
 }
 
 TEST_F(FitDistribution, GivesUpWhenAskedTo) {

@@ -45,6 +45,34 @@ TEST(Freshness, AnyOtherGenerationOrRobotIsAChange) {
   EXPECT_TRUE(has_changed(distribution, {{robot(1), 10, 3}, {robot(3), 10, 7}}));
 }
 
+TEST(Freshness, WithADateTheGrowthIsThatOfWhatCouldBeUsed) {
+  Distribution distribution = fitted(1000, 1000);
+  distribution.sources[0].paths_used = 40;
+  EXPECT_FALSE(has_grown(distribution, {{robot(1), 1005, 5}, {robot(2), 1000, 9}}));
+  distribution.selection.since_ms = 1;
+  EXPECT_FALSE(has_grown(distribution, {{robot(1), 1004, 5}, {robot(2), 1000, 9}}));
+  EXPECT_TRUE(has_grown(distribution, {{robot(1), 1005, 5}, {robot(2), 1000, 9}}));
+}
+
+TEST(Freshness, ADistributionIsRetiredWithAnyOfItsSources) {
+  const Distribution distribution = fitted(10, 10);  // at generations 3 and 7
+  EXPECT_FALSE(is_retired(distribution, {{robot(1), 10, 3, 2}, {robot(2), 10, 7, 7}}))
+      << "it was fitted after that";
+  EXPECT_FALSE(
+      is_retired(distribution, {{robot(1), 10, 3}, {robot(2), 10, 7}, {robot(3), 0, 9, 9}}));
+  EXPECT_TRUE(is_retired(distribution, {{robot(1), 9, 4, 4}, {robot(2), 10, 7}}));
+  EXPECT_TRUE(is_retired(distribution, {{robot(1), 12, 6, 4}, {robot(2), 10, 7}}));
+  EXPECT_TRUE(is_retired(distribution, {{robot(1), 10, 3}})) << "robot 2 has no experience left";
+}
+
+TEST(Freshness, AMixtureIsBehindByGrowthAndAFailureByAnyChange) {
+  Distribution distribution = fitted(10, 10);
+  const std::vector<store::ExperienceSummary> one_more = {{robot(1), 11, 4}, {robot(2), 10, 7}};
+  EXPECT_FALSE(is_behind(distribution, one_more));
+  distribution.state = DistributionState::Failed;
+  EXPECT_TRUE(is_behind(distribution, one_more));
+}
+
 TEST(Freshness, RefitsWaitForTheIntervalUnlessTheClockWasSetBack) {
   const Distribution distribution = fitted(10, 10);
   EXPECT_FALSE(may_refit(distribution, 1'000'000));

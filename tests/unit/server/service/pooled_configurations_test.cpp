@@ -14,9 +14,17 @@ transfer::TransferredPath transferred(Eigen::Index count, double value) {
   return path;
 }
 
+DensityParameters weighing(bool equal_path_weights, Weighting weighting = Weighting::Paths) {
+  DensityParameters parameters;
+  parameters.equal_path_weights = equal_path_weights;
+  parameters.weighting = weighting;
+  return parameters;
+}
+
 class Pooled : public testing::Test {
  protected:
   Pooled() {
+    pool_.begin_source(false);
     pool_.add(transferred(2, 1));
     pool_.add(transferred(0, 0));  // a path of which nothing could be used
     pool_.add(transferred(6, 2));
@@ -32,18 +40,18 @@ TEST_F(Pooled, KeepsTheOrderOfAddition) {
 }
 
 TEST_F(Pooled, EqualPathWeightsMakeEveryPathWeighTheSame) {
-  const Eigen::VectorXd weights = pool_.weights(true);
+  const Eigen::VectorXd weights = pool_.weights(weighing(true));
   EXPECT_NEAR(weights.head(2).sum(), 4, 1e-12);
   EXPECT_NEAR(weights.tail(6).sum(), 4, 1e-12);
 }
 
 TEST_F(Pooled, OtherwiseEveryConfigurationWeighsTheSame) {
-  EXPECT_TRUE(pool_.weights(false).isApprox(Eigen::VectorXd::Ones(8)));
+  EXPECT_TRUE(pool_.weights(weighing(false)).isApprox(Eigen::VectorXd::Ones(8)));
 }
 
 TEST_F(Pooled, WeightsSumToTheNumberOfConfigurations) {
-  EXPECT_NEAR(pool_.weights(true).sum(), 8, 1e-12);
-  EXPECT_NEAR(pool_.weights(false).sum(), 8, 1e-12);
+  EXPECT_NEAR(pool_.weights(weighing(true)).sum(), 8, 1e-12);
+  EXPECT_NEAR(pool_.weights(weighing(false)).sum(), 8, 1e-12);
 }
 
 TEST_F(Pooled, RefusesOtherShapes) {
@@ -54,10 +62,42 @@ TEST_F(Pooled, RefusesOtherShapes) {
   EXPECT_THROW(pool_.add(path), std::invalid_argument);
 }
 
+TEST(PooledConfigurations, APathBelongsToASource) {
+  PooledConfigurations pool(2);
+  EXPECT_THROW(pool.add(transferred(1, 0)), std::logic_error);
+}
+
+TEST(PooledConfigurations, SourcesWeighTheSameHoweverManyPathsTheyHave) {
+  PooledConfigurations pool(2);
+  pool.begin_source(false);
+  for (int i = 0; i < 20; ++i)
+    pool.add(transferred(3, 1));
+  pool.begin_source(false);
+  for (int i = 0; i < 5; ++i)
+    pool.add(transferred(i == 0 ? 9 : 1, 2));
+  pool.begin_source(false);  // nothing of this one could be used
+  pool.add(transferred(0, 0));
+  const Eigen::VectorXd weights = pool.weights(weighing(true, Weighting::Sources));
+  EXPECT_NEAR(weights.sum(), 73, 1e-9);
+  EXPECT_NEAR(weights.head(60).sum(), 36.5, 1e-9);
+  EXPECT_NEAR(weights.segment(60, 9).sum(), weights[69], 1e-9) << "paths of a source still do";
+  const std::vector<double> masses = pool.masses(weights);
+  ASSERT_EQ(masses.size(), 3U);
+  EXPECT_NEAR(masses[0], 0.5, 1e-12);
+  EXPECT_NEAR(masses[1], 0.5, 1e-12);
+  EXPECT_EQ(masses[2], 0);
+
+  const std::vector<double> by_paths = pool.masses(pool.weights(weighing(true)));
+  EXPECT_NEAR(by_paths[0], 0.8, 1e-12);
+  const std::vector<double> by_configurations = pool.masses(pool.weights(weighing(false)));
+  EXPECT_NEAR(by_configurations[0], 60.0 / 73, 1e-12);
+}
+
 TEST(PooledConfigurations, MayBeEmpty) {
   const PooledConfigurations pool(3);
+  EXPECT_TRUE(pool.masses(pool.weights(weighing(true, Weighting::Sources))).empty());
   EXPECT_EQ(pool.configurations().cols(), 0);
-  EXPECT_EQ(pool.weights(true).size(), 0);
+  EXPECT_EQ(pool.weights(weighing(true)).size(), 0);
 }
 
 }  // namespace

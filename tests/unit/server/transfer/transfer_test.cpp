@@ -55,7 +55,7 @@ TEST(Transfer, EveryConfigurationPutsTheTransferFrameWhereTheSourceHadIt) {
   const auto source = source_arm();
   const auto target = target_arm();
   const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-  const auto transferred = transfer_path(source_path(), source, target, same, {}, kSeed);
+  const auto transferred = transfer_path(source_path(), {source, target}, same, {}, kSeed);
   EXPECT_GT(transferred.configurations.cols(), 20);
   EXPECT_EQ(transferred.configurations.rows(), 7);
   EXPECT_LT(largest_error(transferred, source, target, same, resample(source_path(), {})), 2e-6);
@@ -65,7 +65,8 @@ TEST(Transfer, RespectsWhereTheRobotsStand) {
   const auto source = source_arm();
   const auto target = target_arm();
   const Eigen::Isometry3d T_target_source = planar_pose(0.1, -0.15, 0.6);
-  const auto transferred = transfer_path(source_path(), source, target, T_target_source, {}, kSeed);
+  const auto transferred =
+      transfer_path(source_path(), {source, target}, T_target_source, {}, kSeed);
   EXPECT_GT(transferred.configurations.cols(), 20);
   EXPECT_LT(
       largest_error(transferred, source, target, T_target_source, resample(source_path(), {})),
@@ -79,7 +80,7 @@ TEST(Transfer, RespectsTheTransferFrameOfTheTarget) {
                                 .T_tip_transfer = planar_pose(0.05, 0.02, -0.4)}
                           .chain();
   const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-  const auto transferred = transfer_path(source_path(), source, target, same, {}, kSeed);
+  const auto transferred = transfer_path(source_path(), {source, target}, same, {}, kSeed);
   EXPECT_GT(transferred.configurations.cols(), 20);
   EXPECT_LT(largest_error(transferred, source, target, same, resample(source_path(), {})), 2e-6);
 }
@@ -87,7 +88,8 @@ TEST(Transfer, RespectsTheTransferFrameOfTheTarget) {
 TEST(Transfer, TheSameRobotAtTheSamePlaceTakesItsWaypointsOver) {
   const auto arm = source_arm();
   const Path path = source_path();
-  const auto transferred = transfer_path(path, arm, arm, Eigen::Isometry3d::Identity(), {}, kSeed);
+  const auto transferred =
+      transfer_path(path, {arm, arm}, Eigen::Isometry3d::Identity(), {}, kSeed);
   EXPECT_EQ(transferred.configurations, resample(path, {}));
   EXPECT_TRUE((transferred.solution_index.array() == 0).all());
   EXPECT_EQ(transferred.pose_index[1], 1);
@@ -98,13 +100,13 @@ TEST(Transfer, TheSameRobotAtTheSamePlaceTakesItsWaypointsOver) {
 TEST(Transfer, TheSameRobotElsewhereIsTransferred) {
   const auto arm = source_arm();
   const auto transferred =
-      transfer_path(source_path(), arm, arm, planar_pose(0.001, 0, 0), {}, kSeed);
+      transfer_path(source_path(), {arm, arm}, planar_pose(0.001, 0, 0), {}, kSeed);
   EXPECT_GT(transferred.summary.configurations, transferred.summary.poses);
 }
 
 TEST(Transfer, SummaryAndIndicesAddUp) {
   const auto short_arm = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 1.5}.chain();
-  const auto transferred = transfer_path(source_path(), source_arm(), short_arm,
+  const auto transferred = transfer_path(source_path(), {source_arm(), short_arm},
                                          planar_pose(0.1, 0, 0), {.pose_spacing = 0.05}, kSeed);
   const TransferSummary& summary = transferred.summary;
   EXPECT_GT(summary.poses_solved, 0U);
@@ -126,7 +128,7 @@ TEST(Transfer, SummaryAndIndicesAddUp) {
 
 TEST(Transfer, AnUnreachablePathIsAnAnswer) {
   const auto transferred =
-      transfer_path(source_path(), source_arm(), target_arm(), planar_pose(5, 0, 0), {}, kSeed);
+      transfer_path(source_path(), {source_arm(), target_arm()}, planar_pose(5, 0, 0), {}, kSeed);
   EXPECT_EQ(transferred.configurations.cols(), 0);
   EXPECT_EQ(transferred.configurations.rows(), 7);
   EXPECT_EQ(transferred.summary.out_of_reach, transferred.summary.poses);
@@ -134,7 +136,7 @@ TEST(Transfer, AnUnreachablePathIsAnAnswer) {
 
 TEST(Transfer, EqualInputAndSeedGiveEqualBytes) {
   const auto run = [](std::uint64_t seed) {
-    return transfer_path(source_path(), source_arm(), target_arm(), planar_pose(0.1, 0, 0), {},
+    return transfer_path(source_path(), {source_arm(), target_arm()}, planar_pose(0.1, 0, 0), {},
                          seed);
   };
   EXPECT_EQ(run(1).configurations, run(1).configurations);
@@ -143,7 +145,7 @@ TEST(Transfer, EqualInputAndSeedGiveEqualBytes) {
 
 TEST(Transfer, GivesAtMostLSolutionsAtLeastDApart) {
   const TransferParameters parameters{.max_solutions = 3, .min_distance = 1.5};
-  const auto transferred = transfer_path(source_path(), source_arm(), target_arm(),
+  const auto transferred = transfer_path(source_path(), {source_arm(), target_arm()},
                                          planar_pose(0, 0, 0), parameters, kSeed);
   EXPECT_LT(transferred.solution_index.maxCoeff(), 3);
   for (Eigen::Index i = 1; i < transferred.configurations.cols(); ++i)
@@ -155,7 +157,7 @@ TEST(Transfer, GivesAtMostLSolutionsAtLeastDApart) {
 
 TEST(Transfer, RefusesAPathOfAnotherRobot) {
   EXPECT_THROW(
-      transfer_path(source_path(), target_arm(), source_arm(), planar_pose(0, 0, 0), {}, kSeed),
+      transfer_path(source_path(), {target_arm(), source_arm()}, planar_pose(0, 0, 0), {}, kSeed),
       std::invalid_argument);
 }
 
@@ -165,7 +167,7 @@ TEST(Transfer, OwnContinuousJointsAreTurnedToWhereSamplesLie) {
   Eigen::MatrixXd waypoints(2, 2);
   waypoints << 3, 8, -40, -41;
   const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-  const auto transferred = transfer_path(Path(waypoints), arm, arm, same, {}, kSeed);
+  const auto transferred = transfer_path(Path(waypoints), {arm, arm}, same, {}, kSeed);
   EXPECT_LE(transferred.configurations.cwiseAbs().maxCoeff(), std::numbers::pi);
   EXPECT_LT(largest_error(transferred, arm, arm, same, resample(Path(waypoints), {})), 1e-12);
 }

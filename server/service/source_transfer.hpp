@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "proto/types/distribution.hpp"
+#include "server/service/distribution_key.hpp"
+#include "server/service/pooled_configurations.hpp"
+#include "server/service/robot_registry.hpp"
+#include "server/store/store.hpp"
+#include "server/transfer/transferred_path.hpp"
+
+namespace kinship::service {
+
+/// How the experience of one source robot fared in a fit.
+struct SourceSummary {
+  Source source;                     ///< but for its mass
+  std::uint64_t paths_selected = 0;  ///< of them the key wants: all, or those since its date
+  std::uint64_t paths_left_out = 0;  ///< bad data
+  std::string problem;               ///< with the robot or the first path left out
+  bool has_placed = false, has_unplaced = false;
+};
+
+/// A source before anything of it was transferred; its label is a short digest.
+Source source_of(const store::ExperienceSummary& experience);
+
+/// Reads the paths of source robots and transfers them into a pool of the target's configurations.
+class SourceTransfer {
+ public:
+  /// \param robots, store, key, target  outlive it.
+  SourceTransfer(const store::Store& store, RobotRegistry& robots, const DistributionKey& key,
+                 const Robot& target)
+      : store_(store), robots_(robots), key_(key), target_(target), pool_(target.chain.dof()) {}
+
+  /// How many paths of the source the key wants.
+  std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
+
+  /// Adds `wanted` of the `selected` paths of a source, spread evenly over their order of arrival.
+  /// Bad paths and robots that cannot be read cost nothing but themselves; the summary says so.
+  /// \param stop  looked at between paths: what was transferred until then is incomplete.
+  /// \throws Failure(Storage)
+  SourceSummary add(const store::ExperienceSummary& experience, std::uint64_t selected,
+                    std::uint64_t wanted, const std::stop_token& stop);
+
+  const PooledConfigurations& pool() const noexcept { return pool_; }
+
+ private:
+  void add_paths(const Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
+                 SourceSummary& summary);
+  bool add_path(const store::StoredPath& stored, const transfer::ArmPair& pair,
+                SourceSummary& summary, transfer::TransferSummary& total);
+
+  const store::Store& store_;
+  RobotRegistry& robots_;
+  const DistributionKey& key_;
+  const Robot& target_;
+  PooledConfigurations pool_;
+};
+
+}  // namespace kinship::service

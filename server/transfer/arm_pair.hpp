@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "robots/inverse/descent.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/kinematics/same_arm.hpp"
+
+namespace kinship::transfer {
+
+/// A source and a target robot, compared and prepared once for all paths between them. May be
+/// shared between threads.
+class ArmPair {
+ public:
+  /// \param source, target  outlive the pair.
+  ArmPair(const kinematics::Chain& source, const kinematics::Chain& target);
+
+  const kinematics::Chain& source() const noexcept { return source_; }
+  const kinematics::Chain& target() const noexcept { return target_; }
+  kinematics::ArmLikeness likeness() const noexcept { return likeness_; }
+  const inverse::Descent& target_descent() const noexcept { return target_descent_; }
+
+  /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
+  /// the same place (within 1e-9 m and rad).
+  bool takes_over(const Eigen::Isometry3d& T_target_source) const;
+
+ private:
+  const kinematics::Chain& source_;
+  const kinematics::Chain& target_;
+  kinematics::ArmLikeness likeness_;
+  inverse::Descent target_descent_;
+};
+
+}  // namespace kinship::transfer
