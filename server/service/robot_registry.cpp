@@ -3,8 +3,10 @@
 #include <optional>
 #include <utility>
 
+#include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
+#include "robots/kinematics/same_arm.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::service {
@@ -38,6 +40,7 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   if (!status)
     return refused(status.error());
   reply.status = *status;
+  reply.same_arms = same_arms(reply.robot, *chain);
 
   if (reply.status == RegisterStatus::Registered) {
     keep({reply.robot, description.label, std::move(chain).value()});
@@ -46,6 +49,27 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
     reply.message = "known already, as '" + known.value()->label + "'";
   }
   return reply;
+}
+
+std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
+                                                  const kinematics::Chain& chain) {
+  std::vector<std::string> labels;
+  store::Page<RobotSummary> page;
+  try {
+    do {
+      page = store_.list_robots(page.next_cursor, kMaxPageRows);
+      for (const RobotSummary& other : page.rows) {
+        if (other.robot == robot || labels.size() == kMaxSameArms)
+          continue;
+        const Result<RobotPointer> known = find(other.robot);
+        if (known && kinematics::compare_arms(chain, known.value()->chain) !=
+                         kinematics::ArmLikeness::Different)
+          labels.push_back(other.label);
+      }
+    } while (!page.next_cursor.empty() && labels.size() < kMaxSameArms);
+  } catch (const Failure&) {  // the robot is registered; whom it is like can be asked again
+  }
+  return labels;
 }
 
 Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
@@ -32,8 +33,11 @@ class RobotRegistry {
   /// \param store  outlives the registry.
   explicit RobotRegistry(store::Store& store) : store_(store) {}
 
-  /// Parses, identifies and stores a robot. Refused, with the reason, if the description breaks a
-  /// rule or its label belongs to another robot.
+  /// Parses, identifies and stores a robot, and tells which other robots of the store are the same
+  /// arm: at most kMaxSameArms labels, in their order, none if the store cannot tell. Refused, with
+  /// the reason, if the description breaks a rule or its label belongs to another robot.
+  ///
+  /// The first call after a start reads every robot of the store; later ones find them in memory.
   /// \param now_ms  Unix time, UTC.
   /// \throws Failure(Storage)
   RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms);
@@ -48,6 +52,7 @@ class RobotRegistry {
 
  private:
   RobotPointer keep(Robot robot);
+  std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
 
   store::Store& store_;
   mutable std::mutex mutex_;  // guards robots_

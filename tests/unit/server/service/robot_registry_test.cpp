@@ -70,6 +70,47 @@ TEST_F(Registry, RobotsOfTheStoreAreReadWhenAskedFor) {
   EXPECT_EQ(registry_.find_in_memory(robot), found.value());
 }
 
+using Labels = std::vector<std::string>;
+
+TEST_F(Registry, TellsWhichKnownRobotsAreTheSameArm) {
+  EXPECT_EQ(registry_.register_robot(fleet::teacher(), 1).same_arms, Labels{});
+  EXPECT_EQ(registry_.register_robot(fleet::pupil(), 2).same_arms, Labels{});
+  EXPECT_EQ(registry_.register_robot(fleet::planar("a_twin", {0.401, 0.3, 0.2}), 3).same_arms,
+            Labels{"teacher"});
+  EXPECT_EQ(registry_.register_robot(fleet::planar("z_other", {0.45, 0.3, 0.2}), 4).same_arms,
+            Labels{});
+  const RegisterReply again = registry_.register_robot(fleet::teacher(), 5);
+  EXPECT_EQ(again.status, RegisterStatus::Known);
+  EXPECT_EQ(again.same_arms, Labels{"a_twin"});
+}
+
+TEST_F(Registry, TellsOfRobotsThatARunBeforeThisOneRegistered) {
+  RobotRegistry(*store_).register_robot(fleet::teacher(), 1);
+  EXPECT_EQ(registry_.register_robot(fleet::planar("twin", {0.401, 0.3, 0.2}), 2).same_arms,
+            Labels{"teacher"});
+}
+
+TEST_F(Registry, ADamagedRobotIsLeftOutOfTheSameArms) {
+  RobotRegistry before(*store_);
+  before.register_robot(fleet::teacher(), 1);
+  before.register_robot(fleet::planar("second", {0.401, 0.3, 0.2}), 2);
+  damage_robot(directory_ / "fleet.db", "teacher");
+  const RegisterReply reply =
+      registry_.register_robot(fleet::planar("third", {0.402, 0.3, 0.2}), 3);
+  EXPECT_EQ(reply.status, RegisterStatus::Registered);
+  EXPECT_EQ(reply.same_arms, Labels{"second"});
+}
+
+TEST_F(Registry, CollisionMeshesThatItCannotReadDoNotKeepARobotOut) {
+  RobotDescription description = fleet::teacher();
+  const std::string link = "<link name='link1'/>";
+  const std::string mesh =
+      "<link name='link1'><collision><geometry><mesh filename='package://nowhere/l1.stl'/>"
+      "</geometry></collision></link>";
+  description.urdf.replace(description.urdf.find(link), link.size(), mesh);
+  EXPECT_EQ(registry_.register_robot(description, 1).status, RegisterStatus::Registered);
+}
+
 TEST_F(Registry, UnknownRobotsAreNotFound) {
   const auto found = registry_.find(Digest{});
   ASSERT_FALSE(found);
