@@ -4,27 +4,24 @@
 //
 //   dds_bench [ROUND_TRIPS]      prints p50 and p99 in microseconds and the ratio of the p50
 
-#include <dds/dds.h>
-
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <iostream>
 #include <thread>
 #include <vector>
 
-#include "proto/codec/fetch_codec.hpp"
-#include "proto/dds/loan.hpp"
-#include "proto/dds/qos.hpp"
 #include "proto/dds/replier.hpp"
 #include "proto/dds/requester.hpp"
+#include "tests/bench/bare_conversation.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/random_values.hpp"
 
 namespace {
 
 using namespace kinship;
+using bench::Bare;
+using bench::measure;
+using bench::percentile;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kDomain = 190;
@@ -59,75 +56,10 @@ FetchRequest request_of_size(std::uint64_t size) {
   return request;
 }
 
-/// One side of the bare conversation: a writer, a reader and a waitset.
-class Bare {
- public:
-  Bare(const dds::Participant& participant, bool is_server)
-      : request_(topic(participant, kinship_wire_FetchRequest_desc, "bench/request")),
-        reply_(topic(participant, kinship_wire_FetchReply_desc, "bench/reply")),
-        reader_(dds_create_reader(participant.get(), is_server ? request_.get() : reply_.get(),
-                                  is_server ? dds::request_qos().get() : dds::reply_qos().get(),
-                                  nullptr),
-                "reader"),
-        writer_(dds_create_writer(participant.get(), is_server ? reply_.get() : request_.get(),
-                                  is_server ? dds::reply_qos().get() : dds::request_qos().get(),
-                                  nullptr),
-                "writer"),
-        condition_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
-        waitset_(dds_create_waitset(participant.get()), "waitset") {
-    dds::require(dds_waitset_attach(waitset_.get(), condition_.get(), 0), "waitset");
-  }
-
-  [[noreturn]] void serve() {
-    auto small = codec::encode({}, reply_of_size(0)).value_or_throw();
-    auto large = codec::encode({}, reply_of_size(1)).value_or_throw();
-    while (true) {
-      wait();
-      const dds::Loan requests(reader_, "bench");
-      for (std::size_t i = 0; i < requests.size(); ++i) {
-        if (!requests[i])
-          continue;
-        const auto& request = *static_cast<const kinship_wire_FetchRequest*>(requests[i]);
-        auto& reply = request.minimum_generation == 0 ? small.wire : large.wire;
-        reply.sequence_number = request.sequence_number;
-        dds_write(writer_.get(), &reply);
-      }
-    }
-  }
-
-  void call(std::uint64_t size) {
-    auto request =
-        codec::encode({Uuid{}, ++sequence_number_}, request_of_size(size)).value_or_throw();
-    dds_write(writer_.get(), &request.wire);
-    while (true) {
-      wait();
-      const dds::Loan replies(reader_, "bench");
-      for (std::size_t i = 0; i < replies.size(); ++i)
-        if (replies[i] &&
-            static_cast<const kinship_wire_FetchReply*>(replies[i])->sequence_number ==
-                sequence_number_)
-          return;
-    }
-  }
-
- private:
-  static dds::Entity topic(const dds::Participant& participant,
-                           const dds_topic_descriptor_t& descriptor, const char* name) {
-    return {dds_create_topic(participant.get(), &descriptor, name, nullptr, nullptr), name};
-  }
-  void wait() const {
-    dds_attach_t ready = 0;
-    dds_waitset_wait(waitset_.get(), &ready, 1, DDS_SECS(1));
-  }
-
-  dds::Entity request_, reply_, reader_, writer_, condition_, waitset_;
-  std::uint64_t sequence_number_ = 0;
-};
-
 int run_server() {
   const dds::Participant participant({.domain = kDomain, .role = dds::Role::Server});
   Bare bare(participant, true);
-  std::thread bare_thread([&] { bare.serve(); });
+  std::thread bare_thread([&] { bare.serve({reply_of_size(0), reply_of_size(1)}); });
   dds::WaitLoop loop(participant);
   const FetchReply small = reply_of_size(0);
   const FetchReply large = reply_of_size(1);
@@ -138,21 +70,6 @@ int run_server() {
   std::cout << "ready" << std::endl;
   loop.run([] { return Clock::time_point::max(); });
   return 0;
-}
-
-double percentile(std::vector<double>& times_us, double share) {
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(times_us.size() - 1));
-  std::nth_element(times_us.begin(), times_us.begin() + static_cast<std::ptrdiff_t>(rank),
-                   times_us.end());
-  return times_us[rank];
-}
-
-void measure(const std::function<void()>& call, std::vector<double>& times_us) {
-  for (int i = 0; i < kBlock; ++i) {
-    const auto start = Clock::now();
-    call();
-    times_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-  }
 }
 
 }  // namespace
@@ -174,8 +91,10 @@ int main(int argc, char** argv) {
     kinship_call(size);  // both are connected after it: the bare entities were made before
     std::vector<double> ours, bares;
     for (int done = 0; done < round_trips; done += kBlock) {
-      measure([&] { kinship_call(size); }, ours);
-      measure([&] { bare.call(size); }, bares);
+      measure(
+          kBlock, [&] { kinship_call(size); }, ours);
+      measure(
+          kBlock, [&] { bare.call(request_of_size(size)); }, bares);
     }
     const double our_p50 = percentile(ours, 0.5);
     const double bare_p50 = percentile(bares, 0.5);

@@ -171,7 +171,7 @@ TEST(Conversation, WithoutAServerACallEndsAtItsDeadline) {
   const auto start = Clock::now();
   const auto reply = requester.call(echo("x"), start + 300ms);
   EXPECT_GE(Clock::now() - start, 300ms);
-  EXPECT_LT(Clock::now() - start, 2s);
+  EXPECT_LT(Clock::now() - start, 20s);
   ASSERT_FALSE(reply);
   EXPECT_EQ(reply.error().code, ErrorCode::Unavailable);
   EXPECT_EQ(reply.error().message.find("admin: no server answered within 3"), 0U)

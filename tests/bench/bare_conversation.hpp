@@ -1,0 +1,105 @@
+#pragma once
+
+#include <dds/dds.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "proto/codec/fetch_codec.hpp"
+#include "proto/dds/loan.hpp"
+#include "proto/dds/participant.hpp"
+#include "proto/dds/qos.hpp"
+
+/// What a fetch is compared with: the same messages over the same QoS, without anything of ours
+/// in between.
+namespace kinship::bench {
+
+/// One side of the bare conversation: a writer, a reader and a waitset.
+class Bare {
+ public:
+  Bare(const dds::Participant& participant, bool is_server)
+      : request_(topic(participant, kinship_wire_FetchRequest_desc, "bench/request")),
+        reply_(topic(participant, kinship_wire_FetchReply_desc, "bench/reply")),
+        reader_(dds_create_reader(participant.get(), is_server ? request_.get() : reply_.get(),
+                                  is_server ? dds::request_qos().get() : dds::reply_qos().get(),
+                                  nullptr),
+                "reader"),
+        writer_(dds_create_writer(participant.get(), is_server ? reply_.get() : request_.get(),
+                                  is_server ? dds::reply_qos().get() : dds::request_qos().get(),
+                                  nullptr),
+                "writer"),
+        condition_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
+        waitset_(dds_create_waitset(participant.get()), "waitset") {
+    dds::require(dds_waitset_attach(waitset_.get(), condition_.get(), 0), "waitset");
+  }
+
+  /// Answers a request with the reply whose number its minimum_generation is.
+  [[noreturn]] void serve(const std::vector<FetchReply>& replies) {
+    std::vector<codec::Message<kinship_wire_FetchReply>> messages;
+    for (const FetchReply& reply : replies)
+      messages.push_back(codec::encode({}, reply).value_or_throw());
+    while (true) {
+      wait();
+      const dds::Loan requests(reader_, "bench");
+      for (std::size_t i = 0; i < requests.size(); ++i) {
+        if (!requests[i])
+          continue;
+        const auto& request = *static_cast<const kinship_wire_FetchRequest*>(requests[i]);
+        auto& reply = messages[request.minimum_generation].wire;
+        reply.sequence_number = request.sequence_number;
+        dds_write(writer_.get(), &reply);
+      }
+    }
+  }
+
+  void call(const FetchRequest& fetch) {
+    auto request = codec::encode({Uuid{}, ++sequence_number_}, fetch).value_or_throw();
+    dds_write(writer_.get(), &request.wire);
+    while (true) {
+      if (!wait())
+        dds_write(writer_.get(), &request.wire);  // was lost: not yet connected
+      const dds::Loan replies(reader_, "bench");
+      for (std::size_t i = 0; i < replies.size(); ++i)
+        if (replies[i] &&
+            static_cast<const kinship_wire_FetchReply*>(replies[i])->sequence_number ==
+                sequence_number_)
+          return;
+    }
+  }
+
+ private:
+  static dds::Entity topic(const dds::Participant& participant,
+                           const dds_topic_descriptor_t& descriptor, const char* name) {
+    return {dds_create_topic(participant.get(), &descriptor, name, nullptr, nullptr), name};
+  }
+  /// \return false after a second without a message.
+  bool wait() const {
+    dds_attach_t ready = 0;
+    return dds_waitset_wait(waitset_.get(), &ready, 1, DDS_SECS(1)) > 0;
+  }
+
+  dds::Entity request_, reply_, reader_, writer_, condition_, waitset_;
+  std::uint64_t sequence_number_ = 0;
+};
+
+inline double percentile(std::vector<double>& times_us, double share) {
+  const auto rank = static_cast<std::size_t>(share * static_cast<double>(times_us.size() - 1));
+  std::nth_element(times_us.begin(), times_us.begin() + static_cast<std::ptrdiff_t>(rank),
+                   times_us.end());
+  return times_us[rank];
+}
+
+inline void measure(int times, const std::function<void()>& call, std::vector<double>& times_us) {
+  for (int i = 0; i < times; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    call();
+    times_us.push_back(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
+            .count());
+  }
+}
+
+}  // namespace kinship::bench
