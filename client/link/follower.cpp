@@ -183,7 +183,7 @@ class Follower::Implementation {
     }
   }
 
-  Step judge(Result<FetchReply> reply) {
+  Step judge(const Result<FetchReply>& reply) {
     if (!reply) {
       const bool nobody = reply.error().code == ErrorCode::Unavailable;
       return {{nobody ? FollowStatus::NoServer : FollowStatus::Refused, reply.error().message},
@@ -196,7 +196,7 @@ class Follower::Implementation {
       case FetchStatus::Ready:
         pause_ = 0ms;
         step.state.reason = reply->distribution->reason;
-        step.newest = std::make_shared<const Distribution>(*std::move(reply->distribution));
+        step.newest = std::make_shared<const Distribution>(*reply->distribution);
         step.pause = renewal();
         break;
       case FetchStatus::Pending:
