@@ -15,7 +15,8 @@ namespace kinship::store {
 
 using Progress = std::function<void(double)>;  ///< called now and then with 0 to 1
 
-/// Reads every page, every row and every blob, and compares the counts; writes nothing.
+/// Reads every page, every row and every blob, and compares the counts; writes nothing (but rolls
+/// back what a killed migration left half done).
 /// \throws Failure(Storage) if it is no store that this binary knows; damage is in the result.
 StoreCheck check_store(const std::filesystem::path& file, const Progress& progress);
 

@@ -116,5 +116,45 @@ TEST_F(StoreDisk, SurvivesARowOfFailures) {
             kBefore + 5);
 }
 
+TEST(StoreBackupDisk, ABackupThatFindsNoRoomLeavesNothingAndTheStoreGoesOn) {
+  const test::TemporaryDirectory directory;
+  const RobotRecord robot = test::make_robot("panda", 1);
+  const auto attempt = [&](std::uint64_t number) {
+    Attempt made = test::make_attempt(robot.digest, "shelf", number);
+    made.path = test::make_path(number, test::kDof, 300);
+    return made;
+  };
+  const auto go_on = [](double) { return true; };
+  {
+    const std::unique_ptr<Store> store = open_sqlite_store(directory / "s.db");
+    ASSERT_TRUE(store->register_robot(robot));
+    std::vector<Attempt> attempts;
+    for (std::uint64_t number = 0; number < 400; ++number)
+      attempts.push_back(attempt(number));
+    test::report(*store, std::move(attempts));
+  }
+  ASSERT_GT(std::filesystem::file_size(directory / "s.db"), 2'000'000U);
+  const std::unique_ptr<Store> store = open_sqlite_store(directory / "s.db");  // an empty WAL
+  const std::filesystem::path copy = directory / "copy.db";
+  std::string said;
+  ReceiptStatus during{};
+  {
+    const FileSizeLimit full(1'000'000);  // less than the copy, more than a WAL of few reports
+    try {
+      static_cast<void>(store->backup(copy, go_on));
+    } catch (const Failure& failure) {
+      said = failure.what();
+    }
+    during = test::report(*store, {attempt(1000)}).at(0).status;
+  }
+  EXPECT_NE(said.find(copy.string()), std::string::npos) << said;
+  EXPECT_EQ(during, ReceiptStatus::Stored);
+  EXPECT_TRUE(store->status().writable);
+  EXPECT_FALSE(std::filesystem::exists(copy));
+  EXPECT_FALSE(std::filesystem::exists(copy.string() + ".part"));
+  EXPECT_TRUE(*store->backup(copy, go_on));
+  EXPECT_EQ(open_sqlite_store(copy)->status().paths, 401U);
+}
+
 }  // namespace
 }  // namespace kinship::store

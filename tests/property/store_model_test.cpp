@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -10,7 +11,7 @@
 #include "tests/support/temporary_directory.hpp"
 
 /// Random reports with many retries and repeated paths against a model that holds what the
-/// contract says in three maps; the store is reopened now and then.
+/// contract says in a few maps; the store is reopened now and then.
 namespace kinship::store {
 namespace {
 
@@ -36,14 +37,46 @@ class Model {
     if (body.content == 0)
       return ReceiptStatus::Recorded;
     if (!paths_[{body.robot, body.task}].insert(body.content).second)
-      return ReceiptStatus::Duplicate;
+      return ReceiptStatus::Duplicate;  // of the path that is in use
     changed_.emplace(body.robot, body.task);
     return ReceiptStatus::Stored;
+  }
+  /// \return how many paths it retires; nothing if the report is unknown or brought none.
+  std::optional<std::size_t> retire(std::uint64_t uuid) {
+    const auto found = attempts_.find(uuid);
+    if (found == attempts_.end() || found->second.content == 0)
+      return std::nullopt;
+    // A report stands for the path of its content that was in use when it came.
+    const Body& body = found->second;
+    if (retired_reports_.contains(uuid))
+      return 0;
+    for (const auto& [other, other_body] : attempts_)
+      if (other_body == body)
+        retired_reports_.insert(other);
+    paths_[{body.robot, body.task}].erase(body.content);
+    raise_retired({body.robot, body.task});
+    return 1;
+  }
+  std::size_t reset(std::size_t task) {
+    std::size_t count = 0;
+    for (auto& [pair, contents] : paths_)
+      if (pair.second == task && !contents.empty()) {
+        count += contents.size();
+        contents.clear();
+        raise_retired(pair);
+      }
+    for (const auto& [uuid, body] : attempts_)
+      if (body.task == task)
+        retired_reports_.insert(uuid);
+    return count;
   }
   void commit() {
     for (const auto& pair : changed_)
       ++generations_[pair];
     changed_.clear();
+  }
+  std::uint64_t retired_generation(std::size_t robot, std::size_t task) {
+    return retired_generations_[{robot, task}];
   }
 
   std::uint64_t generation(std::size_t robot, std::size_t task) {
@@ -56,9 +89,14 @@ class Model {
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;
+
+  void raise_retired(const Pair& pair) { retired_generations_[pair] = ++generations_[pair]; }
+
   std::map<std::uint64_t, Body> attempts_;
   std::map<Pair, std::set<std::uint64_t>> paths_;
   std::map<Pair, std::uint64_t> generations_;
+  std::map<Pair, std::uint64_t> retired_generations_;
+  std::set<std::uint64_t> retired_reports_;  // their path is retired
   std::set<Pair> changed_;
 };
 
@@ -85,6 +123,11 @@ class StoreModel : public testing::Test {
       for (std::size_t task = 0; task < kTasks.size(); ++task) {
         const Digest& digest = robots_[robot].digest;
         EXPECT_EQ(store_->generation(digest, kTasks[task]), model_.generation(robot, task));
+        for (const ExperienceSummary& summary : store_->experience(kTasks[task]))
+          if (summary.robot == digest) {
+            EXPECT_EQ(summary.paths, model_.paths(robot, task).size());
+            EXPECT_EQ(summary.retired_generation, model_.retired_generation(robot, task));
+          }
         const auto stored =
             store_->read_paths(digest, kTasks[task], {.after_id = 0, .limit = 1000});
         EXPECT_EQ(stored.size(), model_.paths(robot, task).size());
@@ -93,6 +136,19 @@ class StoreModel : public testing::Test {
             return path.path.waypoints() == test::make_path(content).waypoints();
           })) << content;
       }
+  }
+
+  void retire_one(std::uint64_t uuid) {
+    const Result<Retirement> retired = store_->retire_path(test::id_from<Uuid>(uuid));
+    const std::optional<std::size_t> expected = model_.retire(uuid);
+    ASSERT_EQ(retired.has_value(), expected.has_value());
+    EXPECT_EQ(expected ? retired->paths : 0, expected.value_or(0));
+  }
+  void reset_one(std::size_t task) {
+    const Result<Retirement> reset = store_->reset_task(kTasks[task]);
+    if (!reset)
+      return;  // nobody has reported it yet
+    EXPECT_EQ(reset->paths, model_.reset(task));
   }
 
   std::mt19937_64 generator_{kSeed};
@@ -121,6 +177,10 @@ TEST_F(StoreModel, EveryReceiptAndEveryReadingIsAsTheContractSays) {
     }
     model_.commit();
     ASSERT_EQ(test::statuses(test::report(*store_, std::move(attempts))), expected) << batch;
+    if (generator_() % 4 == 0)
+      retire_one(generator_() % kUuids);
+    if (generator_() % 30 == 0)
+      reset_one(generator_() % kTasks.size());
     if (generator_() % 10 == 0)
       open();
     if (batch % 20 == 19)

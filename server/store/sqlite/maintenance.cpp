@@ -43,6 +43,13 @@ fs::path locate_present(const fs::path& file) {
   return locate_store(file);
 }
 
+/// Rolls back what a process killed outside of WAL mode left half done; no reader could do that.
+fs::path without_journal(const fs::path& located) {
+  if (fs::exists(located.string() + "-journal"))
+    Database(located, Access::ReadWrite).integer("PRAGMA user_version");
+  return located;
+}
+
 /// A store that is only read and left as it was, its WAL too if a server was killed.
 class ReadStore {
  public:
@@ -50,7 +57,7 @@ class ReadStore {
       : file_(located),
         lock_(located),
         had_wal_(fs::exists(located.string() + "-wal")),
-        database_(open_reader(located)) {}
+        database_(open_reader(without_journal(located))) {}
   ReadStore(const ReadStore&) = delete;
   ReadStore& operator=(const ReadStore&) = delete;
   ~ReadStore() {

@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "server/store/maintenance.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/faults/kill_point.hpp"
+#include "tests/support/store_values.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+/// kill -9 before every single change that a verb makes to the file system.
+namespace kinship::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+void ignore(double) {}
+
+const RobotRecord& robot() {
+  static const RobotRecord kRobot = test::make_robot("panda", 1);
+  return kRobot;
+}
+
+void add_attempts(const fs::path& file, std::uint64_t first, std::uint64_t count) {
+  const std::unique_ptr<Store> store = open_sqlite_store(file);
+  static_cast<void>(store->register_robot(robot()));
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = first; number < first + count; ++number)
+    attempts.push_back(test::make_attempt(robot().digest, "shelf", number));
+  test::report(*store, std::move(attempts));
+}
+
+std::uint64_t rows(const StoreCheck& check, const std::string& table) {
+  const auto found = std::ranges::find(check.tables, table, &StoreCheck::Table::name);
+  return found == check.tables.end() ? 0 : found->rows;
+}
+
+/// A store with 5 attempts, and one with 8 whose server was killed: the last is in the WAL only.
+class StoreMaintenanceKill : public testing::Test {
+ protected:
+  static constexpr std::uint64_t kBackupAttempts = 5;
+  static constexpr std::uint64_t kOldAttempts = 8;
+
+  StoreMaintenanceKill() {
+    fs::create_directory(templates_ / "old");
+    add_attempts(backup_, 1, kBackupAttempts);
+    const fs::path closed = templates_ / "closed.db";
+    add_attempts(closed, 1, kOldAttempts - 1);
+    const std::unique_ptr<Store> store = open_sqlite_store(closed);
+    test::report(*store, {test::make_attempt(robot().digest, "shelf", 100)});
+    for (const std::string suffix : {"", "-wal"})
+      fs::copy_file(closed.string() + suffix, (templates_ / "old" / "store.db").string() + suffix);
+    old_epoch_ = store->epoch();
+  }
+  /// A directory with the store of the killed server, as it was.
+  void begin_anew() {
+    fs::remove_all(place_);
+    fs::copy(templates_ / "old", place_);
+  }
+  std::vector<fs::path> files_with(const std::string& part_of_name) const {
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(place_))
+      if (entry.path().filename().string().find(part_of_name) != std::string::npos)
+        found.push_back(entry.path());
+    return found;
+  }
+  /// Sound, and the old one or the restored one as a whole. \return whether it is the old one.
+  bool is_old(const fs::path& file) const {
+    const StoreCheck check = check_store(file, ignore);
+    EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
+    const bool old = check.epoch == old_epoch_;
+    EXPECT_EQ(rows(check, "attempt"), old ? kOldAttempts : kBackupAttempts);
+    return old;
+  }
+  bool has_old(const std::vector<fs::path>& files) const {
+    return std::ranges::any_of(files, [this](const fs::path& file) {
+      return file.extension() != ".lock" && is_old(file);
+    });
+  }
+
+  const test::TemporaryDirectory templates_;
+  const fs::path backup_ = templates_ / "backup.db";
+  const fs::path place_ = templates_ / "place";
+  const fs::path store_ = place_ / "store.db";
+  Uuid old_epoch_;
+};
+
+TEST_F(StoreMaintenanceKill, ARestoreLeavesTheOldStoreOrTheNewOneAndNeverLosesTheOld) {
+  int change = 0;
+  bool killed = true;
+  for (; killed; ++change) {
+    SCOPED_TRACE("killed before change " + std::to_string(change));
+    begin_anew();
+    killed = test::killed_before_change(change, [&] { restore_store(backup_, store_, ignore); });
+    ASSERT_TRUE(is_old(store_) || has_old(files_with(".replaced-")));
+    if (change % 4 == 0) {  // once more, to the end
+      ASSERT_NO_THROW(restore_store(backup_, store_, ignore));
+      ASSERT_FALSE(is_old(store_));
+      ASSERT_TRUE(has_old(files_with(".replaced-")));
+      ASSERT_TRUE(files_with(".restoring").empty());
+    }
+    if (HasFailure())
+      return;
+  }
+  EXPECT_GT(change, 20);
+  std::cout << change << " changes\n";
+}
+
+TEST_F(StoreMaintenanceKill, ABackupIsWholeOrNotThereAndCanBeMadeAfterwards) {
+  int change = 0;
+  bool killed = true;
+  for (; killed; ++change) {
+    SCOPED_TRACE("killed before change " + std::to_string(change));
+    begin_anew();
+    const fs::path copy = place_ / "copy.db";
+    killed = test::killed_before_change(change, [&] { backup_store(store_, copy, ignore); });
+    ASSERT_TRUE(is_old(store_));
+    if (!fs::exists(copy))
+      backup_store(store_, copy, ignore);
+    ASSERT_TRUE(is_old(copy));
+    ASSERT_TRUE(files_with(".part").empty());
+  }
+  EXPECT_GT(change, 10);
+  std::cout << change << " changes\n";
+}
+
+TEST_F(StoreMaintenanceKill, ABackupOfARunningStoreIsWholeOrNotThere) {
+  int change = 0;
+  bool killed = true;
+  for (; killed; change += 3) {
+    SCOPED_TRACE("killed before change " + std::to_string(change));
+    begin_anew();
+    const fs::path copy = place_ / "copy.db";
+    killed = test::killed_before_change(change, [&] {
+      const std::unique_ptr<Store> store = open_sqlite_store(store_);
+      static_cast<void>(store->backup(copy, [](double) { return true; }).value_or_throw());
+    });
+    ASSERT_TRUE(is_old(store_));
+    if (!fs::exists(copy))
+      backup_store(store_, copy, ignore);
+    ASSERT_TRUE(is_old(copy));
+    ASSERT_TRUE(files_with(".part").empty());
+  }
+  std::cout << change << " changes\n";
+}
+
+TEST_F(StoreMaintenanceKill, AMigrationHappensWhollyOrNotAtAll) {
+  constexpr std::uint64_t kGoldenAttempts = 8;
+  constexpr std::uint32_t kNewest = 2;
+  const fs::path old = place_ / "golden.db";
+  int change = 0;
+  bool killed = true;
+  for (; killed; ++change) {
+    SCOPED_TRACE("killed before change " + std::to_string(change));
+    begin_anew();
+    fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", old);
+    killed = test::killed_before_change(change, [&] { migrate_store(old); });
+    const StoreCheck check = check_store(old, ignore);
+    ASSERT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
+    ASSERT_EQ(rows(check, "attempt"), kGoldenAttempts);
+    const fs::path backup = old.string() + ".backup-1";
+    ASSERT_TRUE(check.schema_version == 1 || fs::exists(backup));
+    if (fs::exists(backup)) {
+      const StoreCheck kept = check_store(backup, ignore);
+      ASSERT_EQ(kept.problems, 0U);
+      ASSERT_EQ(kept.schema_version, 1U);
+      ASSERT_EQ(rows(kept, "attempt"), kGoldenAttempts);
+    }
+    if (change % 5 == 0) {  // and goes on from there
+      ASSERT_EQ(open_sqlite_store(old)->status().schema_version, kNewest);
+    }
+  }
+  EXPECT_GT(change, 20);
+  std::cout << change << " changes\n";
+}
+
+}  // namespace
+}  // namespace kinship::store
