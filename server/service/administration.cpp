@@ -6,6 +6,8 @@
 #include "proto/types/limits.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/service/backup_job.hpp"
+#include "server/service/explain_distribution.hpp"
+#include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
 #include "server/service/find_by_name.hpp"
 #include "server/service/job_verbs.hpp"
@@ -61,6 +63,10 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return list_distributions(request);
     case AdminVerb::ShowDistribution:
       return show_distribution(request.argument);
+    case AdminVerb::ExplainDistribution:
+      return explain(request.argument);
+    case AdminVerb::ExportConfigurations:
+      return export_configurations(request.argument, asker);
     case AdminVerb::EvictDistribution:
       return evict_distribution(request.argument);
     case AdminVerb::ExportPaths:
@@ -127,6 +133,20 @@ AdminPage Administration::show_path(const std::string& uuid) {
 
 AdminPage Administration::show_distribution(const std::string& prefix) {
   return page_of(find_distribution(prefix));
+}
+
+AdminPage Administration::explain(const std::string& prefix) {
+  Distribution distribution = find_distribution(prefix);
+  if (parts_.advise && distribution.state == DistributionState::Ready)
+    distribution.advice = parts_.advise(distribution);
+  return page_of(
+      explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms()));
+}
+
+AdminPage Administration::export_configurations(const std::string& prefix,
+                                                const std::string& asker) {
+  const FitContext context{.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock};
+  return begin(export_configurations_job(context, find_distribution(prefix), asker));
 }
 
 AdminPage Administration::evict_distribution(const std::string& prefix) {

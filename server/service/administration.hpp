@@ -9,6 +9,7 @@
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 #include "server/service/admin_page.hpp"
+#include "server/service/clock.hpp"
 #include "server/service/jobs.hpp"
 #include "server/service/robot_registry.hpp"
 #include "server/store/store.hpp"
@@ -25,7 +26,10 @@ class Administration {
     store::Store& store;
     RobotRegistry& robots;
     Jobs& jobs;
+    const Clock& clock;
     std::function<ServerStatus()> status;
+    /// What share of guidance is recommended now; empty: what the distribution says.
+    std::function<Advice(const Distribution&)> advise = {};
     /// A distribution was evicted from the store: nothing may serve it from memory.
     std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
     /// Paths of a task were retired: nothing that was made of them may be served.
@@ -51,6 +55,8 @@ class Administration {
   AdminPage show_task(const std::string& task);
   AdminPage show_path(const std::string& uuid);
   AdminPage show_distribution(const std::string& prefix);
+  AdminPage explain(const std::string& prefix);
+  AdminPage export_configurations(const std::string& prefix, const std::string& asker);
   AdminPage evict_distribution(const std::string& prefix);
   AdminPage export_paths(const AdminRequest& request);
   AdminPage retire_path(const std::string& uuid);

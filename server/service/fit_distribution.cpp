@@ -50,8 +50,6 @@ class Fit {
  private:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  void read_sources(const std::vector<store::ExperienceSummary>& experience,
-                    const std::stop_token& stop);
   void fit(Distribution& distribution) const;
   void fail(Distribution& distribution, const std::string& message) const;
   double seconds_since(TimePoint begin) const {
@@ -69,7 +67,7 @@ FitOutcome Fit::run(const std::stop_token& stop) {
   const std::vector<store::ExperienceSummary> experience =
       selected_experience(key_, context_.store.experience(key_.task));
   const TimePoint begin = context_.clock.now();
-  read_sources(experience, stop);
+  sources_ = transfer_sources(transfer_, key_, experience, context_.max_paths, stop);
   if (stop.stop_requested())
     return {FitOutcome::Kind::Abandoned, std::nullopt};
   if (std::all_of(sources_.begin(), sources_.end(),
@@ -83,18 +81,6 @@ FitOutcome Fit::run(const std::stop_token& stop) {
   fit(distribution);
   distribution.fitted_ms = context_.clock.unix_ms();
   return {FitOutcome::Kind::Fitted, std::move(distribution)};
-}
-
-void Fit::read_sources(const std::vector<store::ExperienceSummary>& experience,
-                       const std::stop_token& stop) {
-  std::vector<std::uint64_t> selected;
-  selected.reserve(experience.size());
-  for (const store::ExperienceSummary& source : experience)
-    selected.push_back(transfer_.count_selected(source));
-  const std::vector<std::uint64_t> wanted =
-      share_paths(selected, context_.max_paths, key_.profile.density.weighting);
-  for (std::size_t i = 0; i < experience.size(); ++i)
-    sources_.push_back(transfer_.add(experience[i], selected[i], wanted[i], stop));
 }
 
 void Fit::fit(Distribution& distribution) const {

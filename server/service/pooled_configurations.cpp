@@ -7,7 +7,7 @@ namespace kinship::service {
 
 void PooledConfigurations::begin_source(bool own) { sources_.push_back({.paths = 0, .own = own}); }
 
-void PooledConfigurations::add(transfer::TransferredPath path) {
+void PooledConfigurations::add(transfer::TransferredPath path, const Uuid& report) {
   const Eigen::Index count = path.configurations.cols();
   if (path.weights.size() != count || (count > 0 && path.configurations.rows() != dof_))
     throw std::invalid_argument("PooledConfigurations: need dof x n configurations and n weights");
@@ -17,7 +17,7 @@ void PooledConfigurations::add(transfer::TransferredPath path) {
     return;
   size_ += count;
   ++sources_.back().paths;
-  paths_.push_back({sources_.size() - 1, std::move(path)});
+  paths_.push_back({sources_.size() - 1, report, std::move(path)});
 }
 
 Eigen::MatrixXd PooledConfigurations::configurations() const {
@@ -35,7 +35,7 @@ Eigen::VectorXd PooledConfigurations::weights(const DensityParameters& parameter
   Eigen::VectorXd pooled(size_);
   std::vector<double> sum_of_source(sources_.size(), 0);
   Eigen::Index row = 0;
-  for (const auto& [source, path] : paths_) {
+  for (const auto& [source, report, path] : paths_) {
     const double total = parameters.equal_path_weights ? path.weights.sum() : 1.0;
     auto segment = pooled.segment(row, path.weights.size());
     segment = path.weights / total;
@@ -45,7 +45,7 @@ Eigen::VectorXd PooledConfigurations::weights(const DensityParameters& parameter
   if (parameters.weighting == Weighting::Sources) {
     const std::vector<double> masses = source_masses(sources_);
     row = 0;
-    for (const auto& [source, path] : paths_) {
+    for (const auto& [source, report, path] : paths_) {
       pooled.segment(row, path.weights.size()) *= masses[source] / sum_of_source[source];
       row += path.weights.size();
     }
@@ -59,7 +59,7 @@ std::vector<double> PooledConfigurations::masses(
     const Eigen::Ref<const Eigen::VectorXd>& weights) const {
   std::vector<double> masses(sources_.size(), 0);
   Eigen::Index row = 0;
-  for (const auto& [source, path] : paths_) {
+  for (const auto& [source, report, path] : paths_) {
     masses[source] += weights.segment(row, path.weights.size()).sum() / weights.sum();
     row += path.weights.size();
   }

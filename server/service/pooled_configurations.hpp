@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "proto/types/profile.hpp"
+#include "proto/types/uuid.hpp"
 #include "server/service/source_masses.hpp"
 #include "server/transfer/transfer.hpp"
 
@@ -20,12 +21,21 @@ class PooledConfigurations {
   /// \param own  it is the target robot itself.
   void begin_source(bool own);
 
+  /// \param report  that brought the path.
   /// \throws std::invalid_argument if the configurations have another number of joints, or as
   ///         many weights as configurations are not there; std::logic_error without a source.
-  void add(transfer::TransferredPath path);
+  void add(transfer::TransferredPath path, const Uuid& report = {});
 
   Eigen::Index size() const noexcept { return size_; }  ///< number of configurations
-  Eigen::MatrixXd configurations() const;               ///< dof x N, in the order of addition
+
+  struct PooledPath {
+    std::size_t source = 0;  ///< counts from 0 in the order of begin_source()
+    Uuid report;
+    transfer::TransferredPath path;  ///< with at least one configuration
+  };
+  /// In the order of addition; their configurations one after the other are configurations().
+  const std::vector<PooledPath>& paths() const noexcept { return paths_; }
+  Eigen::MatrixXd configurations() const;  ///< dof x N, in the order of addition
 
   /// N weights with sum N. Equal path weights: those of every path with configurations of a source
   /// sum to the same; otherwise as the transfer gave them. Weighting::Sources: each source then
@@ -36,11 +46,6 @@ class PooledConfigurations {
   std::vector<double> masses(const Eigen::Ref<const Eigen::VectorXd>& weights) const;
 
  private:
-  struct PooledPath {
-    std::size_t source = 0;
-    transfer::TransferredPath path;  // with at least one configuration
-  };
-
   Eigen::Index dof_;
   Eigen::Index size_ = 0;
   std::vector<PooledSource> sources_;

@@ -67,6 +67,7 @@ Administration::Parts Service::administration_parts() {
   return {.store = *store_,
           .robots = robots_,
           .jobs = jobs_,
+          .clock = options_.clock,
           .status = [this] { return status(); },
           .on_change =
               [this](const std::string& task, const std::string& what) {

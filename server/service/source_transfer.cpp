@@ -6,6 +6,7 @@
 
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
+#include "server/service/selected_experience.hpp"
 #include "server/transfer/transfer.hpp"
 
 namespace kinship::service {
@@ -135,7 +136,7 @@ bool SourceTransfer::add_path(const store::StoredPath& stored, const transfer::A
         stored.path, pair, T_target_source(key_.T_task_base, stored.T_task_base),
         key_.profile.transfer, key_.profile.seed);
     total.add(moved.summary);
-    pool_.add(std::move(moved));
+    pool_.add(std::move(moved), stored.report_uuid);
     (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
     return true;
   } catch (const std::exception& exception) {  // one bad path must not cost the others
@@ -143,6 +144,21 @@ bool SourceTransfer::add_path(const store::StoredPath& stored, const transfer::A
       summary.problem = "path " + stored.report_uuid.text() + ": " + exception.what();
     return false;
   }
+}
+
+std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
+                                            const std::vector<store::ExperienceSummary>& experience,
+                                            std::size_t max_paths, const std::stop_token& stop) {
+  std::vector<std::uint64_t> selected;
+  selected.reserve(experience.size());
+  for (const store::ExperienceSummary& source : experience)
+    selected.push_back(transfer.count_selected(source));
+  const std::vector<std::uint64_t> wanted =
+      share_paths(selected, max_paths, key.profile.density.weighting);
+  std::vector<SourceSummary> summaries;
+  for (std::size_t i = 0; i < experience.size(); ++i)
+    summaries.push_back(transfer.add(experience[i], selected[i], wanted[i], stop));
+  return summaries;
 }
 
 }  // namespace kinship::service

@@ -61,4 +61,11 @@ class SourceTransfer {
   PooledConfigurations pool_;
 };
 
+/// Adds every source's share of at most `max_paths` paths.
+/// \return how each source fared, in their order.
+/// \throws Failure(Storage)
+std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
+                                            const std::vector<store::ExperienceSummary>& experience,
+                                            std::size_t max_paths, const std::stop_token& stop);
+
 }  // namespace kinship::service

@@ -49,6 +49,7 @@ class AdministrationTest : public testing::Test {
     return {.store = *store_,
             .robots = robots,
             .jobs = jobs_,
+            .clock = clock_,
             .status =
                 [] {
                   ServerStatus status;

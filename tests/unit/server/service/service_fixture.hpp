@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/enum_text.hpp"
 #include "server/service/service.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -102,6 +103,11 @@ class ServiceFixture : public testing::Test {
       const std::lock_guard lock(log_mutex_);
       log_.emplace_back(line);
     };
+    options.on_event = [this](const Event& event) {
+      const std::lock_guard lock(log_mutex_);
+      events_ += std::string(to_text(event.kind)) + '|' + event.task + '|' + event.robot + '|' +
+                 event.text + '\n';
+    };
     service_ = std::make_unique<Service>(std::move(store), std::move(options));
     for (const RobotDescription& robot : {fleet::teacher(), fleet::pupil(), fleet::dwarf()})
       register_robot(robot);
@@ -147,6 +153,12 @@ class ServiceFixture : public testing::Test {
     return all;
   }
 
+  /// Lines of kind|task|robot|text.
+  std::string events() {
+    const std::lock_guard lock(log_mutex_);
+    return events_;
+  }
+
   test::TemporaryDirectory directory_;
   std::atomic<std::int64_t> time_ms_{1'700'000'000'000};
   Clock clock_{
@@ -159,6 +171,7 @@ class ServiceFixture : public testing::Test {
   GatedFit gate_;
   std::mutex log_mutex_;
   std::vector<std::string> log_;  // guarded by log_mutex_
+  std::string events_;            // guarded by log_mutex_
   std::unique_ptr<RobotRegistry> registry_;
   std::unique_ptr<FitContext> context_;
   const Robot teacher_ = fleet::robot_of(fleet::teacher());

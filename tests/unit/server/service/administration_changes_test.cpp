@@ -1,0 +1,261 @@
+// The admin verbs that change something, export or begin a job, on a whole service.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "proto/types/limits.hpp"
+#include "tests/unit/server/service/service_fixture.hpp"
+
+namespace kinship::service {
+namespace {
+
+class AdministrationChanges : public ServiceFixture {
+ protected:
+  AdminPage ask(AdminVerb verb, const std::string& argument = "") {
+    return administer(fleet::question(verb, argument));
+  }
+  template <typename Row>
+  static const Row& row(const AdminPage& page, std::size_t index = 0) {
+    if (page.status != AdminStatus::Ok)
+      throw std::runtime_error(page.message);
+    return std::get<Row>(page.rows.at(index));
+  }
+  /// The job that a verb began, when it has ended. Its clock stands still.
+  Job end_of(const AdminPage& begun) {
+    AdminRequest request = fleet::question(AdminVerb::ShowJob, row<Job>(begun).id);
+    request.deadline = std::chrono::seconds(30);
+    return row<Job>(administer(request));
+  }
+  std::vector<std::string> rows_of(const std::string& job, std::uint32_t limit) {
+    AdminRequest request = fleet::question(AdminVerb::JobRows, job);
+    request.limit = limit;
+    std::vector<std::string> rows;
+    do {
+      const AdminPage page = administer(request);
+      for (std::size_t i = 0; i < page.rows.size(); ++i)
+        rows.push_back(row<TextLine>(page, i).text);
+      request.cursor = page.next_cursor;
+    } while (!request.cursor.empty());
+    return rows;
+  }
+  std::vector<AdminRow> export_all(const std::string& robot, const std::string& task,
+                                   std::uint32_t limit) {
+    AdminRequest request = fleet::question(AdminVerb::ExportPaths);
+    request.robot = robot;
+    request.task = task;
+    request.limit = limit;
+    std::vector<AdminRow> rows;
+    do {
+      AdminPage page = administer(request);
+      EXPECT_EQ(page.status, AdminStatus::Ok) << page.message;
+      EXPECT_LE(page.rows.size(), limit);
+      std::move(page.rows.begin(), page.rows.end(), std::back_inserter(rows));
+      request.cursor = page.next_cursor;
+    } while (!request.cursor.empty());
+    return rows;
+  }
+  Distribution fetched() {
+    const FetchReply reply = fetch(request_for(pupil_));
+    if (!reply.distribution)
+      throw std::runtime_error(reply.message);
+    return *reply.distribution;
+  }
+};
+
+TEST_F(AdministrationChanges, AnExportBeginsWithTheRobotsItNeeds) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  report(fleet::solved(pupil_, "shelf", 2, 1));
+  report({fleet::unsolved(pupil_.digest, "bin")});
+  for (const std::uint32_t limit : {1U, 2U, 100U}) {
+    const std::vector<AdminRow> rows = export_all("", "shelf", limit);
+    ASSERT_EQ(rows.size(), 7U);
+    std::set<std::string> labels;
+    for (std::size_t i = 0; i < 2; ++i)
+      labels.insert(std::get<ExportedRobot>(rows[i]).description.label);
+    EXPECT_EQ(labels, (std::set<std::string>{"pupil", "teacher"}));
+    for (std::size_t i = 2; i < rows.size(); ++i)
+      EXPECT_TRUE(std::get<Attempt>(rows[i]).path);
+  }
+  EXPECT_EQ(export_all("teacher", "", 100).size(), 4U);
+  EXPECT_EQ(export_all("", "", 100).size(), 2U + 6U);
+  EXPECT_EQ(export_all("dwarf", "", 100).size(), 0U);
+}
+
+TEST_F(AdministrationChanges, AnExportOfWhatIsNotThereIsNotFoundAndAForeignCursorRefused) {
+  AdminRequest request = fleet::question(AdminVerb::ExportPaths);
+  request.task = "bin";
+  EXPECT_EQ(administer(request).status, AdminStatus::NotFound);
+  request.task.clear();
+  request.cursor = "17";
+  EXPECT_EQ(administer(request).status, AdminStatus::Refused);
+}
+
+TEST_F(AdministrationChanges, ARetiredPathIsNotExported) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 2, 1);
+  report(attempts);
+  const AdminPage page = ask(AdminVerb::RetirePath, attempts[0].report_uuid.text());
+  EXPECT_EQ(row<Retirement>(page).paths, 1U);
+  EXPECT_EQ(row<Retirement>(page).task, "shelf");
+  EXPECT_EQ(row<Retirement>(ask(AdminVerb::RetirePath, attempts[0].report_uuid.text())).paths, 0U);
+  const std::vector<AdminRow> rows = export_all("", "shelf", 100);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(std::get<Attempt>(rows[1]).report_uuid, attempts[1].report_uuid);
+  EXPECT_NE(log().find("task 'shelf': path " + attempts[0].report_uuid.text()), std::string::npos);
+}
+
+TEST_F(AdministrationChanges, RetiringNeedsAReportThatIsThere) {
+  EXPECT_EQ(ask(AdminVerb::RetirePath, Uuid::random().text()).status, AdminStatus::NotFound);
+  EXPECT_EQ(ask(AdminVerb::RetirePath, "17").status, AdminStatus::Refused);
+  EXPECT_EQ(ask(AdminVerb::ResetTask, "bin").status, AdminStatus::NotFound);
+}
+
+TEST_F(AdministrationChanges, ABackupIsAJobThatSaysWhatItWrote) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  const std::string file = (directory_ / "copy.db").string();
+  const Job job = end_of(ask(AdminVerb::Backup, file));
+  EXPECT_EQ(job.state, JobState::Done) << job.message;
+  EXPECT_EQ(job.argument, file);
+  EXPECT_NE(job.message.find("copy.db', "), std::string::npos) << job.message;
+  EXPECT_EQ(row<Job>(ask(AdminVerb::ListJobs)).id, job.id);
+  EXPECT_EQ(store::open_sqlite_store(file)->status().paths, 3U);
+}
+
+TEST_F(AdministrationChanges, ABackupNeverTouchesWhatIsThere) {
+  std::ofstream(directory_ / "thesis.txt") << "irreplaceable";
+  std::filesystem::create_symlink("nowhere", directory_ / "link");
+  const auto answer = [this](const std::string& file) {
+    const AdminPage page = ask(AdminVerb::Backup, file);
+    EXPECT_EQ(page.status, AdminStatus::Refused) << file;
+    return page.message;
+  };
+  const std::string folder = directory_.path().string();
+  EXPECT_NE(answer(folder + "/thesis.txt").find("thesis.txt': is there already"),
+            std::string::npos);
+  EXPECT_NE(answer(folder + "/link").find("is there already"), std::string::npos);
+  EXPECT_NE(answer("copy.db").find("the name must begin with '/'"), std::string::npos);
+  EXPECT_NE(answer("").find("the name must begin with '/'"), std::string::npos);
+  EXPECT_NE(answer(folder).find("is a folder"), std::string::npos);
+  EXPECT_NE(answer(folder + "/").find("is a folder"), std::string::npos);
+  EXPECT_NE(answer(folder + "/fleet.db").find("belongs to the store"), std::string::npos);
+  EXPECT_NE(answer(folder + "/fleet.db-journal").find("belongs to the store"), std::string::npos);
+  EXPECT_NE(answer(folder + "/nowhere/copy.db").find("there is no folder"), std::string::npos);
+  EXPECT_TRUE(ask(AdminVerb::ListJobs).rows.empty());
+}
+
+TEST_F(AdministrationChanges, ConfigurationsAreExportedExactlyAsTheFitSawThem) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  report(fleet::solved(pupil_, "shelf", 2, 100));
+  const Distribution distribution = fetched();
+  report(fleet::solved(teacher_, "shelf", 3, 50));  // later ones do not matter
+  const Job job = end_of(ask(AdminVerb::ExportConfigurations, distribution.id.hex().substr(0, 8)));
+  ASSERT_EQ(job.state, JobState::Done) << job.message;
+  EXPECT_EQ(job.rows, distribution.configurations + 1);
+  for (const std::uint32_t limit : {7U, 1000U}) {
+    const std::vector<std::string> rows = rows_of(job.id, limit);
+    ASSERT_EQ(rows.size(), distribution.configurations + 1);
+    EXPECT_EQ(rows[0],
+              "path_id,source_robot,pose_index,solution_index,weight,held_out,q_1,q_2,q_3,q_4");
+    double sum = 0;
+    std::set<std::string> paths;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      std::istringstream line(rows[i]);
+      std::vector<std::string> fields;
+      for (std::string field; std::getline(line, field, ',');)
+        fields.push_back(field);
+      ASSERT_EQ(fields.size(), 10U) << rows[i];
+      paths.insert(fields[0]);
+      EXPECT_TRUE(fields[1] == teacher_.digest.hex() || fields[1] == pupil_.digest.hex());
+      EXPECT_EQ(fields[5], "0");
+      sum += std::stod(fields[4]);
+      for (std::size_t joint = 6; joint < 10; ++joint)
+        EXPECT_LE(std::abs(std::stod(fields[joint])), fleet::kLimit_rad);
+    }
+    EXPECT_NEAR(sum, static_cast<double>(distribution.configurations), 1e-6);
+    EXPECT_EQ(paths.size(), 8U);
+  }
+}
+
+TEST_F(AdministrationChanges, ConfigurationsOfRetiredPathsAreNotExported) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 6, 1);
+  report(attempts);
+  const Distribution distribution = fetched();
+  ask(AdminVerb::RetirePath, attempts[0].report_uuid.text());
+  EXPECT_NE(ask(AdminVerb::ExportConfigurations, distribution.id.hex()).status, AdminStatus::Ok);
+}
+
+TEST_F(AdministrationChanges, AnEvictedDistributionIsFittedAgainWithTheNextRevision) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  const Distribution first = fetched();
+  const AdminPage page = ask(AdminVerb::EvictDistribution, first.id.hex().substr(0, 12));
+  EXPECT_EQ(row<Eviction>(page).id, first.id);
+  EXPECT_EQ(ask(AdminVerb::ShowDistribution, first.id.hex()).status, AdminStatus::NotFound);
+  EXPECT_EQ(ask(AdminVerb::EvictDistribution, first.id.hex()).status, AdminStatus::NotFound);
+  const Distribution second = fetched();
+  EXPECT_EQ(second.id, first.id);
+  EXPECT_EQ(second.revision, first.revision + 1);
+}
+
+TEST_F(AdministrationChanges, AfterAResetThereIsNoExperience) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  EXPECT_EQ(fetched().revision, 1U);
+  EXPECT_EQ(row<Retirement>(ask(AdminVerb::ResetTask, "shelf")).paths, 6U);
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
+  start();
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
+}
+
+TEST_F(AdministrationChanges, AnExplanationSaysHowADistributionStands) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  const std::string id = fetched().id.hex();
+  const Explanation fresh = row<Explanation>(ask(AdminVerb::ExplainDistribution, id));
+  EXPECT_FALSE(fresh.behind);
+  EXPECT_FALSE(fresh.distribution.mixture);
+  ASSERT_EQ(fresh.experience.size(), 1U);
+  EXPECT_EQ(fresh.experience[0].label, "teacher");
+  EXPECT_EQ(fresh.experience[0].paths, 6U);
+  EXPECT_EQ(fresh.next_fit,
+            "when the paths have grown by 5, or by 5 % if that is more (6 paths then, 6 now)");
+  report(fleet::solved(teacher_, "shelf", 5, 50));
+  const Explanation behind = row<Explanation>(ask(AdminVerb::ExplainDistribution, id));
+  EXPECT_TRUE(behind.behind);
+  EXPECT_TRUE(behind.next_fit.starts_with("in 10 s at the earliest")) << behind.next_fit;
+  advance(std::chrono::seconds(10));
+  EXPECT_TRUE(row<Explanation>(ask(AdminVerb::ExplainDistribution, id))
+                  .next_fit.starts_with("at the next fetch"));
+}
+
+TEST_F(AdministrationChanges, WhoWaitsForAJobIsToldAtTheDeadlineHowItStands) {
+  AdminRequest request = fleet::question(AdminVerb::ShowJob, "01234567");
+  request.deadline = std::chrono::seconds(5);
+  EXPECT_EQ(administer(request).message, "no job '01234567'");
+  EXPECT_EQ(ask(AdminVerb::CancelJob, "01234567").status, AdminStatus::NotFound);
+  EXPECT_EQ(ask(AdminVerb::JobRows, "01234567").status, AdminStatus::NotFound);
+}
+
+TEST_F(AdministrationChanges, EventsTellWhatHappened) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  Attempt bad = fleet::solved(teacher_, "shelf", 9);
+  bad.record.share = 2;
+  report({bad});
+  fetched();
+  ask(AdminVerb::ResetTask, "shelf");
+  const std::string told = events();
+  for (const char* expected :
+       {"registered||teacher|", "report|shelf|teacher|6 stored",
+        "refusal|||1 of 1 attempts refused", "fit|shelf|pupil|",
+        "fetch|shelf|pupil|ready: distribution ", "admin|shelf||reset: 6 paths retired"})
+    EXPECT_NE(told.find(expected), std::string::npos) << expected << "\nin\n" << told;
+}
+
+TEST_F(AdministrationChanges, StatusCountsJobs) {
+  EXPECT_EQ(row<ServerStatus>(ask(AdminVerb::Status)).jobs, 0U);
+  end_of(ask(AdminVerb::Backup, (directory_ / "copy.db").string()));
+  EXPECT_EQ(row<ServerStatus>(ask(AdminVerb::Status)).jobs, 0U);
+}
+
+}  // namespace
+}  // namespace kinship::service
