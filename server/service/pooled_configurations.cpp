@@ -1,5 +1,6 @@
 #include "server/service/pooled_configurations.hpp"
 
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -60,9 +61,13 @@ std::vector<double> PooledConfigurations::masses(
   std::vector<double> masses(sources_.size(), 0);
   Eigen::Index row = 0;
   for (const auto& [source, report, path] : paths_) {
-    masses[source] += weights.segment(row, path.weights.size()).sum() / weights.sum();
+    masses[source] += weights.segment(row, path.weights.size()).sum();
     row += path.weights.size();
   }
+  // Divided by their own sum, which no rounding can make smaller than one of them.
+  const double total = std::accumulate(masses.begin(), masses.end(), 0.0);
+  for (double& mass : masses)
+    mass = total > 0 ? mass / total : 0;
   return masses;
 }
 

@@ -69,6 +69,13 @@ Administration::Parts Service::administration_parts() {
           .jobs = jobs_,
           .clock = options_.clock,
           .status = [this] { return status(); },
+          .advise =
+              [this](const Distribution& distribution) {
+                const std::optional<Profile> profile = find_profile(distribution.profile);
+                return advice_.advise(
+                    distribution.task, distribution.robot,
+                    profile ? profile->recommended_share : distribution.advice.recommended_share);
+              },
           .on_change =
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);

@@ -187,27 +187,6 @@ TEST_F(AdministrationChanges, ConfigurationsOfRetiredPathsAreNotExported) {
   EXPECT_NE(ask(AdminVerb::ExportConfigurations, distribution.id.hex()).status, AdminStatus::Ok);
 }
 
-TEST_F(AdministrationChanges, AnEvictedDistributionIsFittedAgainWithTheNextRevision) {
-  report(fleet::solved(teacher_, "shelf", 6, 1));
-  const Distribution first = fetched();
-  const AdminPage page = ask(AdminVerb::EvictDistribution, first.id.hex().substr(0, 12));
-  EXPECT_EQ(row<Eviction>(page).id, first.id);
-  EXPECT_EQ(ask(AdminVerb::ShowDistribution, first.id.hex()).status, AdminStatus::NotFound);
-  EXPECT_EQ(ask(AdminVerb::EvictDistribution, first.id.hex()).status, AdminStatus::NotFound);
-  const Distribution second = fetched();
-  EXPECT_EQ(second.id, first.id);
-  EXPECT_EQ(second.revision, first.revision + 1);
-}
-
-TEST_F(AdministrationChanges, AfterAResetThereIsNoExperience) {
-  report(fleet::solved(teacher_, "shelf", 6, 1));
-  EXPECT_EQ(fetched().revision, 1U);
-  EXPECT_EQ(row<Retirement>(ask(AdminVerb::ResetTask, "shelf")).paths, 6U);
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
-  start();
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
-}
-
 TEST_F(AdministrationChanges, AnExplanationSaysHowADistributionStands) {
   report(fleet::solved(teacher_, "shelf", 6, 1));
   const std::string id = fetched().id.hex();
@@ -226,6 +205,33 @@ TEST_F(AdministrationChanges, AnExplanationSaysHowADistributionStands) {
   advance(std::chrono::seconds(10));
   EXPECT_TRUE(row<Explanation>(ask(AdminVerb::ExplainDistribution, id))
                   .next_fit.starts_with("at the next fetch"));
+}
+
+TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  const std::string id = fetched().id.hex();
+  const auto advice_now = [&] {
+    const AdminPage page = ask(AdminVerb::ExplainDistribution, id);
+    return row<Explanation>(page).distribution.advice;
+  };
+  for (int tries = 0; advice_now().evidence.starts_with("attempts are being counted"); ++tries)
+    ASSERT_LT(tries, 1000);
+  std::vector<Attempt> attempts = fleet::solved(pupil_, "shelf", 20, 500);
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    attempts[i].record.arm = i % 2 == 0 ? Arm::Guided : Arm::Control;
+    attempts[i].record.collision_checks = i % 2 == 0 ? 900 + i : 100 + i;
+  }
+  report(attempts);
+  const Advice advice = advice_now();
+  EXPECT_EQ(advice.recommended_share, 0) << advice.evidence;
+  EXPECT_EQ(advice.guided.value().attempts, 10U);
+  EXPECT_EQ(advice.control.value().checks_per_solution, 110);
+  report(attempts);  // duplicates
+  EXPECT_EQ(advice_now().guided.value().attempts, 10U);
+  start();  // the store has them, too
+  for (int tries = 0; advice_now().evidence.starts_with("attempts are being counted"); ++tries)
+    ASSERT_LT(tries, 1000);
+  EXPECT_EQ(advice_now().evidence, advice.evidence);
 }
 
 TEST_F(AdministrationChanges, WhoWaitsForAJobIsToldAtTheDeadlineHowItStands) {

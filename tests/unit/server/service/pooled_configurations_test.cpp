@@ -93,6 +93,15 @@ TEST(PooledConfigurations, SourcesWeighTheSameHoweverManyPathsTheyHave) {
   EXPECT_NEAR(by_configurations[0], 60.0 / 73, 1e-12);
 }
 
+TEST(PooledConfigurations, NoRoundingGivesASourceMoreThanAll) {
+  PooledConfigurations pool(2);
+  pool.begin_source(false);
+  for (int i = 0; i < 200; ++i) {
+    pool.add(transferred(1 + i % 7, 1));
+    ASSERT_EQ(pool.masses(pool.weights(weighing(true))).at(0), 1) << i;
+  }
+}
+
 TEST(PooledConfigurations, MayBeEmpty) {
   const PooledConfigurations pool(3);
   EXPECT_TRUE(pool.masses(pool.weights(weighing(true, Weighting::Sources))).empty());
