@@ -4,6 +4,7 @@
 
 #include "client/experiments/comparison.hpp"
 #include "client/experiments/comparison_table.hpp"
+#include "client/experiments/page/page.hpp"
 #include "client/experiments/result_file.hpp"
 #include "client/experiments/shelf_problems.hpp"
 #include "proto/json/problem_json.hpp"
@@ -44,6 +45,12 @@ void write_comparison(const CompareOptions& options, std::ostream& out) {
     write_json(comparison, out);
   else
     write_table(comparison, out);
+}
+
+void write_page(const RunFolder& run, std::ostream& out) {
+  write_page(read_run(run), out);
+  if (!out)
+    throw Failure(ErrorCode::Storage, "cannot write the page");
 }
 
 }  // namespace kinship::experiments

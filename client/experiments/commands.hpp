@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <optional>
 
+#include "client/experiments/page/page_data.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 /// The commands of kinship-experiment: options in, streams out. They throw Failure.
@@ -32,5 +33,8 @@ struct CompareOptions {
 
 /// Compares two result files of kinship-plan.
 void write_comparison(const CompareOptions& options, std::ostream& out);
+
+/// Writes a page for people that tells what a run of deploy/quickstart did, and shows it.
+void write_page(const RunFolder& run, std::ostream& out);
 
 }  // namespace kinship::experiments

@@ -21,6 +21,9 @@ Examples:
   kinship-experiment placement --model robots/models/ur10e
   kinship-experiment compare --uniform uniform.results.jsonl --guided guided.results.jsonl
 
+  kinship-experiment page --run build/quickstart --models robots/models --fleet panda,iiwa14 --robot ur10e \
+      --output quickstart.html
+
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
 
 struct CommandLine {
@@ -29,6 +32,7 @@ struct CommandLine {
   std::filesystem::path output;
   models::RobotArguments placed;
   CompareOptions compare;
+  RunFolder page;
 };
 
 void add_shelf(CLI::App& app, CommandLine& line) {
@@ -68,6 +72,18 @@ void add_compare(CLI::App& app, CommandLine& line) {
   compare->add_flag("--json", line.compare.json, "one JSON document instead of a table");
 }
 
+void add_page(CLI::App& app, CommandLine& line) {
+  CLI::App* const page = app.add_subcommand(
+      "page", "write an HTML page that shows a run of deploy/quickstart; it needs nothing else");
+  page->add_option("--run", line.page.folder, "folder of the run's files")->required();
+  page->add_option("--models", line.page.models, "folder of the robots' model folders")->required();
+  page->add_option("--fleet", line.page.fleet, "names of the experienced robots")
+      ->delimiter(',')
+      ->required();
+  page->add_option("--robot", line.page.robot, "name of the new robot")->required();
+  page->add_option("--output", line.output, "file to write; standard output if missing");
+}
+
 Eigen::Isometry3d read_placement(const std::string& text) {
   std::istringstream stream(text);
   PoseArray numbers{};
@@ -88,6 +104,12 @@ void write_shelf(const CommandLine& line) {
   output.keep();
 }
 
+void write_page_file(const CommandLine& line) {
+  files::OutputFile output(line.output, std::cout);
+  write_page(line.page, output.stream());
+  output.keep();
+}
+
 int run(int argc, char** argv) {
   CommandLine line;
   CLI::App app{"kinship-experiment: planning problems and comparisons for experiments"};
@@ -96,6 +118,7 @@ int run(int argc, char** argv) {
   add_shelf(app, line);
   add_placement(app, line);
   add_compare(app, line);
+  add_page(app, line);
   try {
     app.parse(argc, argv);
     if (!line.placement.empty())
@@ -107,6 +130,8 @@ int run(int argc, char** argv) {
     write_shelf(line);
   else if (app.got_subcommand("placement"))
     write_placement(line.placed, std::cout);
+  else if (app.got_subcommand("page"))
+    write_page_file(line);
   else
     write_comparison(line.compare, std::cout);
   return kDone;
