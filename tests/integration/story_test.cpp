@@ -43,12 +43,20 @@ TEST(Story, QuickstartsProgramsTeachANewRobotTwiceInARow) {
     const auto guided = read_results(folder / "ur10e-guided.results.jsonl");
     ASSERT_EQ(uniform.size(), 2U);
     ASSERT_EQ(guided.size(), 2U);
-    for (const ProblemResult& result : uniform)
-      EXPECT_FALSE(result.distribution_id) << result.name;
+    for (const ProblemResult& result : uniform) {
+      EXPECT_EQ(result.arm, Arm::Control) << result.name;
+      EXPECT_EQ(result.share, 0) << result.name;
+    }
     for (const ProblemResult& result : guided)
-      EXPECT_TRUE(result.distribution_id) << result.name;
+      EXPECT_EQ(result.arm, Arm::Guided) << result.name;
     EXPECT_NE(read_text(folder / "comparison.txt").find("collision checks, mean"),
               std::string::npos);
+    const std::string page = read_text(folder / "quickstart.html");
+    EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+    const std::string mean_checks =
+        std::to_string((uniform[0].collision_checks + uniform[1].collision_checks) / 2);
+    EXPECT_NE(page.find("\"uniform_checks\":{\"mean\":" + mean_checks), std::string::npos);
+    EXPECT_NE(page.find(guided[0].distribution_id->short_hex()), std::string::npos);
   }
 }
 

@@ -77,7 +77,7 @@
     return positions;
   }
 
-  const target = [0.28, 0, 0.32];
+  const target = [0.24, 0, 0.3];
 
   function showFleet() {
     const poses = total(fleet.flatMap((robot) => robot.paths.map((path) => path.positions.length / 3)));
@@ -87,10 +87,10 @@
     kinshipScene.show(byId("fleet-view"), {
       eye: [-1.55, -2.3, 1.6], target, obstacles: data.scene, arms: [],
       lines: fleet.flatMap((robot, i) => [
-        {positions: segments(robot), color: "robot-" + i % 4, opacity: 0.16},
-        {positions: robot.paths.flatMap((path) => approaches(path, 0.035)), color: "robot-" + i % 4, opacity: 0.4}]),
+        {positions: segments(robot), color: "robot-" + i % 4, opacity: 0.3},
+        {positions: robot.paths.flatMap((path) => approaches(path, 0.035)), color: "robot-" + i % 4, opacity: 0.55}]),
       points: fleet.map((robot, i) => ({
-        positions: robot.paths.flatMap((path) => metres(path.positions)), color: "robot-" + i % 4, size: 0.018, opacity: 0.9})),
+        positions: robot.paths.flatMap((path) => metres(path.positions)), color: "robot-" + i % 4, size: 0.032, opacity: 0.95})),
       legend: fleet.map((robot, i) => ["robot-" + i % 4, `${robot.label}, ${several(robot.paths.length, "path")}`])});
   }
 
@@ -105,7 +105,7 @@
     kinshipScene.show(byId("samples-view"), {
       eye: [-1.75, -2.5, 1.75], target, obstacles: data.scene, lines: [],
       arms: data.postures.map((bones, i) => ({bones, color: "arm", opacity: i === 0 ? 1 : 0.5})),
-      points: [{positions: metres(data.samples.positions), color: "sample", size: 0.02, opacity: 0.85}],
+      points: [{positions: metres(data.samples.positions), color: "sample", size: 0.036, opacity: 0.9}],
       legend: [["sample", "palm, one dot per sample"], ["arm", `${data.robot} in ${data.postures.length} samples`]]});
   }
 
@@ -177,7 +177,7 @@
       `${comparison.pairs} instances is one draw: another seed gives another ratio.` +
       (u.solved < comparison.pairs || g.solved < comparison.pairs ? " An unsolved attempt counts in a mean with what it had used when it gave up." : "");
     tableOf("sources", [
-      ["robot", "paths", "poses", "reached by " + data.robot, ""],
+      ["robot", "paths", "poses", "reached by " + data.robot, "of the poses"],
       ...distribution.sources.map((s) => [s.label, count(s.paths), count(s.poses), count(s.poses_solved),
                                           s.poses ? percent(s.poses_solved / s.poses) : ""])]);
     byId("distribution-note").textContent =

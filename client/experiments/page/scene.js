@@ -97,7 +97,7 @@ const kinshipScene = (() => {
   }
 
   function camera(view) {
-    const camera = new THREE.PerspectiveCamera(30, 2, 0.05, 30);
+    const camera = new THREE.PerspectiveCamera(33, 2, 0.05, 30);
     camera.up.set(0, 0, 1);
     camera.position.set(...view.eye);
     camera.lookAt(new THREE.Vector3(...view.target));

@@ -140,6 +140,15 @@ TEST_F(PlanRunWithoutServer, RequiredGuidanceEndsTheRunBeforePlanning) {
   EXPECT_TRUE(results_.empty());
 }
 
+TEST_F(PlanRunWithoutServer, AnInterruptEndsTheWaitForAServer) {
+  options_.guidance = GuidanceMode::Require;
+  options_.timeout = std::chrono::hours(1);
+  int asked = 0;
+  EXPECT_EQ(run(line("a"), [&] { return ++asked > 2; }), kFailed);
+  EXPECT_TRUE(results_.empty());
+  EXPECT_NE(messages_.str().find("interrupted"), std::string::npos) << messages_.str();
+}
+
 TEST_F(PlanRunWithoutServer, WantedGuidanceIsDoneWithoutAndReportsWait) {
   options_.guidance = GuidanceMode::Auto;
   options_.report = true;

@@ -1,0 +1,174 @@
+// The advice is judged: kinship-plan plans both ways, kinshipd compares what it cost.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "client/link/client.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/client/plan/planar_problem.hpp"
+
+namespace kinship {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr std::size_t kProblems = 40;
+constexpr std::size_t kMisleading = 20;
+
+struct Counts {
+  std::size_t attempts = 0, solved = 0;
+
+  void add(const ProblemResult& result) {
+    ++attempts;
+    if (result.solved)
+      ++solved;
+  }
+};
+
+class Advised : public testing::Test {
+ protected:
+  Advised() {
+    std::ofstream(urdf_) << description_.urdf;
+    std::ofstream problems(problems_);
+    std::mt19937_64 generator(5);
+    std::uniform_real_distribution<double> noise(-0.1, 0.1);
+    for (std::size_t i = 0; i < kProblems; ++i) {
+      Problem problem = plan::test::wall_problem();
+      problem.name = "wall " + std::to_string(i);
+      problem.seed = i;
+      problem.time_limit_s = 3600;  // the checks end an attempt, not the machine's load
+      for (double& q : problem.start)
+        q += noise(generator);
+      problems << json::to_json(problem) << '\n';
+    }
+  }
+
+  /// Experience that is of no use for the task: motions beside the start, stretched out.
+  void report_misleading_paths(link::Client& client) const {
+    for (std::size_t i = 0; i < kMisleading; ++i) {
+      Attempt attempt;
+      attempt.report_uuid = Uuid::random();
+      attempt.robot = robot_;
+      attempt.task = "wall";
+      attempt.record.outcome = Outcome::Solved;
+      attempt.record.collision_checks = 1;
+      const double y = 0.005 * static_cast<double>(i);
+      Eigen::MatrixXd waypoints(4, 3);
+      waypoints << 1.2, 1.3, 1.2, 0.0, y, 0.1, 0.0, 0.1, y, 0.0, 0.1, 0.0;
+      attempt.path = Path(waypoints);
+      client.report(attempt);
+    }
+    ASSERT_EQ(client.flush(seconds(60)).accepted, kMisleading);
+  }
+
+  std::vector<ProblemResult> plan(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {problems_,
+                                          urdf_,
+                                          "--base",
+                                          "base",
+                                          "--tip",
+                                          "l4",
+                                          "--label",
+                                          "planar",
+                                          "--axes",
+                                          "x,y,yaw",
+                                          "--transfer",
+                                          "0.3 0 0 0 0 0 1",
+                                          "--task",
+                                          "wall",
+                                          "--report",
+                                          "--outbox",
+                                          directory_ / "plan-outbox",
+                                          "--domain",
+                                          std::to_string(domain_.number()),
+                                          "--timeout",
+                                          "60",
+                                          "--wait",
+                                          "120",
+                                          "--max-checks",
+                                          "1500"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    test::Program program("kinship-plan", arguments, log_);
+    std::vector<ProblemResult> results;
+    for (std::string line = program.read_line(); !line.empty(); line = program.read_line())
+      results.push_back(json::problem_result_from_json(line).value_or_throw());
+    EXPECT_EQ(program.wait(), 0) << test::read_text(log_);
+    return results;
+  }
+
+  /// The advice once the server has counted `attempts` of both arms; at most a minute.
+  Advice advice_after(link::Client& client, std::size_t attempts) const {
+    FetchRequest request;
+    request.task = "wall";
+    request.robot = robot_;
+    request.deadline = seconds(60);
+    const auto end = std::chrono::steady_clock::now() + seconds(60);
+    while (true) {
+      const FetchReply reply = client.fetch(request).value_or_throw();
+      if (reply.status != FetchStatus::Ready)
+        throw std::runtime_error("no distribution: " + reply.message);
+      const Advice& advice = reply.distribution->advice;
+      const auto count = [](const std::optional<ArmEvidence>& arm) {
+        return arm ? arm->attempts : 0;
+      };
+      if (count(advice.guided) + count(advice.control) >= attempts ||
+          std::chrono::steady_clock::now() > end)
+        return advice;
+    }
+  }
+
+  test::ReservedDomain domain_;
+  test::TemporaryDirectory directory_;
+  const std::string urdf_ = directory_ / "planar.urdf";
+  const std::string problems_ = directory_ / "problems.jsonl";
+  const std::string log_ = directory_ / "plan.log";
+  const RobotDescription description_ = plan::test::planar_description();
+  const Digest robot_ = plan::test::planar_robot().chain.digest();
+};
+
+TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  link::Client client(
+      {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
+  ASSERT_TRUE(client.register_robot(description_));
+  report_misleading_paths(client);
+
+  Counts guided, control;
+  for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0.5"})) {
+    ASSERT_TRUE(result.arm == Arm::Guided || result.arm == Arm::Control);
+    EXPECT_EQ(result.share, result.arm == Arm::Guided ? 0.9 : 0);
+    (result.arm == Arm::Guided ? guided : control).add(result);
+  }
+  ASSERT_EQ(guided.attempts + control.attempts, kProblems);
+  ASSERT_GE(guided.attempts, 10U);
+  ASSERT_GE(control.attempts, 10U);
+  EXPECT_LT(guided.solved, guided.attempts) << "unsolved ones belong to the evidence";
+
+  const Advice advice = advice_after(client, kProblems);
+  ASSERT_TRUE(advice.guided && advice.control) << advice.evidence;
+  EXPECT_EQ(advice.guided->attempts, guided.attempts);
+  EXPECT_EQ(advice.guided->solved, guided.solved);
+  EXPECT_EQ(advice.control->attempts, control.attempts);
+  EXPECT_EQ(advice.control->solved, control.solved);
+  EXPECT_EQ(advice.recommended_share, 0) << advice.evidence;
+
+  Counts trials;
+  for (const ProblemResult& result : plan({}))
+    if (result.arm == Arm::Guided)
+      trials.add(result);
+  EXPECT_LT(trials.attempts, kProblems / 2) << "uniform is advised, guided ones are trials";
+  EXPECT_NE(test::read_text(log_).find("guided as trials"), std::string::npos)
+      << test::read_text(log_);
+}
+
+}  // namespace
+}  // namespace kinship
