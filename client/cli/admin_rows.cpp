@@ -1,28 +1,15 @@
 #include "client/cli/admin_rows.hpp"
 
-#include <algorithm>
 #include <ostream>
-#include <vector>
 
-#include "client/cli/exit_code.hpp"
+#include "client/link/admin_rows.hpp"
 
 namespace kinship::cli {
-namespace {
 
-constexpr std::size_t kRowsPerPage = 200;
-
-/// Prints why there is no page. \return an exit code, kDone if there is one.
-int judge(const Result<AdminReply>& reply, std::string_view command, std::ostream& err) {
-  if (!reply) {
-    err << command << ": " << reply.error().message << '\n';
-    return exit_code(reply.error().code);
-  }
-  if (reply->status != AdminStatus::Ok)
-    err << command << ": " << reply->message << '\n';
-  return exit_code(reply->status);
+int refuse(std::string_view command, const Error& error, std::ostream& err) {
+  err << command << ": " << error.message << '\n';
+  return exit_code(error.code);
 }
-
-}  // namespace
 
 int for_each_row(link::Client& server, AdminVerb verb, const ListOptions& options,
                  std::string_view command, std::ostream& err,
@@ -31,20 +18,8 @@ int for_each_row(link::Client& server, AdminVerb verb, const ListOptions& option
   request.verb = verb;
   request.robot = options.robot;
   request.task = options.task;
-  std::size_t rows_left = options.limit == 0 ? static_cast<std::size_t>(-1) : options.limit;
-  while (rows_left > 0) {
-    request.limit = static_cast<std::uint32_t>(std::min(rows_left, kRowsPerPage));
-    const auto reply = server.admin(request);
-    if (const int code = judge(reply, command, err); code != kDone)
-      return code;
-    for (const std::string& row : reply->rows)
-      if (rows_left-- == 0 || !use(row))
-        return kDone;
-    if (reply->next_cursor.empty())
-      break;
-    request.cursor = reply->next_cursor;
-  }
-  return kDone;
+  const auto error = link::for_each_row(server, request, use, options.limit);
+  return error ? refuse(command, *error, err) : kDone;
 }
 
 int print_rows_as_json(link::Client& server, AdminVerb verb, const ListOptions& options,
@@ -68,11 +43,11 @@ std::vector<std::string> show_rows(link::Client& server, AdminVerb verb,
   AdminRequest request;
   request.verb = verb;
   request.argument = argument;
-  const auto reply = server.admin(request);
-  code = judge(reply, command, err);
-  if (code != kDone)
-    return {};
-  return reply->rows;
+  Result<std::vector<std::string>> rows = link::rows_of(server, request);
+  code = rows ? kDone : refuse(command, rows.error(), err);
+  if (rows && rows->empty())
+    code = refuse(command, {ErrorCode::Internal, "the server answered with nothing"}, err);
+  return rows ? *std::move(rows) : std::vector<std::string>();
 }
 
 }  // namespace kinship::cli

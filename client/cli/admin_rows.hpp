@@ -5,12 +5,17 @@
 #include <iosfwd>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "client/cli/exit_code.hpp"
 #include "client/link/client.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 
 namespace kinship::cli {
+
+/// Says what went wrong, after `command`. \return its exit code.
+int refuse(std::string_view command, const Error& error, std::ostream& err);
 
 /// How a listing is wanted.
 struct ListOptions {

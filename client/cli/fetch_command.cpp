@@ -7,66 +7,15 @@
 #include <random>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/exit_code.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "proto/json/summaries_json.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/enum_text.hpp"
-#include "robots/models/robot_arguments.hpp"
 
 namespace kinship::cli {
 namespace {
 
 constexpr const char* kCommand = "distributions fetch";
-
-std::optional<Digest> find_robot(link::Client& server, const std::string& name, std::ostream& err,
-                                 int& code) {
-  const auto rows = show_rows(server, AdminVerb::ShowRobot, name, kCommand, err, code);
-  if (rows.empty())
-    return std::nullopt;
-  const auto robot = json::robot_summary_from_json(rows.front());
-  if (!robot) {
-    err << kCommand << ": cannot read the server's row: " << robot.error().message << '\n';
-    code = kFailed;
-    return std::nullopt;
-  }
-  return robot->robot;
-}
-
-/// Says why there is no distribution to print. \return an exit code, kDone if there is one.
-int judge(const Result<FetchReply>& reply, std::ostream& err) {
-  if (!reply) {
-    err << kCommand << ": " << reply.error().message << '\n';
-    return exit_code(reply.error().code);
-  }
-  const auto say = [&](const char* what) {
-    err << kCommand << ": " << what << (reply->message.empty() ? "" : ": ") << reply->message
-        << '\n';
-  };
-  switch (reply->status) {
-    case FetchStatus::Ready:
-      return kDone;
-    case FetchStatus::NoExperience:
-      say("no experience");
-      return kNotFound;
-    case FetchStatus::UnknownRobot:
-      say("unknown robot");
-      return kNotFound;
-    case FetchStatus::Pending:
-      say("still being made when the wait (--wait) was over");
-      return kFailed;
-    case FetchStatus::Busy:
-      say("the server is busy");
-      return kFailed;
-    case FetchStatus::Refused:
-      say("refused");
-      return kWrongUsage;
-    default:
-      say("failed");
-      return kFailed;
-  }
-}
 
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {
@@ -88,6 +37,32 @@ int print_samples(const Distribution& distribution, const FetchOptions& options,
   return kDone;
 }
 
+std::string selection_text(const Selection& selection) {
+  std::string text;
+  if (selection.weighting)
+    text += "weighted by " + std::string(to_text(*selection.weighting));
+  if (selection.since_ms > 0)
+    text += (text.empty() ? "" : ", ") + ("received since " + time_text(selection.since_ms));
+  if (!selection.sources.empty())
+    text += (text.empty() ? "only" : ", only") + std::string(" of");
+  for (const Digest& robot : selection.sources)
+    text += " " + robot.short_hex();
+  return text;
+}
+
+/// Why poses had no configuration: "12 out of reach, 3 limits"; "-" if all had one.
+std::string lost_text(const Source& source) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* what) {
+    if (count > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+  };
+  add(source.out_of_reach, " out of reach");
+  add(source.outside_limits, " limits");
+  add(source.not_converged, " not converged");
+  return text.empty() ? "-" : text;
+}
+
 }  // namespace
 
 void print_distribution(const Distribution& distribution, std::ostream& out) {
@@ -106,45 +81,35 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
       << number_text(distribution.fit_time_s, 2) << " s\n"
       << "share         " << number_text(distribution.advice.recommended_share, 2) << " recommended"
       << (distribution.advice.evidence.empty() ? "" : ": ") << distribution.advice.evidence << '\n';
+  if (const std::string selection = selection_text(distribution.selection); !selection.empty())
+    out << "experience    " << selection << '\n';
   if (!distribution.reason.empty())
     out << "note          " << distribution.reason << '\n';
   out << '\n';
-  Table table({"SOURCE", "ROBOT", "PATHS", "GENERATION", "POSES", "SOLVED"});
+  Table table({"SOURCE", "ROBOT", "RELATION", "PATHS", "USED", "GENERATION", "POSES", "SOLVED",
+               "LOST", "CONFIGURATIONS", "MASS"});
+  constexpr int kMassDigits = 3;
   for (const Source& source : distribution.sources)
-    table.add_row({source.label, source.robot.short_hex(), std::to_string(source.paths),
+    table.add_row({source.label, source.robot.short_hex(), std::string(to_text(source.relation)),
+                   std::to_string(source.paths), std::to_string(source.paths_used),
                    std::to_string(source.generation), std::to_string(source.poses),
-                   std::to_string(source.poses_solved)});
+                   std::to_string(source.poses_solved), lost_text(source),
+                   std::to_string(source.configurations), number_text(source.mass, kMassDigits)});
   table.print(out);
 }
 
 int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,
                        std::ostream& err) {
-  FetchRequest request;
-  request.task = options.task;
-  request.profile = options.profile;
-  request.deadline = options.wait;
-  if (!options.placement.empty()) {
-    const auto T_task_base = models::parse_pose(options.placement);
-    if (!T_task_base) {
-      err << kCommand << ": --placement: " << T_task_base.error().message << '\n';
-      return kWrongUsage;
-    }
-    request.T_task_base = *T_task_base;
-  }
   int code = kDone;
-  const auto robot = find_robot(server, options.robot, err, code);
-  if (!robot)
-    return code;
-  request.robot = *robot;
-  const auto reply = server.fetch(request);
-  if (code = judge(reply, err); code != kDone)
+  const auto distribution = fetch_wish(server, options.wish, kCommand, false, err, code);
+  if (!distribution)
     return code;
   if (options.samples > 0)
-    return print_samples(*reply->distribution, options, out, err);
+    return print_samples(*distribution, options, out, err);
   if (options.json)
-    out << json::to_json(*reply->distribution) << '\n';
+    out << json::to_json(*distribution) << '\n';
   else
-    print_distribution(*reply->distribution, out);
+    print_distribution(*distribution, out);
   return kDone;
 }
 

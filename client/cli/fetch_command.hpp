@@ -1,20 +1,15 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <iosfwd>
-#include <string>
 
+#include "client/cli/distribution_wish.hpp"
 #include "client/link/client.hpp"
 
 namespace kinship::cli {
 
 struct FetchOptions {
-  std::string task;
-  std::string robot;      ///< a label, or the beginning of a digest
-  std::string placement;  ///< T_task_base, "x y z qx qy qz qw"; empty: missing
-  std::string profile = "default";
-  std::chrono::milliseconds wait{30000};
+  DistributionWish wish;
   std::uint64_t samples = 0;  ///< configurations to draw and print as CSV, instead of the rest
   std::uint64_t seed = 0;     ///< of these samples
   bool json = false;

@@ -69,19 +69,21 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
                std::ostream& err) {
   return list_rows(server, AdminVerb::ListPaths, options, "paths list", out, err,
                    Table({"PATH", "ROBOT", "TASK", "WAYPOINTS", "LENGTH", "CHECKS", "TIME_S",
-                          "PLANNER", "ARM", "MACHINE", "RECEIVED"}),
+                          "PLANNER", "ARM", "MACHINE", "RECEIVED", "RETIRED"}),
                    json::path_summary_from_json, [](const PathSummary& path) {
-                     return std::vector<std::string>{path.report_uuid.text(),
-                                                     path.label,
-                                                     path.task,
-                                                     std::to_string(path.waypoints),
-                                                     number_text(path.length, 2),
-                                                     std::to_string(path.record.collision_checks),
-                                                     number_text(path.record.planning_time_s, 3),
-                                                     path.record.planner,
-                                                     std::string(to_text(path.record.arm)),
-                                                     path.machine,
-                                                     time_text(path.received_ms)};
+                     return std::vector<std::string>{
+                         path.report_uuid.text(),
+                         path.label,
+                         path.task,
+                         std::to_string(path.waypoints),
+                         number_text(path.length, 2),
+                         std::to_string(path.record.collision_checks),
+                         number_text(path.record.planning_time_s, 3),
+                         path.record.planner,
+                         std::string(to_text(path.record.arm)),
+                         path.machine,
+                         time_text(path.received_ms),
+                         path.retired_ms == 0 ? "-" : time_text(path.retired_ms)};
                    });
 }
 

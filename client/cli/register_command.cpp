@@ -35,7 +35,7 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
   }
   if (reply->status == RegisterStatus::Refused) {
     err << "robots register: refused: " << reply->message << '\n';
-    return kFailed;
+    return kWrongUsage;
   }
   if (!reply->message.empty())
     err << "robots register: " << reply->message << "; the label '" << description->label

@@ -100,7 +100,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << " refused), " << status.fetches << " fetches (" << status.fetches_from_memory
       << " from memory), " << status.fits << " fits\n"
       << "queued         " << status.queued_reports << " reports, " << status.queued_fits
-      << " fits\n";
+      << " fits\n"
+      << "under way      " << status.jobs << " jobs; " << status.followed
+      << " distributions followed\n";
 }
 
 }  // namespace

@@ -46,6 +46,46 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"paths", "lsit"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "fetch", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"--domain", "300", "status"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"configurations", "export"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "explain", "--task", "pick"}).code, kWrongUsage);
+  EXPECT_EQ(
+      run_command({"distributions", "explain", "--task", "pick", "--distribution", "3f9a"}).code,
+      kWrongUsage);
+  EXPECT_EQ(run_command(
+                {"distributions", "fetch", "--task", "pick", "--robot", "panda", "--since", "soon"})
+                .code,
+            kWrongUsage);
+}
+
+TEST(Commands, EachHasHelpWithAnExample) {
+  const std::vector<std::vector<std::string>> commands = {{"status"},
+                                                          {"backup"},
+                                                          {"watch"},
+                                                          {"jobs", "list"},
+                                                          {"jobs", "wait"},
+                                                          {"jobs", "cancel"},
+                                                          {"robots", "register"},
+                                                          {"tasks", "reset"},
+                                                          {"paths", "export"},
+                                                          {"paths", "import"},
+                                                          {"paths", "retire"},
+                                                          {"distributions", "fetch"},
+                                                          {"distributions", "explain"},
+                                                          {"distributions", "evict"},
+                                                          {"configurations", "export"}};
+  for (std::vector<std::string> command : commands) {
+    command.push_back("--help");
+    const Answer answer = run_command(command);
+    EXPECT_EQ(answer.code, kDone) << command.front();
+    EXPECT_NE(answer.out.find("Example"), std::string::npos) << answer.out;
+  }
+}
+
+TEST(Commands, AMissingFileIsNamedBeforeAServerIsAsked) {
+  const Answer answer =
+      run_command({"--domain", "198", "--timeout", "0.1", "paths", "import", "/nowhere/x.jsonl"});
+  EXPECT_EQ(answer.code, kNotFound);
+  EXPECT_NE(answer.err.find("/nowhere/x.jsonl"), std::string::npos) << answer.err;
 }
 
 TEST(Commands, NamesWhatItDoesNotKnow) {

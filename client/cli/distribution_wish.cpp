@@ -1,0 +1,104 @@
+#include "client/cli/distribution_wish.hpp"
+
+#include <ostream>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/link/robot_names.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+namespace kinship::cli {
+namespace {
+
+Result<FetchRequest> request_for(link::Client& server, const DistributionWish& wish) {
+  FetchRequest request;
+  request.task = wish.task;
+  request.profile = wish.profile;
+  request.deadline = wish.wait;
+  if (!wish.placement.empty()) {
+    const auto T_task_base = models::parse_pose(wish.placement);
+    if (!T_task_base)
+      return Error{T_task_base.error().code, "--placement: " + T_task_base.error().message};
+    request.T_task_base = *T_task_base;
+  }
+  const auto selection =
+      arguments::read_selection(wish.selection, std::chrono::system_clock::now());
+  if (!selection)
+    return selection.error();
+  request.selection = *selection;
+  const auto robot = link::resolve_robots(server, {wish.robot});
+  if (!robot)
+    return robot.error();
+  request.robot = robot->front();
+  if (!wish.selection.sources.empty()) {
+    const auto names = arguments::parse_robot_names(wish.selection.sources);
+    if (!names)
+      return names.error();
+    const auto sources = link::resolve_robots(server, *names);
+    if (!sources)
+      return sources.error();
+    request.selection.sources = *sources;
+  }
+  return request;
+}
+
+/// Says why there is no distribution to print. \return an exit code, kDone if there is one.
+int judge(const Result<FetchReply>& reply, std::string_view command, bool allow_failed,
+          std::ostream& err) {
+  if (!reply)
+    return refuse(command, reply.error(), err);
+  const auto say = [&](const char* what) {
+    err << command << ": " << what << (reply->message.empty() ? "" : ": ") << reply->message
+        << '\n';
+  };
+  switch (reply->status) {
+    case FetchStatus::Ready:
+      return kDone;
+    case FetchStatus::NoExperience:
+      say("no experience");
+      return kNotFound;
+    case FetchStatus::UnknownRobot:
+      say("unknown robot");
+      return kNotFound;
+    case FetchStatus::Pending:
+      say("still being made when the wait (--wait) was over");
+      return kFailed;
+    case FetchStatus::Busy:
+      say("the server is busy");
+      return kFailed;
+    case FetchStatus::Refused:
+      say("refused");
+      return kWrongUsage;
+    default:
+      if (allow_failed && reply->distribution)
+        return kDone;
+      say("failed");
+      return kFailed;
+  }
+}
+
+}  // namespace
+
+std::optional<Distribution> fetch_wish(link::Client& server, const DistributionWish& wish,
+                                       std::string_view command, bool allow_failed,
+                                       std::ostream& err, int& code) {
+  const Result<FetchRequest> request = request_for(server, wish);
+  if (!request) {
+    code = refuse(command, request.error(), err);
+    return std::nullopt;
+  }
+  Result<FetchReply> reply = server.fetch(*request);
+  code = judge(reply, command, allow_failed, err);
+  if (code != kDone)
+    return std::nullopt;
+  return std::move(reply).value().distribution;
+}
+
+std::string id_of_wish(link::Client& server, const DistributionWish& wish, std::string_view command,
+                       bool allow_failed, std::ostream& err, int& code) {
+  if (!wish.id.empty())
+    return wish.id;
+  const auto distribution = fetch_wish(server, wish, command, allow_failed, err, code);
+  return distribution ? distribution->id.hex() : std::string();
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,108 @@
+#include "client/cli/explain_command.hpp"
+#include "client/cli/export_commands.hpp"
+#include "client/cli/fetch_command.hpp"
+#include "client/cli/groups.hpp"
+#include "client/cli/listings.hpp"
+#include "client/cli/retire_commands.hpp"
+
+namespace kinship::cli {
+namespace {
+
+/// What names a distribution by what it is for. \return the required options.
+std::vector<CLI::Option*> add_wish(CLI::App& command, DistributionWish& wish) {
+  CLI::Option* task = command.add_option("--task", wish.task);
+  CLI::Option* robot =
+      command.add_option("--robot", wish.robot, "Label, or beginning of its digest");
+  command.add_option("--placement", wish.placement,
+                     "Robot's base in the task frame, \"x y z qx qy qz qw\"");
+  command.add_option("--profile", wish.profile, "default or paper");
+  arguments::add_selection_options(command, wish.selection);
+  command
+      .add_option_function<double>(
+          "--wait", [&wish](double wait_s) { wish.wait = milliseconds(wait_s); },
+          "Seconds until it must be there (default 30)")
+      ->check(CLI::Range(0.0, 3600.0));
+  return {task, robot};
+}
+
+/// The same, or its id.
+void add_wish_or_id(CLI::App& command, DistributionWish& wish) {
+  CLI::Option* id = command.add_option("--distribution", wish.id,
+                                       "Beginning of its id, instead of --task and --robot");
+  for (CLI::Option* option : add_wish(command, wish))
+    option->excludes(id);
+  command.parse_complete_callback([&wish] {
+    if (wish.id.empty() && (wish.task.empty() || wish.robot.empty()))
+      throw CLI::ValidationError("give --task and --robot, or --distribution");
+  });
+}
+
+void add_fetch(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<FetchOptions>();
+  CLI::App* command = add_command(
+      group, "fetch", "A robot's distribution for a task, made if need be",
+      "kinship distributions fetch --task box_to_shelf --robot ur10e --samples 1000 --csv\n"
+      "  kinship distributions fetch --task box_to_shelf --robot ur10e --sources panda --since "
+      "14d");
+  for (CLI::Option* option : add_wish(*command, options->wish))
+    option->required();
+  CLI::Option* samples = command->add_option("--samples", options->samples,
+                                             "Draw so many configurations and print them as CSV");
+  samples->check(CLI::Range(1.0, 1e9));
+  command->add_flag("--csv")->description("The format of --samples")->needs(samples);
+  command->add_option("--seed", options->seed, "Of the samples (default 0)")
+      ->needs(samples)
+      ->check(CLI::NonNegativeNumber);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->json = session.json;
+    return fetch_distribution(server, *options, session.out, session.err);
+  });
+}
+
+void add_explain(CLI::App& group, Session& session) {
+  const auto wish = std::make_shared<DistributionWish>();
+  CLI::App* command = add_command(
+      group, "explain", "What a distribution is made of, why it failed, how far it is behind",
+      "kinship distributions explain --task box_to_shelf --robot ur10e\n"
+      "  kinship distributions explain --distribution 3f9a0c");
+  add_wish_or_id(*command, *wish);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, wish](link::Client& server) {
+    return explain_distribution(server, *wish, session.json, session.out, session.err);
+  });
+}
+
+}  // namespace
+
+void add_distributions(CLI::App& app, Session& session) {
+  CLI::App* group = add_group(app, "distributions", "Distributions made so far");
+  add_list(*group, session, list_distributions, true);
+  add_one(
+      *group, session,
+      {"show", "id", "A distribution by beginning of its id", "kinship distributions show 3f9a0c"},
+      show_distribution);
+  add_fetch(*group, session);
+  add_explain(*group, session);
+  add_one(*group, session,
+          {"evict", "id", "Forget a distribution: the next fetch has it made anew",
+           "kinship distributions evict 3f9a0c"},
+          evict_distribution);
+}
+
+void add_configurations(CLI::App& app, Session& session) {
+  CLI::App* group = add_group(app, "configurations", "What distributions are fitted to");
+  const auto options = std::make_shared<ConfigurationsOptions>();
+  CLI::App* command = add_command(
+      *group, "export", "Exactly the rows that a distribution's fit saw, as CSV",
+      "kinship configurations export --task box_to_shelf --robot ur10e --output rows.csv\n"
+      "  kinship configurations export --distribution 3f9a0c");
+  add_wish_or_id(*command, options->wish);
+  command->add_option("--output", options->output, "File (default: standard output)");
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->waiting.progress = session.is_on_terminal();
+    return export_configurations(server, *options, session.out, session.err);
+  });
+}
+
+}  // namespace kinship::cli

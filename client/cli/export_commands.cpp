@@ -1,0 +1,58 @@
+#include "client/cli/export_commands.hpp"
+
+#include <ostream>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/files/output_file.hpp"
+#include "client/link/admin_rows.hpp"
+
+namespace kinship::cli {
+namespace {
+
+/// Writes rows as lines; the file has its name only if all came.
+int write_rows(link::Client& server, const AdminRequest& request, const std::filesystem::path& file,
+               std::string_view command, std::ostream& out, std::ostream& err) {
+  files::OutputFile output(file, out);
+  std::size_t lines = 0;
+  const auto error = link::for_each_row(server, request, [&](const std::string& row) {
+    output.stream() << row << '\n';
+    ++lines;
+    return output.stream().good();
+  });
+  if (error)
+    return refuse(command, *error, err);
+  output.keep();
+  if (!file.empty())
+    err << lines << " lines in '" << file.string() << "'\n";
+  return kDone;
+}
+
+}  // namespace
+
+int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
+                 std::ostream& err) {
+  AdminRequest request;
+  request.verb = AdminVerb::ExportPaths;
+  request.robot = options.robot;
+  request.task = options.task;
+  return write_rows(server, request, options.output, "paths export", out, err);
+}
+
+int export_configurations(link::Client& server, const ConfigurationsOptions& options,
+                          std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "configurations export";
+  int code = kDone;
+  AdminRequest begin;
+  begin.verb = AdminVerb::ExportConfigurations;
+  begin.argument = id_of_wish(server, options.wish, kCommand, false, err, code);
+  if (code != kDone)
+    return code;
+  return run_job(server, begin, options.waiting, kCommand, err, [&](const Job& job) {
+    AdminRequest rows;
+    rows.verb = AdminVerb::JobRows;
+    rows.argument = job.id;
+    return write_rows(server, rows, options.output, kCommand, out, err);
+  });
+}
+
+}  // namespace kinship::cli

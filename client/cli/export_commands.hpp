@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+
+#include "client/cli/distribution_wish.hpp"
+#include "client/cli/job_commands.hpp"
+#include "client/link/client.hpp"
+
+/// Commands that bring what a server keeps into a file.
+namespace kinship::cli {
+
+struct ExportOptions {
+  std::string robot, task;       ///< filters; empty: all
+  std::filesystem::path output;  ///< empty: standard output
+};
+
+/// `paths export`: attempts as JSON Lines, before them the robots they need.
+int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
+                 std::ostream& err);
+
+struct ConfigurationsOptions {
+  DistributionWish wish;
+  std::filesystem::path output;  ///< empty: standard output
+  WaitOptions waiting;
+};
+
+/// `configurations export`: exactly the rows that the distribution's fit saw, as CSV.
+int export_configurations(link::Client& server, const ConfigurationsOptions& options,
+                          std::ostream& out, std::ostream& err);
+
+}  // namespace kinship::cli

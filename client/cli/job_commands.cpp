@@ -1,0 +1,139 @@
+#include "client/cli/job_commands.hpp"
+
+#include <optional>
+#include <ostream>
+#include <vector>
+
+#include "client/cli/table.hpp"
+#include "client/link/admin_rows.hpp"
+#include "proto/json/admin_rows_json.hpp"
+#include "proto/types/enum_text.hpp"
+
+namespace kinship::cli {
+namespace {
+
+std::string percent(double progress) { return number_text(100 * progress, 0) + "%"; }
+
+std::string said(const Job& job) { return job.message.empty() ? "" : ": " + job.message; }
+
+/// Waits for a job's end. \return empty with an exit code in `code` if that cannot be known.
+std::optional<Job> wait(link::Client& server, const std::string& id, const WaitOptions& options,
+                        std::string_view command, std::ostream& err, int& code) {
+  const auto show = [&](const Job& job) {
+    if (options.progress)
+      err << "\r\033[K" << job.verb << " " << percent(job.progress) << std::flush;
+  };
+  const Result<Job> job =
+      link::wait_for_job(server, id, std::chrono::steady_clock::now() + options.longest, show);
+  if (options.progress)
+    err << "\r\033[K" << std::flush;
+  if (!job) {
+    code = refuse(command, job.error(), err);
+    return std::nullopt;
+  }
+  return *job;
+}
+
+int code_of(const Job& job, std::string_view command, std::ostream& err) {
+  if (job.state == JobState::Done)
+    return kDone;
+  if (link::has_ended(job))
+    err << command << ": job " << job.id << " " << to_text(job.state) << said(job) << '\n';
+  else
+    err << command << ": job " << job.id << " goes on (see: kinship jobs wait " << job.id << ")\n";
+  return kFailed;
+}
+
+void print(const Job& job, bool json, std::ostream& out) {
+  if (json)
+    out << json::to_json(job) << '\n';
+  else
+    out << "job " << job.id << ", " << job.verb << (job.argument.empty() ? "" : " ") << job.argument
+        << ": " << to_text(job.state) << said(job) << '\n';
+}
+
+}  // namespace
+
+int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
+              std::ostream& err) {
+  constexpr const char* kCommand = "jobs list";
+  if (options.json)
+    return print_rows_as_json(server, AdminVerb::ListJobs, options, kCommand, out, err);
+  Table table({"JOB", "VERB", "ARGUMENT", "STATE", "PROGRESS", "ROWS", "STARTED", "MESSAGE"});
+  std::optional<Error> unreadable;
+  const int code = for_each_row(
+      server, AdminVerb::ListJobs, options, kCommand, err, [&](const std::string& row) {
+        const Result<Job> job = json::job_from_json(row);
+        if (job)
+          table.add_row({job->id, job->verb, job->argument, std::string(to_text(job->state)),
+                         percent(job->progress), std::to_string(job->rows),
+                         job->started_ms == 0 ? "-" : time_text(job->started_ms), job->message});
+        else
+          unreadable = Error{ErrorCode::Internal, job.error().message};
+        return job.has_value();
+      });
+  if (code != kDone)
+    return code;
+  if (unreadable)
+    return refuse(kCommand, *unreadable, err);
+  table.print(out);
+  return kDone;
+}
+
+int wait_for_job(link::Client& server, const std::string& id, const WaitOptions& options, bool json,
+                 std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "jobs wait";
+  int code = kDone;
+  const auto job = wait(server, id, options, kCommand, err, code);
+  if (!job)
+    return code;
+  if (json || job->state == JobState::Done)
+    print(*job, json, out);
+  return code_of(*job, kCommand, err);
+}
+
+int cancel_job(link::Client& server, const std::string& id, bool json, std::ostream& out,
+               std::ostream& err) {
+  AdminRequest request;
+  request.verb = AdminVerb::CancelJob;
+  request.argument = id;
+  const Result<Job> job = link::job_of(server, request);
+  if (!job)
+    return refuse("jobs cancel", job.error(), err);
+  print(*job, json, out);
+  return kDone;
+}
+
+int run_job(link::Client& server, const AdminRequest& begin, const WaitOptions& options,
+            std::string_view command, std::ostream& err,
+            const std::function<int(const Job&)>& done) {
+  const Result<Job> begun = link::job_of(server, begin);
+  if (!begun)
+    return refuse(command, begun.error(), err);
+  int code = kDone;
+  const auto job = wait(server, begun->id, options, command, err, code);
+  if (!job)
+    return code;
+  code = code_of(*job, command, err);
+  return code == kDone ? done(*job) : code;
+}
+
+int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
+            std::ostream& err) {
+  constexpr const char* kCommand = "backup";
+  AdminRequest request;
+  request.verb = AdminVerb::Backup;
+  request.argument = std::filesystem::absolute(options.file).lexically_normal().string();
+  if (options.wait)
+    return run_job(server, request, options.waiting, kCommand, err, [&](const Job& job) {
+      print(job, options.json, out);
+      return kDone;
+    });
+  const Result<Job> job = link::job_of(server, request);
+  if (!job)
+    return refuse(kCommand, job.error(), err);
+  print(*job, options.json, out);
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,77 @@
+#include "client/cli/retire_commands.hpp"
+
+#include <ostream>
+
+#include "client/cli/admin_rows.hpp"
+#include "proto/json/admin_rows_json.hpp"
+#include "proto/json/summaries_json.hpp"
+
+namespace kinship::cli {
+namespace {
+
+int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
+           std::string_view command, std::ostream& out, std::ostream& err) {
+  int code = kDone;
+  const auto rows = show_rows(server, verb, argument, command, err, code);
+  if (code != kDone)
+    return code;
+  if (json) {
+    out << rows.front() << '\n';
+    return kDone;
+  }
+  const auto retirement = json::retirement_from_json(rows.front());
+  if (!retirement)
+    return refuse(command, {ErrorCode::Internal, retirement.error().message}, err);
+  if (retirement->paths == 0)
+    out << "nothing to do: retired already\n";
+  else
+    out << retirement->paths << (retirement->paths == 1 ? " path" : " paths") << " of task '"
+        << retirement->task << "' retired, of " << retirement->robots.size()
+        << (retirement->robots.size() == 1 ? " robot" : " robots")
+        << "; distributions made of them are not served any more\n";
+  return kDone;
+}
+
+}  // namespace
+
+int retire_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                std::ostream& err) {
+  return retire(server, AdminVerb::RetirePath, id, json, "paths retire", out, err);
+}
+
+int reset_task(link::Client& server, const std::string& task, bool confirmed, bool json,
+               std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "tasks reset";
+  if (confirmed)
+    return retire(server, AdminVerb::ResetTask, task, json, kCommand, out, err);
+  int code = kDone;
+  const auto rows = show_rows(server, AdminVerb::ShowTask, task, kCommand, err, code);
+  if (code != kDone)
+    return code;
+  const auto summary = json::task_summary_from_json(rows.front());
+  if (!summary)
+    return refuse(kCommand, {ErrorCode::Internal, summary.error().message}, err);
+  err << kCommand << ": this would retire " << summary->paths << " paths of "
+      << summary->robots.size() << " robots: out of every fit, kept for the record, not to be "
+      << "undone. To do it: kinship tasks reset " << task << " --yes\n";
+  return kWrongUsage;
+}
+
+int evict_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
+                       std::ostream& err) {
+  constexpr const char* kCommand = "distributions evict";
+  int code = kDone;
+  const auto rows = show_rows(server, AdminVerb::EvictDistribution, id, kCommand, err, code);
+  if (code != kDone)
+    return code;
+  const auto evicted = json::eviction_from_json(rows.front());
+  if (!evicted)
+    return refuse(kCommand, {ErrorCode::Internal, evicted.error().message}, err);
+  if (json)
+    out << rows.front() << '\n';
+  else
+    out << "distribution " << evicted->short_hex() << " evicted; the next fetch has it made anew\n";
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,86 @@
+#include "client/arguments/robot_options.hpp"
+#include "client/cli/groups.hpp"
+#include "client/cli/inverse_commands.hpp"
+#include "client/cli/listings.hpp"
+#include "client/cli/register_command.hpp"
+
+namespace kinship::cli {
+namespace {
+
+void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
+  command
+      .add_option("robot", robot.source, "URDF file, or a folder with chain.toml and robot.urdf")
+      ->required();
+  arguments::add_robot_options(command, robot);
+}
+
+void add_check(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = add_command(group, "check", "What Kinship makes of a robot (no server)",
+                                  "kinship robots check ur10e.urdf --base base_link --tip tool0");
+  add_robot_arguments(*command, options->robot);
+  command->add_option("--poses", options->poses, "Reachable poses to solve (default 200)")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--max-solutions", options->max_solutions, "A pose (default 8; 0: all)")
+      ->check(CLI::Range(0, 1000));
+  command->add_option("--min-distance", options->min_distance, "Between solutions (default 0.2)")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--seed", options->seed, "Of the poses and solutions (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    return check_robot(*options, session.out, session.err);
+  });
+}
+
+void add_inverse(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<InverseCommandOptions>();
+  CLI::App* command =
+      add_command(group, "ik", "Inverse kinematics of the tip link's pose (no server)",
+                  "kinship robots ik robots/models/ur10e --pose \"0.5 0.1 0.4 0 1 0 0\" --json");
+  add_robot_arguments(*command, options->robot);
+  CLI::Option_group* poses = command->add_option_group("poses");
+  poses->add_option("--pose", options->pose, "Tip link in base link, \"x y z qx qy qz qw\"");
+  poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]");
+  poses->require_option(1);
+  command->add_option("--max-solutions", options->max_solutions, "Default 8; 0: all")
+      ->check(CLI::Range(0, 1000));
+  command->add_option("--min-distance", options->min_distance, "Between solutions (default 0.2)")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--seed", options->seed, "Equal seed, equal solutions (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    return solve_poses(*options, session.out, session.err);
+  });
+}
+
+void add_register(CLI::App& group, Session& session) {
+  const auto robot = std::make_shared<models::RobotArguments>();
+  CLI::App* command =
+      add_command(group, "register", "Hand a robot's description to the server",
+                  "kinship robots register arm.urdf --base base_link --tip tool0 --label arm7");
+  add_robot_arguments(*command, *robot);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, robot](link::Client& server) {
+    return register_robot(server, *robot, session.json, session.out, session.err);
+  });
+}
+
+}  // namespace
+
+void add_robots(CLI::App& app, Session& session) {
+  CLI::App* robots = add_group(app, "robots", "Registered robots; inverse kinematics of any");
+  add_list(*robots, session, list_robots);
+  add_one(
+      *robots, session,
+      {"show", "robot", "A robot by label or beginning of its digest", "kinship robots show ur10e"},
+      show_robot);
+  add_register(*robots, session);
+  add_check(*robots, session);
+  add_inverse(*robots, session);
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,74 @@
+#include "client/cli/groups.hpp"
+#include "client/cli/listings.hpp"
+#include "client/cli/watch_command.hpp"
+
+namespace kinship::cli {
+namespace {
+
+void add_status(CLI::App& app, Session& session) {
+  CLI::App* command =
+      add_command(app, "status", "Server, store, queues, counters", "kinship status --json");
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session](link::Client& server) {
+    return show_status(server, session.json, session.out, session.err);
+  });
+}
+
+void add_backup(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<BackupOptions>();
+  CLI::App* command = add_command(app, "backup", "Copy the store of the running server into a file",
+                                  "kinship backup /var/backups/kinship-2026-11-21.db\n"
+                                  "  kinship backup monday.db --no-wait");
+  command->add_option("file", options->file, "New file, at the server")->required();
+  command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");
+  const auto waiting = add_job_wait(*command, session);
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options, waiting](link::Client& server) {
+    options->waiting = waiting();
+    options->json = session.json;
+    return back_up(server, *options, session.out, session.err);
+  });
+}
+
+void add_watch(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = add_command(
+      app, "watch", "Reports, fetches, fits and refusals as they happen, until Control-C",
+      "kinship watch\n  kinship watch --task box_to_shelf --json");
+  command->add_option("--task", options->task, "Only events of this task");
+  command->add_option("--robot", options->robot, "Only events of this robot's label");
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    const sigset_t until = block_end_signals();
+    return session.with_server([&](link::Client& server) {
+      return watch_events(server, *options, until, session.out, session.err);
+    });
+  });
+}
+
+}  // namespace
+
+void add_server_commands(CLI::App& app, Session& session) {
+  add_status(app, session);
+  add_backup(app, session);
+  add_watch(app, session);
+}
+
+void add_jobs(CLI::App& app, Session& session) {
+  CLI::App* jobs = add_group(app, "jobs", "What takes the server long: backups, exports");
+  add_list(*jobs, session, list_jobs);
+  const auto id = std::make_shared<std::string>();
+  CLI::App* wait =
+      add_command(*jobs, "wait", "Wait for the end of a job", "kinship jobs wait 3f9a0c11");
+  wait->add_option("job", *id)->required();
+  const auto waiting = add_job_wait(*wait, session);
+  add_json(*wait, session);
+  on_run_with_server(*wait, session, [&session, id, waiting](link::Client& server) {
+    return wait_for_job(server, *id, waiting(), session.json, session.out, session.err);
+  });
+  add_one(*jobs, session, {"cancel", "job", "End a job early", "kinship jobs cancel 3f9a0c11"},
+          cancel_job);
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,81 @@
+#include "client/cli/session.hpp"
+
+#include <unistd.h>
+
+#include <iostream>
+
+namespace kinship::cli {
+
+int Session::with_server(const std::function<int(link::Client&)>& use) const {
+  link::ClientOptions options;
+  options.has_outbox = false;  // a look at a server delivers nothing to it
+  options.domain = domain;
+  options.timeout = milliseconds(timeout_s);
+  link::Client server(options);
+  return use(server);
+}
+
+bool Session::is_on_terminal() const { return &err == &std::cerr && isatty(STDERR_FILENO) == 1; }
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::duration<double>(seconds));
+}
+
+CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what) {
+  CLI::App* group = app.add_subcommand(name, what);
+  group->require_subcommand(1);
+  return group;
+}
+
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
+                      const std::string& examples) {
+  CLI::App* command = parent.add_subcommand(name, what);
+  command->footer((examples.find('\n') == std::string::npos ? "Example:\n  " : "Examples:\n  ") +
+                  examples);
+  return command;
+}
+
+void add_json(CLI::App& command, Session& session) {
+  command.add_flag("--json", session.json, "One JSON document on standard output");
+}
+
+void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
+  const auto options = std::make_shared<ListOptions>();
+  CLI::App* command = add_command(group, "list", "List " + group.get_name(),
+                                  "kinship " + group.get_name() + " list --json");
+  command->add_option("--limit", options->limit, "Rows at most (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  if (can_filter) {
+    command->add_option("--task", options->task, "Of this task");
+    command->add_option("--robot", options->robot, "Of this robot: label or digest prefix");
+  }
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options, list](link::Client& server) {
+    options->json = session.json;
+    return list(server, *options, session.out, session.err);
+  });
+}
+
+CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show) {
+  const auto argument = std::make_shared<std::string>();
+  CLI::App* command = add_command(group, text.name, text.what, text.example);
+  command->add_option(text.argument, *argument)->required();
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, argument, show](link::Client& server) {
+    return show(server, *argument, session.json, session.out, session.err);
+  });
+  return command;
+}
+
+std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session) {
+  constexpr double kDay_s = 86'400;
+  const auto wait_s = std::make_shared<double>(kDay_s);
+  command.add_option("--wait", *wait_s, "Seconds to wait for its end (default: a day)")
+      ->check(CLI::Range(0.0, 30 * kDay_s));
+  return [&session, wait_s] {
+    return WaitOptions{milliseconds(*wait_s), session.is_on_terminal()};
+  };
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/job_commands.hpp"
+#include "client/link/client.hpp"
+
+/// What the groups of commands share while the command line is being parsed and after.
+namespace kinship::cli {
+
+struct Session {
+  std::ostream& out;
+  std::ostream& err;
+  std::uint32_t domain = 0;
+  double timeout_s = 5;
+  bool json = false;
+  std::function<int()> command = {};  ///< set by the subcommand that was named
+
+  /// Runs a command that talks to a server.
+  int with_server(const std::function<int(link::Client&)>& use) const;
+
+  /// Whether `err` is a terminal, where progress can be shown.
+  bool is_on_terminal() const;
+};
+
+std::chrono::milliseconds milliseconds(double seconds);
+
+CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what);
+
+/// \param examples  one a line.
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
+                      const std::string& examples);
+
+void add_json(CLI::App& command, Session& session);
+
+/// Has the command run `run` if it is the one that was named.
+template <typename Run>
+void on_run(CLI::App& command, Session& session, Run run) {
+  command.callback([&session, run] { session.command = run; });
+}
+
+/// The same for `run` with a server.
+template <typename Run>
+void on_run_with_server(CLI::App& command, Session& session, Run run) {
+  on_run(command, session, [&session, run] { return session.with_server(run); });
+}
+
+using List = int (*)(link::Client&, const ListOptions&, std::ostream&, std::ostream&);
+using Show = int (*)(link::Client&, const std::string&, bool, std::ostream&, std::ostream&);
+
+/// `list`, with --limit and --json.
+/// \param can_filter  whether it has --task and --robot.
+void add_list(CLI::App& group, Session& session, List list, bool can_filter = false);
+
+/// How a command about one thing is called and explained.
+struct OneText {
+  std::string name;      ///< e.g. "show"
+  std::string argument;  ///< its name in the usage line
+  std::string what;
+  std::string example;
+};
+
+/// A command about one thing, with --json. \return it, for further options.
+CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show);
+
+/// --wait of a command that waits for a job, a day by default.
+/// \return how to wait, once the command line is parsed.
+std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& session);
+
+}  // namespace kinship::cli

@@ -1,0 +1,290 @@
+// What people do with `kinship`, as a process, against kinshipd as a process.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include "client/link/client.hpp"
+#include "proto/json/admin_rows_json.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "tests/support/panda_experience.hpp"
+#include "tests/support/robots.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship {
+namespace {
+
+using std::chrono::seconds;
+
+struct Answer {
+  int code = -1;
+  std::string out, err;
+};
+
+/// One kinshipd and its domain.
+class Server {
+ public:
+  explicit Server(const std::filesystem::path& store) : store_(store) { start(); }
+
+  void start() {
+    process_ = std::make_unique<test::ServerProcess>(
+        test::ServerProcess::Options{.store = store_, .domain = domain_.number(), .arguments = {}});
+  }
+  test::ServerProcess& process() { return *process_; }
+
+  std::vector<std::string> with_domain(const std::vector<std::string>& words) const {
+    std::vector<std::string> arguments = {"--domain", std::to_string(domain_.number()), "--timeout",
+                                          "30"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    return arguments;
+  }
+  Answer kinship(const std::vector<std::string>& words) const {
+    const test::TemporaryDirectory folder;
+    Answer answer;
+    test::Program program("kinship", with_domain(words), folder / "err");
+    answer.out = program.read_all();
+    answer.code = program.wait();
+    answer.err = test::read_text(folder / "err");
+    return answer;
+  }
+  std::unique_ptr<link::Client> client(const std::filesystem::path& outbox) const {
+    return std::make_unique<link::Client>(
+        link::ClientOptions{.domain = domain_.number(), .outbox = outbox, .timeout = seconds(30)});
+  }
+
+ private:
+  std::filesystem::path store_;
+  test::ReservedDomain domain_;
+  std::unique_ptr<test::ServerProcess> process_;
+};
+
+std::size_t count_lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+class AdminCommands : public testing::Test {
+ protected:
+  /// Six sweeps of a panda, and an attempt that did not get on; a UR10e that has done nothing.
+  void teach(const Server& server) {
+    const auto client = server.client(folder_ / "outbox");
+    const auto register_model = [&](const std::string& name) {
+      return client->register_robot(test::model_description(name)).value_or_throw().robot;
+    };
+    const Digest panda = register_model("panda");
+    register_model("ur10e");
+    for (std::uint64_t i = 0; i < 6; ++i) {
+      attempts_.push_back(test::panda_attempt(panda, "sweep", i));
+      client->report(attempts_.back());
+    }
+    Attempt unsolved = test::panda_attempt(panda, "sweep", 99);
+    unsolved.record.outcome = Outcome::Timeout;
+    unsolved.path.reset();
+    client->report(unsolved);
+    ASSERT_EQ(client->flush(seconds(60)).accepted, 7U);
+  }
+  std::string file(const char* name) const { return (folder_ / name).string(); }
+
+  test::TemporaryDirectory folder_;
+  std::vector<Attempt> attempts_;
+  Server server_{folder_ / "store.db"};
+};
+
+TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
+  teach(server_);
+  const Answer exported = server_.kinship({"paths", "export", "--output", file("all.jsonl")});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_EQ(count_lines(test::read_text(folder_ / "all.jsonl")), 8U);  // panda and seven attempts
+
+  const Server empty(folder_ / "empty.db");
+  const Answer first = empty.kinship({"paths", "import", file("all.jsonl"), "--json"});
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(first.out, "{\"robots\":1,\"stored\":6,\"known\":0,\"recorded\":1,\"refused\":0}\n");
+  const Answer again = empty.kinship({"paths", "import", file("all.jsonl"), "--json"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.out, "{\"robots\":1,\"stored\":0,\"known\":7,\"recorded\":0,\"refused\":0}\n");
+
+  const Answer copy = empty.kinship({"paths", "export"});
+  EXPECT_EQ(copy.code, 0) << copy.err;
+  EXPECT_EQ(copy.out, test::read_text(folder_ / "all.jsonl"));
+}
+
+TEST_F(AdminCommands, ABrokenLineInTheMiddleIsNamedAndTheOthersArrive) {
+  teach(server_);
+  std::istringstream lines(server_.kinship({"paths", "export", "--task", "sweep"}).out);
+  std::ofstream broken(folder_ / "broken.jsonl");
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    broken << (number == 4 ? line.substr(0, line.size() / 2) : line) << '\n';
+  broken.close();
+  const Server empty(folder_ / "empty.db");
+  const Answer answer = empty.kinship({"paths", "import", file("broken.jsonl"), "--json"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.err.find("line 4: "), std::string::npos) << answer.err;
+  EXPECT_NE(answer.out.find("\"refused\":1"), std::string::npos) << answer.out;
+  EXPECT_EQ(count_lines(empty.kinship({"paths", "export"}).out), 7U);
+}
+
+TEST_F(AdminCommands, ImportKnowsRobotsByLabelAndNamesThoseItDoesNotKnow) {
+  teach(server_);
+  std::istringstream lines(server_.kinship({"paths", "export"}).out);
+  std::ofstream labelled(folder_ / "labelled.jsonl");
+  const std::string digest = attempts_.front().robot.hex();
+  std::string line;
+  std::getline(lines, line);
+  labelled << line << "\n\n";
+  for (int number = 0; std::getline(lines, line); ++number)
+    labelled << line.replace(line.find(digest), digest.size(), number == 2 ? "nobody" : "panda")
+             << '\n';
+  labelled.close();
+  const Server empty(folder_ / "empty.db");
+  const Answer answer = empty.kinship({"paths", "import", file("labelled.jsonl")});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.err.find("line 5: "), std::string::npos) << answer.err;  // the blank one counts
+  EXPECT_NE(answer.err.find("'nobody'"), std::string::npos) << answer.err;
+  EXPECT_EQ(count_lines(empty.kinship({"paths", "export"}).out), 7U);
+}
+
+TEST_F(AdminCommands, AnExportThatFailsLeavesTheFileOfYesterday) {
+  teach(server_);
+  std::ofstream(folder_ / "all.jsonl") << "yesterday\n";
+  const Answer answer =
+      server_.kinship({"paths", "export", "--task", "dance", "--output", file("all.jsonl")});
+  EXPECT_EQ(answer.code, 3) << answer.err;
+  EXPECT_EQ(test::read_text(folder_ / "all.jsonl"), "yesterday\n");
+}
+
+TEST_F(AdminCommands, ARetiredPathIsListedAsSuchAndNotExported) {
+  teach(server_);
+  const std::string id = attempts_.front().report_uuid.text();
+  const Answer retired = server_.kinship({"paths", "retire", id});
+  EXPECT_EQ(retired.code, 0) << retired.err;
+  EXPECT_NE(retired.out.find("1 path of task 'sweep' retired"), std::string::npos) << retired.out;
+  const Answer again = server_.kinship({"paths", "retire", id});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.out.find("retired already"), std::string::npos) << again.out;
+  EXPECT_EQ(server_.kinship({"paths", "export"}).out.find(id), std::string::npos);
+  EXPECT_NE(server_.kinship({"paths", "list", "--json"}).out.find("\"retired_ms\":1"),
+            std::string::npos);
+  EXPECT_EQ(server_.kinship({"paths", "retire", Uuid::random().text()}).code, 3);
+  EXPECT_EQ(server_.kinship({"paths", "retire", "seven"}).code, 2);
+}
+
+TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
+  teach(server_);
+  const Answer asked = server_.kinship({"tasks", "reset", "sweep"});
+  EXPECT_EQ(asked.code, 2);
+  EXPECT_NE(asked.err.find("would retire 6 paths of 1 robots"), std::string::npos) << asked.err;
+  EXPECT_EQ(count_lines(server_.kinship({"paths", "export"}).out), 8U);
+  const Answer reset = server_.kinship({"tasks", "reset", "sweep", "--yes", "--json"});
+  EXPECT_EQ(reset.code, 0) << reset.err;
+  EXPECT_EQ(json::retirement_from_json(reset.out).value_or_throw().paths, 6U);
+  EXPECT_EQ(server_.kinship({"paths", "export"}).out.find("\"solved\""), std::string::npos);
+  const Answer fetched =
+      server_.kinship({"distributions", "fetch", "--task", "sweep", "--robot", "ur10e"});
+  EXPECT_EQ(fetched.code, 3) << fetched.err;
+  EXPECT_EQ(server_.kinship({"tasks", "reset", "dance", "--yes"}).code, 3);
+}
+
+TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {
+  teach(server_);
+  const Answer backup = server_.kinship({"backup", file("copy.db"), "--json"});
+  ASSERT_EQ(backup.code, 0) << backup.err;
+  const Job job = json::job_from_json(backup.out).value_or_throw();
+  EXPECT_EQ(job.state, JobState::Done);
+  EXPECT_NE(server_.kinship({"jobs", "list"}).out.find(job.id), std::string::npos);
+  EXPECT_EQ(server_.kinship({"jobs", "wait", job.id}).code, 0);
+  EXPECT_EQ(server_.kinship({"jobs", "wait", "00000000"}).code, 3);
+  const Server copy(folder_ / "copy.db");
+  EXPECT_EQ(copy.kinship({"paths", "export"}).out, server_.kinship({"paths", "export"}).out);
+  EXPECT_NE(server_.kinship({"backup", file("copy.db")}).code, 0);  // it is there already
+}
+
+TEST_F(AdminCommands, ADistributionIsMadeOfChosenSourcesAndForgotten) {
+  teach(server_);
+  const Answer fetched = server_.kinship({"distributions", "fetch", "--task", "sweep", "--robot",
+                                          "ur10e", "--sources", "panda", "--wait", "100"});
+  ASSERT_EQ(fetched.code, 0) << fetched.err;
+  EXPECT_NE(fetched.out.find("only of " + attempts_.front().robot.short_hex()), std::string::npos)
+      << fetched.out;
+  const Answer nobody = server_.kinship(
+      {"distributions", "fetch", "--task", "sweep", "--robot", "ur10e", "--sources", "nobody"});
+  EXPECT_EQ(nobody.code, 3) << nobody.err;
+  const Answer later = server_.kinship(
+      {"distributions", "fetch", "--task", "sweep", "--robot", "ur10e", "--since", "2100-01-01"});
+  EXPECT_NE(later.code, 0) << later.out;
+  const Answer listed = server_.kinship({"distributions", "list", "--json", "--limit", "1"});
+  const std::string id = listed.out.substr(listed.out.find("\"id\":\"") + 6, 64);
+  EXPECT_EQ(server_.kinship({"distributions", "evict", id}).code, 0);
+  EXPECT_EQ(server_.kinship({"distributions", "show", id}).code, 3);
+}
+
+TEST_F(AdminCommands, TheConfigurationsOfADistributionAreThoseOfItsFit) {
+  teach(server_);
+  const std::vector<std::string> wish = {"--task", "sweep", "--robot", "ur10e", "--wait", "100"};
+  const auto with = [&](std::vector<std::string> words, const std::string& last) {
+    words.insert(words.end(), wish.begin(), wish.end());
+    words.push_back(last);
+    return words;
+  };
+  const Answer fetched = server_.kinship(with({"distributions", "fetch"}, "--json"));
+  ASSERT_EQ(fetched.code, 0) << fetched.err;
+  const Distribution distribution = json::distribution_from_json(fetched.out).value_or_throw();
+  const Answer rows =
+      server_.kinship(with({"configurations", "export"}, "--output=" + file("rows.csv")));
+  ASSERT_EQ(rows.code, 0) << rows.err;
+  const std::string text = test::read_text(folder_ / "rows.csv");
+  EXPECT_TRUE(text.starts_with("path_id,source_robot,pose_index,")) << text.substr(0, 200);
+  EXPECT_EQ(count_lines(text), distribution.configurations + 1);
+  EXPECT_EQ(
+      server_.kinship({"configurations", "export", "--distribution", distribution.id.hex()}).out,
+      text);
+  EXPECT_EQ(server_.kinship({"configurations", "export"}).code, 2);
+  EXPECT_EQ(
+      server_.kinship({"configurations", "export", "--task", "dance", "--robot", "ur10e"}).code, 3);
+}
+
+TEST_F(AdminCommands, AnExplanationTellsHowADistributionStandsToTheExperienceOfNow) {
+  teach(server_);
+  const Answer answer = server_.kinship(
+      {"distributions", "explain", "--task", "sweep", "--robot", "ur10e", "--wait", "100"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("is that of the fit"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("EXPERIENCE NOW"), std::string::npos) << answer.out;
+  const std::string id = answer.out.substr(answer.out.find("distribution  ") + 14, 12);
+  EXPECT_EQ(server_.kinship({"distributions", "explain", "--distribution", id, "--json"}).code, 0);
+  EXPECT_EQ(server_.kinship({"distributions", "explain", "--distribution", "0000"}).code, 3);
+}
+
+TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
+  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--task", "sweep"}),
+                      folder_ / "watch.err");
+  // It watches once its first words are there: those of the server.
+  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  teach(server_);
+  const std::string event = watch.read_line();
+  EXPECT_NE(event.find("\"kind\":\"report\""), std::string::npos) << event;
+  server_.process().terminate();
+  while (test::read_text(folder_ / "watch.err").find("the server has gone") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {
+  const std::string model = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/ur10e/robot.urdf";
+  const Answer answer = server_.kinship(
+      {"robots", "register", model, "--base", "nowhere", "--tip", "tool0", "--label", "arm"});
+  EXPECT_EQ(answer.code, 2) << answer.err;
+  EXPECT_NE(answer.err.find("nowhere"), std::string::npos) << answer.err;
+}
+
+}  // namespace
+}  // namespace kinship
