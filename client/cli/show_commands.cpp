@@ -14,24 +14,31 @@
 namespace kinship::cli {
 namespace {
 
+struct Question {
+  AdminVerb verb = AdminVerb::Status;
+  std::string argument;
+  std::string command;  ///< named in messages
+  bool json = false;    ///< the answer's document as it came
+};
+
 /// Asks for one thing and prints it: its document as it came, or through `print`.
 /// \param parse  row text -> Result<Value>.
 /// \param print  Value -> nothing; writes to `out`.
 template <typename Parse, typename Print>
-int show(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
-         const std::string& command, std::ostream& out, std::ostream& err, Parse parse,
-         Print print) {
+int show(link::Client& server, const Question& question, std::ostream& out, std::ostream& err,
+         Parse parse, Print print) {
   int code = kDone;
-  const auto rows = show_rows(server, verb, argument, command, err, code);
+  const auto rows =
+      show_rows(server, question.verb, question.argument, question.command, err, code);
   if (rows.empty())
     return code;
-  if (json) {
+  if (question.json) {
     out << rows.front() << '\n';
     return kDone;
   }
   const auto value = parse(rows.front());
   if (!value) {
-    err << command << ": cannot read the server's row: " << value.error().message << '\n';
+    err << question.command << ": cannot read the server's row: " << value.error().message << '\n';
     return kFailed;
   }
   print(*value);
@@ -108,7 +115,7 @@ void print_status(const ServerStatus& status, std::ostream& out) {
 }  // namespace
 
 int show_status(link::Client& server, bool json, std::ostream& out, std::ostream& err) {
-  return show(server, AdminVerb::Status, "", json, "status", out, err,
+  return show(server, {AdminVerb::Status, "", "status", json}, out, err,
               json::server_status_from_json,
               [&](const ServerStatus& status) { print_status(status, out); });
 }
@@ -142,21 +149,21 @@ int show_robot(link::Client& server, const std::string& name, bool json, std::os
 
 int show_task(link::Client& server, const std::string& task, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, AdminVerb::ShowTask, task, json, "tasks show", out, err,
+  return show(server, {AdminVerb::ShowTask, task, "tasks show", json}, out, err,
               json::task_summary_from_json,
               [&](const TaskSummary& summary) { print_task(summary, out); });
 }
 
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err) {
-  return show(server, AdminVerb::ShowPath, id, json, "paths show", out, err,
+  return show(server, {AdminVerb::ShowPath, id, "paths show", json}, out, err,
               json::attempt_from_json,
               [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
 }
 
 int show_distribution(link::Client& server, const std::string& id, bool json, std::ostream& out,
                       std::ostream& err) {
-  return show(server, AdminVerb::ShowDistribution, id, json, "distributions show", out, err,
+  return show(server, {AdminVerb::ShowDistribution, id, "distributions show", json}, out, err,
               json::distribution_from_json,
               [&](const Distribution& distribution) { print_distribution(distribution, out); });
 }
