@@ -55,10 +55,16 @@ int serve(const ServerOptions& options, std::ostream& out) {
                                       .role = dds::Role::Server,
                                       .network_interface = options.network_interface});
   const dds::Publisher<codec::EventPublication> events(participant);
+  const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
+  dds::WaitLoop loop(participant);
   service::ServiceOptions settings = service_options(options);
   settings.on_event = [&events](const Event& event) { events.publish(event); };
+  settings.on_announcement = [&announcements](const Announcement& announcement) {
+    announcements.publish(announcement);
+  };
+  settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
+  settings.wake = [&loop] { loop.wake(); };
   service::Service service(store::open_sqlite_store(options.store), std::move(settings));
-  dds::WaitLoop loop(participant);
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "proto/types/limits.hpp"
-#include "proto/types/names.hpp"
 #include "server/service/fetch_reply.hpp"
 #include "server/service/freshness.hpp"
 #include "server/service/selected_experience.hpp"
@@ -18,20 +16,26 @@ using Stage = Flight::Stage;
 using Priority = WorkerPool::Priority;
 
 constexpr std::chrono::milliseconds kLookRetry(50);  // after the desk had no room
+/// Reports that come one by one are not each a reason to ask the store about what is followed.
+constexpr std::chrono::milliseconds kLookSpacing(1000);
 
 }  // namespace
 
 Catalog::Catalog(const Parts& parts, Options options)
     : parts_(parts),
-      options_([&] {
-        if (!options.fit)
-          options.fit = [parts](const DistributionKey& key, const std::stop_token& stop) {
-            return fit_distribution(
-                key, {.store = parts.store, .robots = parts.robots, .clock = parts.clock}, stop);
-          };
-        return std::move(options);
-      }()),
+      options_(std::move(options)),
+      adviser_(options_.advice),
+      maker_({.store = parts.store, .robots = parts.robots, .clock = parts.clock}, options_.fit),
+      leases_(options_.max_leases),
       memory_(options_.memory) {}
+
+void Catalog::finish(const Afterwards& after) const {
+  give(after.answers);
+  for (const Digest& id : after.unfollowed)
+    options_.on_unfollowed(id);
+  if (after.wake)
+    options_.wake();
+}
 
 void Catalog::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
   ++fetches_;
@@ -39,52 +43,80 @@ void Catalog::fetch(const FetchRequest& request, const std::string& waiter, Fetc
   if (!key)
     return done(without_distribution(FetchStatus::Refused, key.error().message));
   const Digest id = identify(*key);
-  Waiter who{waiter, request.minimum_generation, std::nullopt, std::move(done)};
+  // Its own experience says nothing about a distribution that is not made of it.
+  Waiter who{waiter, selects(*key, key->robot) ? request.minimum_generation : 0, std::nullopt,
+             std::move(done)};
+  const TimePoint now = parts_.clock.now();
   if (request.deadline.count() > 0)
-    who.deadline = parts_.clock.now() + request.deadline;
+    who.deadline = now + request.deadline;
 
-  Answers answers;
+  Afterwards after;
+  AdvisedReply known;
+  FetchDone answer = who.done;
   {
     const std::lock_guard lock(mutex_);
-    bool due = false;
-    SharedReply reply = find(id, request, due);
-    if (reply)
-      ++fetches_from_memory_;
-    if (reply && due)
-      refresh(id, *key);
-    FetchDone answer = who.done;
-    if (!reply)
-      reply = join(id, *key, std::move(who));
-    if (reply)
-      answers.emplace_back(std::move(answer), std::move(reply));
+    if (request.follow.count() > 0)
+      follow(id, *key, now + std::min(request.follow, std::chrono::seconds(kMaxFollow_s)));
+    known = find(id, *key, who.minimum_generation);
+    if (!known.reply)
+      if (SharedReply reply = join(id, *key, std::move(who)))
+        after.answers.emplace_back(answer, std::move(reply));
+    tend(id, after);
   }
-  give(answers);
+  if (known.reply && !adviser_.is_current(known, *key)) {
+    const AdvisedReply advised = adviser_.advise(known.reply, *key);
+    const std::lock_guard lock(mutex_);
+    memory_.replace(id, known.reply, advised);
+    known = advised;
+  }
+  if (known.reply)
+    after.answers.emplace_back(std::move(answer), std::move(known.reply));
+  finish(after);
 }
 
-SharedReply Catalog::find(const Digest& id, const FetchRequest& request, bool& due) {
+/// Takes or extends a lease; what memory knows about the distribution need not be asked for.
+void Catalog::follow(const Digest& id, const DistributionKey& key, TimePoint until) {
   if (stopping_)
-    return shared(busy("the server is stopping"));
+    return;
+  leases_.take(id, key, until);
+  Leases::Lease* const lease = leases_.find(id);
+  const DistributionCache::Entry* const entry = memory_.find(id);
+  if (lease != nullptr && !lease->compared && entry != nullptr)
+    lease->compared = comparison_of(*entry->reply.reply->distribution, entry->marks, entry->behind);
+}
+
+/// What memory holds, if that is an answer. Has it fitted again behind if it is time for that.
+AdvisedReply Catalog::find(const Digest& id, const DistributionKey& key, std::uint64_t generation) {
+  if (stopping_)
+    return {shared(busy("the server is stopping"))};
   const DistributionCache::Entry* entry = memory_.find(id);
-  if (entry == nullptr)
-    return nullptr;
-  due = (entry->behind || entry->changes_seen != changes_of(request.task)) &&
-        may_refit(*entry->reply->distribution, parts_.clock.unix_ms());
+  const Marks marks = marks_.of(key.task);
+  if (entry == nullptr || entry->marks.retirements != marks.retirements)
+    return {};
+  const AdvisedReply reply = entry->reply;
+  const bool due = (entry->behind || entry->marks != marks) &&
+                   may_refit(*reply.reply->distribution, parts_.clock.unix_ms());
   // A failure that may have been overtaken is no answer; a mixture is, whatever came after it.
-  if (entry->reply->status == FetchStatus::Failed && due)
-    return nullptr;
-  return satisfies(*entry->reply, request.minimum_generation) ? entry->reply : nullptr;
+  const bool is_answer =
+      !(reply.reply->status == FetchStatus::Failed && due) && satisfies(*reply.reply, generation);
+  if (due)
+    refresh(id, key);
+  if (!is_answer)
+    return {};
+  ++fetches_from_memory_;
+  return reply;
 }
 
 SharedReply Catalog::join(const Digest& id, const DistributionKey& key, Waiter waiter) {
-  if (waiter_count() >= options_.max_waiters)
+  if (flights_.waiters() >= options_.max_waiters)
     return shared(busy("too many wait already"));
-  const auto [found, is_new] = flights_.try_emplace(id, key);
-  Flight& flight = found->second;
+  const auto [flight, is_new] = flights_.open(id, key);
   if (flight.stage == Stage::Idle && !begin_look(id, flight)) {
     if (is_new)
-      flights_.erase(found);
+      flights_.close(id);
     return shared(busy("the server is busy"));
   }
+  flight.is_wanted = true;
   if (flight.stage == Stage::Queued && !flight.urgent)
     begin_fit(id, flight, Priority::Interactive);
   if (flight.stage != Stage::Looking && !waiter.deadline)
@@ -93,13 +125,19 @@ SharedReply Catalog::join(const Digest& id, const DistributionKey& key, Waiter w
   return nullptr;
 }
 
-void Catalog::refresh(const Digest& id, const DistributionKey& key) {
-  const auto [found, is_new] = flights_.try_emplace(id, key);
-  if (found->second.stage == Stage::Idle && !begin_look(id, found->second) && is_new)
-    flights_.erase(found);  // the next fetch tries again
+/// \return false if the desk has no room: the next fetch, or the lease, tries again.
+bool Catalog::refresh(const Digest& id, const DistributionKey& key) {
+  const auto [flight, is_new] = flights_.open(id, key);
+  if (flight.stage != Stage::Idle || begin_look(id, flight))
+    return true;
+  if (is_new)
+    flights_.close(id);
+  return false;
 }
 
 bool Catalog::begin_look(const Digest& id, Flight& flight) {
+  if (Leases::Lease* const lease = leases_.find(id))
+    lease->last_look = parts_.clock.now();
   if (!parts_.desk.submit(Priority::Interactive, {.run = [this, id] { look(id); }, .abandon = {}}))
     return false;
   flight.stage = Stage::Looking;
@@ -107,9 +145,12 @@ bool Catalog::begin_look(const Digest& id, Flight& flight) {
   return true;
 }
 
-void Catalog::look_soon(const Digest& id, Flight& flight) {
-  if (!begin_look(id, flight))
-    flight.look_due = parts_.clock.now() + kLookRetry;
+void Catalog::look_soon(const Digest& id, Flight& flight, Afterwards& after) {
+  flight.stage = Stage::Idle;
+  if (begin_look(id, flight))
+    return;
+  flight.look_due = parts_.clock.now() + kLookRetry;
+  after.wake = true;
 }
 
 bool Catalog::begin_fit(const Digest& id, Flight& flight, Priority priority) {
@@ -120,252 +161,122 @@ bool Catalog::begin_fit(const Digest& id, Flight& flight, Priority priority) {
   return true;
 }
 
-void Catalog::look(const Digest& id) {
-  DistributionKey key;
-  SharedReply known;
-  std::uint64_t changes = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = flights_.find(id);
-    if (found == flights_.end())
-      return;  // stopped
-    key = found->second.key();
-    changes = changes_of(key.task);
-    if (const DistributionCache::Entry* entry = memory_.find(id))
-      known = entry->reply;
-  }
-  try {
-    const Result<RobotRegistry::RobotPointer> robot = parts_.robots.find(key.robot);
-    if (!robot)
-      return end_flight(id, without(robot.error()));
-    if (!known)
-      if (std::optional<Distribution> stored = parts_.store.find_distribution(id))
-        known = with_distribution(std::move(*stored));
-    for (const Digest& source : key.sources)
-      if (const auto found = parts_.robots.find(source);
-          !found && found.error().code == ErrorCode::NotFound)
-        return end_flight(id, without_distribution(FetchStatus::Refused,
-                                                   "selected source: " + found.error().message));
-    const std::vector<store::ExperienceSummary> all = parts_.store.experience(key.task);
-    if (known && is_retired(*known->distribution, all))
-      known = nullptr;
-    const std::vector<store::ExperienceSummary> experience = selected_experience(key, all);
-    if (count_paths(experience) == 0 && !known)
-      return end_flight(id, no_experience(key));
-    settle(id, known, experience, changes);
-  } catch (const std::exception& exception) {
-    end_flight(id, busy(exception.what()));
-  }
+/// Keeps a reply, and what it was found to be, for fetches and for the lease.
+void Catalog::remember(const Digest& id, const AdvisedReply& reply, const Marks& marks,
+                       bool behind) {
+  memory_.put(id, {.reply = reply, .marks = marks, .behind = behind});
+  if (Leases::Lease* const lease = leases_.find(id))
+    lease->compared = comparison_of(*reply.reply->distribution, marks, behind);
 }
 
-FetchReply Catalog::without(const Error& robot_error) const {
-  switch (robot_error.code) {
-    case ErrorCode::NotFound:
-      return without_distribution(FetchStatus::UnknownRobot, robot_error.message);
-    case ErrorCode::Storage:
-      return busy(robot_error.message);
-    default:
-      return without_distribution(FetchStatus::Refused, robot_error.message);
-  }
-}
-
-void Catalog::settle(const Digest& id, const SharedReply& known,
-                     const std::vector<store::ExperienceSummary>& experience,
-                     std::uint64_t changes) {
-  Answers answers;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = flights_.find(id);
-    if (found == flights_.end())
-      return;
-    Flight& flight = found->second;
-    bool refit = false;
-    if (known) {
-      const Distribution& distribution = *known->distribution;
-      const bool behind = is_behind(distribution, experience);
-      refit = behind && may_refit(distribution, parts_.clock.unix_ms());
-      memory_.put(id, {known, changes, behind});
-      if (known->status == FetchStatus::Ready || !refit)
-        flight.answer_satisfied(known, answers);
-    }
-    flight.answer_without_deadline(shared_pending(), answers);
-
-    // A fit helps those whose generation has arrived; the others wait for reports.
-    const std::uint64_t generation = generation_of(flight.key().robot, experience);
-    const bool urgent = !known || std::any_of(flight.waiters().begin(), flight.waiters().end(),
-                                              [generation](const Waiter& waiter) {
-                                                return waiter.minimum_generation <= generation;
-                                              });
-    const bool begun = (urgent || refit) &&
-                       begin_fit(id, flight, urgent ? Priority::Interactive : Priority::Background);
-    if (urgent && !begun)
-      flight.answer_all(shared(busy("too many fits wait already")), answers);
-    if (!begun)
-      rest(found, changes);
-  }
-  give(answers);
-}
-
-void Catalog::rest(Flights::iterator flight, std::uint64_t changes) {
-  if (flight->second.waiters().empty()) {
-    flights_.erase(flight);
+/// When a followed distribution is to be looked at next: a function of what is known about it, so
+/// that nothing that arrives while it is looked at or fitted can be missed.
+void Catalog::tend(const Digest& id, Afterwards& after) {
+  const Leases::Lease* const lease = leases_.find(id);
+  if (lease == nullptr)
     return;
-  }
-  flight->second.stage = Stage::Idle;
-  if (changes_of(flight->second.key().task) != changes)
-    look_soon(flight->first, flight->second);
-}
-
-void Catalog::run_fit(const Digest& id) {
-  DistributionKey key;
-  std::uint64_t changes = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = flights_.find(id);
-    // Stopped, or begun by the flight's other job: a background one that became urgent has two.
-    if (found == flights_.end() || found->second.stage != Stage::Queued)
-      return;
-    found->second.stage = Stage::Fitting;
-    key = found->second.key();
-    changes = changes_of(key.task);
-  }
-  try {
-    FitOutcome outcome = try_fit(key);
-    if (outcome.kind == FitOutcome::Kind::Abandoned)
-      return end_flight(id, busy("the server is stopping"));
-    if (outcome.kind == FitOutcome::Kind::NoExperience)
-      return end_flight(id, no_experience(key));
-    land(id, keep(std::move(outcome.distribution).value()), changes);
-  } catch (const std::exception& exception) {  // the store cannot be read
-    end_flight(id, busy(exception.what()));
-  }
-}
-
-FitOutcome Catalog::try_fit(const DistributionKey& key) const {
-  std::string reason;
-  try {
-    return options_.fit(key, stop_source_.get_token());
-  } catch (const Failure& failure) {
-    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
-      throw;  // the next attempt may find it well again
-    reason = failure.what();
-  } catch (const std::exception& exception) {
-    reason = exception.what();
-  }
-  return {FitOutcome::Kind::Fitted,
-          failed_distribution(
-              key, {.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock},
-              "the fit ended: " + reason)};
-}
-
-SharedReply Catalog::keep(Distribution distribution) {
-  ++fits_;
-  try {
-    distribution.revision = parts_.store.put_distribution(distribution);
-  } catch (const Failure& failure) {  // of use all the same, while this server runs
-    distribution.revision = 0;
-    distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
-                           std::string(failure.what());
-    distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
-  }
-  options_.on_fit(distribution);
-  return with_distribution(std::move(distribution));
-}
-
-void Catalog::land(const Digest& id, const SharedReply& reply, std::uint64_t changes) {
-  Answers answers;
-  {
-    const std::lock_guard lock(mutex_);
-    constexpr double kNewShare = 0.25;
-    const double fit_s = reply->distribution->transfer_time_s + reply->distribution->fit_time_s;
-    typical_fit_s_ = (1 - kNewShare) * typical_fit_s_ + kNewShare * fit_s;
-    memory_.put(id, {reply, changes, false});
-    const auto found = flights_.find(id);
-    if (found == flights_.end())
-      return;
-    found->second.answer_satisfied(reply, answers);
-    rest(found, changes);
-  }
-  give(answers);
-}
-
-void Catalog::end_flight(const Digest& id, const FetchReply& reply) {
-  Answers answers;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = flights_.find(id);
-    if (found == flights_.end())
-      return;
-    found->second.answer_all(shared(reply), answers);
-    flights_.erase(found);
-  }
-  give(answers);
+  const TimePoint now = parts_.clock.now();
+  std::optional<TimePoint> due;
+  const std::optional<Comparison>& compared = lease->compared;
+  const Marks marks = marks_.of(lease->key.task);
+  if (!compared || compared->marks.retirements != marks.retirements)
+    due = now;
+  else if (compared->behind || compared->marks != marks)
+    due = now + (compared->fitted_ms ? until_refit(*compared->fitted_ms, parts_.clock.unix_ms())
+                                     : std::chrono::milliseconds(0));
+  if (due && lease->last_look)
+    due = std::max(*due, *lease->last_look + kLookSpacing);
+  const Flight* const flight = flights_.find(id);
+  if (flight != nullptr && flight->stage != Stage::Idle)
+    due.reset();  // until it rests
+  if (leases_.set_due(id, due))
+    after.wake = true;
 }
 
 std::optional<Catalog::TimePoint> Catalog::next_deadline() const {
   const std::lock_guard lock(mutex_);
-  std::optional<TimePoint> next;
-  const auto consider = [&next](const std::optional<TimePoint>& time) {
-    if (time && (!next || *time < *next))
-      next = time;
-  };
-  for (const auto& [id, flight] : flights_) {
-    consider(flight.look_due);
-    for (const Waiter& waiter : flight.waiters())
-      consider(waiter.deadline);
-  }
-  return next;
+  const std::optional<TimePoint> flight = flights_.next_deadline();
+  const std::optional<TimePoint> lease = leases_.next_due();
+  return flight && lease ? std::min(*flight, *lease) : flight ? flight : lease;
 }
 
 void Catalog::expire(TimePoint now) {
-  Answers answers;
+  Afterwards after;
   {
     const std::lock_guard lock(mutex_);
-    const SharedReply pending = shared_pending();
-    for (auto& [id, flight] : flights_)
-      flight.answer_expired(now, pending, answers);
-    std::erase_if(flights_, [](const auto& entry) {
-      return entry.second.stage == Stage::Idle && entry.second.waiters().empty();
-    });
+    flights_.answer_expired(now, shared_pending(), after.answers);
     for (auto& [id, flight] : flights_)
       if (flight.look_due && *flight.look_due <= now)
-        look_soon(id, flight);
+        look_soon(id, flight, after);
+    leases_.expire(now);
+    after.unfollowed = leases_.take_ended();
+    for (const Digest& id : leases_.due(now)) {
+      refresh(id, leases_.find(id)->key);
+      tend(id, after);
+    }
+    after.wake = false;  // whoever calls this asks for the next deadline anyway
   }
-  give(answers);
+  finish(after);
 }
 
 void Catalog::new_experience(std::string_view task) {
-  const std::lock_guard lock(mutex_);
-  ++changes_[std::string(task)];
+  Afterwards after;
+  {
+    const std::lock_guard lock(mutex_);
+    marks_.grew(task);
+    look_again(task, after);
+  }
+  finish(after);
+}
+
+void Catalog::forget(std::string_view task) {
+  Afterwards after;
+  {
+    const std::lock_guard lock(mutex_);
+    marks_.lost(task);
+    look_again(task, after);
+  }
+  finish(after);
+}
+
+/// For those who wait for experience, and for those who follow.
+void Catalog::look_again(std::string_view task, Afterwards& after) {
   for (auto& [id, flight] : flights_)
     if (flight.stage == Stage::Idle && flight.key().task == task)
-      look_soon(id, flight);
+      look_soon(id, flight, after);
+  for (const Digest& id : leases_.of_task(task))
+    tend(id, after);
+}
+
+void Catalog::evict(const Digest& id) {
+  Afterwards after;
+  {
+    const std::lock_guard lock(mutex_);
+    memory_.erase(id);
+    if (Flight* const flight = flights_.find(id))
+      flight->was_evicted = true;
+    if (Leases::Lease* const lease = leases_.find(id))
+      lease->compared.reset();
+    tend(id, after);
+  }
+  finish(after);
 }
 
 void Catalog::stop() {
-  Answers answers;
+  Afterwards after;
   stop_source_.request_stop();
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    const SharedReply reply = shared(busy("the server is stopping"));
-    for (auto& [id, flight] : flights_)
-      flight.answer_all(reply, answers);
-    flights_.clear();
+    flights_.close_all(shared(busy("the server is stopping")), after.answers);
+    leases_.end_all();
   }
-  give(answers);
+  finish(after);
 }
 
-std::uint64_t Catalog::changes_of(const std::string& task) const {
-  const auto found = changes_.find(task);
-  return found == changes_.end() ? 0 : found->second;
-}
-
-std::size_t Catalog::waiter_count() const {
-  std::size_t count = 0;
-  for (const auto& [id, flight] : flights_)
-    count += flight.waiters().size();
-  return count;
+std::size_t Catalog::followed() const {
+  const std::lock_guard lock(mutex_);
+  return leases_.count(parts_.clock.now());
 }
 
 FetchReply Catalog::busy(const std::string& message) const {

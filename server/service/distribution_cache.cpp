@@ -21,7 +21,7 @@ std::size_t size_of(const FetchReply& reply) {
 void DistributionCache::put(const Digest& id, Entry entry) {
   if (const auto known = index_.find(id); known != index_.end())
     drop(known->second);
-  const std::size_t bytes = size_of(*entry.reply);
+  const std::size_t bytes = size_of(*entry.reply.reply);
   nodes_.push_front({id, std::move(entry), bytes});
   index_.emplace(id, nodes_.begin());
   bytes_ += bytes;
@@ -35,6 +35,18 @@ DistributionCache::Entry* DistributionCache::find(const Digest& id) {
     return nullptr;
   nodes_.splice(nodes_.begin(), nodes_, known->second);
   return &known->second->entry;
+}
+
+void DistributionCache::erase(const Digest& id) {
+  if (const auto known = index_.find(id); known != index_.end())
+    drop(known->second);
+}
+
+void DistributionCache::replace(const Digest& id, const SharedReply& before,
+                                const AdvisedReply& after) {
+  const auto known = index_.find(id);
+  if (known != index_.end() && known->second->entry.reply.reply == before)
+    known->second->entry.reply = after;
 }
 
 void DistributionCache::drop(std::list<Node>::iterator node) {

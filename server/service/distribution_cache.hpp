@@ -7,7 +7,9 @@
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
+#include "server/service/adviser.hpp"
 #include "server/service/flight.hpp"
+#include "server/service/task_marks.hpp"
 
 namespace kinship::service {
 
@@ -21,10 +23,10 @@ class DistributionCache {
   };
 
   struct Entry {
-    SharedReply reply;  ///< Ready or Failed, with its distribution
-    /// Changes of the task's experience when the distribution was last compared with it, and
-    /// whether it was found to be behind.
-    std::uint64_t changes_seen = 0;
+    AdvisedReply reply;  ///< Ready or Failed, with its distribution
+    /// Of the task when the distribution was last compared with its experience, and whether it was
+    /// found to be behind.
+    Marks marks = {};
     bool behind = false;
   };
 
@@ -35,6 +37,11 @@ class DistributionCache {
 
   /// The entry, now the last one used; null if there is none. Valid until the next put.
   Entry* find(const Digest& id);
+
+  void erase(const Digest& id);
+
+  /// The same distribution with other advice; nothing if the entry holds another reply by now.
+  void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);
 
   std::size_t size() const noexcept { return index_.size(); }
   std::size_t bytes() const noexcept { return bytes_; }  ///< of the mixtures, about

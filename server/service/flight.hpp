@@ -49,7 +49,9 @@ class Flight {
 
   const DistributionKey& key() const noexcept { return key_; }
   Stage stage = Stage::Idle;
-  bool urgent = false;  ///< while Queued: before the background jobs
+  bool urgent = false;       ///< while Queued: before the background jobs
+  bool is_wanted = false;    ///< somebody asked, and not a lease alone
+  bool was_evicted = false;  ///< the distribution, since the look began or the fit was compared
   /// While Idle: its experience changed, but the desk had no room; when to try again.
   std::optional<std::chrono::steady_clock::time_point> look_due;
 

@@ -54,8 +54,14 @@ bool is_retired(const Distribution& distribution,
 }
 
 bool may_refit(const Distribution& distribution, std::int64_t now_ms) {
-  const std::int64_t age_ms = now_ms - distribution.fitted_ms;
-  return age_ms < 0 || age_ms >= kRefitInterval.count();
+  return until_refit(distribution.fitted_ms, now_ms).count() == 0;
+}
+
+std::chrono::milliseconds until_refit(std::int64_t fitted_ms, std::int64_t now_ms) {
+  const std::chrono::milliseconds age(now_ms - fitted_ms);
+  if (age.count() < 0 || age >= kRefitInterval)
+    return std::chrono::milliseconds(0);
+  return kRefitInterval - age;
 }
 
 std::uint64_t generation_of(const Digest& robot,

@@ -38,6 +38,9 @@ bool is_retired(const Distribution& distribution,
 /// Whether kRefitInterval has passed since the fit; a clock that was set back counts as passed.
 bool may_refit(const Distribution& distribution, std::int64_t now_ms);
 
+/// How long that takes from now; 0: it may.
+std::chrono::milliseconds until_refit(std::int64_t fitted_ms, std::int64_t now_ms);
+
 /// Generation of a robot's own experience: in the store now, and when a distribution was fitted.
 /// 0: it had none.
 std::uint64_t generation_of(const Digest& robot,

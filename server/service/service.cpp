@@ -54,6 +54,16 @@ Catalog::Options Service::catalog_options(const ServiceOptions& options) {
     log_fit(distribution);
     tell_fit(events_, robots_, distribution);
   };
+  catalog.announce = options.on_announcement;
+  catalog.on_unfollowed = options.on_unfollowed;
+  catalog.wake = options.wake;
+  catalog.advice.advise = [this](const std::string& task, const Digest& robot,
+                                 const Profile& profile) {
+    return advice_.advise(task, robot, profile.recommended_share);
+  };
+  catalog.advice.version = [this](const std::string& task, const Digest& robot) {
+    return advice_.version(task, robot);
+  };
   return catalog;
 }
 
@@ -76,6 +86,8 @@ Administration::Parts Service::administration_parts() {
                     distribution.task, distribution.robot,
                     profile ? profile->recommended_share : distribution.advice.recommended_share);
               },
+          .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
+          .forget_task = [this](const std::string& task) { catalog_.forget(task); },
           .on_change =
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
@@ -183,6 +195,7 @@ ServerStatus Service::status() const {
   status.fetches = catalog_.fetches();
   status.fetches_from_memory = catalog_.fetches_from_memory();
   status.fits = catalog_.fits();
+  status.followed = catalog_.followed();
   status.jobs = jobs_.active();
   status.queued_reports = ingest_.queued();
   status.queued_fits = fitters_.queued();

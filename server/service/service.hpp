@@ -37,6 +37,12 @@ struct ServiceOptions {
   /// Something happened, for people who watch; at most 1000 a second (event_feed.hpp). Called from
   /// any thread, must not block. Empty: nobody watches.
   std::function<void(const Event&)> on_event;
+  /// There is a newer revision of a followed distribution. Called on a worker.
+  std::function<void(const Announcement&)> on_announcement = [](const Announcement&) {};
+  /// Nobody follows a distribution any more. Called from any thread.
+  std::function<void(const Digest& id)> on_unfollowed = [](const Digest&) {};
+  /// next_deadline() is earlier than it was. Called from any thread.
+  std::function<void()> wake = [] {};
   /// A line for people, without a line feed. Called from any thread, must not block for long.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };

@@ -360,26 +360,172 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   std::future<FetchReply> early = begin_fetch(with_generation(request_for(teacher_), 2), "early");
   wait_for_desk();
 
-  std::promise<void> begun, release, emptied;  // the desk is held, then full
-  service_->administer(fleet::question(AdminVerb::Status), "one", [&](const AdminPage&) {
-    begun.set_value();
-    release.get_future().wait();
-  });
-  begun.get_future().wait();
-  service_->administer(fleet::question(AdminVerb::Status), "one", [](const AdminPage&) {});
-  service_->administer(fleet::question(AdminVerb::Status), "one",
-                       [&](const AdminPage&) { emptied.set_value(); });
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  const auto status = fleet::question(AdminVerb::Status);
+  for (bool is_held = false; !is_held;) {  // refused ones are answered on this thread
+    std::promise<bool> begun;
+    service_->administer(status, "", [&begun, released](const AdminPage& page) {
+      const bool is_on_desk = page.status == AdminStatus::Ok;
+      begun.set_value(is_on_desk);
+      if (is_on_desk)
+        released.wait();
+    });
+    is_held = begun.get_future().get();
+  }
+  for (bool is_full = false; !is_full;) {
+    const auto refused = std::make_shared<std::atomic<bool>>(false);
+    service_->administer(status, "", [refused](const AdminPage& page) {
+      *refused = page.status != AdminStatus::Ok;
+    });
+    is_full = *refused;
+  }
   teach(1, 100);  // its robot is in memory: no need of the desk
-  release.set_value();
-  emptied.get_future().wait();
-
   const auto retry = service_->next_deadline();
   ASSERT_TRUE(retry);
   EXPECT_LT(*retry, clock_.now() + seconds(1));
-  service_->expire(*retry);
+  release.set_value();
+  while (early.wait_for(milliseconds(1)) != std::future_status::ready)
+    service_->expire(*retry);  // again if other work of the desk came first
   const FetchReply reply = early.get();
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_EQ(reply.distribution->sources[0].generation, 2U);
+}
+
+TEST_F(CatalogTest, ASelectedSourceThatIsUnknownIsRefusedByName) {
+  teach(6);
+  FetchRequest request = request_for(pupil_);
+  Digest unknown = teacher_.digest;
+  unknown.bytes[0] ^= 1U;
+  request.selection.sources = {teacher_.digest, unknown};
+  const FetchReply reply = fetch(request);
+  EXPECT_EQ(reply.status, FetchStatus::Refused);
+  EXPECT_EQ(reply.message, "selected source: robot " + unknown.short_hex() +
+                               " is not known here; register it first");
+  EXPECT_EQ(gate_.calls(), 0);
+}
+
+TEST_F(CatalogTest, WithoutExperienceOfTheSelectionThereIsNothing) {
+  teach(6);
+  FetchRequest request = request_for(pupil_);
+  request.selection.sources = {dwarf_.digest};
+  EXPECT_EQ(fetch(request).message, "no paths of task 'shelf' of the 1 selected robots");
+  request.selection = {.sources = {}, .weighting = {}, .since_ms = 9'000'000'000'000};
+  const FetchReply reply = fetch(request);
+  EXPECT_EQ(reply.status, FetchStatus::NoExperience);
+  EXPECT_EQ(reply.message, "no paths of task 'shelf' received since 9000000000000 ms");
+}
+
+TEST_F(CatalogTest, GrowthOfARobotThatIsNotSelectedIsNone) {
+  teach(6);
+  FetchRequest request = request_for(pupil_);
+  request.selection.sources = {teacher_.digest};
+  fetch(request);
+  report(fleet::solved(pupil_, "shelf", 9, 300));
+  advance(kRefitInterval);
+  EXPECT_EQ(fetch(request).distribution->revision, 1U);
+  wait_for_desk();
+  EXPECT_EQ(service_->status().queued_fits, 0U);
+  EXPECT_EQ(gate_.calls(), 1);
+  // Its own generation is nothing that such a distribution could know.
+  EXPECT_EQ(fetch(with_generation(request, 1)).status, FetchStatus::Ready);
+}
+
+TEST_F(CatalogTest, RetiredExperienceIsNotServedAnyMore) {
+  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
+  report(paths);
+  fetch(request_for(pupil_));
+  administer(fleet::question(AdminVerb::RetirePath, paths[2].report_uuid.text()));
+  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
+  const FetchReply reply = fetch(request_for(pupil_));
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->revision, 2U);
+  EXPECT_EQ(reply.distribution->sources[0].paths, 5U);
+}
+
+TEST_F(CatalogTest, RetiredExperienceIsNotServedAfterARestartEither) {
+  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
+  report(paths);
+  fetch(request_for(pupil_));
+  service_.reset();  // it ended between the retirement and all else
+  ASSERT_TRUE(store::open_sqlite_store(directory_ / "fleet.db")->retire_path(paths[2].report_uuid));
+  start();
+  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
+}
+
+TEST_F(CatalogTest, AFitOfExperienceThatIsRetiredMeanwhileIsDoneAgain) {
+  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
+  report(paths);
+  gate_.close();
+  std::future<FetchReply> reply = begin_fetch(request_for(pupil_), "one");
+  gate_.wait_for_calls(1);
+  std::atomic<int> fits = 0;
+  gate_.set_trouble({});
+  gate_.set_afterwards([&] {  // this fit has read what it wants; then a path is retired
+    if (fits++ == 0)
+      administer(fleet::question(AdminVerb::RetirePath, paths[2].report_uuid.text()));
+  });
+  gate_.open();
+  const FetchReply got = reply.get();
+  ASSERT_EQ(got.status, FetchStatus::Ready) << got.message;
+  EXPECT_EQ(got.distribution->sources[0].paths, 5U);
+  EXPECT_EQ(got.distribution->revision, 1U) << "the other one was not kept";
+  EXPECT_EQ(gate_.calls(), 2);
+}
+
+TEST_F(CatalogTest, ATaskWhoseExperienceIsAllGoneHasNone) {
+  teach(6);
+  fetch(request_for(pupil_));
+  administer(fleet::question(AdminVerb::ResetTask, "shelf"));
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
+  teach(6);  // the same content once more
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+}
+
+TEST_F(CatalogTest, AnEvictedDistributionIsFittedAnew) {
+  teach(6);
+  const std::string id = fetch(request_for(pupil_)).distribution->id.hex();
+  EXPECT_EQ(administer(fleet::question(AdminVerb::EvictDistribution, id)).status, AdminStatus::Ok);
+  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
+  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
+}
+
+TEST_F(CatalogTest, AFitDuringWhichItIsEvictedAnswersAndIsKept) {
+  teach(6);
+  const std::string id = fetch(request_for(teacher_)).distribution->id.hex();
+  teach(1, 100);
+  gate_.close();
+  std::future<FetchReply> reply = begin_fetch(with_generation(request_for(teacher_), 2), "one");
+  gate_.wait_for_calls(2);
+  administer(fleet::question(AdminVerb::EvictDistribution, id));
+  EXPECT_EQ(fetch(at_once(request_for(teacher_))).status, FetchStatus::Pending)
+      << "the old one is gone";
+  gate_.open();
+  EXPECT_EQ(reply.get().distribution->revision, 2U);
+  EXPECT_EQ(fetch(at_once(request_for(teacher_))).distribution->revision, 2U);
+  EXPECT_EQ(gate_.calls(), 2);
+}
+
+TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
+  teach(6);
+  const FetchReply before = fetch(request_for(pupil_));
+  wait_for_desk();
+  std::vector<Attempt> attempts;
+  for (int i = 0; i < 24; ++i) {
+    attempts.push_back(fleet::unsolved(pupil_.digest, "shelf"));
+    attempts.back().record.arm = i % 2 == 0 ? Arm::Guided : Arm::Control;
+    attempts.back().record.collision_checks = 100;
+  }
+  report(attempts);
+  FetchReply after = fetch(at_once(request_for(pupil_)));
+  while (!after.distribution->advice.control) {  // the sums may still be on their way
+    wait_for_desk();
+    after = fetch(at_once(request_for(pupil_)));
+  }
+  EXPECT_EQ(after.distribution->advice.control->attempts, 12U);
+  EXPECT_NE(after.distribution->advice.evidence, before.distribution->advice.evidence);
+  EXPECT_EQ(after.distribution->revision, 1U);
+  EXPECT_EQ(gate_.calls(), 1);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ DistributionCache::Entry entry(int components) {
               Eigen::MatrixXd::Zero(kDof, components),
               std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(components),
                                            Eigen::MatrixXd::Identity(kDof, kDof)));
-  return {.reply = with_distribution(std::move(distribution))};
+  return {.reply = {.reply = with_distribution(std::move(distribution))}};
 }
 
 TEST(DistributionCache, ForgetsTheOneNotUsedForLongest) {
@@ -57,11 +57,31 @@ TEST(DistributionCache, ANewerOneTakesThePlaceOfTheOlder) {
   cache.put(id(1), entry(1));
   const std::size_t bytes = cache.bytes();
   DistributionCache::Entry newer = entry(1);
-  newer.changes_seen = 5;
+  newer.marks.changes = 5;
   cache.put(id(1), newer);
   EXPECT_EQ(cache.size(), 1U);
   EXPECT_EQ(cache.bytes(), bytes);
-  EXPECT_EQ(cache.find(id(1))->changes_seen, 5U);
+  EXPECT_EQ(cache.find(id(1))->marks.changes, 5U);
+}
+
+TEST(DistributionCache, ForgetsWhatItIsToldTo) {
+  DistributionCache cache({});
+  cache.put(id(1), entry(1));
+  cache.erase(id(1));
+  cache.erase(id(2));
+  EXPECT_EQ(cache.find(id(1)), nullptr);
+  EXPECT_EQ(cache.bytes(), 0U);
+}
+
+TEST(DistributionCache, OtherAdviceReplacesOnlyTheReplyItWasMadeFrom) {
+  DistributionCache cache({});
+  const DistributionCache::Entry first = entry(1), second = entry(1);
+  cache.put(id(1), first);
+  cache.replace(id(1), second.reply.reply, {.reply = second.reply.reply, .version = 7});
+  EXPECT_EQ(cache.find(id(1))->reply.reply, first.reply.reply);
+  cache.replace(id(1), first.reply.reply, {.reply = second.reply.reply, .version = 7});
+  EXPECT_EQ(cache.find(id(1))->reply.version, 7U);
+  EXPECT_EQ(cache.size(), 1U);
 }
 
 }  // namespace

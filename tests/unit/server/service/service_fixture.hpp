@@ -32,6 +32,11 @@ class GatedFit {
     const std::lock_guard lock(mutex_);
     trouble_ = std::move(trouble);
   }
+  /// Called by each fit when it has its outcome.
+  void set_afterwards(std::function<void()> afterwards) {
+    const std::lock_guard lock(mutex_);
+    afterwards_ = std::move(afterwards);
+  }
   void wait_for_calls(int calls) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return calls_ >= calls; });
@@ -52,7 +57,15 @@ class GatedFit {
       if (permits_ != kAlways)
         --permits_;
     }
-    return fit_distribution(key, context, stop);
+    FitOutcome outcome = fit_distribution(key, context, stop);
+    std::function<void()> afterwards;
+    {
+      const std::lock_guard lock(mutex_);
+      afterwards = afterwards_;
+    }
+    if (afterwards)
+      afterwards();
+    return outcome;
   }
 
  private:
@@ -68,7 +81,7 @@ class GatedFit {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   int permits_ = kAlways;
-  std::function<void()> trouble_;
+  std::function<void()> trouble_, afterwards_;
   int calls_ = 0;
 };
 
@@ -108,6 +121,8 @@ class ServiceFixture : public testing::Test {
       events_ += std::string(to_text(event.kind)) + '|' + event.task + '|' + event.robot + '|' +
                  event.text + '\n';
     };
+    if (adjust_)
+      adjust_(options);
     service_ = std::make_unique<Service>(std::move(store), std::move(options));
     for (const RobotDescription& robot : {fleet::teacher(), fleet::pupil(), fleet::dwarf()})
       register_robot(robot);
@@ -168,6 +183,7 @@ class ServiceFixture : public testing::Test {
           },
       .unix_ms = [this] { return time_ms_.load(); }};
   std::size_t fit_threads_ = 2, fit_queue_ = 64, desk_queue_ = 1024;
+  std::function<void(ServiceOptions&)> adjust_;  ///< of what start() would use; may be empty
   GatedFit gate_;
   std::mutex log_mutex_;
   std::vector<std::string> log_;  // guarded by log_mutex_

@@ -1,0 +1,24 @@
+#include "server/service/adviser.hpp"
+
+#include <utility>
+
+#include "server/service/fetch_reply.hpp"
+
+namespace kinship::service {
+
+bool Adviser::is_current(const AdvisedReply& reply, const DistributionKey& key) const {
+  return reply.reply->status != FetchStatus::Ready ||
+         source_.version(key.task, key.robot) == reply.version;
+}
+
+AdvisedReply Adviser::advise(const SharedReply& reply, const DistributionKey& key) const {
+  if (!reply || reply->status != FetchStatus::Ready)
+    return {reply, 0};
+  // The version first: if the advice changes in between, the next fetch finds another version.
+  const std::uint64_t version = source_.version(key.task, key.robot);
+  FetchReply advised = *reply;
+  advised.distribution->advice = source_.advise(key.task, key.robot, key.profile);
+  return {shared(std::move(advised)), version};
+}
+
+}  // namespace kinship::service

@@ -1,0 +1,53 @@
+#include "server/service/distribution_maker.hpp"
+
+#include <string>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+#include "server/service/freshness.hpp"
+
+namespace kinship::service {
+
+DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
+    : parts_(parts),
+      fit_(fit ? std::move(fit) : [parts](const DistributionKey& key, const std::stop_token& stop) {
+        return fit_distribution(
+            key, {.store = parts.store, .robots = parts.robots, .clock = parts.clock}, stop);
+      }) {}
+
+FitOutcome DistributionMaker::make(const DistributionKey& key, const std::stop_token& stop) const {
+  std::string reason;
+  try {
+    return fit_(key, stop);
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
+      throw;  // the next attempt may find it well again
+    reason = failure.what();
+  } catch (const std::exception& exception) {
+    reason = exception.what();
+  }
+  return {FitOutcome::Kind::Fitted,
+          failed_distribution(
+              key, {.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock},
+              "the fit ended: " + reason)};
+}
+
+bool DistributionMaker::is_outdated(const Distribution& distribution) const {
+  return is_retired(distribution, parts_.store.experience(distribution.task));
+}
+
+Distribution DistributionMaker::keep(Distribution distribution) const {
+  try {
+    distribution.revision = parts_.store.put_distribution(distribution);
+  } catch (const Failure& failure) {
+    distribution.revision = 0;
+    distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
+                           std::string(failure.what());
+    distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
+  }
+  return distribution;
+}
+
+}  // namespace kinship::service
