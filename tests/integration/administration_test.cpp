@@ -155,5 +155,48 @@ TEST_F(Administrators, ConfigurationsOfAFitComeAsAJobsRows) {
   EXPECT_EQ(ask(AdminVerb::ShowJob, "01234567").status, AdminStatus::NotFound);
 }
 
+TEST_F(Administrators, AnEvictedDistributionComesBackWithAHigherRevision) {
+  report(panda_attempts(6));
+  const FetchReply before = fetch();
+  ASSERT_EQ(before.status, FetchStatus::Ready) << before.message;
+  const AdminReply evicted =
+      ask(AdminVerb::EvictDistribution, before.distribution->id.hex().substr(0, 8));
+  ASSERT_EQ(evicted.status, AdminStatus::Ok) << evicted.message;
+  EXPECT_EQ(json::eviction_from_json(evicted.rows.at(0)).value_or_throw(), before.distribution->id);
+  const FetchReply after = fetch();
+  ASSERT_EQ(after.status, FetchStatus::Ready) << after.message;
+  EXPECT_GT(after.distribution->revision, before.distribution->revision);
+}
+
+TEST_F(Administrators, AfterAResetThereIsNoExperience) {
+  report(panda_attempts(6));
+  ASSERT_EQ(fetch().status, FetchStatus::Ready);
+  const AdminReply reply = ask(AdminVerb::ResetTask, "sweep");
+  ASSERT_EQ(reply.status, AdminStatus::Ok) << reply.message;
+  EXPECT_EQ(json::retirement_from_json(reply.rows.at(0)).value_or_throw().paths, 6U);
+  EXPECT_EQ(fetch().status, FetchStatus::NoExperience);
+}
+
+TEST_F(Administrators, WhatWasRetiredIsNeverServedAgainAlsoIfTheServerDiesAtOnce) {
+  const std::vector<Attempt> attempts = panda_attempts(6);
+  report(attempts);
+  const FetchReply before = fetch();
+  ASSERT_EQ(before.status, FetchStatus::Ready) << before.message;
+  const AdminReply retired = ask(AdminVerb::RetirePath, attempts[0].report_uuid.text());
+  ASSERT_EQ(retired.status, AdminStatus::Ok) << retired.message;
+  server_->kill();
+  start_server();
+  const FetchReply after = fetch();
+  ASSERT_EQ(after.status, FetchStatus::Ready) << after.message;
+  EXPECT_GT(after.distribution->revision, before.distribution->revision);
+  EXPECT_EQ(after.distribution->sources.at(0).paths, 5U);
+  AdminRequest request = question(AdminVerb::ExportPaths, "");
+  request.task = "sweep";
+  const std::vector<std::string> exported = rows(request);
+  EXPECT_EQ(exported.size(), 6U);  // the robot, and five attempts
+  for (const std::string& line : exported)
+    EXPECT_EQ(line.find(attempts[0].report_uuid.text()), std::string::npos);
+}
+
 }  // namespace
 }  // namespace kinship

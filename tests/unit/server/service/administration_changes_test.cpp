@@ -187,6 +187,27 @@ TEST_F(AdministrationChanges, ConfigurationsOfRetiredPathsAreNotExported) {
   EXPECT_NE(ask(AdminVerb::ExportConfigurations, distribution.id.hex()).status, AdminStatus::Ok);
 }
 
+TEST_F(AdministrationChanges, AnEvictedDistributionIsFittedAgainWithTheNextRevision) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  const Distribution first = fetched();
+  const AdminPage page = ask(AdminVerb::EvictDistribution, first.id.hex().substr(0, 12));
+  EXPECT_EQ(row<Eviction>(page).id, first.id);
+  EXPECT_EQ(ask(AdminVerb::ShowDistribution, first.id.hex()).status, AdminStatus::NotFound);
+  EXPECT_EQ(ask(AdminVerb::EvictDistribution, first.id.hex()).status, AdminStatus::NotFound);
+  const Distribution second = fetched();
+  EXPECT_EQ(second.id, first.id);
+  EXPECT_EQ(second.revision, first.revision + 1);
+}
+
+TEST_F(AdministrationChanges, AfterAResetThereIsNoExperience) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  EXPECT_EQ(fetched().revision, 1U);
+  EXPECT_EQ(row<Retirement>(ask(AdminVerb::ResetTask, "shelf")).paths, 6U);
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
+  start();
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
+}
+
 TEST_F(AdministrationChanges, AnExplanationSaysHowADistributionStands) {
   report(fleet::solved(teacher_, "shelf", 6, 1));
   const std::string id = fetched().id.hex();
