@@ -111,7 +111,7 @@ class Store {
   /// answered Duplicate.
   virtual void commit_reports(std::vector<Attempt> attempts, ReportsDone done) = 0;
 
-  /// The robots with paths of a task, by digest.
+  /// The robots that have, or had, paths of a task, by digest.
   virtual std::vector<ExperienceSummary> experience(std::string_view task) const = 0;
   virtual std::uint64_t generation(const Digest& robot, std::string_view task) const = 0;
 
@@ -147,7 +147,7 @@ class Store {
   virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
-  /// Empty robot or task: all.
+  /// By task, robot and arrival, retired ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
   /// An attempt with its path, by report UUID; unsolved ones too. Without its path if that one is
