@@ -16,7 +16,7 @@ struct Migration {
   std::string_view text;
 };
 
-/// All migrations that this binary knows, by version (written by embed_migrations.cmake).
+/// All migrations that this binary knows, by version (written by cmake/embed_texts.cmake).
 std::span<const Migration> embedded_migrations();
 
 /// The schema of a file that this binary can read or migrate; 0 if the file is empty.
