@@ -169,8 +169,8 @@ void Checker::count_tables() {
     check_.damaged_paths = static_cast<std::uint64_t>(
         database_->integer("SELECT count(*) FROM path WHERE damaged = 1"));
     if (schema_ > 1)
-      check_.retired_paths = static_cast<std::uint64_t>(
-          database_->integer("SELECT count(*) FROM path WHERE retired_ms IS NOT NULL"));
+      check_.retired_paths = static_cast<std::uint64_t>(database_->integer(
+          "SELECT count(*) FROM path WHERE damaged = 0 AND retired_ms IS NOT NULL"));
   });
   check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
                                             database_->integer("PRAGMA page_size"));
