@@ -53,5 +53,26 @@ TEST(ForeignClient, RegistersReportsAndFetches) {
   EXPECT_EQ(server.terminate(), 0);
 }
 
+TEST(ForeignClient, RegistersReportsFetchesAndHearsOfTheNewerRevision) {
+  const ReservedDomain domain;
+  const TemporaryDirectory directory;
+  ServerProcess server(
+      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  Program client("../tests/foreign_client", {std::to_string(domain.number()), "follow"},
+                 directory / "error");
+  const std::vector<std::string> lines = lines_of(client.read_all());
+  ASSERT_EQ(client.wait(), 0) << read_text(directory / "error");
+  ASSERT_EQ(lines.size(), 6U);
+  EXPECT_TRUE(lines[0].starts_with("registered status=0 dof=3 solver=")) << lines[0];
+  EXPECT_EQ(lines[1], "reported stored=6");
+  EXPECT_TRUE(lines[2].starts_with("fetched revision=1 ")) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(" paths=6")) << lines[2];
+  EXPECT_EQ(lines[3], "reported stored=12");
+  EXPECT_TRUE(lines[4].starts_with("announced revision=")) << lines[4];
+  EXPECT_TRUE(lines[4].ends_with(" task=foreign_sweep")) << lines[4];
+  EXPECT_TRUE(lines[5].starts_with("fetched revision=")) << lines[5];
+  EXPECT_EQ(server.terminate(), 0);
+}
+
 }  // namespace
 }  // namespace kinship::test
