@@ -51,7 +51,7 @@ ArmPlan plan_arms(const Advice& advice, const ArmOptions& options) {
   const double share = options.share.value_or(advice.recommended_share);
   require_part("share", share);
   require_part("control share", options.control_share.value_or(0));
-  const bool is_guided = share > 0;
+  const bool is_guided = options.share ? share > 0 : share >= kLeastShare;
   if (!is_guided && options.share)
     return {0, false, 0};
   const std::uint64_t known = attempts_of(is_guided ? advice.control : advice.guided);

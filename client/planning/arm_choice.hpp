@@ -39,9 +39,13 @@ struct ArmChoice {
 inline constexpr std::uint64_t kEarlyTrials = 20;  ///< attempts after which trials become rare
 inline constexpr double kEarlyTrialPart = 0.1;
 inline constexpr double kLateTrialPart = 0.02;
-inline constexpr double kTrialShare = 0.9;  ///< where the advice, being "uniform", names none
+inline constexpr double kTrialShare = 0.9;  ///< where uniform is advised, which names no share
+/// Advice below this is taken as "uniform": queries with next to no guided samples would count as
+/// guided, and say nothing about guidance.
+inline constexpr double kLeastShare = 0.05;
 
-/// The usual query is guided with the wished or the recommended share, or uniform if that is 0.
+/// The usual query is guided with the wished or the recommended share, or uniform if the wish is 0
+/// or the advice below kLeastShare.
 /// Trials are a tenth of the queries until the server knows kEarlyTrials attempts of the arm that
 /// they belong to, then one in fifty. A user who wishes share 0 plans uniformly always.
 /// \throws std::invalid_argument if a share is outside 0 to 1.

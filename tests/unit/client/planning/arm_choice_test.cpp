@@ -44,6 +44,9 @@ TEST(PlanArms, TestsATenthUntilTwentyControlsAreKnownThenOneInFifty) {
 TEST(PlanArms, TurnsTheRolesWhereUniformIsAdvised) {
   EXPECT_EQ(plan_arms(advice(0, 500, 500), {}), (ArmPlan{kTrialShare, false, 0.02}));
   EXPECT_EQ(plan_arms(advice(0, 10, 500), {}), (ArmPlan{kTrialShare, false, 0.1}));
+  EXPECT_EQ(plan_arms(advice(0.049, 500, 500), {}), (ArmPlan{kTrialShare, false, 0.02}));
+  EXPECT_EQ(plan_arms(advice(0.05, 500, 500), {}), (ArmPlan{0.05, true, 0.02}));
+  EXPECT_EQ(plan_arms(advice(0, 500, 500), {0.01, {}}), (ArmPlan{0.01, true, 0.02}));
 }
 
 TEST(PlanArms, DoesWhatItIsTold) {
