@@ -8,7 +8,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "server/service/freshness.hpp"
-#include "tests/unit/server/service/service_fixture.hpp"
+#include "tests/unit/server/service/catalog_fixture.hpp"
 #include "tests/unit/server/service/troubled_store.hpp"
 
 namespace kinship::service {
@@ -16,28 +16,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-class CatalogTest : public ServiceFixture {
- protected:
-  void teach(int paths, std::uint64_t first_seed = 1) {
-    report(fleet::solved(teacher_, "shelf", paths, first_seed));
-  }
-  /// Another distribution of the same robot.
-  static FetchRequest elsewhere(FetchRequest request, double x_m) {
-    request.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
-    return request;
-  }
-  static FetchRequest at_once(FetchRequest request) {
-    request.deadline = milliseconds(0);
-    return request;
-  }
-  static FetchRequest with_generation(FetchRequest request, std::uint64_t generation) {
-    request.minimum_generation = generation;
-    return request;
-  }
-  /// Returns when the desk has done what it was given before.
-  void wait_for_desk() { administer(fleet::question(AdminVerb::Status)); }
-};
 
 TEST_F(CatalogTest, SaysWhyThereIsNothing) {
   FetchReply reply = fetch(request_for(teacher_));
@@ -390,120 +368,6 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   const FetchReply reply = early.get();
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_EQ(reply.distribution->sources[0].generation, 2U);
-}
-
-TEST_F(CatalogTest, ASelectedSourceThatIsUnknownIsRefusedByName) {
-  teach(6);
-  FetchRequest request = request_for(pupil_);
-  Digest unknown = teacher_.digest;
-  unknown.bytes[0] ^= 1U;
-  request.selection.sources = {teacher_.digest, unknown};
-  const FetchReply reply = fetch(request);
-  EXPECT_EQ(reply.status, FetchStatus::Refused);
-  EXPECT_EQ(reply.message, "selected source: robot " + unknown.short_hex() +
-                               " is not known here; register it first");
-  EXPECT_EQ(gate_.calls(), 0);
-}
-
-TEST_F(CatalogTest, WithoutExperienceOfTheSelectionThereIsNothing) {
-  teach(6);
-  FetchRequest request = request_for(pupil_);
-  request.selection.sources = {dwarf_.digest};
-  EXPECT_EQ(fetch(request).message, "no paths of task 'shelf' of the 1 selected robots");
-  request.selection = {.sources = {}, .weighting = {}, .since_ms = 9'000'000'000'000};
-  const FetchReply reply = fetch(request);
-  EXPECT_EQ(reply.status, FetchStatus::NoExperience);
-  EXPECT_EQ(reply.message, "no paths of task 'shelf' received since 9000000000000 ms");
-}
-
-TEST_F(CatalogTest, GrowthOfARobotThatIsNotSelectedIsNone) {
-  teach(6);
-  FetchRequest request = request_for(pupil_);
-  request.selection.sources = {teacher_.digest};
-  fetch(request);
-  report(fleet::solved(pupil_, "shelf", 9, 300));
-  advance(kRefitInterval);
-  EXPECT_EQ(fetch(request).distribution->revision, 1U);
-  wait_for_desk();
-  EXPECT_EQ(service_->status().queued_fits, 0U);
-  EXPECT_EQ(gate_.calls(), 1);
-  // Its own generation is nothing that such a distribution could know.
-  EXPECT_EQ(fetch(with_generation(request, 1)).status, FetchStatus::Ready);
-}
-
-TEST_F(CatalogTest, RetiredExperienceIsNotServedAnyMore) {
-  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
-  report(paths);
-  fetch(request_for(pupil_));
-  administer(fleet::question(AdminVerb::RetirePath, paths[2].report_uuid.text()));
-  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
-  const FetchReply reply = fetch(request_for(pupil_));
-  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(reply.distribution->revision, 2U);
-  EXPECT_EQ(reply.distribution->sources[0].paths, 5U);
-}
-
-TEST_F(CatalogTest, RetiredExperienceIsNotServedAfterARestartEither) {
-  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
-  report(paths);
-  fetch(request_for(pupil_));
-  service_.reset();  // it ended between the retirement and all else
-  ASSERT_TRUE(store::open_sqlite_store(directory_ / "fleet.db")->retire_path(paths[2].report_uuid));
-  start();
-  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
-}
-
-TEST_F(CatalogTest, AFitOfExperienceThatIsRetiredMeanwhileIsDoneAgain) {
-  const std::vector<Attempt> paths = fleet::solved(teacher_, "shelf", 6, 1);
-  report(paths);
-  gate_.close();
-  std::future<FetchReply> reply = begin_fetch(request_for(pupil_), "one");
-  gate_.wait_for_calls(1);
-  std::atomic<int> fits = 0;
-  gate_.set_trouble({});
-  gate_.set_afterwards([&] {  // this fit has read what it wants; then a path is retired
-    if (fits++ == 0)
-      administer(fleet::question(AdminVerb::RetirePath, paths[2].report_uuid.text()));
-  });
-  gate_.open();
-  const FetchReply got = reply.get();
-  ASSERT_EQ(got.status, FetchStatus::Ready) << got.message;
-  EXPECT_EQ(got.distribution->sources[0].paths, 5U);
-  EXPECT_EQ(got.distribution->revision, 1U) << "the other one was not kept";
-  EXPECT_EQ(gate_.calls(), 2);
-}
-
-TEST_F(CatalogTest, ATaskWhoseExperienceIsAllGoneHasNone) {
-  teach(6);
-  fetch(request_for(pupil_));
-  administer(fleet::question(AdminVerb::ResetTask, "shelf"));
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::NoExperience);
-  teach(6);  // the same content once more
-  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
-}
-
-TEST_F(CatalogTest, AnEvictedDistributionIsFittedAnew) {
-  teach(6);
-  const std::string id = fetch(request_for(pupil_)).distribution->id.hex();
-  EXPECT_EQ(administer(fleet::question(AdminVerb::EvictDistribution, id)).status, AdminStatus::Ok);
-  EXPECT_EQ(fetch(at_once(request_for(pupil_))).status, FetchStatus::Pending);
-  EXPECT_EQ(fetch(request_for(pupil_)).distribution->revision, 2U);
-}
-
-TEST_F(CatalogTest, AFitDuringWhichItIsEvictedAnswersAndIsKept) {
-  teach(6);
-  const std::string id = fetch(request_for(teacher_)).distribution->id.hex();
-  teach(1, 100);
-  gate_.close();
-  std::future<FetchReply> reply = begin_fetch(with_generation(request_for(teacher_), 2), "one");
-  gate_.wait_for_calls(2);
-  administer(fleet::question(AdminVerb::EvictDistribution, id));
-  EXPECT_EQ(fetch(at_once(request_for(teacher_))).status, FetchStatus::Pending)
-      << "the old one is gone";
-  gate_.open();
-  EXPECT_EQ(reply.get().distribution->revision, 2U);
-  EXPECT_EQ(fetch(at_once(request_for(teacher_))).distribution->revision, 2U);
-  EXPECT_EQ(gate_.calls(), 2);
 }
 
 TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
