@@ -9,7 +9,7 @@
 #include "client/experiments/page/page_data.hpp"
 #include "robots/models/robot_arguments.hpp"
 
-/// The commands of kinship-experiment: options in, streams out. They throw Failure.
+/// The commands of kinship-experiments: options in, streams out. They throw Failure.
 namespace kinship::experiments {
 
 struct ShelfOptions {

@@ -17,11 +17,11 @@ using namespace kinship::experiments;  // NOLINT
 
 constexpr const char* kExamples = R"(
 Examples:
-  kinship-experiment shelf --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
-  kinship-experiment placement --model robots/models/ur10e
-  kinship-experiment compare --uniform uniform.results.jsonl --guided guided.results.jsonl
+  kinship-experiments shelf --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
+  kinship-experiments placement --model robots/models/ur10e
+  kinship-experiments compare --uniform uniform.results.jsonl --guided guided.results.jsonl
 
-  kinship-experiment page --run build/quickstart --models robots/models --fleet panda,iiwa14 --robot ur10e \
+  kinship-experiments page --run build/quickstart --models robots/models --fleet panda,iiwa14 --robot ur10e \
       --output quickstart.html
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
@@ -112,7 +112,7 @@ void write_page_file(const CommandLine& line) {
 
 int run(int argc, char** argv) {
   CommandLine line;
-  CLI::App app{"kinship-experiment: planning problems and comparisons for experiments"};
+  CLI::App app{"kinship-experiments: planning problems and comparisons for experiments"};
   app.footer(kExamples);
   app.require_subcommand(1);
   add_shelf(app, line);
@@ -143,10 +143,10 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const kinship::Failure& failure) {
-    std::cerr << "kinship-experiment: " << failure.what() << '\n';
+    std::cerr << "kinship-experiments: " << failure.what() << '\n';
     return exit_code(failure.code());
   } catch (const std::exception& error) {
-    std::cerr << "kinship-experiment: " << error.what() << '\n';
+    std::cerr << "kinship-experiments: " << error.what() << '\n';
     return kFailed;
   }
 }

@@ -27,7 +27,7 @@ class UnsentReports : public testing::Test {
   /// Plans with reports and is killed once it has written two results.
   /// \return the results that it wrote.
   std::vector<ProblemResult> plan_until_killed() const {
-    test::Program problems("kinship-experiment",
+    test::Program problems("kinship-experiments",
                            {"shelf", "--model", model_, "--count", "40", "--output", problems_});
     EXPECT_EQ(problems.wait(), 0);
     test::Program plan("kinship-plan", {problems_, "--model", model_, "--task", "shelf",
