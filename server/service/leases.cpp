@@ -30,7 +30,7 @@ void Leases::take(const Digest& id, const DistributionKey& key, TimePoint until)
   ended_.erase(id);
 }
 
-void Leases::end(const Digest& id) {
+void Leases::end(Digest id) {
   const auto found = leases_.find(id);
   if (found == leases_.end())
     return;

@@ -46,7 +46,7 @@ class Leases {
 
   /// Takes a lease, or extends the one that is there; never shortens it.
   void take(const Digest& id, const DistributionKey& key, TimePoint until);
-  void end(const Digest& id);
+  void end(Digest id);  // by value: callers name it out of what is erased here
   void end_all();
 
   /// Forgets the leases that have ended.
