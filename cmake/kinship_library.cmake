@@ -15,7 +15,9 @@ target_compile_definitions(kinship_options INTERFACE EIGEN_DONT_PARALLELIZE)
 if(KINSHIP_SANITIZE)
   # Without the four checks that double the time of a build; what matters of them AddressSanitizer sees too.
   target_compile_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE} -fno-omit-frame-pointer
-    -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size)
+    -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size
+    # GCC 12 takes instrumented code of the standard library for uninitialized.
+    -Wno-maybe-uninitialized)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
 endif()
 
