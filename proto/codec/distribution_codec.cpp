@@ -84,6 +84,14 @@ void write_sources(const std::vector<Source>& sources, Arena& arena,
     entry.not_converged = sources[i].not_converged;
     entry.configurations = sources[i].configurations;
     entry.mass = sources[i].mass;
+    entry.colliding = sources[i].colliding;
+    entry.tracks_tried = sources[i].tracks_tried;
+    entry.tracks_kept = sources[i].tracks_kept;
+    entry.random_configurations = sources[i].random_configurations;
+    entry.filter_checks = sources[i].filter_checks;
+    entry.self_collisions = sources[i].self_collisions;
+    entry.scene_collisions = sources[i].scene_collisions;
+    entry.paths_with_scene = sources[i].paths_with_scene;
   }
 }
 
@@ -103,7 +111,15 @@ std::vector<Source> read_sources(const kinship_wire_Distribution& wire, Reader& 
          .outside_limits = entry.outside_limits,
          .not_converged = entry.not_converged,
          .configurations = entry.configurations,
-         .mass = entry.mass});
+         .mass = entry.mass,
+         .colliding = entry.colliding,
+         .tracks_tried = entry.tracks_tried,
+         .tracks_kept = entry.tracks_kept,
+         .random_configurations = entry.random_configurations,
+         .filter_checks = entry.filter_checks,
+         .self_collisions = entry.self_collisions,
+         .scene_collisions = entry.scene_collisions,
+         .paths_with_scene = entry.paths_with_scene});
   return sources;
 }
 
@@ -174,8 +190,8 @@ std::optional<Error> check(const Distribution& distribution) {
   check_evidence("control", distribution.advice.control, rules);
   check_limits(distribution.limits, rules);
   const auto& mixture = distribution.mixture;
-  rules.that(mixture.has_value() == (distribution.state == DistributionState::Ready),
-             mixture ? "mixture: given although failed" : "mixture: missing although ready");
+  rules.that(mixture.has_value() == has_mixture(distribution.state),
+             mixture ? "mixture: given although failed" : "mixture: missing although not failed");
   if (mixture)
     rules.at_most("mixture: components", static_cast<std::size_t>(mixture->size()), kMaxComponents)
         .that(mixture->dimension() == distribution.limits.cols(),
@@ -227,7 +243,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
   distribution.profile = reader.text("profile", wire.profile, kMaxProfileBytes);
   distribution.engines = reader.text("engines", wire.engines, kMaxEnginesBytes);
-  distribution.state = reader.enumerator("state", wire.state, DistributionState::Failed);
+  distribution.state = reader.enumerator("state", wire.state, DistributionState::Thin);
   distribution.reason = reader.text("reason", wire.reason, kMaxMessageBytes);
   distribution.configurations = wire.configurations;
   const auto limits = elements(wire.limits);

@@ -32,6 +32,14 @@ OrderedJson source_object(const Source& source) {
   object["not_converged"] = source.not_converged;
   object["configurations"] = source.configurations;
   object["mass"] = source.mass;
+  object["colliding"] = source.colliding;
+  object["tracks_tried"] = source.tracks_tried;
+  object["tracks_kept"] = source.tracks_kept;
+  object["random_configurations"] = source.random_configurations;
+  object["filter_checks"] = source.filter_checks;
+  object["self_collisions"] = source.self_collisions;
+  object["scene_collisions"] = source.scene_collisions;
+  object["paths_with_scene"] = source.paths_with_scene;
   return object;
 }
 
@@ -57,6 +65,14 @@ Source read_source(const Reader& reader) {
   read_count("configurations", source.configurations);
   if (const auto mass = reader.find("mass"))
     source.mass = mass->number(0, 1);
+  read_count("colliding", source.colliding);
+  read_count("tracks_tried", source.tracks_tried);
+  read_count("tracks_kept", source.tracks_kept);
+  read_count("random_configurations", source.random_configurations);
+  read_count("filter_checks", source.filter_checks);
+  read_count("self_collisions", source.self_collisions);
+  read_count("scene_collisions", source.scene_collisions);
+  read_count("paths_with_scene", source.paths_with_scene);
   return source;
 }
 

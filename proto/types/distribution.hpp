@@ -36,10 +36,24 @@ struct Source {
   std::uint64_t not_converged = 0;
   std::uint64_t configurations = 0;  ///< its poses became
   double mass = 0;                   ///< its share of the weight of all configurations, 0 to 1
+  std::uint64_t colliding = 0;       ///< poses whose every configuration a filter left out
+  std::uint64_t tracks_tried = 0;    ///< along its paths
+  std::uint64_t tracks_kept = 0;     ///< that cover enough of their path
+  /// Of `configurations`: found for one pose alone, neither along a track nor taken over.
+  std::uint64_t random_configurations = 0;
+  std::uint64_t filter_checks = 0;     ///< configurations that the filters were asked about
+  std::uint64_t self_collisions = 0;   ///< of them left out: the target touches itself
+  std::uint64_t scene_collisions = 0;  ///< of them left out: it touches the recorded scene
+  std::uint64_t paths_with_scene = 0;  ///< of `paths_used`: filtered by their recorded scene
 };
 
 /// Ready: there is a mixture. Failed: nothing could be transferred or fitted; `reason` says why.
-enum class DistributionState { Ready, Failed };
+/// Thin: there is a mixture, made of a small part of the experience (server/service says how
+/// small).
+enum class DistributionState { Ready, Failed, Thin };
+
+/// Whether a distribution of this state has a mixture.
+constexpr bool has_mixture(DistributionState state) { return state != DistributionState::Failed; }
 
 /// A mixture fitted for one robot and task, with its provenance.
 struct Distribution {
@@ -56,7 +70,7 @@ struct Distribution {
   std::string reason;  ///< why Failed; a warning otherwise, mostly empty
   std::vector<Source> sources;
   std::uint64_t configurations = 0;  ///< number the mixture was fitted to
-  std::optional<Mixture> mixture;    ///< present exactly if Ready
+  std::optional<Mixture> mixture;    ///< present exactly unless Failed
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
   std::optional<double> held_out_score;
   /// Of the moment it was sent, not of the fit.

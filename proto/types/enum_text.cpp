@@ -15,8 +15,9 @@ constexpr Words<Outcome, 3> kOutcomes = {
     {{Outcome::Solved, "solved"}, {Outcome::Timeout, "timeout"}, {Outcome::Failed, "failed"}}};
 constexpr Words<Arm, 3> kArms = {
     {{Arm::Guided, "guided"}, {Arm::Control, "control"}, {Arm::Uniform, "uniform"}}};
-constexpr Words<DistributionState, 2> kDistributionStates = {
-    {{DistributionState::Ready, "ready"}, {DistributionState::Failed, "failed"}}};
+constexpr Words<DistributionState, 3> kDistributionStates = {{{DistributionState::Ready, "ready"},
+                                                              {DistributionState::Failed, "failed"},
+                                                              {DistributionState::Thin, "thin"}}};
 
 constexpr Words<Relation, 3> kRelations = {{{Relation::Other, "other"},
                                             {Relation::SameArm, "same_arm"},

@@ -13,7 +13,7 @@ namespace kinship {
 
 std::string_view to_text(Outcome outcome);          ///< solved, timeout, failed
 std::string_view to_text(Arm arm);                  ///< guided, control, uniform
-std::string_view to_text(DistributionState state);  ///< ready, failed
+std::string_view to_text(DistributionState state);  ///< ready, failed, thin
 std::string_view to_text(Relation relation);        ///< other, same_arm, identical
 std::string_view to_text(Weighting weighting);      ///< sources, paths
 std::string_view to_text(EventKind kind);  ///< registered, report, fetch, fit, refusal, admin

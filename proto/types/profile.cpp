@@ -12,12 +12,16 @@ std::optional<Profile> find_profile(std::string_view name) {
                       .max_poses_per_path = 0,
                       .max_solutions = 5,
                       .min_distance = 0.5,
-                      .dropped_end_share = 0};
+                      .dropped_end_share = 0,
+                      .tracks = 0,
+                      .avoid_self_collision = false,
+                      .avoid_recorded_scene = false};
     paper.density = {.components = 50,
                      .covariance_floor = 1e-4,
                      .equal_path_weights = false,
                      .weighting = Weighting::Paths};
     paper.recommended_share = 1;
+    paper.thin_share = 1;
     return paper;
   }
   return std::nullopt;

@@ -16,6 +16,15 @@ struct TransferParameters {
   int max_solutions = 5;            ///< L: configurations per pose
   double min_distance = 0.5;        ///< d: between the solutions of one pose, joint units
   double dropped_end_share = 0.15;  ///< of a path's length, left out at each end
+  /// Configurations that follow the path without a jump, each with a posture like the source's,
+  /// instead of independent ones: so many such tracks a path. 0: none.
+  int tracks = 3;
+  double least_coverage = 0.9;  ///< of a path's poses that a track must cover to be kept, 0 to 1
+  int track_candidates = 10;    ///< configurations among which the start of a track is chosen
+  double shape_noise = 0.05;    ///< deviation of that choice, m
+  bool avoid_self_collision =
+      true;  ///< leaves out configurations in which the target touches itself
+  bool avoid_recorded_scene = true;  ///< or the scene that came with the path
 
   bool operator==(const TransferParameters&) const = default;
 };
@@ -36,6 +45,7 @@ struct Profile {
   TransferParameters transfer;
   DensityParameters density;
   double recommended_share = 0.9;  ///< of guided samples, before attempts have taught better
+  double thin_share = 0.5;         ///< the same of a thin distribution, if that is less
   std::uint64_t seed = 0;
 
   bool operator==(const Profile&) const = default;

@@ -137,7 +137,7 @@ AdminPage Administration::show_distribution(const std::string& prefix) {
 
 AdminPage Administration::explain(const std::string& prefix) {
   Distribution distribution = find_distribution(prefix);
-  if (parts_.advise && distribution.state == DistributionState::Ready)
+  if (parts_.advise && has_mixture(distribution.state))
     distribution.advice = parts_.advise(distribution);
   return page_of(
       explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms()));

@@ -71,11 +71,14 @@ Digest identify(const DistributionKey& key) {
   const TransferParameters& transfer = key.profile.transfer;
   sha.add(transfer.pose_spacing).add(bits(transfer.max_poses_per_path));
   sha.add(bits(transfer.max_solutions)).add(transfer.min_distance).add(transfer.dropped_end_share);
+  sha.add(bits(transfer.tracks)).add(transfer.least_coverage).add(bits(transfer.track_candidates));
+  sha.add(transfer.shape_noise).add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
+  sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
   const DensityParameters& density = key.profile.density;
   sha.add(bits(density.components)).add(density.covariance_floor);
   sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
   sha.add(static_cast<std::uint64_t>(density.weighting));
-  sha.add(key.profile.recommended_share).add(key.profile.seed);
+  sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);
   sha.add(std::uint64_t{key.sources.size()});
   for (const Digest& source : key.sources)
     sha.add(source);

@@ -49,7 +49,7 @@ std::string next_fit(const Distribution& distribution, const Explanation& explan
     return "at the next fetch: paths that it may be made of were retired, it is not served any "
            "more";
   if (!explanation.behind)
-    return distribution.state == DistributionState::Ready
+    return has_mixture(distribution.state)
                ? "when the paths have grown by 5, or by 5 % if that is more" + paths
                : "when the experience has changed" + paths;
   if (may_refit(distribution, now_ms))

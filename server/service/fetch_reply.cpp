@@ -32,9 +32,9 @@ SharedReply shared_pending() {
 }
 
 SharedReply with_distribution(Distribution distribution) {
-  const bool ready = distribution.state == DistributionState::Ready;
-  FetchReply reply =
-      without_distribution(ready ? FetchStatus::Ready : FetchStatus::Failed, distribution.reason);
+  FetchReply reply = without_distribution(
+      has_mixture(distribution.state) ? FetchStatus::Ready : FetchStatus::Failed,
+      distribution.reason);
   reply.distribution = std::move(distribution);
   return shared(std::move(reply));
 }

@@ -38,8 +38,8 @@ bool has_changed(const Distribution& distribution,
 
 bool is_behind(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience) {
-  return distribution.state == DistributionState::Ready ? has_grown(distribution, experience)
-                                                        : has_changed(distribution, experience);
+  return has_mixture(distribution.state) ? has_grown(distribution, experience)
+                                         : has_changed(distribution, experience);
 }
 
 bool is_retired(const Distribution& distribution,

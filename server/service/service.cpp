@@ -221,13 +221,13 @@ void Service::log_fit(const Distribution& distribution) const {
   std::uint64_t paths = 0;
   for (const Source& source : distribution.sources)
     paths += source.paths;
-  const bool ready = distribution.state == DistributionState::Ready;
+  const bool failed = distribution.state == DistributionState::Failed;
   options_.log("fit " + distribution.id.short_hex() + " revision " +
                std::to_string(distribution.revision) + " for robot " +
                distribution.robot.short_hex() + ", task '" + distribution.task +
                "': " + std::to_string(distribution.configurations) + " configurations from " +
                std::to_string(paths) + " paths, transfer " + seconds(distribution.transfer_time_s) +
-               ", fit " + seconds(distribution.fit_time_s) + (ready ? "" : ", failed") +
+               ", fit " + seconds(distribution.fit_time_s) + (failed ? ", failed" : "") +
                (distribution.reason.empty() ? "" : ": " + distribution.reason));
 }
 

@@ -50,6 +50,13 @@ void write(const transfer::TransferSummary& total, Source& source) {
   source.outside_limits = total.outside_limits;
   source.not_converged = total.not_converged;
   source.configurations = total.configurations;
+  source.colliding = total.colliding;
+  source.tracks_tried = total.tracks_tried;
+  source.tracks_kept = total.tracks_kept;
+  source.random_configurations = total.random_configurations;
+  source.filter_checks = total.filter_checks;
+  source.self_collisions = total.self_collisions;
+  source.scene_collisions = total.scene_collisions;
 }
 
 /// Calls `visit` with the paths of a robot and task in the order of arrival, until it says false.

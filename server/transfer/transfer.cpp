@@ -39,7 +39,8 @@ TransferredPath stacked(const std::vector<Eigen::MatrixXd>& solutions_of_pose,
 
 TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Eigen::Isometry3d& T_target_source,
-                              const TransferParameters& parameters, std::uint64_t seed) {
+                              const TransferParameters& parameters, std::uint64_t seed,
+                              const Filters& filters) {
   if (path.dof() != pair.source().dof())
     throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
                                 " joints for a source robot of " +
@@ -54,14 +55,21 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                                         .seed = seed};
   std::vector<Eigen::MatrixXd> solutions_of_pose;
   TransferSummary summary;
+  CountedFilters counted(filters);
   for (Eigen::Index i = 0; i < waypoints.cols(); ++i) {
     const Eigen::Isometry3d T_target_tip =
         T_target_source * kinematics::T_base_transfer(pair.source(), waypoints.col(i)) *
         T_transfer_tip;
     inverse::InverseSolutions solutions = inverse::inverse(pair.target(), T_target_tip, options);
-    summary.count(solutions.configurations.cols(), solutions.reason);
-    solutions_of_pose.push_back(std::move(solutions.configurations));
+    Eigen::MatrixXd kept = passed(std::move(solutions.configurations), counted);
+    summary.random_configurations += static_cast<std::uint64_t>(kept.cols());
+    if (kept.cols() == 0 && solutions.reason == inverse::NoSolution::None)
+      summary.count_colliding();
+    else
+      summary.count(kept.cols(), solutions.reason);
+    solutions_of_pose.push_back(std::move(kept));
   }
+  summary.set(counted);
   return stacked(solutions_of_pose, summary, pair.target().dof());
 }
 

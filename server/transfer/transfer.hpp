@@ -6,6 +6,7 @@
 #include "proto/types/path.hpp"
 #include "proto/types/profile.hpp"
 #include "server/transfer/arm_pair.hpp"
+#include "server/transfer/filters.hpp"
 #include "server/transfer/transferred_path.hpp"
 
 namespace kinship::transfer {
@@ -20,14 +21,18 @@ namespace kinship::transfer {
 ///                         T_task_target^-1 * T_task_source.
 /// \param seed             equal input and seed: equal bytes. A pose's solutions depend on the seed
 ///                         and that pose only, not on the path around it.
+/// \param filters          asked about every configuration that inverse kinematics found; what they
+///                         reject is left out and counted. Waypoints that are taken over were free
+///                         on their robot and are not asked about.
 /// \throws std::invalid_argument if path.dof() is not that of the pair's source, or `parameters`
 ///         break the rules of `resample` or of `inverse::InverseOptions`.
 /// Source: Lehner et al., ICRA 2022, section IV A.
 TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Eigen::Isometry3d& T_target_source,
-                              const TransferParameters& parameters, std::uint64_t seed);
+                              const TransferParameters& parameters, std::uint64_t seed,
+                              const Filters& filters = {});
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kTransferVersion = 3;
+inline constexpr int kTransferVersion = 4;
 
 }  // namespace kinship::transfer

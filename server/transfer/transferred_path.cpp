@@ -27,7 +27,20 @@ void TransferSummary::add(const TransferSummary& other) {
   out_of_reach += other.out_of_reach;
   outside_limits += other.outside_limits;
   not_converged += other.not_converged;
+  colliding += other.colliding;
   configurations += other.configurations;
+  random_configurations += other.random_configurations;
+  tracks_tried += other.tracks_tried;
+  tracks_kept += other.tracks_kept;
+  filter_checks += other.filter_checks;
+  self_collisions += other.self_collisions;
+  scene_collisions += other.scene_collisions;
+}
+
+void TransferSummary::set(const CountedFilters& filters) {
+  filter_checks = filters.checks();
+  self_collisions = filters.self_collisions();
+  scene_collisions = filters.scene_collisions();
 }
 
 }  // namespace kinship::transfer

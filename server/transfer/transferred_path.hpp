@@ -4,23 +4,38 @@
 #include <cstdint>
 
 #include "robots/inverse/inverse.hpp"
+#include "server/transfer/filters.hpp"
 
 namespace kinship::transfer {
 
 /// How a path fared: poses after resampling, and what became of them. Every pose is counted once:
-/// poses = poses_solved + out_of_reach + outside_limits + not_converged.
+/// poses = poses_solved + out_of_reach + outside_limits + not_converged + colliding.
 struct TransferSummary {
   std::uint64_t poses = 0;
   std::uint64_t poses_solved = 0;
   std::uint64_t out_of_reach = 0;
   std::uint64_t outside_limits = 0;
   std::uint64_t not_converged = 0;
+  std::uint64_t colliding = 0;  ///< there were configurations, but the filters left out each
   std::uint64_t configurations = 0;
+  std::uint64_t random_configurations = 0;  ///< of them, found for one pose alone
+  std::uint64_t tracks_tried = 0, tracks_kept = 0;
+  std::uint64_t filter_checks = 0;  ///< configurations that the filters were asked about
+  std::uint64_t self_collisions = 0, scene_collisions = 0;  ///< of them left out
 
   /// Counts one pose.
   /// \param found   configurations of the target for it.
   /// \param reason  why there is none.
   void count(Eigen::Index found, inverse::NoSolution reason);
+
+  /// Counts one pose whose every configuration was left out.
+  void count_colliding() {
+    ++poses;
+    ++colliding;
+  }
+
+  /// Takes over what the filters counted.
+  void set(const CountedFilters& filters);
 
   void add(const TransferSummary& other);
 };

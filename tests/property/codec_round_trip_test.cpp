@@ -70,8 +70,8 @@ TEST(CodecRoundTrip, DistributionComesBack) {
   for (int i = 0; i < kCases; ++i) {
     FetchReply written;
     written.distribution = values.distribution();
-    written.status = written.distribution->state == DistributionState::Ready ? FetchStatus::Ready
-                                                                             : FetchStatus::Failed;
+    written.status =
+        has_mixture(written.distribution->state) ? FetchStatus::Ready : FetchStatus::Failed;
     const auto message = encode(kHead, written);
     ASSERT_TRUE(message) << message.error().message;
     auto read = decode(message->wire).value_or_throw();
@@ -305,8 +305,8 @@ TEST(CodecGarbage, SpoiledDistributionIsRefusedOrKeepsTheRules) {
   for (int i = 0; i < 10 * kCases; ++i) {
     FetchReply written;
     written.distribution = values.distribution();
-    written.status = written.distribution->state == DistributionState::Ready ? FetchStatus::Ready
-                                                                             : FetchStatus::Failed;
+    written.status =
+        has_mixture(written.distribution->state) ? FetchStatus::Ready : FetchStatus::Failed;
     auto message = encode(kHead, written).value_or_throw();
     vandal.spoil(message.wire.distribution._buffer[0]);
     const auto read = decode(message.wire);

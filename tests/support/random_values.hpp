@@ -131,7 +131,15 @@ class RandomValues {
             .outside_limits = count(),
             .not_converged = count(),
             .configurations = count(),
-            .mass = share()};
+            .mass = share(),
+            .colliding = count(),
+            .tracks_tried = count(),
+            .tracks_kept = count(),
+            .random_configurations = count(),
+            .filter_checks = count(),
+            .self_collisions = count(),
+            .scene_collisions = count(),
+            .paths_with_scene = count()};
   }
 
   ArmEvidence evidence() {
@@ -166,7 +174,7 @@ class RandomValues {
       distribution.T_task_base = pose();
     distribution.profile = "default";
     distribution.engines = "transfer 1, density 1";
-    distribution.state = coin() ? DistributionState::Ready : DistributionState::Failed;
+    distribution.state = static_cast<DistributionState>(below(3));
     distribution.reason = name(100);
     for (int i = below(5); i > 0; --i)
       distribution.sources.push_back(source());
@@ -176,7 +184,7 @@ class RandomValues {
     distribution.limits.resize(2, dof);
     distribution.limits.row(0) = matrix(1, dof);
     distribution.limits.row(1) = distribution.limits.row(0).array() + 1;
-    if (distribution.state == DistributionState::Ready)
+    if (has_mixture(distribution.state))
       distribution.mixture = mixture(dof);
     if (coin())
       distribution.held_out_score = number();

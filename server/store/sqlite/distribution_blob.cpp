@@ -10,8 +10,9 @@
 namespace kinship::store {
 namespace {
 
-// Written first. 1 knew neither the selection nor the details of a source; it is still read.
-constexpr std::uint64_t kFormat = 2;
+// Written first. 1 knew neither the selection nor the details of a source, 2 neither how its tracks
+// and filters fared nor thin distributions; both are still read.
+constexpr std::uint64_t kFormat = 3;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
 
 template <typename Enum>
@@ -28,6 +29,9 @@ void add_source(ByteWriter& out, const Source& source) {
   out.add(static_cast<std::uint64_t>(source.relation)).add(source.paths_used);
   out.add(source.out_of_reach).add(source.outside_limits).add(source.not_converged);
   out.add(source.configurations).add(source.mass);
+  out.add(source.colliding).add(source.tracks_tried).add(source.tracks_kept);
+  out.add(source.random_configurations).add(source.filter_checks).add(source.self_collisions);
+  out.add(source.scene_collisions).add(source.paths_with_scene);
 }
 
 void read_details(ByteReader& in, Source& source) {
@@ -38,6 +42,17 @@ void read_details(ByteReader& in, Source& source) {
   source.not_converged = in.integer();
   source.configurations = in.integer();
   source.mass = in.real();
+}
+
+void read_tracks_and_filters(ByteReader& in, Source& source) {
+  source.colliding = in.integer();
+  source.tracks_tried = in.integer();
+  source.tracks_kept = in.integer();
+  source.random_configurations = in.integer();
+  source.filter_checks = in.integer();
+  source.self_collisions = in.integer();
+  source.scene_collisions = in.integer();
+  source.paths_with_scene = in.integer();
 }
 
 Source read_source(ByteReader& in, std::uint64_t format) {
@@ -52,6 +67,8 @@ Source read_source(ByteReader& in, std::uint64_t format) {
     read_details(in, source);
   else
     source.paths_used = source.paths;  // fits left none out then
+  if (format > 2)
+    read_tracks_and_filters(in, source);
   return source;
 }
 
@@ -104,7 +121,7 @@ Distribution read_distribution(ByteReader& in) {
   distribution.T_task_base = in.pose();
   distribution.profile = in.text(kMaxTextBytes);
   distribution.engines = in.text(kMaxTextBytes);
-  distribution.state = in.integer() == 0 ? DistributionState::Ready : DistributionState::Failed;
+  distribution.state = enumerator<DistributionState>(in, DistributionState::Thin);
   distribution.reason = in.text(kMaxTextBytes);
   distribution.configurations = in.integer();
   distribution.limits = in.matrix(2, kMaxDof);
@@ -136,7 +153,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   out.add(kFormat).add(std::span<const std::uint8_t>(distribution.id.bytes));
   out.add(distribution.task).add(std::span<const std::uint8_t>(distribution.robot.bytes));
   out.add(distribution.T_task_base).add(distribution.profile).add(distribution.engines);
-  out.add(std::uint64_t{distribution.state == DistributionState::Ready ? 0U : 1U});
+  out.add(static_cast<std::uint64_t>(distribution.state));
   out.add(distribution.reason).add(distribution.configurations);
   out.add(Eigen::MatrixXd(distribution.limits));
   out.add(std::uint64_t{distribution.held_out_score ? 1U : 0U});

@@ -29,9 +29,7 @@ constexpr Arm arm_of(std::int64_t code) {
   return code == 1 ? Arm::Guided : code == 2 ? Arm::Control : Arm::Uniform;
 }
 
-constexpr std::int64_t code_of(DistributionState state) {
-  return state == DistributionState::Ready ? 1 : 2;
-}
+constexpr std::int64_t code_of(DistributionState state) { return has_mixture(state) ? 1 : 2; }
 constexpr DistributionState state_of(std::int64_t code) {
   return code == 1 ? DistributionState::Ready : DistributionState::Failed;
 }

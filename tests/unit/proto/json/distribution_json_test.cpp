@@ -70,6 +70,14 @@ Distribution with_details() {
   source.not_converged = 10;
   source.configurations = 4000;
   source.mass = 0.625;
+  source.colliding = 7;
+  source.tracks_tried = 90;
+  source.tracks_kept = 80;
+  source.random_configurations = 1500;
+  source.filter_checks = 5000;
+  source.self_collisions = 600;
+  source.scene_collisions = 400;
+  source.paths_with_scene = 20;
   distribution.sources = {source};
   distribution.advice.guided = ArmEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
   return distribution;
@@ -82,7 +90,10 @@ TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
             R"("],"weighting":"paths","since_ms":99})",
         std::string(
             R"("relation":"same_arm","paths_used":50,"out_of_reach":60,)"
-            R"("outside_limits":30,"not_converged":10,"configurations":4000,"mass":0.625})"),
+            R"("outside_limits":30,"not_converged":10,"configurations":4000,"mass":0.625,)"
+            R"("colliding":7,"tracks_tried":90,"tracks_kept":80,"random_configurations":1500,)"
+            R"("filter_checks":5000,"self_collisions":600,"scene_collisions":400,)"
+            R"("paths_with_scene":20})"),
         std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
                     R"("control":null)")})
     EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
@@ -124,6 +135,15 @@ TEST(DistributionJson, FailedHasNoMixtureAndSaysWhy) {
   EXPECT_FALSE(back->mixture);
 }
 
+TEST(DistributionJson, ThinIsServedWithItsMixture) {
+  Distribution thin = two_components();
+  thin.state = DistributionState::Thin;
+  const auto back = distribution_from_json(to_json(thin));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->state, DistributionState::Thin);
+  EXPECT_EQ(back->mixture->size(), thin.mixture->size());
+}
+
 TEST(DistributionJson, MixtureThatIsNoneIsRefused) {
   EXPECT_EQ(message_of(changed("[0.25,0.75]", "[0.25,0.85]")),
             "weights, means, covariances: Mixture: weights must be >= 0 with sum 1, means finite");
@@ -146,7 +166,7 @@ TEST(DistributionJson, LimitsMustFitTheMixture) {
 
 TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_of(changed("\"ready\"", "\"stale\"")),
-            "state: 'stale' is not one of ready, failed");
+            "state: 'stale' is not one of ready, failed, thin");
   EXPECT_EQ(message_of(changed("\"ready\"", "\"failed\"")),
             "weights: must be null if state is 'failed'");
   EXPECT_EQ(message_of(changed("\"recommended_share\":0.9", "\"recommended_share\":2")),

@@ -10,7 +10,8 @@ TEST(EnumText, EveryWordIsReadBack) {
     EXPECT_EQ(parse_outcome(to_text(outcome)).value(), outcome);
   for (const Arm arm : {Arm::Guided, Arm::Control, Arm::Uniform})
     EXPECT_EQ(parse_arm(to_text(arm)).value(), arm);
-  for (const DistributionState state : {DistributionState::Ready, DistributionState::Failed})
+  for (const DistributionState state :
+       {DistributionState::Ready, DistributionState::Failed, DistributionState::Thin})
     EXPECT_EQ(parse_distribution_state(to_text(state)).value(), state);
 }
 
