@@ -5,6 +5,7 @@
 #include "proto/json/name_pairs_json.hpp"
 #include "proto/json/reader.hpp"
 #include "proto/json/scene_json.hpp"
+#include "proto/json/task_space_region_json.hpp"
 #include "proto/json/writer.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
@@ -53,7 +54,7 @@ Problem read_problem(const Reader& reader) {
   if (const auto allowed = reader.find("allowed_collisions"))
     problem.allowed_collisions = read_pairs(*allowed);
   if (const auto constraint = reader.find("constraint"))
-    constraint->refuse("not supported yet, must be null");
+    problem.constraint = read_region(*constraint);
   if (const auto limit = reader.find("time_limit_s"))
     problem.time_limit_s = limit->number(0, kMaxTimeLimit);
   if (const auto seed = reader.find("seed"))
@@ -105,7 +106,8 @@ std::string to_json(const Problem& problem) {
     attached.push_back(attached_object(each));
   object["attached"] = std::move(attached);
   object["allowed_collisions"] = pair_list(problem.allowed_collisions);
-  object["constraint"] = nullptr;
+  object["constraint"] =
+      problem.constraint ? region_object(*problem.constraint) : OrderedJson(nullptr);
   object["time_limit_s"] = problem.time_limit_s;
   object["seed"] = problem.seed;
   return write(object);

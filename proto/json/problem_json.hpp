@@ -11,8 +11,8 @@ namespace kinship::json {
 
 std::string to_json(const Problem& problem);
 
-/// \return the problem, or InvalidInput or TooLarge that names field, value and limit. Meshes and
-///         constraints are refused: not supported yet.
+/// \return the problem, or InvalidInput or TooLarge that names field, value and limit. Meshes are
+///         refused: not supported yet.
 Result<Problem> problem_from_json(std::string_view text);
 
 std::string to_json(const ProblemResult& result);

@@ -138,6 +138,8 @@ std::vector<Reader> Reader::elements(std::size_t max_count) const {
   return readers;
 }
 
+bool Reader::is_null() const { return value_->is_null(); }
+
 bool Reader::boolean() const {
   if (!value_->is_boolean())
     refuse(std::string("must be true or false, is ") + value_->type_name());

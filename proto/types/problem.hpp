@@ -11,6 +11,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/scene.hpp"
+#include "proto/types/task_space_region.hpp"
 
 namespace kinship {
 
@@ -24,6 +25,7 @@ struct Problem {
   Scene scene;
   std::vector<AttachedObject> attached;
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
+  std::optional<TaskSpaceRegion> constraint;  ///< in the task frame, of the transfer frame
   double time_limit_s = 10;
   std::uint64_t seed = 0;
 };

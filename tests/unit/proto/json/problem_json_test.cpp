@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace kinship::json {
@@ -67,10 +68,57 @@ TEST(ProblemJson, AMissingPlacementIsWrittenAsMissing) {
 TEST(ProblemJson, WhatIsNotSupportedYetIsRefused) {
   EXPECT_EQ(message_of(changed("\"meshes\": []", R"("meshes": [{"name": "m"}])")),
             "scene.meshes: meshes are not supported yet");
-  EXPECT_EQ(message_of(changed("\"constraint\": null", "\"constraint\": {}")),
-            "constraint: not supported yet, must be null");
   EXPECT_EQ(message_of(changed(R"({"box": [0.1, 0.2, 0.3]})", R"({"mesh": "a.stl"})")),
             "attached[0].shape: meshes are not supported yet");
+}
+
+std::string constrained(const std::string& bounds, const std::string& T_region_end) {
+  return changed("\"constraint\": null",
+                 R"("constraint": {"T0_w": [0, 0, 1, 0, 0, 0, 1], "Tw_e": )" + T_region_end +
+                     ", \"Bw\": " + bounds + "}");
+}
+
+constexpr const char* kHandDown = "[0, 0, 0.1, 1, 0, 0, 0]";
+constexpr const char* kLevel =
+    "[[null, null], [-0.5, 0.5], [0, null], [-0.1, 0.1], [-0.1, 0.1], [null, null]]";
+
+TEST(ProblemJson, AConstraintIsReadAndWrittenWithNullWhereThereIsNoBound) {
+  const auto problem = problem_from_json(constrained(kLevel, kHandDown));
+  ASSERT_TRUE(problem) << problem.error().message;
+  ASSERT_TRUE(problem->constraint);
+  const TaskSpaceRegion& region = *problem->constraint;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::Matrix<double, 2, 6> expected;
+  expected << -kInfinity, -0.5, 0, -0.1, -0.1, -kInfinity,  //
+      kInfinity, 0.5, kInfinity, 0.1, 0.1, kInfinity;
+  EXPECT_EQ(region.bounds, expected);
+  EXPECT_EQ(region.T_task_region.translation(), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(region.T_region_end.linear(), Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix());
+
+  const auto back = problem_from_json(to_json(*problem));
+  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back->constraint);
+  EXPECT_EQ(back->constraint->bounds, expected);
+  EXPECT_TRUE(back->constraint->T_region_end.isApprox(region.T_region_end, 1e-12));
+}
+
+TEST(ProblemJson, AConstraintThatCannotHoldIsRefusedByName) {
+  EXPECT_EQ(message_of(constrained(kLevel, "[0, 0, 0, 0, 0, 0, 0]")),
+            "constraint.Tw_e: pose: quaternion (x y z w) has norm 0, must be 1");
+  EXPECT_EQ(message_of(constrained("[[0, 0]]", kHandDown)),
+            "constraint.Bw: 1 pairs, must be 6: [lower, upper] of x y z roll pitch yaw");
+  EXPECT_EQ(
+      message_of(constrained("[[0, 0], [0, 0], [0, 0], [0, 0], [0.2, 0.1], [0, 0]]", kHandDown)),
+      "constraint: Bw of pitch: lower 0.2 exceeds upper 0.1");
+  EXPECT_EQ(
+      message_of(constrained("[[0, 0], [0, 0, 0], [0, 0], [0, 0], [0, 0], [0, 0]]", kHandDown)),
+      "constraint.Bw[1]: 3 elements exceed 2");
+  EXPECT_EQ(message_of(constrained("[[0, 0], [0], [0, 0], [0, 0], [0, 0], [0, 0]]", kHandDown)),
+            "constraint.Bw[1]: must be [lower, upper], null for no bound");
+  EXPECT_EQ(message_of(changed("\"constraint\": null", "\"constraint\": {}")),
+            "constraint.T0_w: is missing");
+  EXPECT_EQ(message_of(changed("\"constraint\": null", "\"constraint\": {\"Bv\": []}")),
+            "constraint: has an unknown member 'Bv'");
 }
 
 TEST(ProblemJson, GoalIsEitherConfigurationsOrPose) {
