@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "client/planning/birrt.hpp"
+#include "client/planning/cbirrt2.hpp"
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/goal_configurations.hpp"
 #include "client/planning/planning_bounds.hpp"
+#include "client/planning/region_constraint.hpp"
 #include "client/planning/shortcut.hpp"
 #include "robots/collision/collision_world.hpp"
 
@@ -77,6 +79,16 @@ planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
   return {bounds, chain, guidance->mixture, share};
 }
 
+/// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
+std::string described(const planning::RegionConstraint::Vector6& excess) {
+  std::string text;
+  for (Eigen::Index i = 0; i < excess.size(); ++i)
+    if (excess[i] != 0)
+      text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
+              std::to_string(excess[i]);
+  return text + " outside Bw";
+}
+
 Outcome outcome_of(const planning::PlanSummary& summary) {
   if (summary.waypoints)
     return Outcome::Solved;
@@ -101,7 +113,10 @@ class Planning {
           return !world_.collides(q);
         }),
         bounds_(planning::planning_bounds(robot.chain, problem.start)),
-        generator_(problem.seed) {}
+        generator_(problem.seed) {
+    if (problem.constraint)
+      constraint_.emplace(robot.chain, *problem.constraint, T_task_base_, bounds_);
+  }
 
   void run(const Guidance* guidance, PlannedProblem& planned) {
     const Eigen::MatrixXd goals = find_goals(planned.result);
@@ -114,10 +129,14 @@ class Planning {
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
     const planning::PlanSummary summary =
-        planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
+        constraint_
+            ? planning::plan_cbirrt2(problem_.start, goals, is_free_, *constraint_, sampler,
+                                     options, generator_)
+            : planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
     planned.outcome = outcome_of(summary);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks = summary.collision_checks;
+    planned.result.projections = summary.projections;
     planned.result.planning_time_s = summary.planning_time_s;
     planned.result.reason = explained(summary.reason);
     if (summary.waypoints)
@@ -150,7 +169,9 @@ class Planning {
     options.step = settings_.resolution;
     options.max_checks = settings_.shortcut_checks;
     const planning::ShortcutSummary shortened =
-        planning::shortcut(waypoints, is_free_, options, generator_);
+        constraint_
+            ? planning::shortcut_constrained(waypoints, is_free_, *constraint_, options, generator_)
+            : planning::shortcut(waypoints, is_free_, options, generator_);
     result.shortcut_checks = shortened.collision_checks;
     result.waypoints = shortened.waypoints;
   }
@@ -159,6 +180,8 @@ class Planning {
     if (reason == "start collides")
       if (const auto contact = world_.find_contact(problem_.start))
         return reason + ": '" + contact->first + "' touches '" + contact->second + "'";
+    if (reason == "start violates the constraint")
+      return reason + ": " + described(constraint_->excess(problem_.start));
     if (reason == "checks")
       return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
     if (reason == "time")
@@ -173,6 +196,7 @@ class Planning {
   collision::CollisionWorld world_;
   planning::IsFree is_free_;
   Eigen::Matrix2Xd bounds_;
+  std::optional<planning::RegionConstraint> constraint_;
   std::mt19937_64 generator_;
 };
 

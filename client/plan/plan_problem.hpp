@@ -38,11 +38,11 @@ struct PlannedProblem {
 };
 
 /// Plans one problem: goal configurations by inverse kinematics (all that are free, up to
-/// settings.max_goals), BiRRT, light shortcutting. A problem that does not fit the robot, or cannot
-/// be solved, is answered with its reason. Equal problem, guidance and settings give an equal path
-/// and equal checks, as long as the time limit does not end it.
-/// \param guidance  null: uniform. Otherwise the problem's arm is chosen by its plan: a query of
-/// the
+/// settings.max_goals), BiRRT, or CBiRRT2 under a constraint, light shortcutting. A problem that
+/// does not fit the robot, or cannot be solved, is answered with its reason. Equal problem,
+/// guidance and settings give an equal path and equal checks, as long as the time limit does not
+/// end it. \param guidance  null: uniform. Otherwise the problem's arm is chosen by its plan: a
+/// query of the
 ///                  control arm is planned exactly as if there were no guidance.
 /// \param stop      asked before every check; true gives up.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,

@@ -16,15 +16,16 @@ struct BirrtOptions {
   double step = 0.1;       ///< between checked configurations, joint units
   double overshoot = 1.5;  ///< extend towards q_near + f (q_sample - q_near), clamped to the bounds
   std::uint64_t max_checks = 100'000;
-  std::chrono::duration<double> time_limit{10};
+  std::chrono::duration<double> time_limit{10};  ///< wall clock
 };
 
 struct PlanSummary {
   /// dof x n, n >= 2, at most `step` apart; absent if unsolved.
   std::optional<Eigen::MatrixXd> waypoints;
   std::uint64_t collision_checks = 0;  ///< configurations asked of `is_free`
+  std::uint64_t projections = 0;       ///< onto a constraint
   std::uint64_t iterations = 0;
-  double planning_time_s = 0;
+  double planning_time_s = 0;  ///< CPU time of the thread, sampling and projections included
   /// Why unsolved: "start collides", "every goal collides", "no goal", "checks" or "time".
   std::string reason;
 };

@@ -1,7 +1,11 @@
 #include "client/planning/shortcut.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "client/planning/constrained_stepper.hpp"
 #include "client/planning/path_vertices.hpp"
 
 namespace kinship::planning {
@@ -34,11 +38,12 @@ Eigen::MatrixXd replaced(const Eigen::MatrixXd& path, Eigen::Index from, Eigen::
   return result;
 }
 
-}  // namespace
-
-ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
-                         const ShortcutOptions& options, std::mt19937_64& generator) {
-  Eigen::MatrixXd path = densified(waypoints, options.step);
+/// \param path     dof x n, every configuration that was checked.
+/// \param connect  the configurations of a way between two of them, ends included, that is shorter
+///                 than a length; empty if there is none. Asks no collision question.
+template <typename Connect>
+ShortcutSummary shorten(Eigen::MatrixXd path, const IsFree& is_free, const ShortcutOptions& options,
+                        std::mt19937_64& generator, Connect connect) {
   ShortcutSummary summary;
   int fruitless = 0;
   while (path.cols() > 2 && fruitless < kMaxFruitlessTries &&
@@ -52,9 +57,9 @@ ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free
     const double before = path_length(path.middleCols(from, to - from + 1));
     if ((path.col(to) - path.col(from)).norm() >= before - kLeastGain)
       continue;
-    Eigen::MatrixXd ends(path.rows(), 2);
-    ends << path.col(from), path.col(to);
-    const Eigen::MatrixXd line = densified(ends, options.step);
+    const Eigen::MatrixXd line = connect(path.col(from), path.col(to), before - kLeastGain);
+    if (line.cols() == 0)
+      continue;
     const auto needed = static_cast<std::uint64_t>(line.cols() - 2);
     if (summary.collision_checks + needed > options.max_checks)
       continue;
@@ -63,7 +68,57 @@ ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free
     path = replaced(path, from, to, line);
     fruitless = 0;
   }
-  summary.waypoints = sparse_vertices(path, options.step);
+  summary.waypoints = std::move(path);
+  return summary;
+}
+
+/// A way along the region: dof x n with both ends, or dof x 0.
+Eigen::MatrixXd slide(ConstrainedStepper& stepper, const Eigen::VectorXd& from,
+                      const Eigen::VectorXd& to, double max_length) {
+  std::vector<Eigen::VectorXd> way = {from};
+  Eigen::VectorXd next(from.size());
+  double length = 0;
+  while (!stepper.joins(way.back(), to)) {
+    if (!stepper.advance(way.back(), to, next))
+      return Eigen::MatrixXd(from.size(), 0);
+    length += (next - way.back()).norm();
+    way.push_back(next);
+    if (length + (to - next).norm() >= max_length)
+      return Eigen::MatrixXd(from.size(), 0);
+  }
+  way.push_back(to);
+  Eigen::MatrixXd line(from.size(), static_cast<Eigen::Index>(way.size()));
+  for (std::size_t i = 0; i < way.size(); ++i)
+    line.col(static_cast<Eigen::Index>(i)) = way[i];
+  return line;
+}
+
+}  // namespace
+
+ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                         const ShortcutOptions& options, std::mt19937_64& generator) {
+  const auto straight = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, double) {
+    Eigen::MatrixXd ends(from.size(), 2);
+    ends << from, to;
+    return densified(ends, options.step);
+  };
+  ShortcutSummary summary =
+      shorten(densified(waypoints, options.step), is_free, options, generator, straight);
+  summary.waypoints = sparse_vertices(summary.waypoints, options.step);
+  return summary;
+}
+
+ShortcutSummary shortcut_constrained(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                                     RegionConstraint& constraint, const ShortcutOptions& options,
+                                     std::mt19937_64& generator) {
+  if (waypoints.cols() < 1 || !(options.step > 0))
+    throw std::invalid_argument("path: no waypoint, or a step that is not positive");
+  const std::uint64_t before = constraint.projections();
+  ConstrainedStepper stepper(options.step, constraint);
+  const auto along = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                         double max_length) { return slide(stepper, from, to, max_length); };
+  ShortcutSummary summary = shorten(waypoints, is_free, options, generator, along);
+  summary.projections = constraint.projections() - before;
   return summary;
 }
 

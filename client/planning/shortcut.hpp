@@ -5,6 +5,7 @@
 #include <random>
 
 #include "client/planning/is_free.hpp"
+#include "client/planning/region_constraint.hpp"
 
 namespace kinship::planning {
 
@@ -16,10 +17,12 @@ struct ShortcutOptions {
 };
 
 struct ShortcutSummary {
-  /// dof x n: vertices of a path from the same start to the same goal, no longer than the given
-  /// one. `densified` at the step gives configurations that were all checked.
+  /// dof x n: a path from the same start to the same goal, no longer than the given one. Without
+  /// a constraint its vertices, so that `densified` at the step gives configurations that were all
+  /// checked; under a constraint every waypoint.
   Eigen::MatrixXd waypoints;
   std::uint64_t collision_checks = 0;
+  std::uint64_t projections = 0;  ///< onto a constraint
 };
 
 /// Shortens a free path: tries straight lines between two random places of it, and takes those
@@ -29,5 +32,13 @@ struct ShortcutSummary {
 /// Source: Geraerts and Overmars, Creating High-quality Paths for Motion Planning (2007), III-B.
 ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
                          const ShortcutOptions& options, std::mt19937_64& generator);
+
+/// Shortens a path that keeps to a constraint: instead of a straight line it tries a way along the
+/// region, in steps as those of plan_cbirrt2. The result keeps what plan_cbirrt2 promises.
+/// \param waypoints  dof x n, n >= 1, as plan_cbirrt2 returns them at options.step.
+/// \throws std::invalid_argument as above.
+ShortcutSummary shortcut_constrained(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
+                                     RegionConstraint& constraint, const ShortcutOptions& options,
+                                     std::mt19937_64& generator);
 
 }  // namespace kinship::planning

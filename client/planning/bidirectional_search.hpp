@@ -1,0 +1,131 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <random>
+#include <string>
+
+#include "client/planning/birrt.hpp"
+#include "client/planning/planning_budget.hpp"
+#include "client/planning/tree.hpp"
+
+/// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
+namespace kinship::planning {
+
+/// Where an extension of a tree came.
+struct Extension {
+  Eigen::Index node = 0;  ///< the last one
+  bool reached = false;   ///< the target
+};
+
+/// What an extension aims at: a sample may lie anywhere, a node of the other tree is a valid
+/// configuration.
+enum class Aim { Sample, Node };
+
+/// \throws std::invalid_argument as plan_birrt says; `planner` names it.
+void check_arguments(const char* planner, const Eigen::VectorXd& start,
+                     const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
+                     const BirrtOptions& options);
+
+/// Two trees, from the start and from every goal, extended in turn.
+/// \tparam Steering  goes from a node to a target as far as it can:
+///         `Extension extend(Tree&, Eigen::Index from, const Eigen::VectorXd& target, Aim,
+///         PlanningBudget&)`.
+template <typename Steering>
+class BidirectionalSearch {
+ public:
+  BidirectionalSearch(const ConfigurationSampler& sampler, const BirrtOptions& options,
+                      Steering& steering, PlanningBudget& budget, std::mt19937_64& generator)
+      : sampler_(sampler),
+        options_(options),
+        steering_(steering),
+        budget_(budget),
+        generator_(generator) {}
+
+  /// Plants both trees and extends them until they meet or the budget is used up.
+  PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    PlanSummary summary;
+    summary.reason = plant(start, goals);
+    if (summary.reason.empty())
+      summary.waypoints = standstill();
+    while (summary.reason.empty() && !summary.waypoints && !budget_.exhausted()) {
+      ++summary.iterations;
+      summary.waypoints = iterate();
+    }
+    if (!summary.waypoints && summary.reason.empty())
+      summary.reason = budget_.reason();
+    summary.collision_checks = budget_.checks();
+    summary.planning_time_s = budget_.thread_time_s();
+    return summary;
+  }
+
+ private:
+  /// \return why there is nothing to plan, or an empty text.
+  std::string plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    if (goals.cols() == 0)
+      return "no goal";
+    if (!budget_.is_free(start))
+      return budget_.exhausted() ? budget_.reason() : "start collides";
+    start_tree_.add(start, -1);
+    for (Eigen::Index i = 0; i < goals.cols(); ++i)
+      if (budget_.is_free(goals.col(i)))
+        goal_tree_.add(goals.col(i), -1);
+    if (budget_.exhausted())
+      return budget_.reason();
+    return goal_tree_.size() == 0 ? "every goal collides" : "";
+  }
+
+  /// The path of a start that is a goal already.
+  std::optional<Eigen::MatrixXd> standstill() const {
+    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd goal = goal_tree_.node(goal_tree_.nearest(start));
+    if (goal != start)
+      return std::nullopt;
+    Eigen::MatrixXd path(start.size(), 2);
+    path << start, goal;
+    return path;
+  }
+
+  /// One extension of each tree. \return the path if they met.
+  std::optional<Eigen::MatrixXd> iterate() {
+    Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
+    Tree& other = grow_start_ ? goal_tree_ : start_tree_;
+    grow_start_ = !grow_start_;
+    const Eigen::VectorXd sample = sampler_.sample(generator_);
+    const Eigen::Index near = grown.nearest(sample);
+    const Extension there =
+        steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
+    const Eigen::VectorXd tip = grown.node(there.node);
+    const Extension met = steering_.extend(other, other.nearest(tip), tip, Aim::Node, budget_);
+    if (!met.reached)
+      return std::nullopt;
+    const bool start_grew = &grown == &start_tree_;
+    return join(start_grew ? there.node : met.node, start_grew ? met.node : there.node);
+  }
+
+  Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {
+    const Eigen::VectorXd target = near + options_.overshoot * (sample - near);
+    return target.cwiseMax(sampler_.bounds().row(0).transpose())
+        .cwiseMin(sampler_.bounds().row(1).transpose());
+  }
+
+  /// The path over two nodes that hold the same configuration.
+  Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const {
+    const Eigen::MatrixXd from_start = start_tree_.branch(start_node).rowwise().reverse();
+    const Eigen::MatrixXd to_goal = goal_tree_.branch(goal_node);
+    Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);
+    path << from_start, to_goal.rightCols(to_goal.cols() - 1);
+    return path;
+  }
+
+  const ConfigurationSampler& sampler_;
+  const BirrtOptions& options_;
+  Steering& steering_;
+  PlanningBudget& budget_;
+  std::mt19937_64& generator_;
+  Tree start_tree_{sampler_.bounds().cols()};
+  Tree goal_tree_{sampler_.bounds().cols()};
+  bool grow_start_ = true;
+};
+
+}  // namespace kinship::planning

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "proto/types/limits.hpp"
+#include "proto/types/task_space_region.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::planning {
+
+/// A task space region as a constraint on the configurations of one robot at one place. Holds its
+/// own copy of the kinematics; allocates nothing after construction. Counts its projections, so
+/// not shared between threads.
+/// Source: Berenson, Srinivasa and Kuffner, Task Space Regions (IJRR 2011), section 4.
+class RegionConstraint {
+ public:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+  /// Waypoints of a constrained path lie at most this far outside the region, and what lies
+  /// between two of them at most this far; the norm of `excess`, 1 m = 1 rad.
+  static constexpr double kWaypointTolerance = 1e-3, kBetweenTolerance = 5e-3;
+
+  /// \param T_task_base  pose of the chain's base link in the task frame.
+  /// \param bounds       2 x dof: where a projection may go, joint units (see planning_bounds).
+  /// \throws std::invalid_argument if the region has a fault or the bounds do not fit the chain.
+  RegionConstraint(const kinematics::Chain& chain, const TaskSpaceRegion& region,
+                   const Eigen::Isometry3d& T_task_base, const Eigen::Matrix2Xd& bounds);
+
+  /// How far the transfer frame is outside the region: displacement beyond the bounds in x, y, z
+  /// (m), roll, pitch, yaw (rad); 0 where it keeps to them. An angle is taken modulo a full turn,
+  /// and of the two ways to write a rotation the one that is less outside counts.
+  Vector6 excess(const Eigen::VectorXd& q) const;
+
+  double distance(const Eigen::VectorXd& q) const { return excess(q).norm(); }  ///< 1 m = 1 rad
+  bool holds(const Eigen::VectorXd& q) const { return distance(q) <= kWaypointTolerance; }
+
+  /// Moves q into the region (to half the tolerance of waypoints) by damped least squares over the
+  /// coordinates that are outside, aiming a little inside where there is room, so that few
+  /// iterations do. Never leaves the bounds. Counts one projection.
+  /// \return false if it did not get there; q is then anywhere within the bounds.
+  bool project(Eigen::VectorXd& q);
+
+  std::uint64_t projections() const noexcept { return projections_; }
+
+ private:
+  static constexpr int kMaxJoints = static_cast<int>(kMaxDof);
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
+
+  /// A joint whose axis is the z-axis of its frame.
+  struct Segment {
+    Eigen::Matrix3d R;  // from the frame before it
+    Eigen::Vector3d p;
+    bool prismatic = false;
+  };
+
+  /// Poses along the chain, in the region's frame.
+  struct Sweep {
+    Columns origins, axes;  // of the joints
+    Eigen::Matrix3d R;      // of the transfer frame, less T_region_end
+    Eigen::Vector3d p;
+  };
+
+  void sweep(const Eigen::VectorXd& q, Sweep& along) const;
+  /// \param flipped  whether the rotation counts as (roll + pi, pi - pitch, yaw + pi).
+  Vector6 excess(const Sweep& along, bool& flipped) const;
+  /// Derivative of the displacement: 6 x dof.
+  void derive(const Sweep& along, bool flipped, Rows& derivative) const;
+
+  std::vector<Segment> segments_;
+  Eigen::Matrix3d R_end_;  // after the last joint
+  Eigen::Vector3d p_end_;
+  Eigen::Matrix<double, 2, 6> region_bounds_;
+  Vector6 margin_;  // how far inside its bounds a coordinate is aimed at
+  Eigen::Matrix2Xd bounds_;
+  std::uint64_t projections_ = 0;
+};
+
+}  // namespace kinship::planning
