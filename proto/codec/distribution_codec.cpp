@@ -156,6 +156,39 @@ void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evid
       .not_negative(what + ": checks_per_solution", evidence->checks_per_solution);
 }
 
+void write_recent(const std::vector<JudgedAttempt>& recent, Arena& arena,
+                  kinship_wire_Distribution& wire) {
+  arena.resize(wire.recent, recent.size());
+  for (std::size_t i = 0; i < recent.size(); ++i) {
+    kinship_wire_JudgedAttempt& entry = wire.recent._buffer[i];
+    entry.arm = static_cast<std::uint32_t>(recent[i].arm);
+    entry.solved = recent[i].solved;
+    entry.checks = recent[i].checks;
+    entry.age = recent[i].age;
+  }
+}
+
+std::vector<JudgedAttempt> read_recent(const kinship_wire_Distribution& wire, Reader& reader) {
+  std::vector<JudgedAttempt> recent;
+  for (const kinship_wire_JudgedAttempt& entry : elements(wire.recent))
+    recent.push_back({.arm = reader.enumerator("arm of a recent attempt", entry.arm, Arm::Control),
+                      .solved = entry.solved,
+                      .checks = entry.checks,
+                      .age = entry.age});
+  return recent;
+}
+
+void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
+  rules.at_most("recent", recent.size(), kMaxJudgedAttempts);
+  for (std::size_t i = 0; i < recent.size() && !rules.broken(); ++i) {
+    rules.that(recent[i].arm != Arm::Uniform, "recent: an attempt of arm uniform");
+    if (i > 0)
+      rules.that(recent[i].age <= recent[i - 1].age,
+                 "recent: age " + std::to_string(recent[i].age) + " after " +
+                     std::to_string(recent[i - 1].age) + ", must be oldest first");
+  }
+}
+
 void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
   rules.at_most("limits", static_cast<std::size_t>(limits.cols()), kMaxDof)
       .that(limits.allFinite(), "limits: not all finite");
@@ -177,6 +210,7 @@ std::optional<Error> check(const Distribution& distribution) {
       .text("evidence", distribution.advice.evidence, kMaxMessageBytes)
       .at_most("sources", distribution.sources.size(), kMaxSources)
       .between("recommended_share", distribution.advice.recommended_share, 0, 1)
+      .between("guided_share", distribution.advice.guided_share, 0, 1)
       .finite("held_out_score", distribution.held_out_score.value_or(0))
       .not_negative("transfer_time_s", distribution.transfer_time_s)
       .not_negative("fit_time_s", distribution.fit_time_s);
@@ -188,6 +222,7 @@ std::optional<Error> check(const Distribution& distribution) {
   check_selection(distribution.selection, rules);
   check_evidence("guided", distribution.advice.guided, rules);
   check_evidence("control", distribution.advice.control, rules);
+  check_recent(distribution.advice.recent, rules);
   check_limits(distribution.limits, rules);
   const auto& mixture = distribution.mixture;
   rules.that(mixture.has_value() == has_mixture(distribution.state),
@@ -231,6 +266,8 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   write_selection(distribution.selection, arena, wire.selection);
   write_evidence(distribution.advice.guided, arena, wire.guided);
   write_evidence(distribution.advice.control, arena, wire.control);
+  wire.guided_share = distribution.advice.guided_share;
+  write_recent(distribution.advice.recent, arena, wire);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -248,6 +285,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.configurations = wire.configurations;
   const auto limits = elements(wire.limits);
   reader.rules.at_most("sources", wire.sources._length, kMaxSources)
+      .at_most("recent", wire.recent._length, kMaxJudgedAttempts)
       .at_most("limits (numbers)", limits.size(), 2 * kMaxDof)
       .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
   if (reader.rules.broken())
@@ -267,6 +305,8 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.selection = read_selection(wire.selection, reader);
   distribution.advice.guided = read_evidence(wire.guided);
   distribution.advice.control = read_evidence(wire.control);
+  distribution.advice.guided_share = wire.guided_share;
+  distribution.advice.recent = read_recent(wire, reader);
   return distribution;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -126,6 +127,37 @@ std::optional<ArmEvidence> read_evidence(const Reader& advice, std::string_view 
   return evidence;
 }
 
+OrderedJson recent_list(const std::vector<JudgedAttempt>& recent) {
+  OrderedJson list = OrderedJson::array();
+  for (const JudgedAttempt& attempt : recent)
+    list.push_back({{"arm", to_text(attempt.arm)},
+                    {"solved", attempt.solved},
+                    {"checks", attempt.checks},
+                    {"age", attempt.age}});
+  return list;
+}
+
+JudgedAttempt read_judged_attempt(const Reader& reader) {
+  JudgedAttempt attempt;
+  const Reader arm = reader.at("arm");
+  attempt.arm = parse_arm(arm.text(kMaxWordBytes)).value_or_throw();
+  if (attempt.arm == Arm::Uniform)
+    arm.refuse("must be guided or control");
+  attempt.solved = reader.at("solved").boolean();
+  attempt.checks = reader.at("checks").count();
+  attempt.age =
+      static_cast<std::uint32_t>(reader.at("age").count(std::numeric_limits<std::uint32_t>::max()));
+  return attempt;
+}
+
+void read_recent(const Reader& reader, Advice& advice) {
+  for (const Reader& attempt : reader.elements(kMaxJudgedAttempts)) {
+    advice.recent.push_back(read_judged_attempt(attempt));
+    if (advice.recent.size() > 1 && advice.recent.back().age > advice.recent.rbegin()[1].age)
+      attempt.refuse("is older than the one before, must be oldest first");
+  }
+}
+
 void add_mixture(const std::optional<Mixture>& mixture, OrderedJson& object) {
   object["weights"] = nullptr;
   object["means"] = nullptr;
@@ -195,6 +227,8 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     distribution.advice.evidence = evidence->text(kMaxMessageBytes);
   distribution.advice.guided = read_evidence(reader, "guided");
   distribution.advice.control = read_evidence(reader, "control");
+  if (const auto recent = reader.find("recent"))
+    read_recent(*recent, distribution.advice);
   if (const auto selection = reader.find("selection"))
     distribution.selection = read_selection(*selection);
   if (const auto fitted = reader.find("fitted_ms"))
@@ -234,6 +268,9 @@ Distribution read_distribution(const Reader& reader, MixturePart mixture) {
       parse_distribution_state(reader.at("state").text(kMaxWordBytes)).value_or_throw();
   distribution.limits = read_limits(reader.at("limits"));
   distribution.advice.recommended_share = reader.at("recommended_share").number(0, 1);
+  distribution.advice.guided_share = distribution.advice.recommended_share;  // of older files
+  if (const auto share = reader.find("guided_share"))
+    distribution.advice.guided_share = share->number(0, 1);
   if (const auto cuts = reader.find("cuts"))
     cuts->refuse("not supported yet, must be null");
   distribution.mixture = read_mixture_part(reader, distribution, mixture);
@@ -263,9 +300,11 @@ OrderedJson distribution_object(const Distribution& distribution) {
   object["held_out_score"] = distribution.held_out_score ? OrderedJson(*distribution.held_out_score)
                                                          : OrderedJson(nullptr);
   object["recommended_share"] = distribution.advice.recommended_share;
+  object["guided_share"] = distribution.advice.guided_share;
   object["evidence"] = distribution.advice.evidence;
   object["guided"] = evidence_or_null(distribution.advice.guided);
   object["control"] = evidence_or_null(distribution.advice.control);
+  object["recent"] = recent_list(distribution.advice.recent);
   object["state"] = to_text(distribution.state);
   object["reason"] = distribution.reason;
   object["fitted_ms"] = distribution.fitted_ms;

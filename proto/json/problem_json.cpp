@@ -83,6 +83,8 @@ ProblemResult read_problem_result(const Reader& reader) {
     result.arm = result.share > 0 ? Arm::Guided : Arm::Control;
     if (const auto arm = guidance->find("arm"))
       result.arm = parse_arm(arm->text(kMaxWordBytes)).value_or_throw();
+    if (const auto gate = guidance->find("gate_fired"))
+      result.gate_fired = gate->boolean();
   }
   if (const auto reason = reader.find("reason"))
     result.reason = reason->text(kMaxMessageBytes);
@@ -134,7 +136,8 @@ std::string to_json(const ProblemResult& result) {
     object["guidance"] = {{"distribution_id", result.distribution_id->hex()},
                           {"revision", result.distribution_revision},
                           {"share", result.share},
-                          {"arm", to_text(result.arm)}};
+                          {"arm", to_text(result.arm)},
+                          {"gate_fired", result.gate_fired}};
   object["reason"] = result.reason;
   return write(object);
 }

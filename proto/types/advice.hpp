@@ -3,10 +3,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "proto/types/attempt.hpp"
 
 namespace kinship {
 
-/// What the attempts of one arm of a (task, robot) cost. An attempt that did not solve its problem
+/// What all attempts of one arm of a (task, robot) cost. An attempt that did not solve its problem
 /// is censored: its checks count, it adds no solution.
 struct ArmEvidence {
   std::uint64_t attempts = 0;
@@ -16,11 +19,27 @@ struct ArmEvidence {
   bool operator==(const ArmEvidence&) const = default;
 };
 
-/// What share of guided samples is recommended to a robot for a task, and why.
+/// One attempt of a (task, robot) from which the worth of guidance is judged: guided, or uniform
+/// although guidance was there (control).
+struct JudgedAttempt {
+  Arm arm = Arm::Guided;  ///< Guided or Control
+  bool solved = false;
+  std::uint64_t checks = 0;  ///< collision checks
+  std::uint32_t age = 0;     ///< judged attempts of either arm that came after it
+
+  bool operator==(const JudgedAttempt&) const = default;
+};
+
+/// What the attempts of a (task, robot) say about guidance, on whichever machines they were made.
 struct Advice {
-  double recommended_share = 0;                ///< 0 to 1
-  std::string evidence;                        ///< in words
+  /// For clients that plan every query alike: of guided samples, 0 to 1; falls as guidance turns
+  /// out worse.
+  double recommended_share = 0;
+  /// For clients that choose an arm per query: of guided samples in a guided query, 0 to 1.
+  double guided_share = 0;
+  std::string evidence;                        ///< for recommended_share, in words
   std::optional<ArmEvidence> guided, control;  ///< missing: no such attempts
+  std::vector<JudgedAttempt> recent;           ///< the newest of each arm, oldest first
 };
 
 }  // namespace kinship

@@ -21,6 +21,7 @@ inline constexpr std::size_t kMaxAttemptsPerBatch = 256;
 inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 bytes each
 inline constexpr std::size_t kMaxComponents = 1024;
 inline constexpr std::size_t kMaxSources = 1024;
+inline constexpr std::size_t kMaxJudgedAttempts = 256;  ///< in an advice
 inline constexpr std::size_t kMaxPageBytes = 512 * 1024;
 inline constexpr std::size_t kMaxPageRows = 1000;
 inline constexpr std::size_t kMaxCursorBytes = 512;

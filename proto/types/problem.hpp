@@ -44,8 +44,10 @@ struct ProblemResult {
   std::optional<Digest> distribution_id;     ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   Arm arm = Arm::Uniform;  ///< with guidance: Guided or Control
-  double share = 0;        ///< of guided samples; 0 unless Guided
-  std::string reason;      ///< why not solved
+  double share = 0;        ///< of guided samples; 0 unless Guided, and if the gate fired
+  /// Guided, but planned uniformly: start or goals are far from all that the distribution knows.
+  bool gate_fired = false;
+  std::string reason;  ///< why not solved
 };
 
 }  // namespace kinship

@@ -35,6 +35,7 @@ Advice AdviceBook::advise(const std::string& task, const Digest& robot, double p
     end_reading(key, nullptr, true);  // whoever asks next has it tried again
   Advice advice;
   advice.recommended_share = profile_share;
+  advice.guided_share = profile_share;
   advice.evidence = "attempts are being counted: share of the profile";
   return advice;
 }

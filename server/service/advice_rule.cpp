@@ -95,6 +95,7 @@ std::string in_words(const LogInterval& interval) {
 Advice advise(const store::AttemptTotals& totals, double profile_share) {
   Advice advice;
   advice.recommended_share = std::clamp(profile_share, 0.0, 1.0);
+  advice.guided_share = advice.recommended_share;
   advice.guided = evidence_of(totals.guided);
   advice.control = evidence_of(totals.control);
   if (std::min(totals.guided.attempts, totals.control.attempts) < kLeastAttempts) {

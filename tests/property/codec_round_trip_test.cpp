@@ -183,6 +183,13 @@ class Vandal {
       spoil(wire.checks_per_solution);
   }
 
+  void spoil(kinship_wire_JudgedAttempt& wire) {
+    if (values_.coin())
+      spoil(wire.arm);
+    else
+      wire.age = static_cast<std::uint32_t>(values_.below(10));  // no longer oldest first
+  }
+
   void spoil(kinship_wire_Source& wire) {
     switch (values_.below(3)) {
       case 0:
@@ -210,7 +217,7 @@ class Vandal {
   void spoil(kinship_wire_Announcement& wire) { spoil(wire.task); }
 
   void spoil(kinship_wire_Distribution& wire) {
-    switch (values_.below(15)) {
+    switch (values_.below(17)) {
       case 0:
         return spoil(wire.task);
       case 1:
@@ -223,6 +230,10 @@ class Vandal {
         return wire.guided._length > 0 ? spoil(wire.guided._buffer[0]) : void();
       case 10:
         return wire.sources._length > 0 ? spoil(wire.sources._buffer[0]) : void();
+      case 11:
+        return wire.recent._length > 0 ? spoil(wire.recent._buffer[0]) : void();
+      case 12:
+        return spoil(wire.guided_share);
       case 3:
         return spoil(wire.limits);
       case 4:

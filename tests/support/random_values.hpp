@@ -147,6 +147,17 @@ class RandomValues {
     return {.attempts = attempts, .solved = attempts / 2, .checks_per_solution = 1000 * share()};
   }
 
+  std::vector<JudgedAttempt> recent() {
+    std::vector<JudgedAttempt> recent(static_cast<std::size_t>(below(4)));
+    auto age = static_cast<std::uint32_t>(recent.size());
+    for (JudgedAttempt& attempt : recent)
+      attempt = {.arm = coin() ? Arm::Guided : Arm::Control,
+                 .solved = coin(),
+                 .checks = count(),
+                 .age = --age};
+    return recent;
+  }
+
   Announcement announcement() {
     return {.distribution_id = digest(),
             .task = name(128),
@@ -194,6 +205,8 @@ class RandomValues {
       distribution.advice.guided = evidence();
     if (coin())
       distribution.advice.control = evidence();
+    distribution.advice.guided_share = share();
+    distribution.advice.recent = recent();
     distribution.fitted_ms = static_cast<std::int64_t>(count() / 2);
     distribution.transfer_time_s = share();
     distribution.fit_time_s = share();

@@ -112,6 +112,26 @@ TEST(FetchCodec, EvidenceAndSourcesMustBePossible) {
   EXPECT_EQ(decode(message.wire).error().message, "relation of a source: 3 is not between 0 and 2");
 }
 
+TEST(FetchCodec, RecentAttemptsAreJudgedOnesOldestFirst) {
+  FetchReply reply = ready_reply();
+  Advice& advice = reply.distribution->advice;
+  advice.recent = {{Arm::Guided, true, 500, 3}, {Arm::Control, false, 900, 1}};
+  EXPECT_EQ(
+      decode(encode({}, reply).value_or_throw().wire).value_or_throw().distribution->advice.recent,
+      advice.recent);
+  advice.recent[1].age = 4;
+  EXPECT_EQ(encode({}, reply).error().message, "recent: age 4 after 3, must be oldest first");
+  advice.recent[1] = {Arm::Uniform, true, 900, 1};
+  EXPECT_EQ(encode({}, reply).error().message, "recent: an attempt of arm uniform");
+  advice.recent.assign(kMaxJudgedAttempts + 1, {});
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
+  advice.recent.resize(1);
+  auto message = encode({}, reply).value_or_throw();
+  message.wire.distribution._buffer[0].recent._buffer[0].arm = 2;
+  EXPECT_EQ(decode(message.wire).error().message,
+            "arm of a recent attempt: 2 is not between 0 and 1");
+}
+
 TEST(FetchCodec, StatusOutOfRangeIsRefused) {
   FetchReply reply;
   reply.status = FetchStatus::Pending;

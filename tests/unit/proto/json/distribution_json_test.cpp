@@ -80,6 +80,8 @@ Distribution with_details() {
   source.paths_with_scene = 20;
   distribution.sources = {source};
   distribution.advice.guided = ArmEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
+  distribution.advice.guided_share = 0.5;
+  distribution.advice.recent = {{Arm::Control, true, 70, 19}, {Arm::Guided, false, 45, 0}};
   return distribution;
 }
 
@@ -95,13 +97,18 @@ TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
             R"("filter_checks":5000,"self_collisions":600,"scene_collisions":400,)"
             R"("paths_with_scene":20})"),
         std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
-                    R"("control":null)")})
+                    R"("control":null,"recent":[)"
+                    R"({"arm":"control","solved":true,"checks":70,"age":19},)"
+                    R"({"arm":"guided","solved":false,"checks":45,"age":0}])"),
+        std::string(R"("guided_share":0.5,)")})
     EXPECT_NE(text.find(member), std::string::npos) << member << " not in " << text;
   const auto back = distribution_from_json(text);
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(to_json(*back), text);
   EXPECT_EQ(back->selection, with_details().selection);
   EXPECT_EQ(back->advice.guided, with_details().advice.guided);
+  EXPECT_EQ(back->advice.recent, with_details().advice.recent);
+  EXPECT_EQ(back->advice.guided_share, 0.5);
 }
 
 TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
@@ -120,6 +127,10 @@ TEST(DistributionJson, DetailsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_with("\"same_arm\"", "\"cousin\""),
             "relation: 'cousin' is not one of other, same_arm, identical");
   EXPECT_EQ(message_with("\"solved\":18", "\"solved\":21"), "guided.solved: 21 exceeds 20");
+  EXPECT_EQ(message_with("\"arm\":\"control\"", "\"arm\":\"uniform\""),
+            "recent[0].arm: must be guided or control");
+  EXPECT_EQ(message_with("\"age\":0", "\"age\":20"),
+            "recent[1]: is older than the one before, must be oldest first");
 }
 
 TEST(DistributionJson, FailedHasNoMixtureAndSaysWhy) {

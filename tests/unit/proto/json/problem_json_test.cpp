@@ -163,6 +163,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.distribution_revision = 9;
   result.share = 0.75;
   result.arm = Arm::Guided;
+  result.gate_fired = true;
   result.goal_checks = 20;
   result.shortcut_checks = 300;
   const auto back = problem_result_from_json(to_json(result));
@@ -172,6 +173,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   EXPECT_EQ(back->distribution_revision, 9U);
   EXPECT_EQ(back->share, 0.75);
   EXPECT_EQ(back->arm, Arm::Guided);
+  EXPECT_TRUE(back->gate_fired);
   EXPECT_EQ(back->goal_checks, 20U);
   EXPECT_EQ(back->shortcut_checks, 300U);
 }
@@ -181,7 +183,9 @@ TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   result.distribution_id = Digest{};
   result.arm = Arm::Control;
   const std::string text = to_json(result);
-  EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control"})"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false})"),
+            std::string::npos)
+      << text;
   EXPECT_EQ(problem_result_from_json(text)->arm, Arm::Control);
   const std::string broken = std::string(text).replace(text.find("control"), 7, "placebo");
   EXPECT_FALSE(problem_result_from_json(broken));
