@@ -130,7 +130,7 @@ class Planning {
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
     const planning::PlanSummary summary =
         constraint_
-            ? planning::plan_cbirrt2(problem_.start, goals, is_free_, *constraint_, sampler,
+            ? planning::plan_cbirrt2(problem_.start, goals, {is_free_, *constraint_}, sampler,
                                      options, generator_)
             : planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
     planned.outcome = outcome_of(summary);

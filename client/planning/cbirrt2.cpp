@@ -46,10 +46,10 @@ Eigen::MatrixXd holding(const Eigen::MatrixXd& configurations, const RegionConst
 }  // namespace
 
 PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                         const IsFree& is_free, RegionConstraint& constraint,
-                         const ConfigurationSampler& sampler, const BirrtOptions& options,
-                         std::mt19937_64& generator) {
+                         const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
+                         const BirrtOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_cbirrt2", start, goals, sampler, options);
+  RegionConstraint& constraint = freedom.constraint;
   PlanSummary nothing;
   if (!constraint.holds(start)) {
     nothing.reason = "start violates the constraint";
@@ -61,7 +61,7 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
     return nothing;
   }
   const std::uint64_t before = constraint.projections();
-  PlanningBudget budget(is_free, options.max_checks, options.time_limit);
+  PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
   ConstrainedSteering steering(start.size(), options.step, constraint);
   PlanSummary summary =
       BidirectionalSearch(sampler, options, steering, budget, generator).run(start, reachable);

@@ -8,6 +8,12 @@
 
 namespace kinship::planning {
 
+/// What the configurations of a constrained plan have to satisfy; borrows both.
+struct ConstrainedFreedom {
+  const IsFree& is_free;
+  RegionConstraint& constraint;  ///< its bounds are those of the sampler; counts the projections
+};
+
 /// Constrained bi-directional RRT: the search of plan_birrt, but every step is projected onto the
 /// constraint, and an extension slides along it towards its target as long as it comes nearer.
 /// Waypoints are at most `step` apart, each within RegionConstraint::kWaypointTolerance of the
@@ -15,12 +21,10 @@ namespace kinship::planning {
 /// out; of a start or goal outside no collision question is asked.
 /// Reasons besides those of plan_birrt: "start violates the constraint" and "every goal violates
 /// the constraint".
-/// \param constraint  its bounds are those of the sampler.
 /// \throws std::invalid_argument as plan_birrt.
 /// Source: Berenson, Srinivasa and Kuffner, Task Space Regions (IJRR 2011), section 5.
 PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                         const IsFree& is_free, RegionConstraint& constraint,
-                         const ConfigurationSampler& sampler, const BirrtOptions& options,
-                         std::mt19937_64& generator);
+                         const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
+                         const BirrtOptions& options, std::mt19937_64& generator);
 
 }  // namespace kinship::planning

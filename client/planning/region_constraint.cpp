@@ -134,7 +134,7 @@ Vector6 RegionConstraint::excess(const Eigen::VectorXd& q) const {
   return excess(along, flipped);
 }
 
-void RegionConstraint::derive(const Sweep& along, bool flipped, Rows& derivative) const {
+void RegionConstraint::derive(const Sweep& along, bool flipped, Matrix6& derivative) const {
   const Eigen::Matrix3d& R = along.R;
   const double cos_pitch = std::max(std::hypot(R(0, 0), R(1, 0)), kLeastCosine);
   const double sin_pitch = -R(2, 0);
@@ -157,10 +157,20 @@ void RegionConstraint::derive(const Sweep& along, bool flipped, Rows& derivative
   }
 }
 
+RegionConstraint::Matrix6 RegionConstraint::derivative(const Eigen::VectorXd& q) const {
+  Sweep along;
+  sweep(q, along);
+  bool flipped = false;
+  excess(along, flipped);
+  Matrix6 result;
+  derive(along, flipped, result);
+  return result;
+}
+
 bool RegionConstraint::project(Eigen::VectorXd& q) {
   ++projections_;
   Sweep along;
-  Rows J;
+  Matrix6 J;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxJoints> active;
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> residual;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> normal;

@@ -18,6 +18,8 @@ namespace kinship::planning {
 class RegionConstraint {
  public:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 =
+      Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, static_cast<int>(kMaxDof)>;
 
   /// Waypoints of a constrained path lie at most this far outside the region, and what lies
   /// between two of them at most this far; the norm of `excess`, 1 m = 1 rad.
@@ -34,6 +36,10 @@ class RegionConstraint {
   /// and of the two ways to write a rotation the one that is less outside counts.
   Vector6 excess(const Eigen::VectorXd& q) const;
 
+  /// Derivative of the displacement, and so of the excess where that is not zero: 6 x dof, per
+  /// joint unit. Bounded near a pitch of 90 degrees, where the true one is not.
+  Matrix6 derivative(const Eigen::VectorXd& q) const;
+
   double distance(const Eigen::VectorXd& q) const { return excess(q).norm(); }  ///< 1 m = 1 rad
   bool holds(const Eigen::VectorXd& q) const { return distance(q) <= kWaypointTolerance; }
 
@@ -48,7 +54,6 @@ class RegionConstraint {
  private:
   static constexpr int kMaxJoints = static_cast<int>(kMaxDof);
   using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
-  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
 
   /// A joint whose axis is the z-axis of its frame.
   struct Segment {
@@ -68,7 +73,7 @@ class RegionConstraint {
   /// \param flipped  whether the rotation counts as (roll + pi, pi - pitch, yaw + pi).
   Vector6 excess(const Sweep& along, bool& flipped) const;
   /// Derivative of the displacement: 6 x dof.
-  void derive(const Sweep& along, bool flipped, Rows& derivative) const;
+  void derive(const Sweep& along, bool flipped, Matrix6& derivative) const;
 
   std::vector<Segment> segments_;
   Eigen::Matrix3d R_end_;  // after the last joint

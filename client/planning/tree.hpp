@@ -6,20 +6,22 @@
 namespace kinship::planning {
 
 /// A tree of configurations grown from one or more roots. Nearest neighbours by a linear scan over
-/// contiguous storage, which beats a search structure up to some ten thousand nodes.
+/// contiguous storage in single precision, which beats a search structure up to some ten thousand
+/// nodes.
 class Tree {
  public:
-  explicit Tree(Eigen::Index dof) : nodes_(kFirstCapacity, dof) {}
+  explicit Tree(Eigen::Index dof);
 
   /// \param parent  index of a node, or -1 for a root.
   /// \return        index of the new node.
   Eigen::Index add(const Eigen::VectorXd& q, Eigen::Index parent);
 
-  /// Index of the node nearest to q (Euclidean, joint units; the first of equals).
+  /// Index of the node nearest to q (Euclidean, joint units; the first of equals), to single
+  /// precision.
   Eigen::Index nearest(const Eigen::VectorXd& q) const;
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }
-  Eigen::VectorXd node(Eigen::Index index) const { return nodes_.row(index).matrix().transpose(); }
+  Eigen::VectorXd node(Eigen::Index index) const { return nodes_.col(index); }
 
   /// From a node to its root: dof x n.
   Eigen::MatrixXd branch(Eigen::Index index) const;
@@ -27,7 +29,8 @@ class Tree {
  private:
   static constexpr Eigen::Index kFirstCapacity = 1024;
 
-  Eigen::ArrayXXd nodes_;  // capacity x dof: one column per joint, so that the scan is vectorised
+  Eigen::MatrixXd nodes_;    // dof x capacity
+  Eigen::ArrayXXf scanned_;  // capacity x dof: one column per joint, so that it is vectorised
   std::vector<Eigen::Index> parents_;
 };
 

@@ -96,9 +96,10 @@ TEST(Cbirrt2, CarriesAContainerUpright) {
       ++planned;
       RegionConstraint constraint = carrying->constraint();
       const ConfigurationSampler sampler(carrying->bounds);
+      const IsFree is_free = carrying->is_free();
       std::mt19937_64 generator(seed);
       const PlanSummary summary =
-          plan_cbirrt2(carrying->start, carrying->goals, carrying->is_free(), constraint, sampler,
+          plan_cbirrt2(carrying->start, carrying->goals, {is_free, constraint}, sampler,
                        options(0.1), generator);
       EXPECT_EQ(summary.collision_checks, carrying->asked);
       EXPECT_EQ(summary.projections, constraint.projections());
@@ -149,14 +150,16 @@ struct LineArm {
   }
 };
 
+const IsFree everywhere = [](const Eigen::VectorXd&) { return true; };
+
 TEST(Cbirrt2, FollowsAThinRegionAtAnyStep) {
   const LineArm arm;
   for (const double step : {0.02, 0.1, 0.3}) {
     RegionConstraint constraint = arm.constraint();
     std::mt19937_64 generator(1);
-    const auto summary = plan_cbirrt2(
-        LineArm::at_height(-1), LineArm::at_height(1), [](const auto&) { return true; }, constraint,
-        ConfigurationSampler(arm.bounds), options(step), generator);
+    const auto summary =
+        plan_cbirrt2(LineArm::at_height(-1), LineArm::at_height(1), {everywhere, constraint},
+                     ConfigurationSampler(arm.bounds), options(step), generator);
     ASSERT_TRUE(summary.waypoints) << summary.reason << " at step " << step;
     EXPECT_LE(largest_excess(*summary.waypoints, constraint, 1),
               RegionConstraint::kWaypointTolerance);
@@ -175,11 +178,11 @@ TEST(Cbirrt2, AskedAboutTheConstraintFirst) {
   };
   const Eigen::VectorXd off = Eigen::Vector2d(0, 0);
   const ConfigurationSampler sampler(arm.bounds);
-  const auto from_outside = plan_cbirrt2(off, LineArm::at_height(1), never_asked, constraint,
+  const auto from_outside = plan_cbirrt2(off, LineArm::at_height(1), {never_asked, constraint},
                                          sampler, options(0.1), generator);
   EXPECT_EQ(from_outside.reason, "start violates the constraint");
-  const auto to_outside = plan_cbirrt2(LineArm::at_height(1), off, never_asked, constraint, sampler,
-                                       options(0.1), generator);
+  const auto to_outside = plan_cbirrt2(LineArm::at_height(1), off, {never_asked, constraint},
+                                       sampler, options(0.1), generator);
   EXPECT_EQ(to_outside.reason, "every goal violates the constraint");
   EXPECT_EQ(to_outside.collision_checks, 0u);
 }
@@ -190,9 +193,8 @@ TEST(Cbirrt2, AGoalOffTheConstraintIsLeftOut) {
   std::mt19937_64 generator(1);
   Eigen::MatrixXd goals(2, 2);
   goals << Eigen::Vector2d(0, 0), LineArm::at_height(0.5);
-  const auto summary = plan_cbirrt2(
-      LineArm::at_height(-0.5), goals, [](const auto&) { return true; }, constraint,
-      ConfigurationSampler(arm.bounds), options(0.1), generator);
+  const auto summary = plan_cbirrt2(LineArm::at_height(-0.5), goals, {everywhere, constraint},
+                                    ConfigurationSampler(arm.bounds), options(0.1), generator);
   ASSERT_TRUE(summary.waypoints) << summary.reason;
   EXPECT_EQ(summary.waypoints->rightCols<1>(), goals.col(1));
 }
@@ -205,7 +207,7 @@ TEST(Cbirrt2, EqualSeedEqualPathAndItsLastCheckEndsIt) {
     BirrtOptions limited = options(0.1);
     limited.max_checks = max_checks;
     const IsFree with_a_gap = [](const Eigen::VectorXd& q) { return std::abs(q[0]) > 0.05; };
-    return plan_cbirrt2(LineArm::at_height(-1), LineArm::at_height(0), with_a_gap, constraint,
+    return plan_cbirrt2(LineArm::at_height(-1), LineArm::at_height(0), {with_a_gap, constraint},
                         ConfigurationSampler(arm.bounds), limited, generator);
   };
   const PlanSummary one = plan(1000), two = plan(1000);

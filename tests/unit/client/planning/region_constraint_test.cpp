@@ -66,6 +66,37 @@ TEST(RegionConstraint, ExcessIsTheDisplacementBeyondTheBounds) {
   }
 }
 
+TEST(RegionConstraint, ItsDerivativeIsThatOfTheExcess) {
+  std::mt19937_64 generator(4);
+  for (const char* robot : {"panda", "sara_like"}) {
+    const kinematics::Chain chain = test::model_chain(robot);
+    TaskSpaceRegion region = box(Vector6::Constant(5), Vector6::Constant(5));  // always outside
+    region.bounds.rightCols<3>().setConstant(0.1);
+    region.T_region_end = some_pose(generator);
+    const RegionConstraint constraint(chain, region, some_pose(generator), limits_of(chain));
+    int compared = 0;
+    for (int i = 0; i < 50; ++i) {
+      const Eigen::VectorXd q = test::random_configuration(chain, generator);
+      const RegionConstraint::Matrix6 J = constraint.derivative(q);
+      if (J.cwiseAbs().maxCoeff() > 5)
+        continue;  // near a pitch of 90 degrees
+      constexpr double kDelta = 1e-6;
+      Eigen::MatrixXd expected(6, chain.dof());
+      for (Eigen::Index j = 0; j < chain.dof(); ++j) {
+        Eigen::VectorXd after = q, before = q;
+        after[j] += kDelta;
+        before[j] -= kDelta;
+        expected.col(j) = (constraint.excess(after) - constraint.excess(before)) / (2 * kDelta);
+      }
+      if (expected.cwiseAbs().maxCoeff() > 100)
+        continue;  // an angle went round
+      EXPECT_LT((J - expected).cwiseAbs().maxCoeff(), 1e-5) << robot << " " << q.transpose();
+      ++compared;
+    }
+    EXPECT_GT(compared, 20);
+  }
+}
+
 TEST(RegionConstraint, AnglesCountModuloATurnAndInTheNearerOfTwoWritings) {
   const kinematics::Chain chain = test::PlanarArm{{0.5, 0.5}}.chain();
   Vector6 lower = Vector6::Zero(), upper = Vector6::Zero();
