@@ -60,7 +60,32 @@ std::string lost_text(const Source& source) {
   add(source.out_of_reach, " out of reach");
   add(source.outside_limits, " limits");
   add(source.not_converged, " not converged");
+  add(source.colliding, " colliding");
   return text.empty() ? "-" : text;
+}
+
+/// A part of a whole in percent; "-" of nothing.
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  constexpr double kPercent = 100;
+  if (whole == 0)
+    return "-";
+  return number_text(kPercent * static_cast<double>(part) / static_cast<double>(whole), 0) + " %";
+}
+
+/// How the poses of each source became configurations.
+void print_transfer(const Distribution& distribution, std::ostream& out) {
+  Table table({"SOURCE", "POSES SOLVED", "TRACKS KEPT", "RANDOM", "SELF-COLLIDING",
+               "IN RECORDED SCENE", "PATHS WITH SCENE"});
+  for (const Source& source : distribution.sources)
+    table.add_row({source.label, share_text(source.poses_solved, source.poses),
+                   source.tracks_tried == 0 ? "-"
+                                            : std::to_string(source.tracks_kept) + " of " +
+                                                  std::to_string(source.tracks_tried),
+                   share_text(source.random_configurations, source.configurations),
+                   share_text(source.self_collisions, source.filter_checks),
+                   share_text(source.scene_collisions, source.filter_checks),
+                   std::to_string(source.paths_with_scene)});
+  table.print(out);
 }
 
 }  // namespace
@@ -96,6 +121,8 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
                    std::to_string(source.poses_solved), lost_text(source),
                    std::to_string(source.configurations), number_text(source.mass, kMassDigits)});
   table.print(out);
+  out << '\n';
+  print_transfer(distribution, out);
 }
 
 int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,

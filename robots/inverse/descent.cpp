@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "robots/kinematics/forward_kinematics.hpp"
+
 namespace kinship::inverse {
 namespace {
 
@@ -35,6 +37,13 @@ TaskError task_error(const Eigen::Isometry3d& T_base_wanted, const Eigen::Isomet
       rotation_error(T_base_wanted.linear() * T_base_actual.linear().transpose());
   drop_free_axes(axes, error);
   return error;
+}
+
+bool reaches(const kinematics::Chain& chain, const Eigen::Isometry3d& T_base_transfer,
+             const Eigen::Ref<const Eigen::VectorXd>& q) {
+  const TaskError error =
+      task_error(T_base_transfer, kinematics::T_base_transfer(chain, q), chain.task_axes());
+  return error.head<3>().norm() <= kPoseTolerance && error.tail<3>().norm() <= kPoseTolerance;
 }
 
 Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
@@ -129,6 +138,24 @@ bool Descent::steer(const JointVector& q, JointVector& pull) const {
   return outside;
 }
 
+void Descent::hold(const JointVector& q, const TaskError& error,
+                   TaskJacobian& J_base_transfer) const {
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    const Step& step = steps_[static_cast<std::size_t>(j)];
+    if (!step.bounded || (q[j] > step.lower && q[j] < step.upper))
+      continue;
+    const double push = J_base_transfer.col(j).dot(error);
+    if ((push < 0 && q[j] <= step.lower) || (push > 0 && q[j] >= step.upper))
+      J_base_transfer.col(j).setZero();
+  }
+}
+
+void Descent::clamp_to_limits(JointVector& q) const {
+  for (Eigen::Index j = 0; j < q.size(); ++j)
+    if (const Step& step = steps_[static_cast<std::size_t>(j)]; step.bounded)
+      q[j] = std::clamp(q[j], step.lower, step.upper);
+}
+
 double Descent::run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int max_iterations,
                     JointVector& q) const {
   const bool steering = redundant_ && limits == Limits::Steer;
@@ -140,6 +167,8 @@ double Descent::run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int
     const bool outside = steering && steer(q, pull);
     if ((squared < kDone && !outside) || iteration == max_iterations)
       return squared;
+    if (limits == Limits::Hold)
+      hold(q, error, jacobian);
 
     Eigen::Matrix<double, 6, 6> system = Eigen::Matrix<double, 6, 6>::Zero();
     system.diagonal().setConstant(kDampingShare * squared + kSmallestDamping);
@@ -151,6 +180,8 @@ double Descent::run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int
     const TaskError y = system.llt().solve(wanted);
     for (Eigen::Index j = 0; j < q.size(); ++j)
       q[j] += std::clamp(jacobian.col(j).dot(y) + pull[j], -kLargestStep, kLargestStep);
+    if (limits == Limits::Hold)
+      clamp_to_limits(q);
   }
 }
 

@@ -21,6 +21,14 @@ using TaskError = Eigen::Matrix<double, 6, 1>;
 TaskError task_error(const Eigen::Isometry3d& T_base_wanted, const Eigen::Isometry3d& T_base_actual,
                      const TaskAxes& axes);
 
+/// How well a configuration that is called a solution reaches its pose, m and rad.
+inline constexpr double kPoseTolerance = 1e-6;
+
+/// Whether the chain's forward kinematics put the transfer frame at the pose, in the task axes that
+/// matter, within kPoseTolerance.
+bool reaches(const kinematics::Chain& chain, const Eigen::Isometry3d& T_base_transfer,
+             const Eigen::Ref<const Eigen::VectorXd>& q);
+
 /// Damped Levenberg-Marquardt descent of one chain towards poses of its transfer frame: no heap, no
 /// state between calls, may be shared by threads. The damping grows with the squared error.
 /// Source: Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method,
@@ -30,10 +38,13 @@ class Descent {
   explicit Descent(const kinematics::Chain& chain);
 
   /// Steer: joints outside their limits are pulled towards mid-range within the chain's redundancy
-  /// (none: no effect). Joints with a full turn of room need no help: a turn brings them back.
-  enum class Limits { Steer, Ignore };
+  /// (none: no effect). Hold: no joint leaves its limits, for who starts within them; one that
+  /// would be pushed across stays there, and the others do its part. Joints with a full turn of
+  /// room need no help: a turn brings them back.
+  enum class Limits { Steer, Ignore, Hold };
 
-  /// Moves `q` towards the pose, in at most `max_iterations` steps. It may end outside the limits.
+  /// Moves `q` towards the pose, in at most `max_iterations` steps. It may end outside the limits
+  /// unless they are held.
   /// \return the squared norm of the task error that is left.
   double run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int max_iterations,
              JointVector& q) const;
@@ -56,6 +67,9 @@ class Descent {
 
   TaskError error_and_jacobian(const Eigen::Isometry3d& T_base_transfer, const JointVector& q,
                                TaskJacobian& J_base_transfer) const;
+  /// Leaves out the joints at a limit that the error pushes across.
+  void hold(const JointVector& q, const TaskError& error, TaskJacobian& J_base_transfer) const;
+  void clamp_to_limits(JointVector& q) const;
   /// Pull of each joint towards mid-range: 0 within limits. \return whether any is not 0.
   bool steer(const JointVector& q, JointVector& pull) const;
 

@@ -10,12 +10,10 @@
 #include "robots/inverse/counter_generator.hpp"
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/joint_space.hpp"
-#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::inverse {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // m and rad
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
 constexpr int kMostSolutions = 1000;
 constexpr int kIterations = 15;         // measured: more cost more than they bring
@@ -67,7 +65,7 @@ class Search {
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       if (!chain_.task_axes().matters[static_cast<std::size_t>(axis)])
         p[axis] = 0;
-    return p.norm() > descent_.reach_m() + kTolerance;
+    return p.norm() > descent_.reach_m() + kPoseTolerance;
   }
 
   bool enough() const { return static_cast<int>(found_.size()) == most_solutions_; }
@@ -79,7 +77,7 @@ class Search {
       JointVector q = random_start();
       const double squared = descent_.run(T_base_transfer_, limits, iterations, q);
       least_squared_error_ = std::min(least_squared_error_, squared);
-      idle = squared < kTolerance * kTolerance && accept(q) ? 0 : idle + 1;
+      idle = squared < kPoseTolerance * kPoseTolerance && accept(q) ? 0 : idle + 1;
     }
   }
 
@@ -113,9 +111,7 @@ class Search {
     for (const JointVector& other : found_)
       if (distance(chain_, q, other) < min_distance_)
         return false;
-    const TaskError error =
-        task_error(T_base_transfer_, kinematics::T_base_transfer(chain_, q), chain_.task_axes());
-    if (error.head<3>().norm() > kTolerance || error.tail<3>().norm() > kTolerance)
+    if (!reaches(chain_, T_base_transfer_, q))
       return false;
     found_.push_back(q);
     return true;

@@ -17,7 +17,9 @@ AdvisedReply Adviser::advise(const SharedReply& reply, const DistributionKey& ke
   // The version first: if the advice changes in between, the next fetch finds another version.
   const std::uint64_t version = source_.version(key.task, key.robot);
   FetchReply advised = *reply;
-  advised.distribution->advice = source_.advise(key.task, key.robot, key.profile);
+  Profile profile = key.profile;
+  profile.recommended_share = first_share(profile, advised.distribution->state);
+  advised.distribution->advice = source_.advise(key.task, key.robot, profile);
   return {shared(std::move(advised)), version};
 }
 

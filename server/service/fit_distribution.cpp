@@ -36,6 +36,16 @@ Distribution begun(const DistributionKey& key, const FitContext& context,
   return distribution;
 }
 
+/// The share of poses solved, each source counted by its mass: what a sample's source had.
+double solved_share(const std::vector<Source>& sources) {
+  double share = 0;
+  for (const Source& source : sources)
+    if (source.poses > 0)
+      share += source.mass * static_cast<double>(source.poses_solved) /
+               static_cast<double>(source.poses);
+  return share;
+}
+
 /// One fit on its way.
 class Fit {
  public:
@@ -104,10 +114,13 @@ void Fit::fit(Distribution& distribution) const {
     return fail(distribution, std::to_string(pool.size()) + " configurations for '" +
                                   target_->label +
                                   "' could not be fitted: " + fitted.error().message);
-  distribution.state = DistributionState::Ready;
+  distribution.state = solved_share(distribution.sources) < kThinShare ? DistributionState::Thin
+                                                                       : DistributionState::Ready;
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = warnings_in_words(sources_, key_.T_task_base.has_value());
-  distribution.advice = advice_of_profile(key_.profile);
+  Profile profile = key_.profile;
+  profile.recommended_share = first_share(profile, distribution.state);
+  distribution.advice = advice_of_profile(profile);
 }
 
 void Fit::fail(Distribution& distribution, const std::string& message) const {

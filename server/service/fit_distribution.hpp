@@ -22,6 +22,10 @@ struct FitContext {
   std::size_t max_paths = 4000;
 };
 
+/// A distribution is thin if fewer of its sources' poses were solved, each source counted by its
+/// mass.
+inline constexpr double kThinShare = 0.2;
+
 struct FitOutcome {
   enum class Kind { Fitted, NoExperience, Abandoned };
   Kind kind = Kind::NoExperience;

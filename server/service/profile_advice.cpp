@@ -1,6 +1,13 @@
 #include "server/service/profile_advice.hpp"
 
+#include <algorithm>
+
 namespace kinship::service {
+
+double first_share(const Profile& profile, DistributionState state) {
+  return state == DistributionState::Thin ? std::min(profile.recommended_share, profile.thin_share)
+                                          : profile.recommended_share;
+}
 
 Advice advice_of_profile(const Profile& profile) {
   Advice advice;

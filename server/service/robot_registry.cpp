@@ -19,6 +19,15 @@ RegisterReply refused(const Error& error) {
   return reply;
 }
 
+/// A robot whose geometry cannot be read is a robot all the same: nothing is filtered then.
+Robot robot_of(const RobotDescription& description, kinematics::Chain chain) {
+  Robot robot{chain.digest(), description.label, std::move(chain)};
+  if (Result<geometry::RobotShapes> shapes =
+          geometry::read_shapes(description, robot.chain, geometry::leave_out_mesh))
+    robot.shapes = std::move(shapes).value();
+  return robot;
+}
+
 }  // namespace
 
 RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
@@ -43,7 +52,7 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   reply.same_arms = same_arms(reply.robot, *chain);
 
   if (reply.status == RegisterStatus::Registered) {
-    keep({reply.robot, description.label, std::move(chain).value()});
+    keep(robot_of(description, std::move(chain).value()));
   } else if (const auto known = find(reply.robot);
              known && known.value()->label != description.label) {
     reply.message = "known already, as '" + known.value()->label + "'";
@@ -92,7 +101,7 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
   if (chain->digest() != robot)
     return Error{ErrorCode::InvalidInput,
                  name + " now reads as another robot, " + chain->digest().short_hex()};
-  return keep({robot, record->description.label, std::move(chain).value()});
+  return keep(robot_of(record->description, std::move(chain).value()));
 }
 
 RobotRegistry::RobotPointer RobotRegistry::find_in_memory(const Digest& robot) const {

@@ -11,6 +11,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
+#include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "server/store/store.hpp"
 
@@ -21,6 +22,8 @@ struct Robot {
   Digest digest;
   std::string label;
   kinematics::Chain chain;
+  /// Without the URDF's meshes; nothing if the URDF's geometry cannot be read.
+  geometry::RobotShapes shapes = {};
 };
 
 /// Knows the robots of a store and keeps their chains in memory once they were parsed. May be

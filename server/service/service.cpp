@@ -82,9 +82,9 @@ Administration::Parts Service::administration_parts() {
           .advise =
               [this](const Distribution& distribution) {
                 const std::optional<Profile> profile = find_profile(distribution.profile);
-                return advice_.advise(
-                    distribution.task, distribution.robot,
-                    profile ? profile->recommended_share : distribution.advice.recommended_share);
+                return advice_.advise(distribution.task, distribution.robot,
+                                      profile ? first_share(*profile, distribution.state)
+                                              : distribution.advice.recommended_share);
               },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
           .forget_task = [this](const std::string& task) { catalog_.forget(task); },

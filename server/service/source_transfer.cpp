@@ -7,6 +7,7 @@
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
 #include "server/service/selected_experience.hpp"
+#include "server/transfer/collision_filter.hpp"
 #include "server/transfer/transfer.hpp"
 
 namespace kinship::service {
@@ -86,6 +87,13 @@ Source source_of(const store::ExperienceSummary& experience) {
   return source;
 }
 
+SourceTransfer::SourceTransfer(const store::Store& store, RobotRegistry& robots,
+                               const DistributionKey& key, const Robot& target)
+    : store_(store), robots_(robots), key_(key), target_(target), pool_(target.chain.dof()) {
+  if (key.profile.transfer.avoid_self_collision)
+    filters_.self = transfer::collision_filter(target.chain, target.shapes);
+}
+
 std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience) const {
   if (key_.since_ms == 0)
     return experience.paths;
@@ -141,7 +149,7 @@ bool SourceTransfer::add_path(const store::StoredPath& stored, const transfer::A
                     "a path of " + std::to_string(stored.path.dof()) + " joints");
     transfer::TransferredPath moved = transfer::transfer_path(
         stored.path, pair, T_target_source(key_.T_task_base, stored.T_task_base),
-        key_.profile.transfer, key_.profile.seed);
+        key_.profile.transfer, key_.profile.seed, filters_);
     total.add(moved.summary);
     pool_.add(std::move(moved), stored.report_uuid);
     (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;

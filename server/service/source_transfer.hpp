@@ -12,6 +12,7 @@
 #include "server/service/pooled_configurations.hpp"
 #include "server/service/robot_registry.hpp"
 #include "server/store/store.hpp"
+#include "server/transfer/filters.hpp"
 #include "server/transfer/transferred_path.hpp"
 
 namespace kinship::service {
@@ -33,8 +34,7 @@ class SourceTransfer {
  public:
   /// \param robots, store, key, target  outlive it.
   SourceTransfer(const store::Store& store, RobotRegistry& robots, const DistributionKey& key,
-                 const Robot& target)
-      : store_(store), robots_(robots), key_(key), target_(target), pool_(target.chain.dof()) {}
+                 const Robot& target);
 
   /// How many paths of the source the key wants.
   std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
@@ -58,6 +58,7 @@ class SourceTransfer {
   RobotRegistry& robots_;
   const DistributionKey& key_;
   const Robot& target_;
+  transfer::Filters filters_;
   PooledConfigurations pool_;
 };
 

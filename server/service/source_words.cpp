@@ -25,7 +25,8 @@ std::string sources_in_words(const std::vector<SourceSummary>& sources) {
                     std::to_string(source.poses_solved) + " solved, " +
                     std::to_string(source.out_of_reach) + " out of reach, " +
                     std::to_string(source.outside_limits) + " outside limits, " +
-                    std::to_string(source.not_converged) + " not converged");
+                    std::to_string(source.not_converged) + " not converged, " +
+                    std::to_string(source.colliding) + " colliding");
   }
   return joined(parts);
 }

@@ -13,7 +13,6 @@ using inverse::NoSolution;
 using kinematics::JointType;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kTolerance = 1e-6;  // m and rad, as inverse kinematics verifies
 constexpr int kIterations = 15;
 
 /// Moves `q` to where the target's transfer frame is exactly where the source's was.
@@ -25,9 +24,7 @@ bool polish(const ArmPair& pair, Eigen::VectorXd& q) {
   if (!((moved - q).norm() <= kFarthestPolish))
     return false;
   q = moved;
-  const inverse::TaskError error = inverse::task_error(
-      T_base_transfer, kinematics::T_base_transfer(pair.target(), q), pair.target().task_axes());
-  return error.head<3>().norm() <= kTolerance && error.tail<3>().norm() <= kTolerance;
+  return inverse::reaches(pair.target(), T_base_transfer, q);
 }
 
 }  // namespace

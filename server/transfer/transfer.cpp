@@ -5,33 +5,70 @@
 #include <utility>
 #include <vector>
 
-#include "robots/inverse/inverse.hpp"
-#include "robots/kinematics/forward_kinematics.hpp"
+#include "server/transfer/path_poses.hpp"
+#include "server/transfer/random_solutions.hpp"
 #include "server/transfer/resample.hpp"
+#include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/take_over.hpp"
 
 namespace kinship::transfer {
 namespace {
 
-/// One row per solution, in the order of poses.
-TransferredPath stacked(const std::vector<Eigen::MatrixXd>& solutions_of_pose,
-                        const TransferSummary& summary, Eigen::Index dof) {
+/// \throws std::invalid_argument with the parameter that breaks a rule. Those of resampling and
+///         inverse kinematics are checked there.
+void check(const TransferParameters& parameters) {
+  const auto require = [](bool holds, const char* name, double value, const char* rule) {
+    if (!holds)
+      throw std::invalid_argument(std::string("transfer_path: ") + name + " " +
+                                  std::to_string(value) + " is not " + rule);
+  };
+  const double coverage = parameters.least_coverage;
+  require(parameters.tracks >= 0, "tracks", parameters.tracks, "0 or more");
+  require(parameters.track_candidates >= 1, "track_candidates", parameters.track_candidates,
+          "1 or more");
+  require(coverage >= 0 && coverage <= 1, "least_coverage", coverage, "within 0 and 1");
+  require(parameters.shape_noise >= 0, "shape_noise", parameters.shape_noise, "0 or more");
+}
+
+/// Configurations of the target for each pose of one path, as they are found.
+class PathSolutions {
+ public:
+  PathSolutions(Eigen::Index dof, Eigen::Index poses)
+      : dof_(dof), of_pose_(static_cast<std::size_t>(poses), Eigen::MatrixXd(dof, 0)) {}
+
+  void add(const Track& track) {
+    for (Eigen::Index i = 0; i < track.configurations.cols(); ++i) {
+      Eigen::MatrixXd& solutions = of_pose_[static_cast<std::size_t>(track.first_pose + i)];
+      solutions.conservativeResize(Eigen::NoChange, solutions.cols() + 1);
+      solutions.rightCols(1) = track.configurations.col(i);
+    }
+  }
+
+  Eigen::MatrixXd& operator[](std::size_t pose) { return of_pose_[pose]; }
+
+  /// One row per solution, in the order of poses.
+  TransferredPath stacked(const TransferSummary& summary) const;
+
+ private:
+  Eigen::Index dof_;
+  std::vector<Eigen::MatrixXd> of_pose_;
+};
+
+TransferredPath PathSolutions::stacked(const TransferSummary& summary) const {
   const auto total = static_cast<Eigen::Index>(summary.configurations);
   TransferredPath result;
-  result.configurations.resize(dof, total);
+  result.configurations.resize(dof_, total);
   result.pose_index.resize(total);
   result.solution_index.resize(total);
   result.weights = Eigen::VectorXd::Ones(total);
   result.summary = summary;
   Eigen::Index next = 0;
-  for (std::size_t pose = 0; pose < solutions_of_pose.size(); ++pose) {
-    const Eigen::MatrixXd& solutions = solutions_of_pose[pose];
-    for (Eigen::Index i = 0; i < solutions.cols(); ++i, ++next) {
-      result.configurations.col(next) = solutions.col(i);
+  for (std::size_t pose = 0; pose < of_pose_.size(); ++pose)
+    for (Eigen::Index i = 0; i < of_pose_[pose].cols(); ++i, ++next) {
+      result.configurations.col(next) = of_pose_[pose].col(i);
       result.pose_index[next] = static_cast<int>(pose);
       result.solution_index[next] = static_cast<int>(i);
     }
-  }
   return result;
 }
 
@@ -41,6 +78,7 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Eigen::Isometry3d& T_target_source,
                               const TransferParameters& parameters, std::uint64_t seed,
                               const Filters& filters) {
+  check(parameters);
   if (path.dof() != pair.source().dof())
     throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
                                 " joints for a source robot of " +
@@ -49,28 +87,28 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
   if (pair.takes_over(T_target_source))
     return take_over(waypoints, pair);
 
-  const Eigen::Isometry3d T_transfer_tip = pair.target().T_tip_transfer().inverse();
-  const inverse::InverseOptions options{.max_solutions = parameters.max_solutions,
-                                        .min_distance = parameters.min_distance,
-                                        .seed = seed};
-  std::vector<Eigen::MatrixXd> solutions_of_pose;
-  TransferSummary summary;
+  const PathPoses poses = path_poses(waypoints, pair, T_target_source);
   CountedFilters counted(filters);
-  for (Eigen::Index i = 0; i < waypoints.cols(); ++i) {
-    const Eigen::Isometry3d T_target_tip =
-        T_target_source * kinematics::T_base_transfer(pair.source(), waypoints.col(i)) *
-        T_transfer_tip;
-    inverse::InverseSolutions solutions = inverse::inverse(pair.target(), T_target_tip, options);
-    Eigen::MatrixXd kept = passed(std::move(solutions.configurations), counted);
-    summary.random_configurations += static_cast<std::uint64_t>(kept.cols());
-    if (kept.cols() == 0 && solutions.reason == inverse::NoSolution::None)
-      summary.count_colliding();
-    else
-      summary.count(kept.cols(), solutions.reason);
-    solutions_of_pose.push_back(std::move(kept));
+  ShapeTracker tracker(pair, poses, parameters, seed, counted);
+  PathSolutions solutions(pair.target().dof(), poses.size());
+  TransferSummary summary;
+  for (const Track& track : tracker.find_tracks()) {
+    solutions.add(track);
+    ++summary.tracks_kept;
+  }
+  summary.tracks_tried = tracker.tried();
+  for (std::size_t pose = 0; pose < poses.T_base_transfer.size(); ++pose) {
+    if (solutions[pose].cols() > 0) {
+      summary.count(solutions[pose].cols(), inverse::NoSolution::None);
+      continue;
+    }
+    RandomSolutions random =
+        random_solutions(pair.target(), poses.T_base_transfer[pose], parameters, seed, counted);
+    summary.count(random);
+    solutions[pose] = std::move(random.configurations);
   }
   summary.set(counted);
-  return stacked(solutions_of_pose, summary, pair.target().dof());
+  return solutions.stacked(summary);
 }
 
 }  // namespace kinship::transfer

@@ -21,6 +21,15 @@ void TransferSummary::count(Eigen::Index found, inverse::NoSolution reason) {
   }
 }
 
+void TransferSummary::count(const RandomSolutions& random) {
+  const Eigen::Index found = random.configurations.cols();
+  random_configurations += static_cast<std::uint64_t>(found);
+  if (!random.colliding)
+    return count(found, random.reason);
+  ++poses;
+  ++colliding;
+}
+
 void TransferSummary::add(const TransferSummary& other) {
   poses += other.poses;
   poses_solved += other.poses_solved;

@@ -5,6 +5,7 @@
 
 #include "robots/inverse/inverse.hpp"
 #include "server/transfer/filters.hpp"
+#include "server/transfer/random_solutions.hpp"
 
 namespace kinship::transfer {
 
@@ -28,11 +29,8 @@ struct TransferSummary {
   /// \param reason  why there is none.
   void count(Eigen::Index found, inverse::NoSolution reason);
 
-  /// Counts one pose whose every configuration was left out.
-  void count_colliding() {
-    ++poses;
-    ++colliding;
-  }
+  /// Counts one pose for which random solutions were looked for.
+  void count(const RandomSolutions& random);
 
   /// Takes over what the filters counted.
   void set(const CountedFilters& filters);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::transfer {
+
+/// Where along an arm its shape is looked at: shares of the length of the line from the first
+/// joint's origin over the other joints' origins to the transfer frame.
+inline constexpr std::array<double, 4> kShapeShares = {0.2, 0.4, 0.6, 0.8};
+
+/// Points along an arm, m, one column per share of kShapeShares.
+using ArmShape = Eigen::Matrix<double, 3, static_cast<int>(kShapeShares.size())>;
+
+/// The shape of an arm at a configuration, in its base link. Arms of different numbers of joints
+/// and different lengths have shapes that can be compared.
+/// \param q  dof, joint units.
+ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// The same shape seen from another frame.
+ArmShape moved(const Eigen::Isometry3d& T_a_b, const ArmShape& shape_in_b);
+
+/// How far two shapes are apart, m: the root of the summed squared distances of their points.
+inline double shape_distance(const ArmShape& a, const ArmShape& b) { return (a - b).norm(); }
+
+}  // namespace kinship::transfer
