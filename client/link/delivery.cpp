@@ -63,16 +63,17 @@ class Delivery {
       receipts_.push_back({attempt.report_uuid, ReceiptStatus::Refused, error->message});
       return std::nullopt;
     }
-    const std::size_t size = codec::batch_bytes(attempt);
-    const bool is_full = batch_.attempts.size() == kMaxAttemptsPerBatch ||
-                         bytes_ + size > kMaxBatchBytes ||
+    const codec::BatchBytes bytes = bytes_ + codec::batch_bytes(attempt);
+    const bool is_full = batch_.attempts.size() == kMaxAttemptsPerBatch || !bytes.fits() ||
                          waiting_.contains(attempt.report_uuid);  // receipts are found by UUID
-    if (is_full)
+    bytes_ = bytes;
+    if (is_full) {
       if (const auto error = send_batch())
         return error;
+      bytes_ = codec::batch_bytes(attempt);
+    }
     waiting_.emplace(attempt.report_uuid, receipts_.size());
     receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, "no receipt in time"});
-    bytes_ += size;
     batch_.attempts.push_back(std::move(attempt));
     return std::nullopt;
   }
@@ -83,7 +84,7 @@ class Delivery {
     for (const auto& [uuid, place] : std::exchange(waiting_, {}))
       if (const auto found = receipts.find(uuid); found != receipts.end())
         receipts_[place] = found->second;
-    bytes_ = 0;
+    bytes_ = {};
     return error;
   }
 
@@ -93,7 +94,7 @@ class Delivery {
   const std::chrono::milliseconds timeout_;
   const Send& send_;
   ReportRequest batch_;
-  std::size_t bytes_ = 0;
+  codec::BatchBytes bytes_;
   std::map<Uuid, std::size_t> waiting_;  // place of a receipt of the batch
   std::vector<Receipt> receipts_;
 };

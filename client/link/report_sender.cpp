@@ -121,7 +121,7 @@ void ReportSender::purge_now_and_then() {
 /// \return false if something is left that should be tried again.
 bool ReportSender::send_all_pending() {
   ReportRequest batch;
-  std::size_t bytes = 0;
+  codec::BatchBytes bytes;
   unknown_.clear();
   for (const Uuid& uuid : outbox_.pending()) {
     if (is_stopped())
@@ -132,13 +132,13 @@ bool ReportSender::send_all_pending() {
       apply({uuid, ReceiptStatus::Refused, error->message});
     if (error || unknown_.contains(attempt->robot))
       continue;
-    const std::size_t size = codec::batch_bytes(*attempt);
-    if (batch.attempts.size() == kMaxAttemptsPerBatch || bytes + size > kMaxBatchBytes) {
+    const codec::BatchBytes size = codec::batch_bytes(*attempt);
+    if (batch.attempts.size() == kMaxAttemptsPerBatch || !(bytes + size).fits()) {
       if (!deliver(batch))
         return false;
-      bytes = 0;
+      bytes = {};
     }
-    bytes += size;
+    bytes = bytes + size;
     batch.attempts.push_back(std::move(attempt).value());
   }
   return deliver(batch) && unknown_.empty();

@@ -1,6 +1,7 @@
 #include "proto/codec/report_codec.hpp"
 
 #include "proto/codec/reader.hpp"
+#include "proto/codec/scene_codec.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/number_text.hpp"
@@ -86,6 +87,10 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
   arena.resize(wire.record, 1);
   write_record(attempt.record, arena, wire.record._buffer[0]);
+  if (attempt.scene) {
+    arena.resize(wire.scene, 1);
+    write_scene(*attempt.scene, arena, wire.scene._buffer[0]);
+  }
   if (!attempt.path)
     return;
   const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
@@ -107,6 +112,8 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   else
     reader.rules.that(false, "record: is missing");
   attempt.path = read_path(wire, reader);
+  if (const auto scene = elements(wire.scene); !scene.empty() && !reader.rules.broken())
+    attempt.scene = read_scene(scene[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(attempt))
@@ -114,11 +121,27 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   return attempt;
 }
 
+BatchBytes batch_bytes(const kinship_wire_Attempt& wire) {
+  BatchBytes bytes{sizeof(double) * elements(wire.waypoints).size(), 0};
+  for (const kinship_wire_RecordedScene& scene : elements(wire.scene))
+    bytes.scenes += scene_bytes(scene);
+  return bytes;
+}
+
+void check_batch(const BatchBytes& bytes, Rules& rules) {
+  rules.at_most("waypoints of a batch (bytes)", bytes.waypoints, kMaxBatchBytes)
+      .at_most("scenes of a batch (bytes)", bytes.scenes, kMaxSceneBytes);
+}
+
 }  // namespace
 
-std::size_t batch_bytes(const Attempt& attempt) {
-  return attempt.path ? sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size())
-                      : 0;
+BatchBytes batch_bytes(const Attempt& attempt) {
+  BatchBytes bytes;
+  if (attempt.path)
+    bytes.waypoints = sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
+  if (attempt.scene)
+    bytes.scenes = kinship::scene_bytes(*attempt.scene);
+  return bytes;
 }
 
 std::optional<Error> check(const Attempt& attempt) {
@@ -135,19 +158,21 @@ std::optional<Error> check(const Attempt& attempt) {
   if (attempt.path)
     rules.at_most("dof", static_cast<std::size_t>(attempt.path->dof()), kMaxDof)
         .at_most("waypoints", static_cast<std::size_t>(attempt.path->size()), kMaxWaypoints)
-        .at_most("waypoints (bytes)", batch_bytes(attempt), kMaxBatchBytes);
+        .at_most("waypoints (bytes)", batch_bytes(attempt).waypoints, kMaxBatchBytes);
+  if (attempt.scene)
+    rules.name(check_scene(*attempt.scene));
   return rules.broken();
 }
 
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
   rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
-  std::size_t bytes = 0;
+  BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
     rules.name(check(attempt));
-    bytes += batch_bytes(attempt);
+    bytes = bytes + batch_bytes(attempt);
   }
-  rules.at_most("waypoints of a batch (bytes)", bytes, kMaxBatchBytes);
+  check_batch(bytes, rules);
   if (rules.broken())
     return *rules.broken();
   Message<kinship_wire_ReportRequest> message(head);
@@ -165,15 +190,13 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
     return *rules.broken();
   ReportRequest request;
   request.attempts.reserve(attempts.size());
-  std::size_t bytes = 0;
+  BatchBytes bytes;
   for (const kinship_wire_Attempt& entry : attempts) {
-    bytes += sizeof(double) * elements(entry.waypoints).size();
+    bytes = bytes + batch_bytes(entry);
+    Rules batch;
+    check_batch(bytes, batch);
     Result<Attempt> attempt =
-        bytes > kMaxBatchBytes
-            ? Result<Attempt>(Error{ErrorCode::TooLarge,
-                                    "waypoints of a batch (bytes): " + std::to_string(bytes) +
-                                        " exceeds " + std::to_string(kMaxBatchBytes)})
-            : read_attempt(entry);
+        batch.broken() ? Result<Attempt>(*batch.broken()) : read_attempt(entry);
     if (attempt)
       request.attempts.push_back(std::move(attempt).value());
     else

@@ -5,6 +5,7 @@
 #include "proto/json/parts.hpp"
 #include "proto/json/reader.hpp"
 #include "proto/json/record_json.hpp"
+#include "proto/json/recorded_scene_json.hpp"
 #include "proto/json/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -59,7 +60,7 @@ NamedAttempt read_attempt(const Reader& reader) {
   attempt.record = read_record(reader.at("record"));
   attempt.path = read_path(reader, attempt.record.outcome);
   if (const auto scene = reader.find("scene"))
-    scene->refuse("not supported yet, must be null");
+    attempt.scene = read_recorded_scene(*scene);
   return named;
 }
 
@@ -73,7 +74,7 @@ std::string to_json(const Attempt& attempt) {
   object["waypoints"] =
       attempt.path ? list_of_columns(attempt.path->waypoints()) : OrderedJson(nullptr);
   object["record"] = record_object(attempt.record);
-  object["scene"] = nullptr;
+  object["scene"] = attempt.scene ? recorded_scene_object(*attempt.scene) : OrderedJson(nullptr);
   return write(object);
 }
 

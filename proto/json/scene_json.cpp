@@ -20,13 +20,6 @@ double read_extent(const Reader& reader) {
   return reader.number(std::numeric_limits<double>::min(), kMaxPlacement_m);  // m, above 0
 }
 
-std::string read_name(const Reader& reader) {
-  std::string name = reader.text(kMaxLinkNameBytes);
-  if (name.empty())
-    reader.refuse("is empty");
-  return name;
-}
-
 Eigen::Vector3d read_size(const Reader& reader) {
   const auto elements = reader.elements(3);
   if (elements.size() != 3)
@@ -40,6 +33,37 @@ std::pair<double, double> read_round(const Reader& reader) {
   if (elements.size() != 2)
     reader.refuse("must be [radius, length]");
   return {read_extent(elements[0]), read_extent(elements[1])};
+}
+
+Eigen::Isometry3d read_center(const Reader& reader) {
+  const Eigen::VectorXd center = reader.vector(3);
+  if (center.size() != 3 || center.cwiseAbs().maxCoeff() > kMaxPlacement_m)
+    reader.refuse("must be 3 coordinates of at most " + std::to_string(kMaxPlacement_m) + " m");
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = center;
+  return T;
+}
+
+/// Calls read(element) for each element of an optional list and collects what it returns.
+template <typename Read>
+void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
+  const auto objects = reader.find(key);
+  if (!objects)
+    return;
+  for (const Reader& element : objects->elements(kMaxObjects)) {
+    SceneObject object = read(element);
+    object.name = read_name(element.at("name"));
+    scene.objects.push_back(std::move(object));
+  }
+}
+
+}  // namespace
+
+std::string read_name(const Reader& reader) {
+  std::string name = reader.text(kMaxLinkNameBytes);
+  if (name.empty())
+    reader.refuse("is empty");
+  return name;
 }
 
 Shape read_shape(const Reader& reader) {
@@ -73,30 +97,6 @@ OrderedJson shape_object(const Shape& shape) {
              shape);
   return object;
 }
-
-Eigen::Isometry3d read_center(const Reader& reader) {
-  const Eigen::VectorXd center = reader.vector(3);
-  if (center.size() != 3 || center.cwiseAbs().maxCoeff() > kMaxPlacement_m)
-    reader.refuse("must be 3 coordinates of at most " + std::to_string(kMaxPlacement_m) + " m");
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() = center;
-  return T;
-}
-
-/// Calls read(element) for each element of an optional list and collects what it returns.
-template <typename Read>
-void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
-  const auto objects = reader.find(key);
-  if (!objects)
-    return;
-  for (const Reader& element : objects->elements(kMaxObjects)) {
-    SceneObject object = read(element);
-    object.name = read_name(element.at("name"));
-    scene.objects.push_back(std::move(object));
-  }
-}
-
-}  // namespace
 
 OrderedJson scene_object(const Scene& scene) {
   OrderedJson document;
@@ -134,6 +134,10 @@ OrderedJson scene_object(const Scene& scene) {
 
 Scene read_scene(const Reader& reader) {
   reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes"});
+  return read_solids(reader);
+}
+
+Scene read_solids(const Reader& reader) {
   Scene scene;
   read_objects(reader, "boxes", scene, [](const Reader& box) {
     return SceneObject{"", BoxShape{read_size(box.at("size"))}, box.at("pose").pose()};

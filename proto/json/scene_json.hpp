@@ -10,8 +10,16 @@ namespace kinship::json {
 OrderedJson scene_object(const Scene& scene);
 OrderedJson attached_object(const AttachedObject& attached);
 
+OrderedJson shape_object(const Shape& shape);
+
 /// Absent lists are empty ones. Meshes are refused.
 Scene read_scene(const Reader& reader);
+/// The same from an object that has other members too.
+Scene read_solids(const Reader& reader);
 AttachedObject read_attached(const Reader& reader);
+Shape read_shape(const Reader& reader);
+
+/// A name of 1 to kMaxLinkNameBytes bytes.
+std::string read_name(const Reader& reader);
 
 }  // namespace kinship::json

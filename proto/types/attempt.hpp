@@ -7,6 +7,7 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/path.hpp"
+#include "proto/types/recorded_scene.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship {
@@ -41,7 +42,8 @@ struct Attempt {
   std::string task;
   std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, kept as missing
   PlanningRecord record;
-  std::optional<Path> path;  ///< present exactly if solved
+  std::optional<Path> path;            ///< present exactly if solved
+  std::optional<RecordedScene> scene;  ///< if the client likes
 };
 
 }  // namespace kinship

@@ -35,12 +35,30 @@ void expect_same_pose(const std::optional<Eigen::Isometry3d>& written,
   read = written;
 }
 
+/// The same for the poses of a scene; its content says whether they are the same.
+void expect_same_scene(const std::optional<RecordedScene>& written,
+                       std::optional<RecordedScene>& read) {
+  ASSERT_EQ(read.has_value(), written.has_value());
+  if (!written)
+    return;
+  EXPECT_EQ(content_digest(*read), content_digest(*written));
+  ASSERT_EQ(read->objects.size(), written->objects.size());
+  for (std::size_t i = 0; i < written->objects.size(); ++i)
+    read->objects[i].T_task_object = written->objects[i].T_task_object;
+  ASSERT_EQ(read->held.size(), written->held.size());
+  for (std::size_t i = 0; i < written->held.size(); ++i)
+    read->held[i].T_transfer_object = written->held[i].T_transfer_object;
+}
+
 TEST(CodecRoundTrip, BatchOfAttemptsComesBack) {
   test::RandomValues values(kSeed);
   for (int i = 0; i < kCases; ++i) {
     ReportRequest written;
-    for (int n = values.below(10); n > 0; --n)
-      written.attempts.push_back(values.attempt());
+    for (int n = values.below(10); n > 0; --n) {
+      Attempt& attempt = written.attempts.emplace_back(values.attempt());
+      if (values.coin())
+        attempt.scene = values.recorded_scene();
+    }
     const auto message = encode(kHead, written);
     ASSERT_TRUE(message) << message.error().message;
     EXPECT_EQ(head_of(message->wire), kHead);
@@ -49,8 +67,21 @@ TEST(CodecRoundTrip, BatchOfAttemptsComesBack) {
     EXPECT_TRUE(read.refused.empty());
     for (std::size_t n = 0; n < written.attempts.size(); ++n) {
       expect_same_pose(written.attempts[n].T_task_base, read.attempts[n].T_task_base);
+      expect_same_scene(written.attempts[n].scene, read.attempts[n].scene);
       EXPECT_EQ(json::to_json(read.attempts[n]), json::to_json(written.attempts[n]));
     }
+  }
+}
+
+TEST(CodecRoundTrip, SceneComesBackFromAFileWithTheSameContent) {
+  test::RandomValues values(kSeed);
+  for (int i = 0; i < kCases; ++i) {
+    Attempt written = values.attempt(3);
+    written.scene = values.recorded_scene();
+    const auto read = json::attempt_from_json(json::to_json(written)).value_or_throw().attempt;
+    ASSERT_TRUE(read.scene);
+    EXPECT_EQ(content_digest(*read.scene), content_digest(*written.scene));
+    EXPECT_EQ(scene_bytes(*read.scene), scene_bytes(*written.scene));
   }
 }
 
@@ -136,8 +167,35 @@ class Vandal {
         return spoil(wire.dof);
       case 5:
         return spoil(wire.waypoints);
+      case 6:
+      case 7:
+      case 8:
+        return wire.scene._length > 0 ? spoil(wire.scene._buffer[0]) : shorten(wire.scene);
       default:
         return spoil(wire.record._buffer[0]);
+    }
+  }
+
+  void spoil(kinship_wire_RecordedScene& wire) {
+    const bool one_is_held = wire.held._length > 0 && values_.coin();
+    auto* const solid = one_is_held                ? &wire.held._buffer[0]
+                        : wire.objects._length > 0 ? &wire.objects._buffer[0]
+                                                   : nullptr;
+    switch (solid == nullptr ? values_.below(3) : values_.below(7)) {
+      case 0:
+        return shorten(wire.objects);
+      case 1:
+        return shorten(wire.held);
+      case 2:
+        return shorten(wire.allowed_collisions);
+      case 3:
+        return spoil(solid->name);
+      case 4:
+        return spoil(solid->shape);
+      case 5:
+        return spoil(solid->size[values_.below(3)]);
+      default:
+        return spoil(solid->pose[values_.below(7)]);
     }
   }
 
@@ -298,6 +356,7 @@ TEST(CodecGarbage, SpoiledAttemptIsRefusedOrKeepsTheRules) {
   for (int i = 0; i < 20 * kCases; ++i) {
     ReportRequest written;
     written.attempts = {values.attempt(5), values.attempt(5)};
+    written.attempts[0].scene = values.recorded_scene();
     auto message = encode(kHead, written).value_or_throw();
     vandal.spoil(message.wire.attempts._buffer[0]);
     const auto read = decode(message.wire).value_or_throw();

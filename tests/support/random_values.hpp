@@ -51,6 +51,34 @@ class RandomValues {
     return Eigen::MatrixXd::NullaryExpr(rows, columns, [this] { return number(); });
   }
 
+  double size() { return 0.001 + share(); }
+
+  Shape shape() {
+    switch (below(4)) {
+      case 0:
+        return BoxShape{{size(), size(), size()}};
+      case 1:
+        return CylinderShape{size(), size()};
+      case 2:
+        return SphereShape{size()};
+      default:
+        return CapsuleShape{size(), size()};
+    }
+  }
+
+  RecordedScene recorded_scene(int max_objects = 8) {
+    RecordedScene scene;
+    for (int i = below(max_objects + 1); i > 0; --i)
+      scene.objects.push_back({name(30), shape(), pose()});
+    for (int i = below(3); i > 0; --i)
+      scene.held.push_back({name(30), shape(), pose()});
+    for (const SceneObject& object : scene.objects)
+      for (const HeldObject& held : scene.held)
+        if (coin())
+          scene.allowed_collisions.emplace_back(held.name, object.name);
+    return scene;
+  }
+
   Attempt attempt(int max_waypoints = 50) {
     Attempt attempt;
     attempt.report_uuid = Uuid::random();

@@ -55,6 +55,78 @@ TEST(ReportCodec, SizesAreLimited) {
   EXPECT_EQ(complaint(solved_attempt(32, 16384)), "waypoints (bytes): 4194304 exceeds 524288");
 }
 
+RecordedScene cups_on_a_table(int cups) {
+  RecordedScene scene;
+  scene.objects.push_back({"table", BoxShape{{1, 2, 0.1}}});
+  for (int i = 0; i < cups; ++i)
+    scene.objects.push_back({"cup", CylinderShape{0.04, 0.1}});
+  scene.held.push_back({"can", SphereShape{0.05}});
+  scene.allowed_collisions.emplace_back("can", "table");
+  return scene;
+}
+
+TEST(ReportCodec, NamesTheRuleThatASceneBreaks) {
+  Attempt good = solved_attempt(7, 3);
+  good.scene = cups_on_a_table(3);
+  EXPECT_EQ(complaint(good), "");
+  Attempt bad = good;
+  bad.scene->objects[0].shape = BoxShape{{1, 0, 1}};
+  EXPECT_EQ(complaint(bad), "scene: 'table': size 0 m is not above 0 and at most 1000 m");
+  bad.scene->objects[0].shape = BoxShape{{1, 1, std::numeric_limits<double>::quiet_NaN()}};
+  EXPECT_EQ(complaint(bad), "scene: 'table': size nan m is not above 0 and at most 1000 m");
+  bad = good;
+  bad.scene->held[0].T_transfer_object.translation().x() = 2000;
+  EXPECT_EQ(complaint(bad), "scene: 'can': pose: coordinate 2000 m exceeds 1000 m");
+  bad = good;
+  bad.scene->held[0].name = "";
+  EXPECT_EQ(complaint(bad), "scene: a name is empty");
+  bad = good;
+  bad.scene->allowed_collisions.emplace_back("can", "panda_hand");
+  EXPECT_EQ(complaint(bad),
+            "scene: allowed_collisions names 'panda_hand', which is neither an object nor held");
+  bad = good;
+  bad.scene = cups_on_a_table(2048);
+  EXPECT_EQ(complaint(bad), "scene: 2049 objects exceed 2048");
+  bad.scene = cups_on_a_table(2000);
+  for (SceneObject& object : bad.scene->objects)
+    object.name += std::string(40, '_');
+  bad.scene->allowed_collisions.clear();
+  EXPECT_EQ(complaint(bad), "scene: 278240 bytes exceed 262144");
+}
+
+TEST(ReportCodec, BadSceneOnTheWireIsRefusedAlone) {
+  ReportRequest request;
+  request.attempts = {solved_attempt(7, 3), solved_attempt(7, 3), solved_attempt(7, 3)};
+  request.attempts[0].scene = request.attempts[1].scene = cups_on_a_table(1);
+  auto message = encode({}, request).value_or_throw();
+  kinship_wire_RecordedScene& scene = message.wire.attempts._buffer[1].scene._buffer[0];
+  EXPECT_EQ(decode(message.wire)->attempts.size(), 3U);
+  scene.objects._buffer[1].shape = 4;
+  EXPECT_EQ(decode(message.wire)->refused.at(0).message, "scene: shape: 4 is not between 0 and 3");
+  scene.objects._buffer[1].shape = 3;
+  scene.objects._buffer[1].size[1] = -1;
+  EXPECT_EQ(decode(message.wire)->refused.at(0).message,
+            "scene: 'cup': size -1 m is not above 0 and at most 1000 m");
+  scene.objects._buffer[1].size[1] = 1;
+  scene.objects._buffer[1].pose[6] = 3;
+  EXPECT_EQ(decode(message.wire)->refused.at(0).message.find("scene: 'cup': pose: "), 0U);
+  scene.objects._buffer = nullptr;  // what a shorter message leaves
+  EXPECT_EQ(decode(message.wire)->refused.at(0).message,
+            "scene: allowed_collisions names 'table', which is neither an object nor held");
+}
+
+TEST(ReportCodec, ScenesOfABatchAreLimitedTogether) {
+  ReportRequest request;
+  request.attempts.assign(2, solved_attempt(1, 2));
+  for (Attempt& attempt : request.attempts)
+    attempt.scene = cups_on_a_table(1500);
+  EXPECT_EQ(encode({}, request).error().message,
+            "scenes of a batch (bytes): 297448 exceeds 262144");
+  request.attempts.resize(1);
+  request.attempts[0].path = Path(Eigen::MatrixXd::Zero(4, 16384));
+  EXPECT_TRUE(encode({}, request));  // the largest path with a large scene is one sample
+}
+
 TEST(ReportCodec, BatchIsLimitedWhenItIsEncoded) {
   ReportRequest request;
   request.attempts.assign(257, solved_attempt(1, 2));

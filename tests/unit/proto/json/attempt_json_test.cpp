@@ -106,11 +106,46 @@ TEST(AttemptJson, RefusalNamesFieldValueAndLimit) {
             "arm: 'lucky' is not one of guided, control, uniform");
   EXPECT_EQ(message_of(replaced(solved_line(), "[0.3,0.4]", "[0.3]")),
             "waypoints[1]: 1 numbers, the first has 2");
-  EXPECT_EQ(message_of(replaced(solved_line(), "\"scene\":null", "\"scene\":{}")),
-            "scene: not supported yet, must be null");
   EXPECT_EQ(message_of(replaced(solved_line(), "panda-2", "")), "robot: label: is empty");
   EXPECT_EQ(message_of(replaced(solved_line(), "Zelle 3", "Zelle\\n3")),
             "machine: byte 6 is a control character");
+}
+
+std::string with_scene(const std::string& scene) {
+  return replaced(solved_line(), "\"scene\":null", "\"scene\":" + scene);
+}
+
+TEST(AttemptJson, SceneIsAsInAProblemWithWhatWasHeld) {
+  const auto named = attempt_from_json(with_scene(
+      R"({"boxes":[{"name":"table","pose":[1,0,0,0,0,0,1],"size":[1,2,0.1]}],)"
+      R"("spheres":[{"name":"ball","center":[0,0,1],"radius":0.2}],)"
+      R"("held":[{"name":"can","shape":{"cylinder":[0.03,0.1]},"T_transfer_object":[0,0,0.05,0,0,0,1]}],)"
+      R"("allowed_collisions":[["can","table"]]})"));
+  ASSERT_TRUE(named) << named.error().message;
+  const RecordedScene& scene = named->attempt.scene.value();
+  ASSERT_EQ(scene.objects.size(), 2U);
+  EXPECT_EQ(scene.objects[0].name, "table");
+  EXPECT_EQ(std::get<BoxShape>(scene.objects[0].shape).size, Eigen::Vector3d(1, 2, 0.1));
+  EXPECT_EQ(std::get<SphereShape>(scene.objects[1].shape).radius_m, 0.2);
+  ASSERT_EQ(scene.held.size(), 1U);
+  EXPECT_EQ(std::get<CylinderShape>(scene.held[0].shape).length_m, 0.1);
+  EXPECT_EQ(scene.held[0].T_transfer_object.translation(), Eigen::Vector3d(0, 0, 0.05));
+  EXPECT_EQ(scene.allowed_collisions.front(), std::pair(std::string("can"), std::string("table")));
+  EXPECT_TRUE(attempt_from_json(with_scene("{}"))->attempt.scene.has_value());
+}
+
+TEST(AttemptJson, BadSceneIsRefusedByName) {
+  EXPECT_EQ(message_of(with_scene(R"({"boxs":[]})")), "scene: has an unknown member 'boxs'");
+  EXPECT_EQ(message_of(with_scene(R"({"meshes":[{"name":"m"}]})")),
+            "scene.meshes: meshes are not supported yet");
+  EXPECT_EQ(message_of(with_scene(R"({"allowed_collisions":[["can","panda_hand"]]})")),
+            "scene: allowed_collisions names 'can', which is neither an object nor held");
+  EXPECT_EQ(message_of(with_scene(R"({"spheres":[{"name":"ball","center":[0,0,1],"radius":0}]})"))
+                .find("scene.spheres[0].radius: 0 is below "),
+            0U);
+  EXPECT_EQ(
+      message_of(with_scene(R"({"held":[{"name":"can","link":"hand","shape":{"sphere":1}}]})")),
+      "scene.held[0]: has an unknown member 'link'");
 }
 
 TEST(AttemptJson, DofAndLengthAreLimited) {

@@ -1,0 +1,91 @@
+#include "proto/codec/scene_codec.hpp"
+
+#include <cstring>
+
+#include "proto/codec/writer.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship::codec {
+namespace {
+
+constexpr std::uint32_t kLastShape = std::variant_size_v<Shape> - 1;
+
+void write_solid(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T,
+                 Arena& arena, kinship_wire_SceneSolid& wire) {
+  wire.name = arena.text(name);
+  const ShapeNumbers numbers = to_numbers(shape);
+  wire.shape = static_cast<std::uint32_t>(numbers.kind);
+  std::copy(numbers.sizes.begin(), numbers.sizes.end(), std::begin(wire.size));
+  const PoseArray pose = to_pose_array(T);
+  std::copy(pose.begin(), pose.end(), std::begin(wire.pose));
+}
+
+Shape read_shape(const kinship_wire_SceneSolid& wire, Reader& reader) {
+  const std::uint32_t kind = reader.enumerator("scene: shape", wire.shape, kLastShape);
+  return to_shape({kind, {wire.size[0], wire.size[1], wire.size[2]}});
+}
+
+/// name, shape and pose of a solid, as SceneObject and HeldObject begin.
+template <typename Thing>
+Thing read_solid(const kinship_wire_SceneSolid& wire, Reader& reader) {
+  std::string name = reader.text("scene: a name", wire.name, kMaxLinkNameBytes);
+  Shape shape = read_shape(wire, reader);
+  const Eigen::Isometry3d T = reader.pose("scene: '" + name + "'", wire.pose);
+  return {std::move(name), shape, T};
+}
+
+std::size_t length(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
+
+}  // namespace
+
+void write_scene(const RecordedScene& scene, Arena& arena, kinship_wire_RecordedScene& wire) {
+  arena.resize(wire.objects, scene.objects.size());
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    write_solid(object.name, object.shape, object.T_task_object, arena, wire.objects._buffer[i]);
+  }
+  arena.resize(wire.held, scene.held.size());
+  for (std::size_t i = 0; i < scene.held.size(); ++i) {
+    const HeldObject& held = scene.held[i];
+    write_solid(held.name, held.shape, held.T_transfer_object, arena, wire.held._buffer[i]);
+  }
+  arena.resize(wire.allowed_collisions, scene.allowed_collisions.size());
+  for (std::size_t i = 0; i < scene.allowed_collisions.size(); ++i) {
+    const auto& [first, second] = scene.allowed_collisions[i];
+    wire.allowed_collisions._buffer[i] = {arena.text(first), arena.text(second)};
+  }
+}
+
+RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader) {
+  RecordedScene scene;
+  reader.rules.at_most("scene: objects", elements(wire.objects).size(), kMaxSceneObjects)
+      .at_most("scene: held things", elements(wire.held).size(), kMaxHeldObjects)
+      .at_most("scene: allowed pairs", elements(wire.allowed_collisions).size(), kMaxAllowedPairs)
+      .at_most("scene (bytes)", scene_bytes(wire), kMaxSceneBytes);
+  if (reader.rules.broken())
+    return scene;
+  for (const kinship_wire_SceneSolid& solid : elements(wire.objects))
+    scene.objects.push_back(read_solid<SceneObject>(solid, reader));
+  for (const kinship_wire_SceneSolid& solid : elements(wire.held))
+    scene.held.push_back(read_solid<HeldObject>(solid, reader));
+  for (const kinship_wire_SolidPair& pair : elements(wire.allowed_collisions))
+    scene.allowed_collisions.emplace_back(
+        reader.text("scene: allowed_collisions", pair.first, kMaxLinkNameBytes),
+        reader.text("scene: allowed_collisions", pair.second, kMaxLinkNameBytes));
+  return scene;
+}
+
+std::size_t scene_bytes(const kinship_wire_RecordedScene& wire) {
+  constexpr std::size_t kSolidBytes = 96, kPairBytes = 16;  // as the contract says
+  std::size_t bytes = kSolidBytes * (elements(wire.objects).size() + elements(wire.held).size()) +
+                      kPairBytes * elements(wire.allowed_collisions).size();
+  for (const kinship_wire_SceneSolid& solid : elements(wire.objects))
+    bytes += length(solid.name);
+  for (const kinship_wire_SceneSolid& solid : elements(wire.held))
+    bytes += length(solid.name);
+  for (const kinship_wire_SolidPair& pair : elements(wire.allowed_collisions))
+    bytes += length(pair.first) + length(pair.second);
+  return bytes;
+}
+
+}  // namespace kinship::codec

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "proto/json/reader.hpp"
+#include "proto/json/writer.hpp"
+#include "proto/types/recorded_scene.hpp"
+
+/// The scene of an attempt: the lists of a problem's scene, and `held` and `allowed_collisions`.
+/// For this library's sources only.
+namespace kinship::json {
+
+OrderedJson recorded_scene_object(const RecordedScene& scene);
+
+/// Absent lists are empty ones. Refuses what check_scene() does; objects come in the order of the
+/// lists: boxes, cylinders, spheres, capsules.
+RecordedScene read_recorded_scene(const Reader& reader);
+
+}  // namespace kinship::json
