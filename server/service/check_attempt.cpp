@@ -108,6 +108,9 @@ std::optional<Error> check_attempt(const Attempt& attempt, const Robot& robot) {
     return error;
   if (auto error = check_placement(attempt.T_task_base))
     return error;
+  if (attempt.scene)
+    if (auto error = check_scene(*attempt.scene))
+      return error;
   const bool solved = attempt.record.outcome == Outcome::Solved;
   if (solved && !attempt.path)
     return invalid("outcome: solved, but there is no path");

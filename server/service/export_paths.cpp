@@ -13,7 +13,7 @@ namespace {
 /// Cursors name the part they belong to: the digest of the last robot, or the store's own cursor.
 constexpr std::string_view kRobots = "robots ", kAttempts = "attempts ";
 /// Of 8 bytes each; as text a value has up to 24.
-constexpr std::size_t kWaypointBytes = kMaxPageBytes / 3;
+constexpr std::size_t kAttemptBytes = kMaxPageBytes / 3;
 constexpr std::size_t kUrdfBytes = kMaxPageBytes / 2;
 
 std::set<Digest> robots_with_attempts(const store::Store& store, const std::string& task) {
@@ -86,7 +86,7 @@ AdminPage export_paths(const store::Store& store, const std::optional<Digest>& r
   const std::string_view inner =
       cursor.starts_with(kAttempts) ? cursor.substr(kAttempts.size()) : std::string_view();
   store::Page<Attempt> attempts =
-      store.export_attempts(robot, request.task, inner, page_size(request), kWaypointBytes);
+      store.export_attempts(robot, request.task, inner, page_size(request), kAttemptBytes);
   if (!attempts.next_cursor.empty())
     attempts.next_cursor = std::string(kAttempts) + attempts.next_cursor;
   return page_of(std::move(attempts));

@@ -43,6 +43,8 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
     batch->costs.push_back(cost_of(attempt));
     if (attempt.path)
       batch->bytes += sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
+    if (attempt.scene)
+      batch->bytes += scene_bytes(*attempt.scene);
   }
   batch->attempts = std::move(attempts);
   received_ += batch->receipts.size();

@@ -25,7 +25,7 @@ class Ingest {
  public:
   struct Options {
     std::size_t max_attempts = 4096;  ///< taken in and not yet answered; more are asked to wait
-    std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints
+    std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints and scenes
     /// Called on the store's writer thread for each task that has a new path, before the reply.
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
     /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how

@@ -32,6 +32,7 @@ struct StoredPath {
   std::optional<Eigen::Isometry3d> T_task_base;
   std::int64_t received_ms = 0;
   Path path;
+  std::optional<std::int64_t> scene_id = {};  ///< of the scene it was planned in, for read_scene()
 };
 
 /// Which paths of a robot and task are read: a page of them, in the order of arrival.
@@ -120,6 +121,11 @@ class Store {
   virtual std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                              const PathRange& range) const = 0;
 
+  /// The scene of a path: equal ids, equal scenes. Nothing if it is not there or damaged; one whose
+  /// blob fails its CRC is set aside (kept, marked damaged, counted in status().message) until a
+  /// report brings it anew; its paths are read all the same.
+  virtual std::optional<RecordedScene> read_scene(std::int64_t scene_id) const = 0;
+
   /// Takes a path, or all paths of a task, out of every fit, durable on return. They are kept for
   /// the record, their report UUIDs stay known, and their content may be reported anew. Raises
   /// generation and retired_generation of each (robot, task) that lost a path.
@@ -150,11 +156,12 @@ class Store {
   /// By task, robot and arrival, retired ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
-  /// An attempt with its path, by report UUID; unsolved ones too. Without its path if that one is
-  /// damaged.
+  /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path or
+  /// scene if that one is damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
-  /// Attempts with their paths for export, oldest first; without retired and damaged paths'
-  /// attempts. A page ends early once its waypoints exceed `max_bytes`, but holds one at least.
+  /// Attempts with their paths and scenes for export, oldest first; without retired and damaged
+  /// paths' attempts. A page ends early once its waypoints and scenes (as scene_bytes() counts)
+  /// exceed `max_bytes`, but holds one at least.
   virtual Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                         std::string_view cursor, std::size_t limit,
                                         std::size_t max_bytes) const = 0;

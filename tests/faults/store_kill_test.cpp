@@ -27,9 +27,17 @@ const RobotRecord& robot() {
   return kRobot;
 }
 
+/// Two of three carry a scene: one that many share, and one of their own.
 Attempt attempt(std::uint64_t number) {
-  return number % 5 == 0 ? test::make_unsolved(robot().digest, "shelf", number)
-                         : test::make_attempt(robot().digest, "shelf", number);
+  Attempt attempt = number % 5 == 0 ? test::make_unsolved(robot().digest, "shelf", number)
+                                    : test::make_attempt(robot().digest, "shelf", number);
+  const double height_m = number % 3 == 1 ? 1.0 : 1e-3 * static_cast<double>(1 + number % 500'000);
+  if (number % 3 != 0)
+    attempt.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}},
+                                   {"shelf", BoxShape{{0.3, 1, height_m}}, test::make_pose()}},
+                                  {},
+                                  {}};
+  return attempt;
 }
 
 /// A client of the doomed server: reports one attempt after the other and writes the number of
@@ -96,8 +104,11 @@ std::size_t count_lost(const Store& store, const std::set<std::uint64_t>& ledger
   for (const std::uint64_t number : ledger) {
     const Attempt wanted = attempt(number);
     const std::optional<Attempt> found = store.find_attempt(wanted.report_uuid);
-    const bool same = found && found->path.has_value() == wanted.path.has_value() &&
-                      (!wanted.path || found->path->waypoints() == wanted.path->waypoints());
+    const bool same =
+        found && found->path.has_value() == wanted.path.has_value() &&
+        (!wanted.path || found->path->waypoints() == wanted.path->waypoints()) &&
+        found->scene.has_value() == wanted.scene.has_value() &&
+        (!wanted.scene || content_digest(*found->scene) == content_digest(*wanted.scene));
     if (!same)
       ++lost;
   }

@@ -36,6 +36,20 @@ inline Attempt golden_retired_attempt() {
   return make_attempt(golden_robots()[0].digest, "drawer", 8);
 }
 
+/// In stores of schema 3 and later; the only ones of their task. Their scene is one.
+inline std::vector<Attempt> golden_attempts_with_scene() {
+  std::vector<Attempt> attempts = {make_attempt(golden_robots()[1].digest, "table", 20),
+                                   make_attempt(golden_robots()[1].digest, "table", 21)};
+  for (Attempt& attempt : attempts)
+    attempt.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}},
+                                   {"cup", CylinderShape{0.04, 0.1}, make_pose()},
+                                   {"ball", SphereShape{0.1}},
+                                   {"pipe", CapsuleShape{0.02, 0.5}, make_pose()}},
+                                  {{"can", CylinderShape{0.03, 0.1}, make_pose()}},
+                                  {{"can", "table"}}};
+  return attempts;
+}
+
 /// Evicted after one fit in stores of schema 2 and later.
 inline Distribution golden_evicted_distribution() {
   return make_distribution(golden_robots()[1].digest, "bin", 101);

@@ -47,8 +47,8 @@ TEST_P(GoldenStore, StillHasEveryAttemptAndPath) {
     ASSERT_EQ(found->path.has_value(), wanted.path.has_value());
     EXPECT_TRUE(!wanted.path || found->path->waypoints() == wanted.path->waypoints());
   }
-  EXPECT_EQ(store_->status().attempts, GetParam() < 2 ? 8U : 9U);
-  EXPECT_EQ(store_->status().paths, 7U);
+  EXPECT_EQ(store_->status().attempts, GetParam() < 2 ? 8U : GetParam() < 3 ? 9U : 11U);
+  EXPECT_EQ(store_->status().paths, GetParam() < 3 ? 7U : 9U);
   EXPECT_EQ(store_->generation(test::golden_robots()[0].digest, "bin"), 1U);
 }
 
@@ -86,12 +86,13 @@ TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
 }
 
 TEST_P(GoldenStore, RetiresExportsAndEvictsWhatItHad) {
-  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 8U);
+  const std::size_t with_scene = GetParam() < 3 ? 0 : 2;
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 8U + with_scene);
   const Attempt bad = test::golden_attempts()[6];
   EXPECT_EQ(store_->retire_path(bad.report_uuid)->paths, 1U);
   EXPECT_EQ(store_->reset_task("shelf")->paths, 5U);
-  EXPECT_EQ(store_->status().paths, 1U);
-  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 2U);
+  EXPECT_EQ(store_->status().paths, 1U + with_scene);
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 2U + with_scene);
   const Distribution distribution = test::golden_distribution();
   EXPECT_TRUE(store_->evict_distribution(distribution.id));
   EXPECT_EQ(store_->put_distribution(distribution), 3U);
@@ -111,6 +112,28 @@ TEST_P(GoldenStore, StillKnowsWhatWasRetiredAndEvicted) {
   EXPECT_EQ(store_->put_distribution(test::golden_evicted_distribution()), 2U);
 }
 
+TEST_P(GoldenStore, StillHasItsScenesOnce) {
+  if (GetParam() < 3)
+    GTEST_SKIP() << "no attempt carried its scene then";
+  const auto paths =
+      store_->read_paths(test::golden_robots()[1].digest, "table", {.after_id = 0, .limit = 9});
+  ASSERT_EQ(paths.size(), 2U);
+  ASSERT_TRUE(paths[0].scene_id);
+  EXPECT_EQ(paths[1].scene_id, paths[0].scene_id);
+  const Attempt wanted = test::golden_attempts_with_scene()[0];
+  const std::optional<RecordedScene> scene = store_->read_scene(*paths[0].scene_id);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(content_digest(*scene), content_digest(*wanted.scene));
+  EXPECT_EQ(test::report(*store_, {wanted})[0].status, ReceiptStatus::Duplicate);
+}
+
+TEST_P(GoldenStore, TakesASceneWithItsReport) {
+  Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1001);
+  fresh.scene = test::golden_attempts_with_scene()[0].scene;
+  EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
+  EXPECT_TRUE(store_->find_attempt(fresh.report_uuid)->scene);
+}
+
 TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   for (const Receipt& receipt : test::report(*store_, test::golden_attempts()))
     EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate) << receipt.message;
@@ -118,7 +141,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3));
 
 }  // namespace
 }  // namespace kinship

@@ -20,6 +20,7 @@ int make(const std::filesystem::path& file) {
     for (const store::RobotRecord& robot : test::golden_robots())
       static_cast<void>(store->register_robot(robot).value_or_throw());
     test::report(*store, test::golden_attempts());
+    test::report(*store, test::golden_attempts_with_scene());
     store->put_distribution(test::golden_distribution());
     store->put_distribution(test::golden_distribution());
     test::report(*store, {test::golden_retired_attempt()});

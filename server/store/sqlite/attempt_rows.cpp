@@ -5,6 +5,7 @@
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/scene_rows.hpp"
 
 namespace kinship::store {
 namespace {
@@ -45,16 +46,16 @@ struct AttemptPath {
 };
 
 AttemptPath keep_path(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
-                      std::int64_t received_ms) {
+                      const PathArrival& arrival) {
   if (!prepared.path)
     return {};
   if (const auto same = find_path(database, key, prepared.path->content))
     return {AttemptStatus::DuplicateContent, same};
-  return {AttemptStatus::Stored, insert_path(database, key, prepared, received_ms)};
+  return {AttemptStatus::Stored, insert_path(database, key, prepared, arrival)};
 }
 
 void insert_row(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
-                const AttemptPath& path, std::int64_t received_ms) {
+                const AttemptPath& path, const PathArrival& arrival) {
   const Attempt& attempt = prepared.attempt;
   const PlanningRecord& record = attempt.record;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
@@ -66,17 +67,17 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
           "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status,"
           " machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
           " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
-          " distribution_revision, received_ms) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id,
-                 key.robot_id, path.id, static_cast<std::int64_t>(path.status),
-                 std::string_view(attempt.machine), blob_or_null(T_task_base),
-                 code_of(record.outcome), std::string_view(record.planner),
-                 std::string_view(record.planner_options), record.planning_time_s,
-                 static_cast<std::int64_t>(record.collision_checks),
-                 static_cast<std::int64_t>(record.projections), record.time_limit_s,
-                 code_of(record.arm), record.share, distribution,
-                 static_cast<std::int64_t>(record.distribution_revision), received_ms)
+          " distribution_revision, received_ms, scene_id) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(
+          Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id, key.robot_id,
+          path.id, static_cast<std::int64_t>(path.status), std::string_view(attempt.machine),
+          blob_or_null(T_task_base), code_of(record.outcome), std::string_view(record.planner),
+          std::string_view(record.planner_options), record.planning_time_s,
+          static_cast<std::int64_t>(record.collision_checks),
+          static_cast<std::int64_t>(record.projections), record.time_limit_s, code_of(record.arm),
+          record.share, distribution, static_cast<std::int64_t>(record.distribution_revision),
+          arrival.received_ms, arrival.scene_id)
       .run();
 }
 
@@ -108,9 +109,11 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
 
   const ExperienceKey key{ensure_task(database, attempt.task), robot->id};
   ensure_experience(database, key);
-  const std::int64_t received_ms = now_ms();
-  const AttemptPath path = keep_path(database, prepared, key, received_ms);
-  insert_row(database, prepared, key, path, received_ms);
+  PathArrival arrival{.received_ms = now_ms(), .scene_id = {}};
+  if (prepared.scene)
+    arrival.scene_id = ensure_scene(database, *prepared.scene, arrival.received_ms);
+  const AttemptPath path = keep_path(database, prepared, key, arrival);
+  insert_row(database, prepared, key, path, arrival);
   const bool stored = path.status == AttemptStatus::Stored;
   count_attempt(database, key, attempt.record, stored);
   if (stored) {
@@ -139,9 +142,10 @@ PlanningRecord read_record(const Statement& row, int first_column) {
 }
 
 std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_uuid) {
-  constexpr int kFirstOfRecord = 5;
+  constexpr int kFirstOfRecord = 6;
   const auto query = database.cached(
-      "SELECT robot.digest, task.name, attempt.machine, attempt.T_task_base, attempt.path_id, " +
+      "SELECT robot.digest, task.name, attempt.machine, attempt.T_task_base, attempt.path_id,"
+      " attempt.scene_id, " +
       std::string(kRecordColumns) +
       "FROM attempt JOIN robot ON robot.id = attempt.robot_id "
       "JOIN task ON task.id = attempt.task_id WHERE attempt.report_uuid = ?");
@@ -155,6 +159,8 @@ std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_
   row.attempt.T_task_base = pose_from_blob(query->column_blob(3));
   if (!query->column_is_null(4))
     row.path_id = query->column_integer(4);
+  if (!query->column_is_null(5))
+    row.scene_id = query->column_integer(5);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;
 }

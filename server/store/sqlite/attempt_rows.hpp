@@ -10,17 +10,18 @@
 
 namespace kinship::store {
 
-/// Writes one attempt, and its path if it is new, into the batch.
+/// Writes one attempt, and its path and scene if they are new, into the batch.
 /// \throws SqliteError; what was written by then is the caller's to undo.
 Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared);
 
 /// The task's internal id; makes the task if it is missing.
 std::int64_t ensure_task(Database& database, std::string_view task);
 
-/// An attempt without its path, and the path's id.
+/// An attempt without its path and scene, and their ids.
 struct AttemptRow {
   Attempt attempt;
   std::optional<std::int64_t> path_id;
+  std::optional<std::int64_t> scene_id;
 };
 std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_uuid);
 

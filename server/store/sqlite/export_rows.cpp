@@ -9,6 +9,7 @@
 #include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/scene_rows.hpp"
 
 namespace kinship::store {
 namespace {
@@ -69,9 +70,9 @@ bool is_retired(Database& database, std::int64_t path_id) {
   return query->bind(1, path_id).step() && query->column_integer(0) != 0;
 }
 
-/// Nothing if its path is retired or damaged; a path found damaged now is noted.
+/// Nothing if its path is retired or damaged; a path or scene found damaged now is noted.
 std::optional<Attempt> read_candidate(Database& database, const Candidate& candidate,
-                                      std::vector<std::int64_t>& damaged) {
+                                      ExportRead& noted) {
   if (candidate.path_id && is_retired(database, *candidate.path_id))
     return std::nullopt;
   std::optional<AttemptRow> row = select_attempt(database, candidate.report_uuid);
@@ -79,18 +80,26 @@ std::optional<Attempt> read_candidate(Database& database, const Candidate& candi
     return std::nullopt;
   if (candidate.path_id) {
     PathsRead read = select_path(database, *candidate.path_id);
-    damaged.insert(damaged.end(), read.damaged.begin(), read.damaged.end());
+    noted.damaged.insert(noted.damaged.end(), read.damaged.begin(), read.damaged.end());
     if (!read.paths.empty())
       row->attempt.path = std::move(read.paths.front().path);
   }
   if (row->attempt.path.has_value() != (row->attempt.record.outcome == Outcome::Solved))
     return std::nullopt;
+  if (row->scene_id) {
+    SceneRead read = select_scene(database, *row->scene_id);
+    if (read.damaged)
+      noted.damaged_scenes.push_back(*row->scene_id);
+    row->attempt.scene = std::move(read.scene);
+  }
   return std::move(row->attempt);
 }
 
 std::size_t bytes_of(const Attempt& attempt) {
-  return attempt.path ? static_cast<std::size_t>(attempt.path->waypoints().size()) * sizeof(double)
-                      : 0;
+  const std::size_t waypoints =
+      attempt.path ? static_cast<std::size_t>(attempt.path->waypoints().size()) * sizeof(double)
+                   : 0;
+  return waypoints + (attempt.scene ? scene_bytes(*attempt.scene) : 0);
 }
 
 }  // namespace
@@ -111,7 +120,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
     if (candidates.empty())
       return read;
     for (const Candidate& candidate : candidates) {
-      if (std::optional<Attempt> attempt = read_candidate(database, candidate, read.damaged)) {
+      if (std::optional<Attempt> attempt = read_candidate(database, candidate, read)) {
         bytes += bytes_of(*attempt);
         if (read.page.rows.size() == rows || (!read.page.rows.empty() && bytes > max_bytes)) {
           read.page.next_cursor = std::to_string(last_id);

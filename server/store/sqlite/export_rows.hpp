@@ -10,10 +10,11 @@
 
 namespace kinship::store {
 
-/// Attempts with their paths, and the paths that turned out damaged on the way.
+/// Attempts with their paths and scenes, and those of them that turned out damaged on the way.
 struct ExportRead {
   Page<Attempt> page;
-  std::vector<std::int64_t> damaged;
+  std::vector<std::int64_t> damaged;  ///< paths
+  std::vector<std::int64_t> damaged_scenes;
 };
 
 /// A page of Store::export_attempts(). The cursor is the id of the last attempt looked at.

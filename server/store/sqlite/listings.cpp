@@ -260,7 +260,8 @@ void count_rows(Database& database, StoreStatus& status) {
       " (SELECT coalesce(sum(attempts), 0) FROM experience),"
       " (SELECT count(*) FROM distribution), (SELECT count(*) FROM path WHERE damaged = 1),"
       " (SELECT user_version FROM pragma_user_version),"
-      " (SELECT page_count FROM pragma_page_count) * (SELECT page_size FROM pragma_page_size)");
+      " (SELECT page_count FROM pragma_page_count) * (SELECT page_size FROM pragma_page_size),"
+      " (SELECT count(*) FROM scene WHERE damaged = 1)");
   query->step();
   status.robots = count_of(*query, 0);
   status.tasks = count_of(*query, 1);
@@ -271,6 +272,8 @@ void count_rows(Database& database, StoreStatus& status) {
   status.bytes = count_of(*query, 7);
   if (const std::uint64_t damaged = count_of(*query, 5); damaged > 0)
     status.message += std::to_string(damaged) + " damaged paths set aside; ";
+  if (const std::uint64_t damaged = count_of(*query, 8); damaged > 0)
+    status.message += std::to_string(damaged) + " damaged scenes set aside; ";
 }
 
 }  // namespace kinship::store

@@ -13,7 +13,7 @@ constexpr std::string_view kContentColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
 constexpr std::string_view kColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
-    " received_ms FROM path ";
+    " received_ms, scene_id FROM path ";
 
 /// Everything that a transfer relies on is under the checksum, not the waypoints alone.
 struct PathContent {
@@ -49,8 +49,11 @@ std::optional<StoredPath> read_row(const Statement& row) {
     if (!T_task_base)
       return std::nullopt;
   }
-  return StoredPath{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
+  StoredPath stored{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
                     row.column_integer(8), std::move(*path)};
+  if (!row.column_is_null(9))
+    stored.scene_id = row.column_integer(9);
+  return stored;
 }
 
 void take_row(const Statement& row, PathsRead& read) {
@@ -94,7 +97,7 @@ std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& k
 }
 
 std::int64_t insert_path(Database& database, const ExperienceKey& key,
-                         const PreparedAttempt& prepared, std::int64_t received_ms) {
+                         const PreparedAttempt& prepared, const PathArrival& arrival) {
   const PreparedPath& path = *prepared.path;
   const auto T_task_base = optional_pose_blob(prepared.attempt.T_task_base);
   const PathContent content{Bytes(prepared.attempt.report_uuid.bytes),
@@ -106,11 +109,12 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
   database
       .cached(
           "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
-          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
                  path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
-                 content.encoding, std::int64_t{content.crc()}, content.waypoints, received_ms)
+                 content.encoding, std::int64_t{content.crc()}, content.waypoints,
+                 arrival.received_ms, arrival.scene_id)
       .run();
   return database.last_insert_id();
 }

@@ -17,9 +17,15 @@ namespace kinship::store {
 std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& key,
                                       const Digest& content);
 
+/// What a path is written with beside what its attempt says.
+struct PathArrival {
+  std::int64_t received_ms = 0;
+  std::optional<std::int64_t> scene_id;
+};
+
 /// \return the id of the new path.
 std::int64_t insert_path(Database& database, const ExperienceKey& key,
-                         const PreparedAttempt& prepared, std::int64_t received_ms);
+                         const PreparedAttempt& prepared, const PathArrival& arrival);
 
 /// Paths as read, and the ids of those whose checksum or content is wrong.
 struct PathsRead {

@@ -19,6 +19,9 @@ std::optional<std::string> reason_against(const Attempt& attempt) {
   if (attempt.T_task_base)
     if (const auto pose = from_pose_array(to_pose_array(*attempt.T_task_base)); !pose)
       return "T_task_base: " + pose.error().message;
+  if (attempt.scene)
+    if (const std::optional<Error> error = check_scene(*attempt.scene))
+      return error->message;
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   for (const std::uint64_t counter :
        {record.collision_checks, record.projections, record.distribution_revision})
@@ -51,7 +54,8 @@ Digest content_digest(const Digest& waypoints,
   return hash.finish();
 }
 
-Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path) {
+Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path,
+                   const std::optional<PreparedScene>& scene) {
   const PlanningRecord& record = attempt.record;
   Sha256 hash;
   hash.add(attempt.robot).add(attempt.machine).add(attempt.task);
@@ -69,6 +73,8 @@ Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& pa
   hash.add(record.distribution_revision);
   if (path)
     hash.add(path->waypoints);  // the placement is in it already, unsnapped
+  if (scene)
+    hash.add(scene->content);
   return hash.finish();
 }
 
@@ -85,9 +91,13 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
     path = PreparedPath{digest, content_digest(digest, attempt.T_task_base), length_of(waypoints),
                         encode_waypoints(waypoints)};
   }
-  const Digest body = body_digest(attempt, path);
+  std::optional<PreparedScene> scene;
+  if (attempt.scene)
+    scene = PreparedScene{content_digest(*attempt.scene), encode_scene(*attempt.scene)};
+  const Digest body = body_digest(attempt, path, scene);
   attempt.path.reset();
-  return PreparedAttempt{std::move(attempt), body, std::move(path)};
+  attempt.scene.reset();
+  return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene)};
 }
 
 }  // namespace kinship::store

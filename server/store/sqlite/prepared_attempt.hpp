@@ -5,6 +5,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
+#include "server/store/sqlite/scene_blob.hpp"
 #include "server/store/sqlite/waypoint_blob.hpp"
 
 namespace kinship::store {
@@ -17,15 +18,23 @@ struct PreparedPath {
   WaypointBlob blob;
 };
 
+/// A scene ready to be written.
+struct PreparedScene {
+  Digest content;  ///< kept once
+  SceneBlob blob;
+};
+
 /// An attempt with all that can be computed before the writer has it.
 struct PreparedAttempt {
-  Attempt attempt;  ///< without its path
+  Attempt attempt;  ///< without its path and scene
   Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
   std::optional<PreparedPath> path;
+  std::optional<PreparedScene> scene;
 };
 
 /// \return the reason if it cannot be stored: solved without a path or the reverse, a placement
-///         that is no pose, a counter over 2^63, more joints or waypoints than the limits.
+///         that is no pose, a scene that breaks a rule, a counter over 2^63, more joints or
+///         waypoints than the limits.
 Result<PreparedAttempt> prepare(Attempt attempt);
 
 }  // namespace kinship::store

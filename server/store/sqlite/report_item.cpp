@@ -30,7 +30,8 @@ ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
     const Uuid uuid = attempt.report_uuid;
     Result<PreparedAttempt> prepared = prepare(std::move(attempt));
     if (prepared) {
-      bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0);
+      bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
+                (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
       prepared_.emplace_back(std::move(prepared).value());
       receipts_.push_back({uuid, ReceiptStatus::TryAgain, ""});
     } else {

@@ -21,6 +21,7 @@
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
+#include "server/store/sqlite/scene_rows.hpp"
 #include "server/store/sqlite/store_backup.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -144,6 +145,11 @@ class SqliteStore : public Store {
         *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
   }
 
+  std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return undamaged(select_scene(*reader, scene_id), scene_id);
+  }
+
   Result<Retirement> retire_path(const Uuid& report_uuid) override {
     return write([&](Batch& batch) { return store::retire_path(batch, report_uuid); });
   }
@@ -210,6 +216,8 @@ class SqliteStore : public Store {
     if (row->path_id)
       for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
         row->attempt.path = std::move(stored.path);
+    if (row->scene_id)
+      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
     return std::move(row->attempt);
   }
 
@@ -219,6 +227,8 @@ class SqliteStore : public Store {
     const ReaderPool::Lease reader = readers_.lease();
     ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
     set_aside_later(std::move(read.damaged));
+    for (const std::int64_t scene : read.damaged_scenes)
+      set_scene_aside_later(scene);
     return std::move(read.page);
   }
 
@@ -247,6 +257,18 @@ class SqliteStore : public Store {
   std::vector<StoredPath> undamaged(PathsRead read) const {
     set_aside_later(std::move(read.damaged));
     return std::move(read.paths);
+  }
+  std::optional<RecordedScene> undamaged(SceneRead read, std::int64_t scene_id) const {
+    if (read.damaged)
+      set_scene_aside_later(scene_id);
+    return std::move(read.scene);
+  }
+  void set_scene_aside_later(std::int64_t scene_id) const {
+    const auto set_aside = [scene_id](Batch& batch) {
+      set_scene_aside(batch.database(), scene_id);
+      return true;
+    };
+    writer_->submit(std::make_unique<CallItem<decltype(set_aside)>>(set_aside));
   }
   void set_aside_later(std::vector<std::int64_t> damaged) const {
     if (!damaged.empty())

@@ -10,6 +10,7 @@
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/scene_rows.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostMessages = 100;
 constexpr double kPagesShare = 0.5;  // of the time: SQLite's own check, which tells no progress
-constexpr double kPathsShare = 0.4;
+constexpr double kPathsShare = 0.35;
+constexpr double kScenesShare = 0.05;
 
 /// A rule that rows must not break, as a query for the words about each row that does.
 struct Rule {
@@ -61,6 +63,11 @@ std::vector<Rule> rules_of(std::int64_t schema) {
   rules.push_back({"evicted_distribution",
                    "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
                    "FROM evicted_distribution JOIN distribution USING (digest)"});
+  if (schema > 2)
+    rules.push_back({"path",
+                     "SELECT 'path ' || path.id || ': has another scene than its attempt' "
+                     "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                     "WHERE damaged = 0 AND path.scene_id IS NOT attempt.scene_id"});
   for (const auto& [arm, code] : {std::pair("guided", "1"), std::pair("control", "2")}) {
     const std::string name = arm;
     // Sums of doubles depend on their order in the last bits.
@@ -102,6 +109,7 @@ class Checker {
   void check_structure();
   void check_robots();
   void check_paths();
+  void check_scenes();
   void check_distributions();
   void check_epoch();
 
@@ -123,6 +131,8 @@ StoreCheck Checker::run(const std::filesystem::path& file) {
   guarded("robot", [&] { check_robots(); });
   (*progress_)(kPagesShare);
   guarded("path", [&] { check_paths(); });
+  if (schema_ > 2)
+    guarded("scene", [&] { check_scenes(); });
   guarded("distribution", [&] { check_distributions(); });
   for (const Rule& rule : rules_of(schema_))
     guarded(rule.table, [&] {
@@ -215,6 +225,19 @@ void Checker::check_paths() {
       note("path", std::to_string(id) + ": damaged (checksum)");
     (*progress_)(kPagesShare +
                  kPathsShare * static_cast<double>(page.last_id) / static_cast<double>(last));
+  }
+}
+
+void Checker::check_scenes() {
+  constexpr std::int64_t kPage = 1000;
+  const std::int64_t last =
+      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM scene"), 1);
+  for (ScenesChecked page = store::check_scenes(*database_, 0, kPage); page.scenes > 0;
+       page = store::check_scenes(*database_, page.last_id, kPage)) {
+    for (const std::int64_t id : page.damaged)
+      note("scene", std::to_string(id) + ": damaged (checksum)");
+    (*progress_)(kPagesShare + kPathsShare +
+                 kScenesShare * static_cast<double>(page.last_id) / static_cast<double>(last));
   }
 }
 

@@ -1,20 +1,17 @@
 #include "server/store/sqlite/waypoint_blob.hpp"
 
-#include <zstd.h>
-
 #include <bit>
 #include <cstring>
-#include <memory>
-#include <new>
+#include <utility>
 
 #include "proto/types/limits.hpp"
+#include "server/store/sqlite/compression.hpp"
 
 namespace kinship::store {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "blobs hold little-endian numbers");
 
-constexpr int kZstdLevel = 1;
 constexpr std::size_t kPlanes = sizeof(double);
 
 /// Small differences of either sign become small numbers.
@@ -61,30 +58,6 @@ Eigen::MatrixXd from_shuffled_differences(const std::vector<std::uint8_t>& plane
   return waypoints;
 }
 
-/// Every thread keeps its context: half a megabyte that would go back to the kernel and come again
-/// with each path.
-std::size_t compress(const std::vector<std::uint8_t>& from, std::vector<std::uint8_t>& to) {
-  struct Free {
-    void operator()(ZSTD_CCtx* context) const noexcept { ZSTD_freeCCtx(context); }
-  };
-  thread_local const std::unique_ptr<ZSTD_CCtx, Free> context(ZSTD_createCCtx());
-  if (!context)
-    throw std::bad_alloc();
-  return ZSTD_compressCCtx(context.get(), to.data(), to.size(), from.data(), from.size(),
-                           kZstdLevel);
-}
-
-/// \return the size, or an error code of zstd.
-std::size_t decompress(std::span<const std::uint8_t> from, std::vector<std::uint8_t>& to) {
-  struct Free {
-    void operator()(ZSTD_DCtx* context) const noexcept { ZSTD_freeDCtx(context); }
-  };
-  thread_local const std::unique_ptr<ZSTD_DCtx, Free> context(ZSTD_createDCtx());
-  if (!context)
-    throw std::bad_alloc();
-  return ZSTD_decompressDCtx(context.get(), to.data(), to.size(), from.data(), from.size());
-}
-
 }  // namespace
 
 WaypointBlob encode_waypoints(const Eigen::MatrixXd& waypoints) {
@@ -93,12 +66,10 @@ WaypointBlob encode_waypoints(const Eigen::MatrixXd& waypoints) {
   blob.waypoint_count = waypoints.cols();
   const auto raw_size = static_cast<std::size_t>(waypoints.size()) * sizeof(double);
 
-  const std::vector<std::uint8_t> planes = shuffled_differences(waypoints);
-  blob.bytes.resize(ZSTD_compressBound(planes.size()));
-  const std::size_t size = compress(planes, blob.bytes);
-  if (ZSTD_isError(size) == 0 && size < raw_size) {
+  if (std::optional<std::vector<std::uint8_t>> compressed =
+          compress(shuffled_differences(waypoints))) {
     blob.encoding = WaypointEncoding::Delta;
-    blob.bytes.resize(size);
+    blob.bytes = std::move(*compressed);
     return blob;
   }
   blob.encoding = WaypointEncoding::Raw;
@@ -120,10 +91,10 @@ std::optional<Path> decode_waypoints(std::int64_t dof, std::int64_t waypoint_cou
     waypoints.resize(dof, waypoint_count);
     std::memcpy(waypoints.data(), bytes.data(), raw_size);
   } else if (encoding == static_cast<std::int64_t>(WaypointEncoding::Delta)) {
-    std::vector<std::uint8_t> planes(raw_size);
-    if (decompress(bytes, planes) != raw_size)
-      return std::nullopt;  // also every error code of zstd
-    waypoints = from_shuffled_differences(planes, dof, waypoint_count);
+    const std::optional<std::vector<std::uint8_t>> planes = decompress(bytes, raw_size);
+    if (!planes)
+      return std::nullopt;
+    waypoints = from_shuffled_differences(*planes, dof, waypoint_count);
   } else {
     return std::nullopt;
   }

@@ -41,6 +41,9 @@ class TroubledStore final : public store::Store {
                                             const store::PathRange& range) const override {
     return store_.read_paths(robot, task, range);
   }
+  std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
+    return store_.read_scene(scene_id);
+  }
   Result<Retirement> retire_path(const Uuid& report_uuid) override {
     return store_.retire_path(report_uuid);
   }

@@ -29,6 +29,9 @@ class Maintenance : public testing::Test {
     static_cast<void>(store->register_robot(panda));
     for (std::uint64_t number = first; number < first + 4; ++number) {
       Attempt attempt = test::make_attempt(panda.digest, "shelf", number);
+      if (number == first)
+        attempt.scene = RecordedScene{
+            {{"table", BoxShape{{1, 1, 0.1}}}, {"bench", BoxShape{{1, 1, 0.1}}}}, {}, {}};
       attempt.record.arm = number % 2 == 0 ? Arm::Guided : Arm::Control;
       test::report(*store, {attempt, test::make_unsolved(panda.digest, "shelf", 1000 + number)});
     }
@@ -110,6 +113,9 @@ TEST_F(Maintenance, ACheckFindsDamageOfEveryKindAndNamesTheRow) {
       {"UPDATE distribution SET payload = CAST (payload || x'00' AS BLOB)", "damaged (checksum)"},
       {"UPDATE evicted_distribution SET digest = (SELECT digest FROM distribution)",
        "evicted, but there"},
+      {"UPDATE scene SET size = size + 1 WHERE encoding = 2", "scene: 1: damaged"},
+      {"UPDATE path SET scene_id = NULL WHERE scene_id = 1", "has another scene than its attempt"},
+      {"UPDATE attempt SET scene_id = 9 WHERE scene_id = 1", "names a scene that is not there"},
       {"UPDATE robot SET urdf = urdf || ' '", "robot: 'panda': its row is damaged"},
       {"DELETE FROM robot_held_joint WHERE joint = 'finger_1'", "robot: 'panda'"},
       {"UPDATE setting SET value = 'x' WHERE key = 'epoch'", "epoch is missing or no UUID"},

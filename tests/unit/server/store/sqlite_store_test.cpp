@@ -78,6 +78,40 @@ TEST_F(SqliteStoreTest, SetsADamagedPathAside) {
   EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.size(), 2U);
 }
 
+TEST_F(SqliteStoreTest, SetsADamagedSceneAsideUntilItComesAgain) {
+  open();
+  Attempt first = attempt(1), second = attempt(2);
+  first.scene = second.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
+  test::report(*store_, {first});
+  damage(
+      "UPDATE scene SET scene = CAST (substr(scene, 1, 20) || x'A5' || substr(scene, 22) AS BLOB)");
+  open();
+  const auto paths = store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 2});
+  ASSERT_EQ(paths.size(), 1U);  // the path is read all the same
+  ASSERT_TRUE(paths[0].scene_id);
+  EXPECT_FALSE(store_->read_scene(*paths[0].scene_id));
+  drain();
+  EXPECT_NE(store_->status().message.find("1 damaged scene"), std::string::npos)
+      << store_->status().message;
+  EXPECT_FALSE(store_->find_attempt(first.report_uuid)->scene);
+  EXPECT_TRUE(store_->find_attempt(first.report_uuid)->path);
+  EXPECT_EQ(store_->export_attempts({}, "", "", 9, 1'000'000).rows.size(), 1U);
+
+  test::report(*store_, {second});
+  EXPECT_TRUE(store_->read_scene(*paths[0].scene_id));
+  EXPECT_EQ(store_->status().message.find("damaged scene"), std::string::npos);
+}
+
+TEST_F(SqliteStoreTest, ASceneUnderAnothersDigestIsDamaged) {
+  open();
+  Attempt first = attempt(1);
+  first.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
+  test::report(*store_, {first});
+  damage("UPDATE scene SET content_sha256 = randomblob(32)");
+  open();
+  EXPECT_FALSE(store_->find_attempt(first.report_uuid)->scene);
+}
+
 TEST_F(SqliteStoreTest, ReopeningAfterAFailureSetsADamagedPathAsideAndGoesOn) {
   open();
   test::report(*store_, {attempt(1), attempt(2), attempt(3)});

@@ -1,0 +1,116 @@
+#include "server/store/sqlite/scene_blob.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "server/store/sqlite/byte_stream.hpp"
+#include "server/store/sqlite/compression.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::uint64_t kFormat = 1;  // written first
+/// Of the largest scene: a solid takes at most 104 bytes beside its name here, 96 for
+/// kMaxSceneBytes.
+constexpr std::int64_t kMaxPlainBytes = std::int64_t{1} << 20U;
+
+void add(ByteWriter& out, const std::string& name, const Shape& shape, const Eigen::Isometry3d& T) {
+  const ShapeNumbers numbers = to_numbers(shape);
+  out.add(name).add(std::uint64_t{numbers.kind});
+  for (const double size : numbers.sizes)
+    out.add(size);
+  out.add(std::span<const std::uint8_t>(pose_blob(T)));
+}
+
+std::size_t read_count(ByteReader& in, std::size_t limit) {
+  const std::uint64_t count = in.integer();
+  if (count > limit)
+    throw std::out_of_range("scene: " + std::to_string(count) + " entries");
+  return count;
+}
+
+/// name, shape and pose, as SceneObject and HeldObject begin.
+template <typename Thing>
+Thing read_thing(ByteReader& in) {
+  std::string name = in.text(kMaxLinkNameBytes);
+  ShapeNumbers numbers;
+  numbers.kind = read_count(in, std::variant_size_v<Shape> - 1);
+  for (double& size : numbers.sizes)
+    size = in.real();
+  std::array<std::uint8_t, 7 * sizeof(double)> pose{};
+  in.bytes(pose);
+  const std::optional<Eigen::Isometry3d> T = pose_from_blob(pose);
+  if (!T)
+    throw std::out_of_range("scene: seven numbers that are no pose");
+  return {std::move(name), to_shape(numbers), *T};
+}
+
+RecordedScene read_scene(ByteReader& in) {
+  if (in.integer() != kFormat)
+    throw std::out_of_range("scene: unknown format");
+  RecordedScene scene;
+  for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
+    scene.objects.push_back(read_thing<SceneObject>(in));
+  for (std::size_t count = read_count(in, kMaxHeldObjects); count > 0; --count)
+    scene.held.push_back(read_thing<HeldObject>(in));
+  for (std::size_t count = read_count(in, kMaxAllowedPairs); count > 0; --count) {
+    std::string first = in.text(kMaxLinkNameBytes);
+    scene.allowed_collisions.emplace_back(std::move(first), in.text(kMaxLinkNameBytes));
+  }
+  if (!in.at_end())
+    throw std::out_of_range("scene: bytes after its end");
+  return scene;
+}
+
+}  // namespace
+
+SceneBlob encode_scene(const RecordedScene& scene) {
+  ByteWriter out;
+  out.add(kFormat).add(std::uint64_t{scene.objects.size()});
+  for (const SceneObject& object : scene.objects)
+    add(out, object.name, object.shape, object.T_task_object);
+  out.add(std::uint64_t{scene.held.size()});
+  for (const HeldObject& held : scene.held)
+    add(out, held.name, held.shape, held.T_transfer_object);
+  out.add(std::uint64_t{scene.allowed_collisions.size()});
+  for (const auto& [first, second] : scene.allowed_collisions)
+    out.add(first).add(second);
+  SceneBlob blob;
+  blob.size = std::ssize(out.bytes());
+  if (std::optional<std::vector<std::uint8_t>> compressed = compress(out.bytes())) {
+    blob.encoding = SceneEncoding::Zstd;
+    blob.bytes = std::move(*compressed);
+  } else {
+    blob.bytes = out.bytes();
+  }
+  return blob;
+}
+
+std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encoding,
+                                          std::span<const std::uint8_t> bytes) {
+  if (size < 1 || size > kMaxPlainBytes)
+    return std::nullopt;
+  std::optional<std::vector<std::uint8_t>> plain;
+  if (encoding == static_cast<std::int64_t>(SceneEncoding::Zstd)) {
+    plain = decompress(bytes, static_cast<std::size_t>(size));
+    if (!plain)
+      return std::nullopt;
+    bytes = *plain;
+  } else if (encoding != static_cast<std::int64_t>(SceneEncoding::Plain) ||
+             std::ssize(bytes) != size) {
+    return std::nullopt;
+  }
+  try {
+    ByteReader in(bytes);
+    RecordedScene scene = read_scene(in);
+    if (check_scene(scene))
+      return std::nullopt;
+    return scene;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "proto/types/recorded_scene.hpp"
+
+namespace kinship::store {
+
+/// How a scene lies in the database; the numbers are part of the schema.
+enum class SceneEncoding : std::uint8_t { Plain = 1, Zstd = 2 };
+
+/// A scene as a blob, with what is needed to decode it.
+struct SceneBlob {
+  std::int64_t size = 0;  ///< before compression
+  SceneEncoding encoding = SceneEncoding::Plain;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// \param scene  keeps the rules of check_scene().
+/// \return the smaller of the two encodings; both keep every number, poses as 7 of them.
+SceneBlob encode_scene(const RecordedScene& scene);
+
+/// \return empty if the blob is not what encode_scene makes, or breaks a rule of check_scene().
+std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encoding,
+                                          std::span<const std::uint8_t> bytes);
+
+}  // namespace kinship::store
