@@ -18,7 +18,7 @@ namespace kinship::cli {
 namespace {
 
 constexpr const char* kCommand = "paths import";
-constexpr std::size_t kHeldBytes = 8 * kMaxBatchBytes;  // of waypoints, before they are handed over
+constexpr std::size_t kHeldBytes = 8 * kMaxBatchBytes;  // before they are handed over
 
 struct Counts {
   std::uint64_t robots = 0, stored = 0, known = 0, recorded = 0, refused = 0;
@@ -108,6 +108,8 @@ class Import {
     }
     if (named.attempt.path)
       bytes_ += sizeof(double) * static_cast<std::size_t>(named.attempt.path->waypoints().size());
+    if (named.attempt.scene)
+      bytes_ += scene_bytes(*named.attempt.scene);
     attempts_.push_back(std::move(named.attempt));
     numbers_.push_back(number);
     if (attempts_.size() == kMaxAttemptsPerBatch || bytes_ > kHeldBytes)
@@ -162,7 +164,7 @@ class Import {
   std::map<std::string, Digest> labels_;
   std::vector<Attempt> attempts_;     // held until there are enough
   std::vector<std::size_t> numbers_;  // of their lines
-  std::size_t bytes_ = 0;             // of their waypoints
+  std::size_t bytes_ = 0;             // of their waypoints and scenes
 };
 
 void print(const Counts& counts, bool json, std::ostream& out) {

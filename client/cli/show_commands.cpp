@@ -82,6 +82,9 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
     out << ", distribution " << record.distribution_id->short_hex() << " revision "
         << record.distribution_revision;
   out << '\n';
+  if (attempt.scene)
+    out << "scene       " << attempt.scene->objects.size() << " objects, "
+        << attempt.scene->held.size() << " held\n";
   if (!attempt.path)
     return;
   out << "waypoints   " << attempt.path->size() << '\n';

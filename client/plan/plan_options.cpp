@@ -30,6 +30,7 @@ Exit codes: 0 every line was answered (unsolved is an answer), 1 failed or inter
 /// What needs a second look after parsing.
 struct RawOptions {
   std::string guidance;
+  std::string record_scenes = "yes";
   double timeout_s = 5;
   double wait_s = 30;
   double share = 0;
@@ -80,6 +81,11 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
                  "the server knows 20 of them, then 0.02; 0: none)")
       ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--report", options.report, "report every attempt to the server");
+  app.add_option("--record-scenes", raw.record_scenes,
+                 "reports carry the scene of their problem, by which other robots leave out "
+                 "configurations that would touch it")
+      ->check(CLI::IsMember({"yes", "no"}))
+      ->capture_default_str();
   app.add_option("--machine", options.machine, "name of this robot or cell in reports");
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
@@ -126,6 +132,7 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options) 
     throw CLI::ValidationError("--guidance", guidance + " needs --task");
   if (options.task.empty() && options.report)
     throw CLI::ValidationError("--report", "needs --task");
+  options.record_scenes = raw.record_scenes == "yes";
   if (!options.task.empty())
     require_name(check_task(options.task), "--task");
   require_name(check_machine(options.machine), "--machine");

@@ -29,7 +29,8 @@ struct PlanOptions {
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
   bool report = false;
-  std::string machine;  ///< empty: the host's name
+  bool record_scenes = true;  ///< reports carry their problem's scene
+  std::string machine;        ///< empty: the host's name
   PlanSettings settings;
   std::uint64_t seed_offset = 0;  ///< added to each problem's seed
   std::filesystem::path output;   ///< empty: standard output

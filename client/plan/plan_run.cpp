@@ -5,11 +5,13 @@
 #include <array>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/plan/attempt_record.hpp"
 #include "client/plan/problem_lines.hpp"
 #include "client/plan/progress.hpp"
+#include "client/plan/scene_record.hpp"
 #include "client/plan/server_line.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/models/loaded_robot.hpp"
@@ -42,6 +44,30 @@ void write_result(const ProblemResult& result, std::ostream& results) {
     throw Failure(ErrorCode::Storage, "cannot write the results");
 }
 
+/// Gives attempts the scenes of their problems, and says once why one goes without.
+class SceneRecorder {
+ public:
+  SceneRecorder(const PlanOptions& options, const kinematics::Chain& chain, std::ostream& messages)
+      : wanted_(options.record_scenes), chain_(chain), messages_(messages) {}
+
+  void add(const Problem& problem, Attempt& attempt) {
+    if (!wanted_ || (problem.scene.objects.empty() && problem.attached.empty()))
+      return;
+    Result<RecordedScene> scene = record_scene(chain_, problem);
+    if (scene)
+      attempt.scene = std::move(scene).value();
+    else if (!std::exchange(told_, true))
+      messages_ << "problem '" << problem.name
+                << "' is reported without its scene: " << scene.error().message << "\n";
+  }
+
+ private:
+  const bool wanted_;
+  const kinematics::Chain& chain_;
+  std::ostream& messages_;
+  bool told_ = false;
+};
+
 GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain) {
   GuidanceWish wish;
   wish.task = options.task;
@@ -71,6 +97,7 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
 
   const std::string machine = options.machine.empty() ? host_name() : options.machine;
   const Reporter reporter{wish.robot, machine, options.task};
+  SceneRecorder scenes(options, robot.chain, streams.messages);
   Progress progress(streams.messages, streams.messages_on_terminal, lines.size());
   bool complete = true;
   for (ProblemLine& line : lines) {
@@ -93,7 +120,11 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
       break;
     }
     if (options.report && planned.attempted)
-      server.report([&] { return make_attempt(reporter, problem, planned, options.settings); });
+      server.report([&] {
+        Attempt attempt = make_attempt(reporter, problem, planned, options.settings);
+        scenes.add(problem, attempt);
+        return attempt;
+      });
     write_result(planned.result, streams.results);  // after: what has a result is in the outbox
     progress.add(planned.result, planned.attempted);
   }

@@ -43,6 +43,13 @@ TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
   EXPECT_TRUE(options.sources.empty());
 }
 
+TEST(PlanOptions, ScenesAreRecordedUnlessSaidOtherwise) {
+  EXPECT_TRUE(parsed({"p", "--model", "m"}).options().record_scenes);
+  EXPECT_TRUE(parsed({"p", "--model", "m", "--record-scenes", "yes"}).options().record_scenes);
+  EXPECT_FALSE(parsed({"p", "--model", "m", "--record-scenes", "no"}).options().record_scenes);
+  EXPECT_EQ(parsed({"p", "--model", "m", "--record-scenes", "maybe"}).code(), 2);
+}
+
 TEST(PlanOptions, ReadsARobotFromAUrdf) {
   const models::RobotArguments robot = parsed({"p",          "dir/arm.urdf",
                                                "--base",     "b",
