@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/types/recorded_scene.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "server/transfer/filters.hpp"
+
+namespace kinship::transfer {
+
+/// A filter made of a recorded scene for one robot.
+struct SceneFilter {
+  Keep keep;  ///< empty if there is nothing to touch: no shapes of the robot, or no object
+  /// Names of two things that touch wherever the robot goes, as a base and the table below it, or
+  /// a wrist and what is held: they say nothing about a configuration and are not looked at.
+  std::vector<std::pair<std::string, std::string>> always_touching;
+};
+
+/// Keeps the configurations in which the robot, standing among the recorded objects and holding in
+/// its transfer frame what was held, touches no object, and what it holds touches neither an object
+/// nor the robot. Whether the robot touches itself is another filter's question.
+///
+/// Pairs that touch in at least 38 of 40 random configurations within the limits are left out
+/// (seeded: equal input, equal answers). Not shared between threads; everything is copied.
+/// \param scene        keeps the rules of check_scene().
+/// \param T_task_base  placement of the robot; identity if it is missing.
+SceneFilter scene_filter(const kinematics::Chain& robot, const geometry::RobotShapes& shapes,
+                         const RecordedScene& scene, const Eigen::Isometry3d& T_task_base);
+
+}  // namespace kinship::transfer
