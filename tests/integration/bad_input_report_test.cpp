@@ -145,14 +145,71 @@ std::vector<Case> record_cases() {
   };
 }
 
+kinship_wire_RecordedScene& scene_of(kinship_wire_Attempt& attempt) {
+  return attempt.scene._buffer[0];
+}
+
+/// Each begins with a scene of a table and a cup, and a can that is held.
+std::vector<Case> scene_cases() {
+  return {
+      {"a size of 0",
+       [](auto& a, Arena&) { scene_of(a).objects._buffer[0].size[1] = 0; },
+       {"scene", "'table'", "size 0 m", "above 0", "1000 m"}},
+      {"a size of NaN",
+       [](auto& a, Arena&) { scene_of(a).held._buffer[0].size[0] = kNan; },
+       {"scene", "'can'", "size nan m", "1000 m"}},
+      {"an infinite size",
+       [](auto& a, Arena&) { scene_of(a).objects._buffer[1].size[0] = kInfinity; },
+       {"scene", "'cup'", "size inf m", "1000 m"}},
+      {"shape 4",
+       [](auto& a, Arena&) { scene_of(a).objects._buffer[0].shape = 4; },
+       {"scene: shape", "4", "3"}},
+      {"a pose 2000 m away",
+       [](auto& a, Arena&) { scene_of(a).objects._buffer[0].pose[2] = 2000; },
+       {"scene", "'table'", "pose", "2000", "1000 m"}},
+      {"a pose without rotation",
+       [](auto& a, Arena&) { scene_of(a).held._buffer[0].pose[6] = 0; },
+       {"scene", "'can'", "pose", "quaternion"}},
+      {"a name of 129 bytes",
+       [](auto& a, Arena& arena) {
+         scene_of(a).objects._buffer[0].name = arena.text(std::string(129, 'n'));
+       },
+       {"scene", "name", "129", "128"}},
+      {"no name",
+       [](auto& a, Arena&) { scene_of(a).objects._buffer[0].name = nullptr; },
+       {"scene", "name", "empty"}},
+      {"a name that is not UTF-8",
+       [](auto& a, Arena& arena) { scene_of(a).held._buffer[0].name = arena.text("\xC3("); },
+       {"scene", "name", "UTF-8"}},
+      {"a pair with a link",
+       [](auto& a, Arena& arena) {
+         scene_of(a).allowed_collisions._buffer[0].first = arena.text("panda_hand");
+       },
+       {"allowed_collisions", "'panda_hand'", "neither an object nor held"}},
+      {"more bytes than a scene may have",
+       [](auto& a, Arena& arena) {
+         char* const name = arena.text(std::string(100, 'n'));
+         arena.resize(scene_of(a).objects, 2000);
+         for (std::size_t i = 0; i < 2000; ++i)
+           scene_of(a).objects._buffer[i] = {name, 0, {1, 1, 1}, {0, 0, 0, 0, 0, 0, 1}};
+       },
+       {"scenes of a batch", "392", "262144"}},
+  };
+}
+
 class BadReport : public BadInput {
  protected:
   /// The receipts of a batch in which `damage` was done to the first attempt.
   std::vector<Receipt> receipts_of(const Damage& damage, std::uint64_t attempts = 1,
                                    std::chrono::milliseconds patience = std::chrono::seconds(60)) {
     ReportRequest request;
-    for (std::uint64_t i = 0; i < attempts; ++i)
+    for (std::uint64_t i = 0; i < attempts; ++i) {
       request.attempts.push_back(panda_attempt(panda_, "sweep", i));
+      request.attempts.back().scene =
+          RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}, {"cup", CylinderShape{0.04, 0.1}}},
+                        {{"can", SphereShape{0.05}}},
+                        {{"can", "table"}}};
+    }
     auto message = codec::encode({}, request).value_or_throw();
     damage(message.wire.attempts._buffer[0], *message.arena);
     const auto reply = report_.call(message.wire, patience);
@@ -176,6 +233,8 @@ class BadReport : public BadInput {
 TEST_F(BadReport, WaypointsThatNoRobotCanHaveAreRefused) { expect_refusals(waypoint_cases()); }
 
 TEST_F(BadReport, RecordsThatCannotBeAreRefused) { expect_refusals(record_cases()); }
+
+TEST_F(BadReport, ScenesThatCannotBeAreRefused) { expect_refusals(scene_cases()); }
 
 TEST_F(BadReport, OfAnUnknownRobotWaitsAndNamesIt) {
   const auto receipts =
