@@ -5,10 +5,11 @@
 namespace kinship::plan {
 namespace {
 
-std::string describe(const PlanSettings& settings) {
+std::string describe(const PlanSettings& settings, const ProblemResult& result) {
   std::ostringstream text;
   text << "step=" << settings.resolution << " overshoot=" << settings.overshoot
-       << " shortcut_checks=" << settings.shortcut_checks << " max_checks=" << settings.max_checks;
+       << " shortcut_checks=" << settings.shortcut_checks << " max_checks=" << settings.max_checks
+       << (result.gate_fired ? " gate=fired" : "");
   return text.str();
 }
 
@@ -26,7 +27,7 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   PlanningRecord& record = attempt.record;
   record.outcome = planned.outcome;
   record.planner = problem.constraint ? "CBiRRT2" : "BiRRT";
-  record.planner_options = describe(settings);
+  record.planner_options = describe(settings, result);
   record.planning_time_s = result.planning_time_s;
   record.collision_checks = result.collision_checks;
   record.projections = result.projections;

@@ -7,7 +7,7 @@ namespace kinship::plan {
 namespace {
 
 GuidanceAnswer refusal(NoGuidance why, std::string message) {
-  return {std::nullopt, why, std::move(message)};
+  return {std::nullopt, std::nullopt, why, std::move(message)};
 }
 
 std::string formatted(const char* format, double value) {
@@ -17,16 +17,22 @@ std::string formatted(const char* format, double value) {
 }
 
 /// How the run's queries will be planned.
-std::string describe(const planning::ArmPlan& arms) {
+std::string describe(const planning::ArmChooser& arms, double share) {
   constexpr double kPercent = 100;
-  const std::string share = "share " + formatted("%.2f", arms.share);
-  const std::string part = formatted("%.3g", kPercent * arms.trial_part) + " % of the queries ";
-  if (arms.is_guided)
-    return share + (arms.trial_part > 0 ? ", " + part + "uniform as control" : "");
-  return "uniform" + (arms.trial_part > 0 ? ", " + part + "guided as trials, " + share : "");
+  const double guided = arms.guided_part();
+  if (share == 0)
+    return "uniform";
+  const std::string words = "share " + formatted("%.2f", share);
+  if (arms.is_sampling())
+    return words + ", the first query guided with probability " + formatted("%.2f", guided);
+  if (guided == 1)
+    return words;
+  return words + ", " + formatted("%.3g", kPercent * (1 - guided)) +
+         " % of the queries uniform as control";
 }
 
-std::string describe(const Distribution& distribution, const planning::ArmPlan& arms) {
+std::string describe(const Distribution& distribution, const planning::ArmChooser& arms,
+                     double share) {
   std::string text = "distribution " + distribution.id.short_hex() + " revision " +
                      std::to_string(distribution.revision) + ", " +
                      std::to_string(distribution.mixture->size()) + " components fitted to " +
@@ -37,7 +43,7 @@ std::string describe(const Distribution& distribution, const planning::ArmPlan& 
             (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
             std::to_string(source.paths) + " paths)";
   }
-  text += "; " + describe(arms);
+  text += "; " + describe(arms, share);
   if (!distribution.advice.evidence.empty())
     text += " (" + distribution.advice.evidence + ")";
   if (!distribution.reason.empty())
@@ -50,15 +56,16 @@ GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceWish&
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has no mixture over " + std::to_string(wish.dof) +
                                            " joints");
-  const double share = distribution.advice.recommended_share;
-  if (!(share >= 0 && share <= 1))
+  const double told = distribution.advice.guided_share;
+  if (!(told >= 0 && told <= 1))
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
-                                           " recommends share " + std::to_string(share) +
+                                           " has guided share " + std::to_string(told) +
                                            ", must be 0 to 1");
-  const planning::ArmPlan arms = planning::plan_arms(distribution.advice, wish.arms);
+  const double share = planning::guided_share(distribution.advice, wish.arms);
   GuidanceAnswer answer;
-  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, arms};
-  answer.message = describe(distribution, arms);
+  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
+  answer.arms.emplace(distribution.advice, wish.arms);
+  answer.message = describe(distribution, *answer.arms, share);
   return answer;
 }
 
@@ -125,14 +132,21 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
                               : fetch_guidance(fetch_, wish_, T_task_base);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
+  if (answer.arms)  // of the same task and robot as those before, and newer
+    arms_ = answer.arms;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
-const Guidance* GuidanceBook::find(const std::optional<Eigen::Isometry3d>& T_task_base) const {
-  const auto known = answers_.find(key_of(T_task_base));
+QueryGuidance GuidanceBook::choose(const Problem& problem) const {
+  const auto known = answers_.find(key_of(problem.T_task_base));
   if (known == answers_.end() || !known->second.guidance)
-    return nullptr;
-  return &*known->second.guidance;
+    return {};
+  return {&*known->second.guidance, arms_->choose(planning::arm_seed(problem))};
+}
+
+void GuidanceBook::add(const PlannedProblem& planned) {
+  if (arms_)
+    arms_->add(planned.result.arm, planned.outcome, planned.result.collision_checks);
 }
 
 }  // namespace kinship::plan

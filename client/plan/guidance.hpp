@@ -36,6 +36,7 @@ enum class NoGuidance { None, NoServer, NotFound, Failed };
 /// What came of asking for one placement.
 struct GuidanceAnswer {
   std::optional<Guidance> guidance;
+  std::optional<planning::ArmChooser> arms;  ///< present exactly if there is guidance
   NoGuidance why_not = NoGuidance::None;
   std::string message;  ///< for people: what was got, or why nothing
 };
@@ -54,8 +55,11 @@ class GuidanceBook {
   /// Asks unless the placement is known. \return the answer, and whether it is new.
   std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
 
-  /// \return what ask() brought for the placement; null if nothing. Never waits.
-  const Guidance* find(const std::optional<Eigen::Isometry3d>& T_task_base) const;
+  /// How the next problem shall be planned, by what ask() brought and add() was told. Never waits.
+  QueryGuidance choose(const Problem& problem) const;
+
+  /// A problem was attempted: all that come after choose their arm by that, too.
+  void add(const PlannedProblem& planned);
 
  private:
   using Key = std::optional<PoseArray>;
@@ -64,6 +68,7 @@ class GuidanceBook {
   Fetch fetch_;
   GuidanceWish wish_;
   std::map<Key, GuidanceAnswer> answers_;
+  std::optional<planning::ArmChooser> arms_;  // of all placements: same task, same robot
   bool server_missing_ = false;
 };
 

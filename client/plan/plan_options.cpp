@@ -74,11 +74,14 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   app.add_option("--profile", options.profile, "profile of the distribution")
       ->capture_default_str();
   arguments::add_selection_options(app, raw.selection);
-  app.add_option("--share", raw.share, "share of guided samples; the server's advice if missing")
+  app.add_option(
+         "--share", raw.share,
+         "share of guided samples in a guided query; the server's if missing; 0: all uniform")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--control-share", raw.control_share,
-                 "part of the queries planned against the advice, to judge it (default: 0.1 until "
-                 "the server knows 20 of them, then 0.02; 0: none)")
+  app.add_option(
+         "--control-share", raw.control_share,
+         "part of the queries planned uniformly as control, 0 to 1 (default: chosen query by "
+         "query, by what both ways cost so far)")
       ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--report", options.report, "report every attempt to the server");
   app.add_option("--record-scenes", raw.record_scenes,

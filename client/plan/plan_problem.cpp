@@ -11,6 +11,7 @@
 #include "client/planning/cbirrt2.hpp"
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/goal_configurations.hpp"
+#include "client/planning/guidance_gate.hpp"
 #include "client/planning/planning_bounds.hpp"
 #include "client/planning/region_constraint.hpp"
 #include "client/planning/shortcut.hpp"
@@ -127,6 +128,7 @@ class Planning {
     options.overshoot = settings_.overshoot;
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
+    heed_gate(goals, guidance, planned.result);
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
     const planning::PlanSummary summary =
         constraint_
@@ -162,6 +164,18 @@ class Planning {
     result.goal_checks = goals.collision_checks;
     result.reason = goals.reason;
     return std::move(goals.configurations);
+  }
+
+  /// A query that the distribution knows nothing about is planned uniformly; its arm stays.
+  void heed_gate(const Eigen::MatrixXd& goals, const Guidance* guidance,
+                 ProblemResult& result) const {
+    if (guidance == nullptr || result.share == 0)
+      return;
+    result.gate_fired =
+        planning::query_distance(robot_.chain, guidance->mixture, problem_.start, goals)
+            .is_beyond(settings_.gate_distance);
+    if (result.gate_fired)
+      result.share = 0;
   }
 
   void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
@@ -203,17 +217,16 @@ class Planning {
 }  // namespace
 
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
-                            const Guidance* guidance, const PlanSettings& settings,
+                            const QueryGuidance& query, const PlanSettings& settings,
                             const std::function<bool()>& stop) {
   PlannedProblem planned;
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
-  if (guidance != nullptr) {
-    planned.result.distribution_id = guidance->distribution_id;
-    planned.result.distribution_revision = guidance->revision;
-    const auto choice = planning::choose_arm(guidance->arms, planning::arm_seed(problem));
-    planned.result.arm = choice.arm;
-    planned.result.share = choice.share;
+  if (query.guidance != nullptr) {
+    planned.result.distribution_id = query.guidance->distribution_id;
+    planned.result.distribution_revision = query.guidance->revision;
+    planned.result.arm = query.arm;
+    planned.result.share = query.arm == Arm::Guided ? query.guidance->share : 0;
   }
   if (const auto misfit = find_misfit(robot.chain, problem)) {
     planned.result.reason = *misfit;
@@ -222,7 +235,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   try {
     Planning planning(robot, problem, settings, stop);
     planned.attempted = true;
-    planning.run(guidance, planned);
+    planning.run(query.guidance, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;
   } catch (const std::exception& exception) {  // of one problem: the others are planned

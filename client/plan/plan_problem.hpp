@@ -6,7 +6,6 @@
 #include <string>
 
 #include "client/plan/plan_settings.hpp"
-#include "client/planning/arm_choice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
@@ -27,7 +26,13 @@ struct Guidance {
   Digest distribution_id;
   std::uint64_t revision = 0;
   Mixture mixture;
-  planning::ArmPlan arms;  ///< which queries use it, and with what share of samples
+  double share = 0;  ///< of samples drawn from it in a guided query
+};
+
+/// What guidance a query has, and whether it uses it.
+struct QueryGuidance {
+  const Guidance* guidance = nullptr;  ///< null: there is none
+  Arm arm = Arm::Uniform;              ///< Guided uses it; Control and Uniform plan without
 };
 
 struct PlannedProblem {
@@ -41,12 +46,12 @@ struct PlannedProblem {
 /// settings.max_goals), BiRRT, or CBiRRT2 under a constraint, light shortcutting. A problem that
 /// does not fit the robot, or cannot be solved, is answered with its reason. Equal problem,
 /// guidance and settings give an equal path and equal checks, as long as the time limit does not
-/// end it. \param guidance  null: uniform. Otherwise the problem's arm is chosen by its plan: a
-/// query of the
-///                  control arm is planned exactly as if there were no guidance.
-/// \param stop      asked before every check; true gives up.
+/// end it.
+/// \param query  one that is not guided is planned exactly as if there were no guidance; so is a
+///               guided one farther than settings.gate_distance from the distribution.
+/// \param stop   asked before every check; true gives up.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
-                            const Guidance* guidance, const PlanSettings& settings,
+                            const QueryGuidance& query, const PlanSettings& settings,
                             const std::function<bool()>& stop);
 
 }  // namespace kinship::plan

@@ -113,12 +113,14 @@ int run_plan(const PlanOptions& options, const RunStreams& streams,
     }
     Problem problem = *std::move(line.problem);
     problem.seed += options.seed_offset;
-    const PlannedProblem planned = plan_problem(
-        planned_robot, problem, server.guidance(problem.T_task_base), options.settings, stop);
+    const PlannedProblem planned =
+        plan_problem(planned_robot, problem, server.choose(problem), options.settings, stop);
     if (planned.interrupted) {
       complete = false;
       break;
     }
+    if (planned.attempted)
+      server.add(planned);
     if (options.report && planned.attempted)
       server.report([&] {
         Attempt attempt = make_attempt(reporter, problem, planned, options.settings);

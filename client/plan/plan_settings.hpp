@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "client/planning/guidance_gate.hpp"
+
 namespace kinship::plan {
 
 /// How every problem of a run is planned, guided or not.
@@ -11,6 +13,8 @@ struct PlanSettings {
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
   std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
   int max_goals = 20;                   ///< goal configurations found for a goal pose
+  /// Guided queries farther from the distribution are planned uniformly (planning::query_distance).
+  double gate_distance = planning::kGateDistance;
 };
 
 }  // namespace kinship::plan

@@ -18,6 +18,7 @@ void Progress::add(const ProblemResult& result, bool attempted) {
     ++solved_;
   checks_ += result.collision_checks;
   planning_time_s_ += result.planning_time_s;
+  gated_ += attempted && result.gate_fired ? 1 : 0;
   if (attempted)
     ++(result.arm == Arm::Guided ? guided_ : result.arm == Arm::Control ? control_ : uniform_);
   if (!terminal_ && done_ * kLines / total_ == lines_before)
@@ -38,8 +39,9 @@ void Progress::finish() {
     std::snprintf(text, sizeof text, "; on average %.0f checks and %.3f s",
                   static_cast<double>(checks_) / static_cast<double>(attempted),
                   planning_time_s_ / static_cast<double>(attempted));
-    stream_ << "; " << guided_ << " guided, " << control_ << " control, " << uniform_ << " uniform"
-            << text;
+    stream_ << "; " << guided_ << " guided"
+            << (gated_ > 0 ? " (" + std::to_string(gated_) + " uniform by the gate)" : "") << ", "
+            << control_ << " control, " << uniform_ << " uniform" << text;
   }
   if (done_ > attempted)
     stream_ << "; " << done_ - attempted << " could not be attempted";

@@ -28,6 +28,7 @@ class Progress {
   std::size_t done_ = 0;
   std::size_t solved_ = 0;
   std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // attempts by arm
+  std::size_t gated_ = 0;                               // of the guided ones
   std::uint64_t checks_ = 0;
   double planning_time_s_ = 0;
 };

@@ -112,8 +112,13 @@ NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<Probl
   return first_reason;
 }
 
-const Guidance* ServerLine::guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const {
-  return guidance_ ? guidance_->find(T_task_base) : nullptr;
+QueryGuidance ServerLine::choose(const Problem& problem) const {
+  return guidance_ ? guidance_->choose(problem) : QueryGuidance{};
+}
+
+void ServerLine::add(const PlannedProblem& planned) {
+  if (guidance_)
+    guidance_->add(planned);
 }
 
 void ServerLine::report(const std::function<Attempt()>& make_attempt) {

@@ -30,8 +30,11 @@ class ServerLine {
   /// \return why guidance that the options require is missing.
   NoGuidance fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines);
 
-  /// Never waits. \return null: plan uniformly.
-  const Guidance* guidance(const std::optional<Eigen::Isometry3d>& T_task_base) const;
+  /// How the next problem shall be planned; without guidance uniformly. Never waits.
+  QueryGuidance choose(const Problem& problem) const;
+
+  /// A problem was attempted: the choice for those after it learns from it.
+  void add(const PlannedProblem& planned);
 
   /// Puts the attempt into the outbox; says so if it cannot be made or kept.
   void report(const std::function<Attempt()>& make_attempt);

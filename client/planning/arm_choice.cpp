@@ -1,9 +1,11 @@
 #include "client/planning/arm_choice.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <string>
 
+#include "proto/evidence/cost_ratio.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::planning {
@@ -37,8 +39,8 @@ double unit_interval(std::uint64_t bits) {
 
 void require_part(const char* what, double value) {
   if (!(value >= 0 && value <= 1))
-    throw std::invalid_argument(std::string("plan_arms: ") + what + " is " + std::to_string(value) +
-                                ", must be 0 to 1");
+    throw std::invalid_argument(std::string("ArmChooser: ") + what + " is " +
+                                std::to_string(value) + ", must be 0 to 1");
 }
 
 std::uint64_t attempts_of(const std::optional<ArmEvidence>& evidence) {
@@ -47,23 +49,46 @@ std::uint64_t attempts_of(const std::optional<ArmEvidence>& evidence) {
 
 }  // namespace
 
-ArmPlan plan_arms(const Advice& advice, const ArmOptions& options) {
-  const double share = options.share.value_or(advice.recommended_share);
+double guided_share(const Advice& advice, const ArmOptions& options) {
+  const double share = options.share.value_or(advice.guided_share);
   require_part("share", share);
-  require_part("control share", options.control_share.value_or(0));
-  const bool is_guided = options.share ? share > 0 : share >= kLeastShare;
-  if (!is_guided && options.share)
-    return {0, false, 0};
-  const std::uint64_t known = attempts_of(is_guided ? advice.control : advice.guided);
-  const double part = known < kEarlyTrials ? kEarlyTrialPart : kLateTrialPart;
-  return {is_guided ? share : kTrialShare, is_guided, options.control_share.value_or(part)};
+  return share;
 }
 
-ArmChoice choose_arm(const ArmPlan& plan, std::uint64_t seed) {
-  const bool is_trial = unit_interval(mixed(seed)) < plan.trial_part;
-  if (is_trial == plan.is_guided)
-    return {Arm::Control, 0};
-  return {Arm::Guided, plan.share};
+ArmChooser::ArmChooser(const Advice& advice, const ArmOptions& options)
+    : options_(options),
+      window_(advice.recent),
+      guided_(attempts_of(advice.guided)),
+      control_(attempts_of(advice.control)) {
+  require_part("share", options.share.value_or(0));
+  require_part("control share", options.control_share.value_or(0));
+}
+
+Arm ArmChooser::choose(std::uint64_t seed) const {
+  if (is_uniform())
+    return Arm::Uniform;
+  // Under Thompson sampling each query draws anew, also a problem that is planned again and again;
+  // under a fixed part the same queries are control in every run.
+  const std::uint64_t known = is_sampling() ? guided_ + control_ : 0;
+  const double drawn = unit_interval(mixed(seed + mixed(known)));
+  return drawn < 1 - guided_part() ? Arm::Control : Arm::Guided;
+}
+
+double ArmChooser::guided_part() const {
+  if (is_uniform())
+    return 0;
+  if (options_.control_share)
+    return 1 - *options_.control_share;
+  const double floor = control_ < kEarlyControls ? kEarlyControlFloor : kLateControlFloor;
+  return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper(), kGuidedFloor,
+                    1 - floor);
+}
+
+void ArmChooser::add(Arm arm, Outcome outcome, std::uint64_t checks) {
+  if (arm == Arm::Uniform || outcome == Outcome::Failed)
+    return;
+  ++(arm == Arm::Guided ? guided_ : control_);
+  window_.add(arm, outcome == Outcome::Solved, checks);
 }
 
 std::uint64_t arm_seed(const Problem& problem) {

@@ -3,56 +3,65 @@
 #include <cstdint>
 #include <optional>
 
+#include "proto/evidence/attempt_window.hpp"
 #include "proto/types/advice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/problem.hpp"
 
 namespace kinship::planning {
 
-/// What a user says about guidance; what is missing follows the server's advice.
+/// What a user says about guidance; what is missing follows the evidence.
 struct ArmOptions {
-  std::optional<double> share;          ///< of guided samples, 0 to 1
-  std::optional<double> control_share;  ///< of queries that test the advice, 0 to 1
+  std::optional<double> share;          ///< of guided samples in a guided query, 0 to 1
+  std::optional<double> control_share;  ///< of queries planned uniformly as control, 0 to 1
 };
 
-/// How the queries of a run are divided between guided and uniform planning.
+inline constexpr std::uint64_t kEarlyControls = 20;  ///< attempts after which fewer are forced
+inline constexpr double kEarlyControlFloor = 0.1;
+inline constexpr double kLateControlFloor = 0.02;
+inline constexpr double kGuidedFloor = 0.02;  ///< so that guidance that became better is found out
+
+/// Of guided samples in a guided query: what the user says, else what the server says.
+/// \throws std::invalid_argument if it is not 0 to 1.
+double guided_share(const Advice& advice, const ArmOptions& options);
+
+/// Chooses, query by query, between planning guided and uniformly (control) for one (task, robot).
 ///
-/// The server can judge guidance only if the same client plans both ways and chance decides
-/// which. So a small part of the queries does the opposite of what is advised: where guidance is
-/// advised, they are planned uniformly (control); where it is not, they are guided.
-struct ArmPlan {
-  double share = 0;       ///< of guided samples in a guided query
-  bool is_guided = true;  ///< whether the usual query is guided
-  double trial_part = 0;  ///< of queries that do the opposite
+/// Thompson sampling: the arm that is cheaper in one draw from what is believed of both costs
+/// (evidence::compare_costs) is taken; with two arms that is guided with the probability that
+/// guidance is cheaper. The probability is kept at least kGuidedFloor; that of control at least
+/// kEarlyControlFloor until kEarlyControls attempts of it are known, then kLateControlFloor. A
+/// `control_share` takes the place of all that; a share of 0 plans every query uniformly, which is
+/// no evidence.
+///
+/// The evidence begins with the server's and goes on with add(). Who gets new advice makes a new
+/// chooser and adds those of his own attempts that had no receipt when he asked: the others are in
+/// the advice, and none counts twice.
+class ArmChooser {
+ public:
+  /// \throws std::invalid_argument if a share is outside 0 to 1.
+  ArmChooser(const Advice& advice, const ArmOptions& options);
 
-  bool operator==(const ArmPlan&) const = default;
+  /// The arm of the next query, guidance being there: Guided or Control, or Uniform at share 0.
+  /// Equal seed and equal evidence, equal arm.
+  Arm choose(std::uint64_t seed) const;
+
+  /// Probability that the next query is guided.
+  double guided_part() const;
+
+  /// What came of a query. Uniform attempts and those that could not be planned at all (Failed)
+  /// teach nothing.
+  void add(Arm arm, Outcome outcome, std::uint64_t checks);
+
+  bool is_sampling() const noexcept { return !options_.control_share && !is_uniform(); }
+
+ private:
+  bool is_uniform() const noexcept { return options_.share == 0.0; }
+
+  ArmOptions options_;
+  evidence::AttemptWindow window_;
+  std::uint64_t guided_, control_;  // attempts known, of whatever age
 };
-
-/// How one query is planned.
-struct ArmChoice {
-  Arm arm = Arm::Uniform;
-  double share = 0;  ///< 0 unless guided
-
-  bool operator==(const ArmChoice&) const = default;
-};
-
-inline constexpr std::uint64_t kEarlyTrials = 20;  ///< attempts after which trials become rare
-inline constexpr double kEarlyTrialPart = 0.1;
-inline constexpr double kLateTrialPart = 0.02;
-inline constexpr double kTrialShare = 0.9;  ///< where uniform is advised, which names no share
-/// Advice below this is taken as "uniform": queries with next to no guided samples would count as
-/// guided, and say nothing about guidance.
-inline constexpr double kLeastShare = 0.05;
-
-/// The usual query is guided with the wished or the recommended share, or uniform if the wish is 0
-/// or the advice below kLeastShare.
-/// Trials are a tenth of the queries until the server knows kEarlyTrials attempts of the arm that
-/// they belong to, then one in fifty. A user who wishes share 0 plans uniformly always.
-/// \throws std::invalid_argument if a share is outside 0 to 1.
-ArmPlan plan_arms(const Advice& advice, const ArmOptions& options);
-
-/// The arm of one query, guidance being there: Guided or Control. Equal seed, equal arm.
-ArmChoice choose_arm(const ArmPlan& plan, std::uint64_t seed);
 
 /// A number that differs between queries (name, start, goal, seed) and is the same for the same
 /// one; it says nothing about the samples that a planner seeded with problem.seed draws.

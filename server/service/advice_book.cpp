@@ -1,7 +1,9 @@
 #include "server/service/advice_book.hpp"
 
 #include <optional>
+#include <utility>
 
+#include "proto/evidence/attempt_window.hpp"
 #include "server/service/advice_rule.hpp"
 
 namespace kinship::service {
@@ -12,8 +14,8 @@ constexpr int kMostReadings = 3;  // of sums that attempts keep overtaking
 }  // namespace
 
 AttemptCost cost_of(const Attempt& attempt) {
-  return {attempt.task, attempt.robot, attempt.record.arm,
-          attempt.record.outcome == Outcome::Solved, attempt.record.collision_checks};
+  return {attempt.task, attempt.robot, attempt.record.arm, attempt.record.outcome,
+          attempt.record.collision_checks};
 }
 
 Advice AdviceBook::advise(const std::string& task, const Digest& robot, double profile_share) {
@@ -60,10 +62,16 @@ void AdviceBook::add(const AttemptCost& cost) {
   store::ArmTotals& arm = cost.arm == Arm::Guided ? entry.totals.guided : entry.totals.control;
   const auto checks = static_cast<double>(cost.checks);
   ++arm.attempts;
-  arm.solved += cost.solved ? 1 : 0;
+  const bool solved = cost.outcome == Outcome::Solved;
+  arm.solved += solved ? 1 : 0;
   arm.checks += checks;
   arm.checks_squared += checks * checks;
-  arm.checks_of_solved += cost.solved ? checks : 0;
+  arm.checks_of_solved += solved ? checks : 0;
+  if (cost.outcome != Outcome::Failed) {
+    evidence::AttemptWindow window(std::move(entry.totals.recent));
+    window.add(cost.arm, solved, cost.checks);
+    entry.totals.recent = window.recent();
+  }
   ++entry.version;
 }
 

@@ -19,7 +19,7 @@ struct AttemptCost {
   std::string task;
   Digest robot;
   Arm arm = Arm::Uniform;
-  bool solved = false;
+  Outcome outcome = Outcome::Failed;
   std::uint64_t checks = 0;
 };
 

@@ -62,6 +62,7 @@ struct ArmTotals {
 /// The attempts of one robot and task, by arm.
 struct AttemptTotals {
   ArmTotals guided, control;
+  std::vector<JudgedAttempt> recent;  ///< the newest kJudgedAttemptsPerArm of each, oldest first
 };
 
 struct StoreStatus {

@@ -36,6 +36,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string types = "proto/types";
   const std::string idl = "proto/idl";
   const std::string mixture = "proto/mixture";
+  const std::string evidence = "proto/evidence";
   const std::string codec = "proto/codec";
   const std::string json = "proto/json";
   const std::string dds = "proto/dds";
@@ -59,6 +60,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
       {mixture, {{types}, {"Eigen"}}},
+      {evidence, {{types}, {}}},
       {codec, {{types, idl}, {"Eigen"}}},
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
@@ -71,12 +73,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
       {service,
-       {{store, transfer, density, inverse, geometry, kinematics, mixture, types}, {"Eigen"}}},
+       {{store, transfer, density, evidence, inverse, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
-      {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen", "OMPL"}}},
+      {planning, {{inverse, collision, geometry, kinematics, mixture, evidence, types}, {"Eigen", "OMPL"}}},
       {"client/cli",
        {{link, arguments, files, inverse, geometry, kinematics, models, mixture, json, types},
         {"Eigen", "CLI11"}}},

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "client/link/client.hpp"
-#include "client/planning/arm_choice.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/server_process.hpp"
@@ -55,20 +54,43 @@ class Advised : public testing::Test {
     }
   }
 
-  /// Experience that is of no use for the task: motions beside the start, stretched out.
+  void report_path(link::Client& client, const Eigen::MatrixXd& waypoints) const {
+    Attempt attempt;
+    attempt.report_uuid = Uuid::random();
+    attempt.robot = robot_;
+    attempt.task = "wall";
+    attempt.record.outcome = Outcome::Solved;
+    attempt.record.collision_checks = 1;
+    attempt.path = Path(waypoints);
+    client.report(attempt);
+  }
+
+  /// Experience that is of no use for the task: it knows start and goal, so that the gate lets it
+  /// pass, and what it knows of the way between leads astray.
   void report_misleading_paths(link::Client& client) const {
+    std::mt19937_64 generator(6);
+    std::uniform_real_distribution<double> noise(-0.25, 0.25);
+    constexpr Eigen::Index kEach = 8;
+    const Problem problem = plan::test::wall_problem();
+    const Eigen::Vector4d start = problem.start, goal = problem.goal_configurations.col(0);
+    const Eigen::Vector4d astray(2.3, 2.3, -2.3, 2.3);
     for (std::size_t i = 0; i < kMisleading; ++i) {
-      Attempt attempt;
-      attempt.report_uuid = Uuid::random();
-      attempt.robot = robot_;
-      attempt.task = "wall";
-      attempt.record.outcome = Outcome::Solved;
-      attempt.record.collision_checks = 1;
+      Eigen::MatrixXd waypoints(4, 3 * kEach);
+      waypoints << start.replicate(1, kEach), astray.replicate(1, kEach), goal.replicate(1, kEach);
+      for (double& q : waypoints.reshaped())
+        q += noise(generator);
+      report_path(client, waypoints);
+    }
+    ASSERT_EQ(client.flush(seconds(60)).accepted, kMisleading);
+  }
+
+  /// Experience from another place: the robot was set up the wrong way round.
+  void report_far_paths(link::Client& client) const {
+    for (std::size_t i = 0; i < kMisleading; ++i) {
       const double y = 0.005 * static_cast<double>(i);
       Eigen::MatrixXd waypoints(4, 3);
-      waypoints << 1.2, 1.3, 1.2, 0.0, y, 0.1, 0.0, 0.1, y, 0.0, 0.1, 0.0;
-      attempt.path = Path(waypoints);
-      client.report(attempt);
+      waypoints << 2.4, 2.5, 2.6, 0.0, y, 0.1, 0.0, 0.1, y, 0.0, 0.1, 0.0;
+      report_path(client, waypoints);
     }
     ASSERT_EQ(client.flush(seconds(60)).accepted, kMisleading);
   }
@@ -163,15 +185,48 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   EXPECT_EQ(advice.guided->solved, guided.solved);
   EXPECT_EQ(advice.control->attempts, control.attempts);
   EXPECT_EQ(advice.control->solved, control.solved);
-  EXPECT_LT(advice.recommended_share, planning::kLeastShare) << advice.evidence;
+  EXPECT_EQ(advice.recent.size(), kProblems);
+  EXPECT_LT(advice.recommended_share, 0.1) << advice.evidence;
 
-  Counts trials;
+  Counts still_guided;
   for (const ProblemResult& result : plan({}))
     if (result.arm == Arm::Guided)
-      trials.add(result);
-  EXPECT_LT(trials.attempts, kProblems / 2) << "uniform is advised, guided ones are trials";
-  EXPECT_NE(test::read_text(log_).find("guided as trials"), std::string::npos)
-      << test::read_text(log_);
+      still_guided.add(result);
+  EXPECT_LT(still_guided.attempts, kProblems / 2) << "each machine goes on from what all know";
+}
+
+TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  link::Client client(
+      {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)});
+  ASSERT_TRUE(client.register_robot(description_));
+  report_far_paths(client);
+
+  std::size_t guided = 0;
+  std::vector<std::uint64_t> checks;
+  for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0"})) {
+    guided += result.arm == Arm::Guided ? 1 : 0;
+    EXPECT_TRUE(result.gate_fired);
+    EXPECT_EQ(result.share, 0);
+    checks.push_back(result.collision_checks);
+  }
+  EXPECT_EQ(guided, kProblems);
+  EXPECT_NE(test::read_text(log_).find("uniform by the gate"), std::string::npos);
+  const Advice advice = advice_after(client, kProblems);
+  ASSERT_TRUE(advice.guided) << advice.evidence;
+  EXPECT_EQ(advice.guided->attempts, kProblems);
+  EXPECT_FALSE(advice.control);
+
+  std::size_t equal = 0;
+  const std::vector<ProblemResult> uniform = plan({"--share", "0"});
+  for (std::size_t i = 0; i < uniform.size(); ++i) {
+    EXPECT_EQ(uniform[i].arm, Arm::Uniform);
+    equal += uniform[i].collision_checks == checks[i] ? 1 : 0;
+  }
+  EXPECT_EQ(equal, kProblems);
+  EXPECT_EQ(advice_after(client, kProblems).guided->attempts, kProblems)
+      << "uniform by wish is no evidence";
 }
 
 }  // namespace

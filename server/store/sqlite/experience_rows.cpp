@@ -1,5 +1,6 @@
 #include "server/store/sqlite/experience_rows.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "server/store/sqlite/row_values.hpp"
@@ -30,6 +31,32 @@ ArmTotals read_totals(const Statement& row, int first_column) {
   return {count_of(row, first_column), count_of(row, first_column + 1),
           row.column_real(first_column + 2), row.column_real(first_column + 3),
           row.column_real(first_column + 4)};
+}
+
+/// The newest judged attempts of each arm, oldest first. Looks at the newest kMostRows alone: an
+/// arm that had no attempts among so many is as good as unknown.
+std::vector<JudgedAttempt> recent_of(Database& database, const ExperienceKey& key) {
+  constexpr std::int64_t kMostRows = 10'000;
+  const auto query = database.cached(
+      "SELECT arm, outcome, collision_checks FROM attempt WHERE task_id = ? AND robot_id = ? "
+      "ORDER BY id DESC LIMIT ?");
+  query->bind_all(key.task_id, key.robot_id, kMostRows);
+  std::vector<JudgedAttempt> newest_first;
+  std::size_t guided = 0, control = 0;
+  std::uint32_t age = 0;
+  while (std::min(guided, control) < kJudgedAttemptsPerArm && query->step()) {
+    const Arm arm = arm_of(query->column_integer(0));
+    const Outcome outcome = outcome_of(query->column_integer(1));
+    if (arm == Arm::Uniform || outcome == Outcome::Failed)
+      continue;
+    if ((arm == Arm::Guided ? guided : control)++ < kJudgedAttemptsPerArm)
+      newest_first.push_back({.arm = arm,
+                              .solved = outcome == Outcome::Solved,
+                              .checks = count_of(*query, 2),
+                              .age = age});
+    ++age;
+  }
+  return {newest_first.rbegin(), newest_first.rend()};
 }
 
 }  // namespace
@@ -124,7 +151,7 @@ AttemptTotals totals_of(Database& database, const Digest& robot, std::string_vie
       "FROM experience WHERE task_id = ? AND robot_id = ?");
   if (!query->bind_all(key->task_id, key->robot_id).step())
     return {};
-  return {read_totals(*query, 0), read_totals(*query, 5)};
+  return {read_totals(*query, 0), read_totals(*query, 5), recent_of(database, *key)};
 }
 
 }  // namespace kinship::store

@@ -69,6 +69,17 @@ TEST(AttemptRecord, AControlAttemptIsTold) {
   EXPECT_EQ(attempt.record.share, 0);
 }
 
+TEST(AttemptRecord, AGuidedAttemptStaysGuidedWhereTheGateFired) {
+  PlannedProblem planned = solved();
+  planned.result.distribution_id = Digest{};
+  planned.result.arm = Arm::Guided;
+  planned.result.gate_fired = true;
+  const PlanningRecord record = make_attempt(kReporter, {}, planned, {}).record;
+  EXPECT_EQ(record.arm, Arm::Guided);
+  EXPECT_EQ(record.share, 0);
+  EXPECT_TRUE(record.planner_options.ends_with(" gate=fired")) << record.planner_options;
+}
+
 TEST(AttemptRecord, SaysHowWasPlannedAndUnderWhichUuid) {
   PlanSettings settings;
   settings.resolution = 0.1;

@@ -14,14 +14,15 @@ Mixture one_component(Eigen::Index dimension) {
                  {Eigen::MatrixXd::Identity(dimension, dimension)});
 }
 
-FetchReply ready(double recommended_share = 0.9, Eigen::Index dimension = kDof) {
+FetchReply ready(double guided_share = 0.9, Eigen::Index dimension = kDof) {
   Distribution distribution;
   distribution.id.bytes[0] = 0xab;
   distribution.revision = 3;
   distribution.configurations = 400;
   distribution.sources = {{Digest{}, "panda", 60, 60, 900, 880}};
   distribution.mixture = one_component(dimension);
-  distribution.advice.recommended_share = recommended_share;
+  distribution.advice.recommended_share = 0.1;
+  distribution.advice.guided_share = guided_share;
   FetchReply reply;
   reply.status = FetchStatus::Ready;
   reply.distribution = distribution;
@@ -43,37 +44,44 @@ GuidanceWish wish() {
 
 Eigen::Isometry3d placement(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
 
+Problem problem_at(double x, std::uint64_t seed = 0) {
+  Problem problem;
+  problem.T_task_base = placement(x);
+  problem.seed = seed;
+  return problem;
+}
+
 GuidanceAnswer answer_to(const Result<FetchReply>& reply, const GuidanceWish& for_what = wish()) {
   return fetch_guidance([&](const FetchRequest&) { return reply; }, for_what, placement(0));
 }
 
 TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
-  EXPECT_EQ(answer_to(ready(0.9)).guidance->arms.share, 0.9);
+  EXPECT_EQ(answer_to(ready(0.9)).guidance->share, 0.9);
   GuidanceWish own_share = wish();
   own_share.arms.share = 0.25;
-  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->arms.share, 0.25);
+  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->share, 0.25);
 }
 
 TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
   const GuidanceAnswer answer = answer_to(ready());
   EXPECT_EQ(answer.message,
             "distribution ab0000000000 revision 3, 1 components fitted to 400 configurations from "
-            "panda (60 paths); share 0.90, 10 % of the queries uniform as control");
+            "panda (60 paths); share 0.90, the first query guided with probability 0.64");
   EXPECT_EQ(answer.guidance->revision, 3U);
   EXPECT_EQ(answer.why_not, NoGuidance::None);
 }
 
 TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
-  const auto tail = [](double recommended_share, const planning::ArmOptions& arms) {
+  const auto tail = [](const planning::ArmOptions& arms) {
     GuidanceWish told = wish();
     told.arms = arms;
-    const std::string message = answer_to(ready(recommended_share), told).message;
+    const std::string message = answer_to(ready(), told).message;
     return message.substr(message.find("; ") + 2);
   };
-  EXPECT_EQ(tail(0.9, {{}, 0.0}), "share 0.90");
-  EXPECT_EQ(tail(0.9, {0.5, 0.025}), "share 0.50, 2.5 % of the queries uniform as control");
-  EXPECT_EQ(tail(0, {}), "uniform, 10 % of the queries guided as trials, share 0.90");
-  EXPECT_EQ(tail(0, {{}, 0.0}), "uniform");
+  EXPECT_EQ(tail({{}, 0.0}), "share 0.90");
+  EXPECT_EQ(tail({0.5, 0.025}), "share 0.50, 2.5 % of the queries uniform as control");
+  EXPECT_EQ(tail({0.5, {}}), "share 0.50, the first query guided with probability 0.64");
+  EXPECT_EQ(tail({0.0, {}}), "uniform");
 }
 
 TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
@@ -148,7 +156,7 @@ TEST(GuidanceBook, AMissingPlacementIsAskedForAsMissing) {
   EXPECT_FALSE(book.ask(std::nullopt).second);
   EXPECT_TRUE(book.ask(placement(0)).second);
   EXPECT_EQ(placed, (std::vector<bool>{false, true}));
-  EXPECT_NE(book.find(std::nullopt), nullptr);
+  EXPECT_NE(book.choose(Problem{}).guidance, nullptr);
 }
 
 TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
@@ -160,10 +168,34 @@ TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
       wish());
   book.ask(placement(-1));
   book.ask(placement(1));
-  EXPECT_EQ(book.find(placement(-1)), nullptr);
-  EXPECT_EQ(book.find(placement(0.5)), nullptr);
-  ASSERT_NE(book.find(placement(1)), nullptr);
-  EXPECT_EQ(book.find(placement(1))->revision, 3U);
+  EXPECT_EQ(book.choose(problem_at(-1)).guidance, nullptr);
+  EXPECT_EQ(book.choose(problem_at(-1)).arm, Arm::Uniform);
+  EXPECT_EQ(book.choose(problem_at(0.5)).guidance, nullptr);
+  ASSERT_NE(book.choose(problem_at(1)).guidance, nullptr);
+  EXPECT_EQ(book.choose(problem_at(1)).guidance->revision, 3U);
+}
+
+/// Guided queries at one placement that cost ten times as much as control ones.
+TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
+  GuidanceBook book([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wish());
+  book.ask(placement(0));
+  book.ask(placement(1));
+  const auto guided = [&book] {
+    int count = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed)
+      count += book.choose(problem_at(1, seed)).arm == Arm::Guided ? 1 : 0;
+    return count;
+  };
+  EXPECT_GT(guided(), 100);
+  PlannedProblem planned;
+  planned.outcome = Outcome::Solved;
+  for (int i = 0; i < 10; ++i)
+    for (const Arm arm : {Arm::Guided, Arm::Control}) {
+      planned.result.arm = arm;
+      planned.result.collision_checks = arm == Arm::Guided ? 10'000 : 1000;
+      book.add(planned);
+    }
+  EXPECT_LT(guided(), 20);
 }
 
 TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "client/planning/path_vertices.hpp"
 #include "robots/collision/collision_world.hpp"
@@ -18,8 +19,8 @@ using test::wall_problem;
 bool never() { return false; }
 
 PlannedProblem planned(const Problem& problem, const PlanSettings& settings = {},
-                       const Guidance* guidance = nullptr) {
-  return plan_problem(planar_robot(), problem, guidance, settings, never);
+                       const QueryGuidance& query = {}) {
+  return plan_problem(planar_robot(), problem, query, settings, never);
 }
 
 Eigen::Isometry3d placement_of(const Problem& problem) {
@@ -41,10 +42,9 @@ int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
 
 Guidance guidance_towards(const Eigen::VectorXd& q) {
   Guidance guidance{
-      Digest{},
-      5,
-      Mixture(Eigen::VectorXd::Ones(1), q, {0.1 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
-      {0.9, true, 0}};
+      Digest{}, 5,
+      Mixture(Eigen::VectorXd::Ones(1), q, {0.25 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
+      0.9};
   guidance.distribution_id.bytes[3] = 9;
   return guidance;
 }
@@ -104,7 +104,7 @@ TEST(PlanProblem, ShortcuttingKeepsItsBudgetAndShortensThePath) {
 
 TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
-  const PlannedProblem answer = planned(wall_problem(), {}, &guidance);
+  const PlannedProblem answer = planned(wall_problem(), {}, {&guidance, Arm::Guided});
   EXPECT_EQ(answer.result.distribution_id, guidance.distribution_id);
   EXPECT_EQ(answer.result.distribution_revision, 5U);
   EXPECT_EQ(answer.result.arm, Arm::Guided);
@@ -112,16 +112,39 @@ TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
 }
 
-TEST(PlanProblem, AControlQueryIsPlannedAsWithoutGuidance) {
-  Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
-  guidance.arms.trial_part = 1;
-  const ProblemResult control = planned(wall_problem(), {}, &guidance).result;
+TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
   const ProblemResult uniform = planned(wall_problem()).result;
-  EXPECT_EQ(control.arm, Arm::Control);
-  EXPECT_EQ(control.share, 0);
-  EXPECT_EQ(control.distribution_id, guidance.distribution_id);
-  EXPECT_EQ(control.collision_checks, uniform.collision_checks);
-  EXPECT_EQ(*control.waypoints, *uniform.waypoints);
+  for (const Arm arm : {Arm::Control, Arm::Uniform}) {
+    const ProblemResult result = planned(wall_problem(), {}, {&guidance, arm}).result;
+    EXPECT_EQ(result.arm, arm);
+    EXPECT_EQ(result.share, 0);
+    EXPECT_FALSE(result.gate_fired);
+    EXPECT_EQ(result.distribution_id, guidance.distribution_id);
+    EXPECT_EQ(result.collision_checks, uniform.collision_checks);
+    EXPECT_EQ(*result.waypoints, *uniform.waypoints);
+  }
+}
+
+TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGuided) {
+  const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
+  const ProblemResult gated = planned(wall_problem(), {}, {&far, Arm::Guided}).result;
+  EXPECT_TRUE(gated.gate_fired);
+  EXPECT_EQ(gated.arm, Arm::Guided);
+  EXPECT_EQ(gated.share, 0);
+  EXPECT_EQ(gated.distribution_id, far.distribution_id);
+  const ProblemResult uniform = planned(wall_problem()).result;
+  EXPECT_EQ(gated.collision_checks, uniform.collision_checks);
+  EXPECT_EQ(*gated.waypoints, *uniform.waypoints);
+}
+
+TEST(PlanProblem, TheGateCanBeLeftOpen) {
+  const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
+  PlanSettings open;
+  open.gate_distance = std::numeric_limits<double>::infinity();
+  const ProblemResult guided = planned(wall_problem(), open, {&far, Arm::Guided}).result;
+  EXPECT_FALSE(guided.gate_fired);
+  EXPECT_EQ(guided.share, 0.9);
 }
 
 TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {

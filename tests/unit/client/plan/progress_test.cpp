@@ -48,6 +48,19 @@ TEST(Progress, EndsWithTheSums) {
             std::string::npos);
 }
 
+TEST(Progress, TellsHowManyTheGatePlannedUniformly) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 2);
+  ProblemResult guided = solved("a", 100);
+  guided.arm = Arm::Guided;
+  progress.add(guided, true);
+  guided.gate_fired = true;
+  progress.add(guided, true);
+  progress.finish();
+  EXPECT_NE(stream.str().find("2 guided (1 uniform by the gate), 0 control"), std::string::npos)
+      << stream.str();
+}
+
 TEST(Progress, CountsAttemptsByArmAndNothingElse) {
   std::ostringstream stream;
   Progress progress(stream, false, 4);

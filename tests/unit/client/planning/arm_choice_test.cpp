@@ -9,9 +9,20 @@
 namespace kinship::planning {
 namespace {
 
-Advice advice(double share, std::uint64_t guided, std::uint64_t control) {
+constexpr std::uint64_t kQueries = 20'000;
+
+/// Advice of a server that knows as many attempts, each with the checks of its arm.
+Advice advice(std::uint64_t guided, std::uint64_t control, std::uint64_t guided_checks = 1000,
+              std::uint64_t control_checks = 1000) {
+  evidence::AttemptWindow window;
+  for (std::uint64_t i = 0; i < guided; ++i)
+    window.add(Arm::Guided, true, guided_checks);
+  for (std::uint64_t i = 0; i < control; ++i)
+    window.add(Arm::Control, true, control_checks);
   Advice advice;
-  advice.recommended_share = share;
+  advice.recommended_share = 0.1;
+  advice.guided_share = 0.9;
+  advice.recent = window.recent();
   if (guided > 0)
     advice.guided = ArmEvidence{guided, guided, 1000};
   if (control > 0)
@@ -27,69 +38,127 @@ Problem problem(std::uint64_t number) {
   return problem;
 }
 
-int controls(const ArmPlan& plan, std::uint64_t queries) {
+int count(const ArmChooser& chooser, Arm arm, std::uint64_t queries = kQueries) {
   int count = 0;
   for (std::uint64_t i = 0; i < queries; ++i)
-    if (choose_arm(plan, arm_seed(problem(i))).arm == Arm::Control)
-      ++count;
+    count += chooser.choose(arm_seed(problem(i))) == arm ? 1 : 0;
   return count;
 }
 
-TEST(PlanArms, TestsATenthUntilTwentyControlsAreKnownThenOneInFifty) {
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 0), {}), (ArmPlan{0.9, true, 0.1}));
-  EXPECT_EQ(plan_arms(advice(0.9, 500, 19), {}), (ArmPlan{0.9, true, 0.1}));
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 20), {}), (ArmPlan{0.9, true, 0.02}));
+TEST(GuidedShare, IsTheUsersElseTheServersForGuidedQueries) {
+  EXPECT_EQ(guided_share(advice(0, 0), {}), 0.9);
+  EXPECT_EQ(guided_share(advice(0, 0), {0.25, {}}), 0.25);
+  EXPECT_THROW(guided_share(advice(0, 0), {1.5, {}}), std::invalid_argument);
 }
 
-TEST(PlanArms, TurnsTheRolesWhereUniformIsAdvised) {
-  EXPECT_EQ(plan_arms(advice(0, 500, 500), {}), (ArmPlan{kTrialShare, false, 0.02}));
-  EXPECT_EQ(plan_arms(advice(0, 10, 500), {}), (ArmPlan{kTrialShare, false, 0.1}));
-  EXPECT_EQ(plan_arms(advice(0.049, 500, 500), {}), (ArmPlan{kTrialShare, false, 0.02}));
-  EXPECT_EQ(plan_arms(advice(0.05, 500, 500), {}), (ArmPlan{0.05, true, 0.02}));
-  EXPECT_EQ(plan_arms(advice(0, 500, 500), {0.01, {}}), (ArmPlan{0.01, true, 0.02}));
-}
-
-TEST(PlanArms, DoesWhatItIsTold) {
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 0), {0.25, {}}), (ArmPlan{0.25, true, 0.1}));
-  EXPECT_EQ(plan_arms(advice(0, 50, 50), {0.25, {}}), (ArmPlan{0.25, true, 0.02}));
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 0), {{}, 0.5}), (ArmPlan{0.9, true, 0.5}));
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 0), {{}, 0.0}), (ArmPlan{0.9, true, 0}));
-  EXPECT_EQ(plan_arms(advice(0.9, 0, 0), {0.0, {}}), (ArmPlan{0, false, 0}));
-}
-
-TEST(PlanArms, RefusesSharesThatAreNone) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double share : {-0.01, 1.01, nan}) {
-    EXPECT_THROW(plan_arms(advice(share, 0, 0), {}), std::invalid_argument) << share;
-    EXPECT_THROW(plan_arms(advice(0.9, 0, 0), {share, {}}), std::invalid_argument) << share;
-    EXPECT_THROW(plan_arms(advice(0.9, 0, 0), {{}, share}), std::invalid_argument) << share;
+TEST(ArmChooser, RefusesSharesThatAreNone) {
+  for (const double share : {-0.01, 1.01, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(ArmChooser(advice(0, 0), {share, {}}), std::invalid_argument) << share;
+    EXPECT_THROW(ArmChooser(advice(0, 0), {{}, share}), std::invalid_argument) << share;
   }
 }
 
-TEST(ChooseArm, KeepsTheShareOfTheArm) {
-  EXPECT_EQ(choose_arm({0.7, true, 0}, 5), (ArmChoice{Arm::Guided, 0.7}));
-  EXPECT_EQ(choose_arm({0.7, true, 1}, 5), (ArmChoice{Arm::Control, 0}));
-  EXPECT_EQ(choose_arm({0.7, false, 0}, 5), (ArmChoice{Arm::Control, 0}));
-  EXPECT_EQ(choose_arm({0.7, false, 1}, 5), (ArmChoice{Arm::Guided, 0.7}));
+TEST(ArmChooser, WithoutEvidenceBothArmsAreTried) {
+  const ArmChooser chooser(advice(0, 0), {});
+  EXPECT_NEAR(chooser.guided_part(), 0.639, 0.001);
+  EXPECT_NEAR(count(chooser, Arm::Guided), 0.639 * kQueries, 4 * 68);
+  EXPECT_EQ(count(chooser, Arm::Uniform), 0);
+}
+
+TEST(ArmChooser, TheCheaperArmIsTakenButForTheFloors) {
+  EXPECT_DOUBLE_EQ(ArmChooser(advice(60, 60, 100, 1000), {}).guided_part(), 0.98);
+  EXPECT_DOUBLE_EQ(ArmChooser(advice(60, 60, 1000, 100), {}).guided_part(), 0.02);
+}
+
+TEST(ArmChooser, AtLeastATenthIsControlUntilTwentyAreKnown) {
+  EXPECT_DOUBLE_EQ(ArmChooser(advice(60, 19, 100, 1000), {}).guided_part(), 0.9);
+  ArmChooser chooser(advice(60, 19, 100, 1000), {});
+  chooser.add(Arm::Control, Outcome::Timeout, 1000);
+  EXPECT_DOUBLE_EQ(chooser.guided_part(), 0.98) << "its own attempts count, solved or not";
+  Advice old = advice(60, 10, 100, 1000);
+  old.control->attempts = 20;
+  EXPECT_DOUBLE_EQ(ArmChooser(old, {}).guided_part(), 0.98) << "also those that were forgotten";
 }
 
 // Seeds are fixed, so the counts are exact; the bounds are four standard deviations of a binomial
 // count, which a biased draw of a few percent would leave.
-TEST(ChooseArm, PartsAreKeptOnAverage) {
-  constexpr std::uint64_t kQueries = 20'000;
-  EXPECT_NEAR(controls({0.9, true, 0.1}, kQueries), 2000, 4 * 42);
-  EXPECT_NEAR(controls({0.9, true, 0.02}, kQueries), 400, 4 * 20);
-  EXPECT_NEAR(controls({0.9, true, 0.5}, kQueries), 10'000, 4 * 71);
-  EXPECT_NEAR(controls({0.9, false, 0.02}, kQueries), 19'600, 4 * 20);
-  EXPECT_EQ(controls({0.9, true, 0}, kQueries), 0);
-  EXPECT_EQ(controls({0.9, true, 1}, kQueries), 20'000);
+TEST(ArmChooser, TheFloorIsKeptInTheDraws) {
+  EXPECT_NEAR(count(ArmChooser(advice(60, 60, 100, 1000), {}), Arm::Control), 400, 4 * 20);
+  EXPECT_NEAR(count(ArmChooser(advice(60, 60, 1000, 100), {}), Arm::Guided), 400, 4 * 20);
 }
 
-TEST(ChooseArm, ALargerPartTestsTheSameQueriesAndMore) {
-  for (std::uint64_t i = 0; i < 2000; ++i)
-    if (choose_arm({0.9, true, 0.02}, arm_seed(problem(i))).arm == Arm::Control) {
-      EXPECT_EQ(choose_arm({0.9, true, 0.1}, arm_seed(problem(i))).arm, Arm::Control);
+TEST(ArmChooser, AControlShareTakesThePlaceOfAllThat) {
+  EXPECT_NEAR(count(ArmChooser(advice(60, 60, 1000, 100), {{}, 0.1}), Arm::Control), 2000, 4 * 42);
+  EXPECT_EQ(count(ArmChooser(advice(60, 60, 1000, 100), {{}, 0.0}), Arm::Guided), kQueries);
+  EXPECT_EQ(count(ArmChooser(advice(60, 60, 100, 1000), {{}, 1.0}), Arm::Control), kQueries);
+  EXPECT_FALSE(ArmChooser(advice(0, 0), {{}, 0.0}).is_sampling());
+}
+
+TEST(ArmChooser, AShareOfZeroIsUniformAndNoEvidence) {
+  ArmChooser chooser(advice(60, 60, 100, 1000), {0.0, 0.5});
+  EXPECT_EQ(count(chooser, Arm::Uniform, 100), 100);
+  EXPECT_EQ(chooser.guided_part(), 0);
+}
+
+TEST(ArmChooser, EqualQueryAndEqualEvidenceGiveEqualArms) {
+  const ArmChooser first(advice(5, 5), {}), second(advice(5, 5), {});
+  for (std::uint64_t i = 0; i < 200; ++i)
+    EXPECT_EQ(first.choose(arm_seed(problem(i))), second.choose(arm_seed(problem(i))));
+}
+
+TEST(ArmChooser, TheSameQueryAgainIsAnotherDraw) {
+  ArmChooser chooser(advice(0, 0), {});
+  std::set<Arm> arms;
+  for (int i = 0; i < 30; ++i) {
+    const Arm arm = chooser.choose(arm_seed(problem(0)));
+    arms.insert(arm);
+    chooser.add(arm, Outcome::Solved, 1000);
+  }
+  EXPECT_EQ(arms.size(), 2U);
+}
+
+TEST(ArmChooser, AFixedShareDrawsTheSameQueriesWhateverIsKnown) {
+  ArmChooser chooser(advice(0, 0), {{}, 0.3});
+  std::vector<Arm> before;
+  for (std::uint64_t i = 0; i < 200; ++i)
+    before.push_back(chooser.choose(i));
+  chooser.add(Arm::Guided, Outcome::Solved, 10);
+  for (std::uint64_t i = 0; i < 200; ++i)
+    EXPECT_EQ(chooser.choose(i), before[i]);
+  const ArmChooser more(advice(0, 0), {{}, 0.5});
+  for (std::uint64_t i = 0; i < 200; ++i)
+    if (before[i] == Arm::Control) {
+      EXPECT_EQ(more.choose(i), Arm::Control) << "a larger part has the same queries and more";
     }
+}
+
+/// 200 queries with the evidence of the start alone: the client learns from what it does.
+TEST(ArmChooser, LearnsFromItsOwnQueries) {
+  for (const bool guidance_helps : {true, false}) {
+    ArmChooser chooser(advice(0, 0), {});
+    int guided = 0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Arm arm = chooser.choose(arm_seed(problem(i)));
+      const std::uint64_t varied = 500 + 37 * i % 1000;
+      const bool is_dear = (arm == Arm::Guided) != guidance_helps;
+      chooser.add(arm, Outcome::Solved, is_dear ? 4 * varied : varied);
+      guided += i >= 100 && arm == Arm::Guided ? 1 : 0;
+    }
+    if (guidance_helps)
+      EXPECT_GE(guided, 80);
+    else
+      EXPECT_LE(guided, 20);
+  }
+}
+
+TEST(ArmChooser, WhatCouldNotBePlannedAtAllTeachesNothing) {
+  ArmChooser chooser(advice(5, 5, 3000, 1000), {});
+  const double before = chooser.guided_part();
+  chooser.add(Arm::Guided, Outcome::Failed, 1);
+  chooser.add(Arm::Uniform, Outcome::Solved, 10);
+  EXPECT_EQ(chooser.guided_part(), before);
+  chooser.add(Arm::Guided, Outcome::Solved, 1);
+  EXPECT_NE(chooser.guided_part(), before);
 }
 
 TEST(ArmSeed, IsTheSameForTheSameQueryOnly) {

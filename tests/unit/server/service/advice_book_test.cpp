@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kProfileShare = 0.9;
 
-AttemptCost cost(Arm arm, std::uint64_t checks, bool solved = true) {
-  return {"shelf", {}, arm, solved, checks};
+AttemptCost cost(Arm arm, std::uint64_t checks, Outcome outcome = Outcome::Solved) {
+  return {"shelf", {}, arm, outcome, checks};
 }
 
 class AdviceBookTest : public testing::Test {
@@ -70,7 +70,7 @@ TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
   run_later();
   for (int i = 0; i < 12; ++i) {
     book_.add(cost(Arm::Guided, 2000));
-    book_.add(cost(Arm::Control, 1000, i < 6));
+    book_.add(cost(Arm::Control, 1000, i < 6 ? Outcome::Solved : Outcome::Timeout));
     book_.add(cost(Arm::Uniform, 5));
   }
   const Advice advice = advise();
@@ -78,6 +78,17 @@ TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
   EXPECT_EQ(*advice.control, (ArmEvidence{12, 6, 2000}));
   EXPECT_EQ(version(), 25U);
   EXPECT_EQ(readings_, 1);
+}
+
+TEST_F(AdviceBookTest, RecentAttemptsGoOnFromTheStoredOnes) {
+  stored_.recent = {{Arm::Control, true, 700, 0}};
+  advise();
+  run_later();
+  book_.add(cost(Arm::Guided, 300, Outcome::Timeout));
+  book_.add(cost(Arm::Uniform, 5));
+  book_.add(cost(Arm::Guided, 1, Outcome::Failed));  // a start in collision, say
+  EXPECT_EQ(advise().recent, (std::vector<JudgedAttempt>{{Arm::Control, true, 700, 1},
+                                                         {Arm::Guided, false, 300, 0}}));
 }
 
 TEST_F(AdviceBookTest, WhatNobodyAskedForIsNotKept) {

@@ -136,5 +136,43 @@ TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
   EXPECT_EQ(store_->attempt_totals(panda_.digest, "nothing").control.attempts, 0U);
 }
 
+TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
+  const auto attempt = [this](std::uint64_t number, Arm arm, Outcome outcome) {
+    Attempt made = outcome == Outcome::Solved ? solved(number)
+                                              : test::make_unsolved(panda_.digest, "shelf", number);
+    made.record.arm = arm;
+    made.record.outcome = outcome;
+    made.record.collision_checks = number;
+    return made;
+  };
+  test::report(
+      *store_,
+      {attempt(1, Arm::Control, Outcome::Solved), attempt(2, Arm::Guided, Outcome::Timeout),
+       attempt(3, Arm::Uniform, Outcome::Solved), attempt(4, Arm::Guided, Outcome::Failed),
+       attempt(5, Arm::Guided, Outcome::Solved)});
+  reopen();
+  EXPECT_EQ(
+      store_->attempt_totals(panda_.digest, "shelf").recent,
+      (std::vector<JudgedAttempt>{
+          {Arm::Control, true, 1, 2}, {Arm::Guided, false, 2, 1}, {Arm::Guided, true, 5, 0}}));
+  EXPECT_TRUE(store_->attempt_totals(iiwa_.digest, "shelf").recent.empty());
+}
+
+TEST_P(StoreConformance, OfEachArmAsManyJudgedAttemptsAsCountAreRead) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t i = 0; i < kJudgedAttemptsPerArm + 10; ++i) {
+    attempts.push_back(test::make_unsolved(panda_.digest, "shelf", i + 1));
+    attempts.back().record.arm = i == 0 ? Arm::Control : Arm::Guided;
+    attempts.back().record.outcome = Outcome::Timeout;
+    attempts.back().record.collision_checks = i;
+  }
+  test::report(*store_, attempts);
+  const std::vector<JudgedAttempt> recent = store_->attempt_totals(panda_.digest, "shelf").recent;
+  ASSERT_EQ(recent.size(), kJudgedAttemptsPerArm + 1);
+  EXPECT_EQ(recent[0], (JudgedAttempt{Arm::Control, false, 0, kJudgedAttemptsPerArm + 9}));
+  EXPECT_EQ(recent[1].checks, 10U);
+  EXPECT_EQ(recent[1].age, kJudgedAttemptsPerArm - 1);
+}
+
 }  // namespace
 }  // namespace kinship::store

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "proto/types/advice.hpp"
+
+namespace kinship::evidence {
+
+/// The newest judged attempts of a (task, robot), oldest first, at most kJudgedAttemptsPerArm of
+/// each arm. The server fills it with what all machines report, a client goes on with its own.
+class AttemptWindow {
+ public:
+  AttemptWindow() = default;
+  /// \param recent  oldest first, as in an Advice; the oldest beyond the window are dropped.
+  explicit AttemptWindow(std::vector<JudgedAttempt> recent);
+
+  /// An attempt newer than all others, which age by one. Uniform ones are no evidence: ignored.
+  void add(Arm arm, bool solved, std::uint64_t checks);
+
+  const std::vector<JudgedAttempt>& recent() const noexcept { return recent_; }
+
+ private:
+  void drop_beyond_window(Arm arm);
+
+  std::vector<JudgedAttempt> recent_;
+};
+
+}  // namespace kinship::evidence
