@@ -5,6 +5,7 @@
 
 #include "client/arguments/robot_options.hpp"
 #include "client/experiments/commands.hpp"
+#include "client/experiments/study_options.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/failure.hpp"
@@ -23,6 +24,12 @@ Examples:
 
   kinship-experiments page --run build/quickstart --models robots/models --fleet panda,iiwa14 --robot ur10e \
       --output quickstart.html
+  kinship-experiments planar --out build/experiments --quick
+      the whole first experiment with few instances: learning sets, distributions, queries
+  kinship-experiments planar --out client/experiments/results --resume
+      goes on with what is there
+  kinship-experiments planar --out build/tuning --tuning --overshoot 1.5 --share 0.9
+      the same on tuning instances, to choose options by
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
 
@@ -33,6 +40,7 @@ struct CommandLine {
   models::RobotArguments placed;
   CompareOptions compare;
   RunFolder page;
+  StudyOptions study;
 };
 
 void add_shelf(CLI::App& app, CommandLine& line) {
@@ -119,6 +127,7 @@ int run(int argc, char** argv) {
   add_placement(app, line);
   add_compare(app, line);
   add_page(app, line);
+  add_study_commands(app, line.study);
   try {
     app.parse(argc, argv);
     if (!line.placement.empty())
@@ -126,7 +135,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
-  if (app.got_subcommand("shelf"))
+  if (!line.study.study.empty())
+    run_study_command(line.study, std::cout, std::cerr);
+  else if (app.got_subcommand("shelf"))
     write_shelf(line);
   else if (app.got_subcommand("placement"))
     write_placement(line.placed, std::cout);

@@ -1,13 +1,13 @@
 #include "client/experiments/shelf_problems.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <vector>
 
 #include "client/experiments/shelf_scene.hpp"
+#include "client/experiments/studies/instance_random.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/inverse.hpp"
@@ -16,27 +16,6 @@ namespace kinship::experiments {
 namespace {
 
 constexpr double kTimeLimit_s = 60;  // far beyond what the checks take: checks end a query first
-
-/// Independent random numbers for each use of an instance.
-enum class Use : std::uint32_t { Scene, Start, Planner };
-
-std::mt19937_64 generator_for(std::uint64_t seed, std::uint32_t index, std::uint32_t draw,
-                              Use use) {
-  constexpr unsigned kHalf = 32;
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed),
-                         static_cast<std::uint32_t>(seed >> kHalf), index, draw,
-                         static_cast<std::uint32_t>(use)};
-  return std::mt19937_64(sequence);
-}
-
-std::string instance_name(std::uint64_t seed, std::uint32_t index, std::uint32_t draw) {
-  char number[16];
-  std::snprintf(number, sizeof number, "%04u", index);
-  std::string name = "shelf-" + std::to_string(seed) + "-" + number;
-  if (draw > 0)
-    name += "." + std::to_string(draw);
-  return name;
-}
 
 /// Links that move with the tip hold the box; links before the second joint stand on the table.
 void add_touching_links(const kinematics::Chain& chain, AttachedObject& box, Problem& problem) {
@@ -83,17 +62,16 @@ std::optional<Eigen::VectorXd> free_configuration(const models::LoadedRobot& rob
 
 /// The instance of one sub-seed; empty if the robot cannot start or end it.
 std::optional<Problem> try_draw(const models::LoadedRobot& robot,
-                                const Eigen::Isometry3d& T_task_base, std::uint64_t seed,
-                                std::uint32_t index, std::uint32_t draw) {
-  std::mt19937_64 scene_generator = generator_for(seed, index, draw, Use::Scene);
+                                const Eigen::Isometry3d& T_task_base, const InstanceKey& key) {
+  std::mt19937_64 scene_generator = generator_for(key, Use::Scene);
   const ShelfScene instance = draw_shelf_scene(scene_generator);
   Problem problem;
-  problem.name = instance_name(seed, index, draw);
+  problem.name = instance_name("shelf", key);
   problem.T_task_base = T_task_base;
   problem.scene = instance.scene;
   problem.T_task_goal = instance.T_task_place;
   problem.time_limit_s = kTimeLimit_s;
-  problem.seed = generator_for(seed, index, draw, Use::Planner)() >> 1U;  // fits a signed integer
+  problem.seed = planner_seed(key);
   AttachedObject box{"box",
                      robot.chain.tip_link(),
                      held_box(),
@@ -102,7 +80,7 @@ std::optional<Problem> try_draw(const models::LoadedRobot& robot,
   add_touching_links(robot.chain, box, problem);
   problem.attached.push_back(box);
 
-  std::mt19937_64 generator = generator_for(seed, index, draw, Use::Start);
+  std::mt19937_64 generator = generator_for(key, Use::Start);
   const auto start = free_configuration(robot, problem, instance.T_task_pick, generator);
   if (!start || !free_configuration(robot, problem, instance.T_task_place, generator))
     return std::nullopt;
@@ -126,12 +104,12 @@ Eigen::Isometry3d shelf_placement(std::string_view label) {
 Problem draw_shelf_problem(const models::LoadedRobot& robot, const Eigen::Isometry3d& T_task_base,
                            std::uint64_t seed, std::uint32_t index) {
   for (std::uint32_t draw = 0; draw < kMaxDraws; ++draw)
-    if (std::optional<Problem> problem = try_draw(robot, T_task_base, seed, index, draw))
+    if (std::optional<Problem> problem = try_draw(robot, T_task_base, {seed, index, draw}))
       return *std::move(problem);
   throw Failure(ErrorCode::NotFound,
                 "robot '" + robot.description.label + "' has no free start and goal in " +
-                    std::to_string(kMaxDraws) + " draws of " + instance_name(seed, index, 0) +
-                    ": is its placement right?");
+                    std::to_string(kMaxDraws) + " draws of " +
+                    instance_name("shelf", {seed, index, 0}) + ": is its placement right?");
 }
 
 }  // namespace kinship::experiments

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "client/experiments/studies/instance_random.hpp"
+
 namespace kinship::experiments {
 namespace {
 
@@ -23,21 +25,6 @@ constexpr std::size_t kCompartments = kColumns * kRows;
 constexpr double kPlaceNoise_m = 0.02;
 constexpr double kTurnNoise_rad = 3 * std::numbers::pi / 180;
 constexpr double kPickTurnNoise_rad = 8 * std::numbers::pi / 180;
-
-/// Normal noise, cut at 2.5 standard deviations so that objects do not grow into each other.
-class Noise {
- public:
-  explicit Noise(std::mt19937_64& generator) : generator_(generator) {}
-
-  double operator()(double deviation) {
-    constexpr double kCut = 2.5;
-    return deviation * std::clamp(normal_(generator_), -kCut, kCut);
-  }
-
- private:
-  std::mt19937_64& generator_;
-  std::normal_distribution<double> normal_;
-};
 
 Eigen::Isometry3d upright(double x, double y, double z, double yaw_rad = 0) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

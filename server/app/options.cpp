@@ -90,6 +90,10 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMostWorkers))
       ->capture_default_str();
+  app.add_option("--fit-niceness", options.fit_niceness,
+                 "How far these threads step back for others on this machine")
+      ->check(CLI::Range(0, 19))
+      ->capture_default_str();
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();

@@ -18,6 +18,7 @@ struct ServerOptions {
   std::uint32_t domain = 0;
   std::string network_interface;  ///< empty: loopback
   std::size_t workers = 1;        ///< threads that transfer and fit
+  int fit_niceness = 10;          ///< of these threads, 0 to 19
   std::string log_level = "info";
 };
 

@@ -38,6 +38,7 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service::ServiceOptions service;
   service.version = KINSHIP_VERSION;
   service.fit_threads = options.workers;
+  service.fit_niceness = options.fit_niceness;
   service.log = [](std::string_view line) { spdlog::info("{}", line); };
   return service;
 }

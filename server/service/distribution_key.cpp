@@ -6,6 +6,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
+#include "proto/types/profile_text.hpp"
 #include "proto/types/sha256.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/density/fit.hpp"
@@ -33,10 +34,9 @@ std::optional<Error> check_selection(const Selection& selection) {
 Result<DistributionKey> make_key(const FetchRequest& request) {
   if (const auto error = check_task(request.task))
     return *error;
-  const std::optional<Profile> profile = find_profile(request.profile);
+  const Result<Profile> profile = profile_from_text(request.profile);
   if (!profile)
-    return Error{ErrorCode::InvalidInput,
-                 "profile '" + request.profile + "' is not one of default, paper"};
+    return profile.error();
   if (const auto error = check_selection(request.selection))
     return *error;
   DistributionKey key{request.task,

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "proto/types/profile_text.hpp"
 #include "server/service/told_events.hpp"
 
 namespace kinship::service {
@@ -81,7 +82,7 @@ Administration::Parts Service::administration_parts() {
           .status = [this] { return status(); },
           .advise =
               [this](const Distribution& distribution) {
-                const std::optional<Profile> profile = find_profile(distribution.profile);
+                const Result<Profile> profile = profile_from_text(distribution.profile);
                 return advice_.advise(distribution.task, distribution.robot,
                                       profile ? first_share(*profile, distribution.state)
                                               : distribution.advice.recommended_share);

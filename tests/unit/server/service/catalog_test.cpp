@@ -30,7 +30,7 @@ TEST_F(CatalogTest, SaysWhyThereIsNothing) {
   request.profile = "best";
   reply = fetch(request);
   EXPECT_EQ(reply.status, FetchStatus::Refused);
-  EXPECT_EQ(reply.message, "profile 'best' is not one of default, paper");
+  EXPECT_EQ(reply.message, "profile 'best': it does not begin with default or paper");
   EXPECT_EQ(gate_.calls(), 0);
 }
 

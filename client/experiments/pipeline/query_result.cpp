@@ -1,0 +1,44 @@
+#include "client/experiments/pipeline/query_result.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace kinship::experiments {
+
+std::string to_json(const QueryResult& result) {
+  nlohmann::ordered_json line;
+  line["robot"] = result.key.robot;
+  line["guidance"] = result.key.guidance;
+  line["instance"] = result.key.instance;
+  line["seed"] = result.key.seed;
+  line["distribution"] = nullptr;
+  if (result.distribution)
+    line["distribution"] = result.distribution->hex();
+  line["solved"] = result.solved;
+  line["checks"] = result.checks;
+  line["goal_checks"] = result.goal_checks;
+  line["projections"] = result.projections;
+  line["cpu_s"] = result.cpu_s;
+  line["length"] = result.length;
+  return line.dump();
+}
+
+Result<QueryResult> query_result_from_json(std::string_view text) {
+  try {
+    const auto line = nlohmann::json::parse(text);
+    QueryResult result;
+    result.key = {line.at("robot"), line.at("guidance"), line.at("instance"), line.at("seed")};
+    if (!line.at("distribution").is_null())
+      result.distribution = Digest::from_hex(line.at("distribution").get<std::string>());
+    result.solved = line.at("solved");
+    result.checks = line.at("checks");
+    result.goal_checks = line.at("goal_checks");
+    result.projections = line.at("projections");
+    result.cpu_s = line.at("cpu_s");
+    result.length = line.at("length");
+    return result;
+  } catch (const nlohmann::json::exception& exception) {
+    return Error{ErrorCode::InvalidInput, exception.what()};
+  }
+}
+
+}  // namespace kinship::experiments

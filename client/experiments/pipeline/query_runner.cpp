@@ -1,0 +1,71 @@
+#include "client/experiments/pipeline/query_runner.hpp"
+
+#include "client/experiments/pipeline/parallel_for.hpp"
+#include "client/planning/path_vertices.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& problem,
+                   QueryKey key) {
+  const plan::Guidance* const guidance = cell.guidance ? &*cell.guidance : nullptr;
+  const plan::PlannedProblem planned =
+      plan::plan_problem(member.planned, problem, guidance, cell.settings, [] { return false; });
+  if (!planned.attempted)
+    throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
+  const ProblemResult& result = planned.result;
+  return {.key = std::move(key),
+          .distribution = result.distribution_id,
+          .solved = result.solved,
+          .checks = result.collision_checks,
+          .goal_checks = result.goal_checks,
+          .projections = result.projections,
+          .cpu_s = result.planning_time_s,
+          .length = result.waypoints ? planning::path_length(*result.waypoints) : 0};
+}
+
+/// All queries of one robot and instance.
+void answer_instance(const StudyMember& member, const std::vector<const Cell*>& cells,
+                     std::uint32_t index, const QueryPlan& plan, QueryLog& log) {
+  Problem problem = member.draw(plan.seed, index);
+  const std::uint64_t own_seed = problem.seed;
+  for (std::uint32_t seed = 0; seed < plan.seeds; ++seed) {
+    problem.seed = own_seed + seed;
+    for (const Cell* const cell : cells) {
+      const QueryKey key{member.label(), cell->name, problem.name, seed};
+      std::optional<Digest> distribution;
+      if (cell->guidance)
+        distribution = cell->guidance->distribution_id;
+      if (!log.has(key, distribution))
+        log.add(answer(member, *cell, problem, key));
+      if (plan.answered)
+        plan.answered();
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<plan::Guidance> always_guided(const Distribution& distribution, double share) {
+  if (!distribution.mixture)
+    return std::nullopt;
+  const planning::ArmPlan always{.share = share, .is_guided = true, .trial_part = 0};
+  return plan::Guidance{distribution.id, distribution.revision, *distribution.mixture, always};
+}
+
+void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,
+                 const QueryPlan& plan, QueryLog& log) {
+  std::vector<std::vector<const Cell*>> cells_of(fleet.size());
+  for (const Cell& cell : cells)
+    cells_of.at(cell.robot).push_back(&cell);
+  for (std::size_t robot = 0; robot < fleet.size(); ++robot) {
+    if (cells_of[robot].empty())
+      continue;
+    parallel_for(plan.threads, plan.instances, [&](std::size_t i) {
+      answer_instance(fleet[robot], cells_of[robot], static_cast<std::uint32_t>(i), plan, log);
+    });
+  }
+}
+
+}  // namespace kinship::experiments

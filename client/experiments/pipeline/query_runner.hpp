@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "client/experiments/pipeline/fleet.hpp"
+#include "client/experiments/pipeline/query_log.hpp"
+#include "proto/types/distribution.hpp"
+
+namespace kinship::experiments {
+
+/// One way in which a robot plans the instances.
+struct Cell {
+  std::size_t robot = 0;  ///< index into the fleet
+  std::string name;       ///< unique among the robot's cells; in QueryKey::guidance
+  plan::PlanSettings settings;
+  std::optional<plan::Guidance> guidance;  ///< missing: uniform
+};
+
+/// Guidance for every query, as `kinship-plan --guidance always --control-share 0` has it.
+/// \param share  of guided samples; 0 to 1.
+/// \return       missing if the distribution has no mixture.
+std::optional<plan::Guidance> always_guided(const Distribution& distribution, double share);
+
+/// Which instances are planned, and how often.
+struct QueryPlan {
+  std::uint64_t seed = 0;  ///< of the instances
+  std::uint32_t instances = 0;
+  std::uint32_t seeds = 1;  ///< planned under each instance's own seed + 0, + 1, ...
+  int threads = 1;
+  std::function<void()> answered;  ///< called after each query, from any thread; may be empty
+};
+
+/// Plans what is not in the log yet. An instance belongs to one thread, which plans it with all
+/// cells of the robot in turn, seed after seed: whatever disturbs the machine disturbs them alike.
+void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,
+                 const QueryPlan& plan, QueryLog& log);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,192 @@
+#include "client/experiments/pipeline/study_run.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <ostream>
+
+#include "client/experiments/analysis/ratio_table.hpp"
+#include "client/experiments/pipeline/compressed_file.hpp"
+#include "client/experiments/pipeline/run_record.hpp"
+#include "client/experiments/pipeline/study_session.hpp"
+#include "client/experiments/report/study_report.hpp"
+#include "client/files/lines.hpp"
+#include "client/files/output_file.hpp"
+#include "proto/json/distribution_json.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+constexpr std::uint32_t kTestSeeds = 4;
+constexpr std::uint32_t kQuickInstances = 6;
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+/// Uniform planning, named after its overshoot.
+Cell uniform_cell(std::size_t robot, plan::PlanSettings settings, double overshoot) {
+  settings.overshoot = overshoot;
+  settings.shortcut_checks = 0;
+  return {robot, uniform_name(overshoot), settings, std::nullopt};
+}
+
+/// Uniform cells of a robot: with the overshoot that guided cells have, and plain.
+std::vector<Cell> uniform_cells(std::size_t robot, const plan::PlanSettings& settings) {
+  std::vector<Cell> cells = {uniform_cell(robot, settings, settings.overshoot)};
+  if (settings.overshoot != 1)
+    cells.push_back(uniform_cell(robot, settings, 1));
+  return cells;
+}
+
+std::optional<Cell> guided_cell(std::size_t robot, std::string name, plan::PlanSettings settings,
+                                const Distribution& distribution, double share) {
+  settings.shortcut_checks = 0;
+  std::optional<plan::Guidance> guidance = always_guided(distribution, share);
+  if (!guidance)
+    return std::nullopt;
+  return Cell{robot, std::move(name), settings, std::move(guidance)};
+}
+
+/// The cells of the main tables: uniform, and guided by each robot alone.
+std::vector<Cell> main_cells(const Study& study, StudySession& session,
+                             std::ostream& distributions) {
+  std::vector<Cell> cells;
+  for (std::size_t target = 0; target < session.fleet().size(); ++target) {
+    for (Cell& cell : uniform_cells(target, study.settings))
+      cells.push_back(std::move(cell));
+    for (std::size_t source = 0; source < session.fleet().size(); ++source) {
+      const Distribution distribution = session.fetch({study.name, target, {source}, "default"});
+      distributions << json::to_json(distribution) << '\n';
+      if (auto cell = guided_cell(target, session.fleet()[source].label(), study.settings,
+                                  distribution, study.guided_share))
+        cells.push_back(*std::move(cell));
+    }
+  }
+  return cells;
+}
+
+/// Fetched distributions as run_study wrote them.
+std::vector<Distribution> read_distributions(const std::filesystem::path& file) {
+  expand_file(file);
+  std::vector<Distribution> distributions;
+  std::ifstream stream = files::open_input(file);
+  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
+    Result<Distribution> distribution =
+        line.text ? json::distribution_from_json(*line.text) : line.text.error();
+    distributions.push_back(std::move(distribution).value_or_throw());
+    return true;
+  });
+  return distributions;
+}
+
+std::vector<std::size_t> chosen_robots(const std::vector<StudyMember>& fleet,
+                                       const std::vector<std::string>& labels) {
+  std::vector<std::size_t> robots;
+  for (const std::string& label : labels)
+    robots.push_back(find_member(fleet, label));
+  for (std::size_t robot = 0; labels.empty() && robot < fleet.size(); ++robot)
+    robots.push_back(robot);
+  return robots;
+}
+
+/// Where a tuning result belongs: a source and all that was varied. The distribution stands for
+/// profile, engines and experience.
+std::string tuning_name(const std::string& source, const TuningOptions& tuning, double overshoot,
+                        const Distribution& distribution) {
+  return source + " " + tuning.profile + " " + distribution.id.short_hex() + " r" +
+         std::to_string(distribution.revision) + " f" + number_text(overshoot) + " s" +
+         number_text(tuning.share);
+}
+
+}  // namespace
+
+void run_study(const Study& study, const RunOptions& options, std::ostream& messages) {
+  const auto begin = std::chrono::steady_clock::now();
+  RunRecord record = begin_run(study.name);
+  StudySession session(study, options, messages);
+  session.learn();
+  files::OutputFile distributions(session.files().distributions, messages);
+  const std::vector<Cell> cells = main_cells(study, session, distributions.stream());
+  distributions.keep();
+  QueryLog log(session.files().test);
+  const std::size_t known = log.results().size();
+  QueryPlan plan;
+  plan.seed = seed_of(InstanceSet::Test, 0);
+  plan.instances = options.quick ? kQuickInstances : study.test_instances;
+  plan.seeds = options.quick ? 1 : kTestSeeds;
+  session.run("test", cells, plan, log);
+  record.planned = log.results().size() - known;
+  record.duration_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  append_run(session.files().runs, record);
+  compress_file(session.files().test);
+  compress_file(session.files().distributions);
+  report_study(study, options, messages);
+}
+
+void report_study(const Study& study, const RunOptions& options, std::ostream& messages) {
+  const StudyFiles files(study, options);
+  ReportData data;
+  if (expand_file(files.calibration))
+    data.calibration = read_query_results(files.calibration);
+  data.test = read_query_results(files.test);
+  data.distributions = read_distributions(files.distributions);
+  data.runs = read_runs(files.runs);
+  files::OutputFile page(files.report, messages);
+  write_study_report(study, load_fleet(study, options.models), data, page.stream());
+  page.keep();
+  messages << study.name << ": " << files.report.string() << std::endl;
+}
+
+void tune_study(const Study& study, const RunOptions& options, const TuningOptions& tuning,
+                std::ostream& out, std::ostream& messages) {
+  RunOptions again = options;
+  again.resume = true;
+  StudySession session(study, again, messages);
+  session.learn();
+  plan::PlanSettings settings = study.settings;
+  settings.overshoot = tuning.overshoot.value_or(study.settings.overshoot);
+  std::vector<Cell> cells;
+  RatioTable table;
+  for (const std::size_t target : chosen_robots(session.fleet(), tuning.targets)) {
+    const std::string& label = session.fleet()[target].label();
+    for (Cell& cell : uniform_cells(target, settings))
+      cells.push_back(std::move(cell));
+    for (const std::size_t source : chosen_robots(session.fleet(), tuning.sources)) {
+      const Distribution distribution =
+          session.fetch({study.name, target, {source}, tuning.profile});
+      const std::string& source_label = session.fleet()[source].label();
+      const std::string name = tuning_name(source_label, tuning, settings.overshoot, distribution);
+      if (auto cell = guided_cell(target, name, settings, distribution, tuning.share)) {
+        cells.push_back(*std::move(cell));
+        table.pairs.push_back({label, source_label, name, source == target});
+      }
+    }
+  }
+  QueryLog log(session.files().tuning);
+  session.run("tuning", cells,
+              {seed_of(InstanceSet::Tuning, 0), tuning.instances, tuning.seeds, 1, {}}, log);
+  table.overshoot = settings.overshoot;
+  table.max_checks = settings.max_checks;
+  write_ratio_table(table, log.results(), out);
+}
+
+void calibrate_study(const Study& study, const RunOptions& options, std::uint32_t instances,
+                     std::ostream& out, std::ostream& messages) {
+  RunOptions again = options;
+  again.resume = true;
+  StudySession session(study, again, messages);
+  std::vector<Cell> cells;
+  for (std::size_t robot = 0; robot < session.fleet().size(); ++robot)
+    cells.push_back(uniform_cell(robot, study.settings, 1));
+  QueryLog log(session.files().calibration);
+  session.run("calibration", cells, {seed_of(InstanceSet::Calibration, 0), instances, 1, 1, {}},
+              log);
+  compress_file(session.files().calibration);
+  write_calibration(study, log.results(), out);
+}
+
+}  // namespace kinship::experiments

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/experiments/studies/study.hpp"
+
+namespace kinship::experiments {
+
+/// Where and how a study runs.
+struct RunOptions {
+  std::filesystem::path folder;    ///< of learning sets, results and the store
+  std::filesystem::path models;    ///< of the robots' model folders
+  std::filesystem::path kinshipd;  ///< empty: beside this program
+  std::uint32_t domain = 0;
+  int threads = 2;
+  bool resume = false;  ///< go on with what the folder holds
+  bool quick = false;   ///< few instances: shows that everything works, measures nothing
+};
+
+/// What is tried on tuning instances; what is missing is as the study has it.
+struct TuningOptions {
+  std::string profile = "default";
+  std::optional<double> overshoot;
+  double share = 1;  ///< of guided samples; the rest is uniform
+  std::uint32_t instances = 30;
+  std::uint32_t seeds = 2;
+  std::vector<std::string> targets, sources;  ///< labels; empty: all
+};
+
+/// Runs the frozen study on its test instances: learning sets, distributions, queries, report.
+/// Results go into `<folder>/<study>/`, and on `messages` how far it is.
+void run_study(const Study& study, const RunOptions& options, std::ostream& messages);
+
+/// Writes `<folder>/<study>/report.html` of the results that the folder holds, without planning.
+void report_study(const Study& study, const RunOptions& options, std::ostream& messages);
+
+/// Plans tuning instances, never test instances, and writes what guidance was worth on `out`.
+/// Learning sets, store and results of earlier tries in the folder are used again.
+void tune_study(const Study& study, const RunOptions& options, const TuningOptions& tuning,
+                std::ostream& out, std::ostream& messages);
+
+/// Plans calibration instances uniformly and writes what they cost beside the paper's figures.
+void calibrate_study(const Study& study, const RunOptions& options, std::uint32_t instances,
+                     std::ostream& out, std::ostream& messages);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/experiments/pipeline/experience_server.hpp"
+#include "client/experiments/pipeline/fleet.hpp"
+#include "client/experiments/pipeline/query_log.hpp"
+#include "client/experiments/pipeline/query_runner.hpp"
+#include "client/experiments/pipeline/study_run.hpp"
+
+namespace kinship::experiments {
+
+/// Where a study keeps what it has.
+struct StudyFiles {
+  StudyFiles(const Study& study, const RunOptions& options);
+
+  std::filesystem::path folder;
+  std::filesystem::path learning;       ///< folder of learning sets
+  std::filesystem::path store;          ///< of its kinshipd
+  std::filesystem::path calibration;    ///< results of calibration queries
+  std::filesystem::path test;           ///< results of test queries
+  std::filesystem::path tuning;         ///< results of tuning queries
+  std::filesystem::path distributions;  ///< as they were fetched, one a line
+  std::filesystem::path runs;           ///< of the test set
+  std::filesystem::path report;
+};
+
+/// A study under way: its fleet, its learning sets and its server.
+class StudySession {
+ public:
+  /// Loads the fleet. \throws Failure(Conflict) if the folder holds results and `resume` is not
+  /// set; others as load_fleet says.
+  StudySession(const Study& study, const RunOptions& options, std::ostream& messages);
+
+  const std::vector<StudyMember>& fleet() const noexcept { return fleet_; }
+  const StudyFiles& files() const noexcept { return files_; }
+
+  /// Records what is missing of the learning sets, starts the server and hands them over.
+  void learn();
+
+  /// Also hands over the first `count` attempts of each learning set under another task.
+  void report_as(const std::string& task, std::size_t count);
+
+  /// After learn(). \return what the server made of it; told on `messages`.
+  Distribution fetch(const DistributionWish& wish);
+
+  /// \param stage  for messages.
+  void run(const std::string& stage, const std::vector<Cell>& cells, QueryPlan plan, QueryLog& log);
+
+ private:
+  const Study& study_;
+  const RunOptions options_;
+  std::ostream& messages_;
+  const StudyFiles files_;
+  const std::vector<StudyMember> fleet_;
+  std::vector<std::vector<Attempt>> learning_sets_;
+  std::unique_ptr<ExperienceServer> server_;
+};
+
+}  // namespace kinship::experiments

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "client/experiments/analysis/study_results.hpp"
+#include "client/experiments/report/html.hpp"
+#include "client/experiments/report/paper_figures.hpp"
+#include "proto/types/distribution.hpp"
+
+/// The tables of a report.
+namespace kinship::experiments {
+
+/// Like the paper's Table 1 and 2: a row per guidance, a column per robot, our figures and the
+/// paper's; one table each for time, checks and path length.
+std::vector<html::Table> cell_tables(const StudyResults& results, const PaperTable& paper);
+
+/// A row per pair: ratios, intervals, tests, success.
+html::Table pair_table(const StudyResults& results);
+
+/// Geometric means over own and over transferred experience.
+html::Table summary_table(const StudyResults& results);
+
+/// What the server made of each source for each target, and how long it took.
+/// \param labels  of the robots by digest.
+html::Table distribution_table(const std::vector<Distribution>& distributions,
+                               const std::map<Digest, std::string>& labels);
+
+}  // namespace kinship::experiments

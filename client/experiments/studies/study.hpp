@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/plan/plan_settings.hpp"
+#include "proto/types/problem.hpp"
+#include "robots/models/loaded_robot.hpp"
+
+namespace kinship::experiments {
+
+/// What instances are for. No instance is in two of these: each has seeds of its own.
+enum class InstanceSet { Calibration, Learning, Tuning, Test };
+
+std::string_view name_of(InstanceSet set);
+
+/// A robot of a study and where it stands.
+struct StudyRobot {
+  std::string model;  ///< its folder below robots/models, and its label
+  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  double paper_checks = 0;  ///< mean collision checks of uniform planning in the paper; 0: none
+};
+
+/// The instances of a study for one robot: equal arguments, equal problems.
+using DrawInstance = std::function<Problem(std::uint64_t seed, std::uint32_t index)>;
+
+/// A task that several robots have learned and are tested on. Frozen once calibrated with uniform
+/// sampling: scenes, placements, seeds and numbers of instances are constants of the code.
+struct Study {
+  std::string name;     ///< also its task at the server, and its folder of results
+  std::string purpose;  ///< for the command line's help
+  std::vector<StudyRobot> robots;
+  plan::PlanSettings settings;  ///< of every query; the overshoot may be chosen on tuning instances
+  double guided_share = 1;      ///< of samples in guided queries; chosen on tuning instances
+  std::uint32_t learning_instances = 0;
+  std::uint32_t test_instances = 0;
+
+  /// What instances look like for one robot.
+  /// \throws Failure(NotFound) if the robot cannot do the task where it stands.
+  std::function<DrawInstance(const models::LoadedRobot&, const StudyRobot&)> make_instances;
+};
+
+/// The seed of the instances of a set. Learning instances differ between robots, as those of a
+/// fleet do; all robots are tuned and tested on the same ones.
+/// \param robot  index into Study::robots.
+std::uint64_t seed_of(InstanceSet set, std::size_t robot);
+
+/// Every study, by name.
+const std::vector<Study>& studies();
+
+/// \throws Failure(NotFound) that names the studies there are.
+const Study& find_study(std::string_view name);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,81 @@
+#include "client/experiments/study_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace kinship::experiments {
+namespace {
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--out", options.folder, "folder of learning sets, results and the store")
+      ->required();
+  command.add_option("--models", options.models, "folder of the robots' model folders")
+      ->capture_default_str();
+  command.add_option("--kinshipd", options.kinshipd,
+                     "program of the server that is started (default: beside this program)");
+  command.add_option("--domain", options.domain, "DDS domain of that server")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "instances that are planned side by side")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command.add_flag("--resume", options.resume, "go on with what the folder holds");
+  command.add_flag("--quick", options.quick,
+                   "few instances, at most five minutes: shows that everything works");
+}
+
+void add_tuning_options(CLI::App& command, StudyOptions& options) {
+  TuningOptions& tuning = options.tuning;
+  CLI::Option* const tunes =
+      command.add_flag("--tuning", options.tunes,
+                       "plan tuning instances instead of test instances, with these options:");
+  const auto add = [&](const std::string& name, auto& value, const std::string& text) {
+    return command.add_option(name, value, text)->needs(tunes);
+  };
+  add("--profile", tuning.profile, "profile of the distributions");
+  add("--overshoot", tuning.overshoot, "of uniform and guided queries")
+      ->check(CLI::Range(1.0, 10.0));
+  add("--share", tuning.share, "of guided samples")->check(CLI::Range(0.0, 1.0));
+  add("--instances", tuning.instances, "tuning instances")->check(CLI::Range(1, 10'000));
+  add("--seeds", tuning.seeds, "queries per instance")->check(CLI::Range(1, 100));
+  add("--robots", tuning.targets, "robots that plan (default: all)")->delimiter(',');
+  add("--sources", tuning.sources, "robots whose experience is used (default: all)")
+      ->delimiter(',');
+  command
+      .add_option("--calibration", options.calibration_instances,
+                  "plan so many calibration instances uniformly, nothing else")
+      ->check(CLI::Range(1, 10'000))
+      ->excludes(tunes);
+  command
+      .add_flag("--report", options.reports,
+                "write the report of what the folder holds again, without planning")
+      ->excludes(tunes);
+}
+
+}  // namespace
+
+void add_study_commands(CLI::App& app, StudyOptions& options) {
+  options.run.models = "robots/models";
+  constexpr std::uint32_t kDomain = 60;
+  options.run.domain = kDomain;
+  for (const Study& study : studies()) {
+    CLI::App* const command = app.add_subcommand(study.name, study.purpose);
+    add_run_options(*command, options.run);
+    add_tuning_options(*command, options);
+    command->callback([&options, name = study.name] { options.study = name; });
+  }
+}
+
+void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
+  const Study& study = find_study(options.study);
+  if (options.reports)
+    report_study(study, options.run, messages);
+  else if (options.calibration_instances > 0)
+    calibrate_study(study, options.run, options.calibration_instances, out, messages);
+  else if (options.tunes)
+    tune_study(study, options.run, options.tuning, out, messages);
+  else
+    run_study(study, options.run, messages);
+}
+
+}  // namespace kinship::experiments

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "client/experiments/pipeline/study_run.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace kinship::experiments {
+
+/// What the command line says about running a study.
+struct StudyOptions {
+  std::string study;  ///< empty: none is to be run
+  RunOptions run;
+  bool reports = false;  ///< only the report is written again
+  bool tunes = false;
+  TuningOptions tuning;
+  std::uint32_t calibration_instances = 0;  ///< 0: no calibration
+};
+
+/// A subcommand for every study.
+/// \param options  filled in when the command line is parsed; must outlive it.
+void add_study_commands(CLI::App& app, StudyOptions& options);
+
+/// Does what the options say. \throws Failure
+void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages);
+
+}  // namespace kinship::experiments

@@ -1,0 +1,50 @@
+#include "proto/types/profile_text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinship {
+namespace {
+
+TEST(ProfileText, ANameAloneIsThatProfile) {
+  EXPECT_EQ(profile_from_text("default").value_or_throw(), *find_profile("default"));
+  EXPECT_EQ(profile_from_text("paper").value_or_throw(), *find_profile("paper"));
+}
+
+TEST(ProfileText, ChangesWhatItNamesAndNothingElse) {
+  Profile expected = *find_profile("paper");
+  expected.name = "paper,components=20,covariance_floor=0.0025,avoid_self_collision=1";
+  expected.density.components = 20;
+  expected.density.covariance_floor = 0.0025;
+  expected.transfer.avoid_self_collision = true;
+  EXPECT_EQ(profile_from_text(expected.name).value_or_throw(), expected);
+}
+
+TEST(ProfileText, EveryOptionCanBeChanged) {
+  for (const std::string& option : profile_options()) {
+    const Profile zero = profile_from_text("default," + option + "=0")
+                             ? *profile_from_text("default," + option + "=0")
+                             : *find_profile("default");
+    const Profile one = profile_from_text("default," + option + "=1")
+                            ? *profile_from_text("default," + option + "=1")
+                            : *find_profile("paper");
+    EXPECT_FALSE(zero.transfer == one.transfer && zero.density == one.density) << option;
+  }
+}
+
+TEST(ProfileText, RefusesWithOptionValueAndLimits) {
+  const auto message = [](const char* text) { return profile_from_text(text).error().message; };
+  EXPECT_EQ(message("best"), "profile 'best': it does not begin with default or paper");
+  EXPECT_EQ(message(""), "profile '': it does not begin with default or paper");
+  EXPECT_EQ(message("default,K=20"), "profile 'default,K=20': there is no option 'K'");
+  EXPECT_EQ(message("default,components=1001"),
+            "profile 'default,components=1001': 'components=1001' is not a whole number from 1 to "
+            "1000");
+  for (const char* bad :
+       {"default,", "default,components", "default,components=", "default,tracks=1.5",
+        "default,components=nan", "default,min_distance=1e9", "default,components=20 ",
+        "default,components=20,,"})
+    EXPECT_FALSE(profile_from_text(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace kinship
