@@ -22,10 +22,11 @@ std::string complaint(const Result<T>& result) {
 }
 
 Error not_a_time(std::string_view text) {
-  return {ErrorCode::InvalidInput,
-          "'" + cut_text(text, kMaxLabelBytes) +
-              "' is no time: give a date (2026-11-21), a time in UTC (2026-11-21T05:32:14Z) or an "
-              "age (90m, 12h, 14d, 2w)"};
+  return {
+      ErrorCode::InvalidInput,
+      "'" + cut_text(text, kMaxLabelBytes) +
+          "' is no time: give a date (2026-11-21), a time in UTC (2026-11-21T05:32:14Z), an age "
+          "(90m, 12h, 14d, 2w) or Unix time in ms, as --json prints it (1795239134000)"};
 }
 
 /// Reads digits only, all of the text. \return empty if it is something else or too large.
@@ -54,6 +55,17 @@ std::optional<milliseconds> age_of(std::string_view text) {
   if (!number || unit == kUnits.end() || *number > kLongest / unit->length)
     return std::nullopt;
   return *number * unit->length;
+}
+
+/// "1795239134000" as a time since 1970. \return empty if it is no number of at least ten digits
+/// (a year, or a count of days without its letter, is not meant so), or beyond the year 9999.
+std::optional<milliseconds> unix_ms_of(std::string_view text) {
+  constexpr std::size_t kFewestDigits = 10;
+  constexpr std::int64_t kLatest_ms = 253'402'300'799'999;
+  const auto number = digits_of(text);
+  if (!number || text.size() < kFewestDigits || *number > kLatest_ms)
+    return std::nullopt;
+  return milliseconds(*number);
 }
 
 /// "05:32" or "05:32:14" as a time of the day.
@@ -110,7 +122,8 @@ void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
                  "profile's)")
       ->check([](const std::string& text) { return complaint(parse_weighting(text)); });
   app.add_option("--since", arguments.since,
-                 "only experience received since a date or time in UTC, or since an age like 14d")
+                 "only experience received since a date or time in UTC (2026-11-21T05:32), an age "
+                 "(90m, 12h, 14d, 2w) or a Unix time in ms")
       ->check([](const std::string& text) {
         return complaint(parse_since(text, std::chrono::system_clock::now()));
       });
@@ -138,6 +151,8 @@ Result<std::vector<std::string>> parse_robot_names(std::string_view text) {
 
 Result<std::int64_t> parse_since(std::string_view text, std::chrono::system_clock::time_point now) {
   if (const auto time = utc_of(text))
+    return time->count();
+  if (const auto time = unix_ms_of(text))
     return time->count();
   const auto age = age_of(text);
   if (!age)

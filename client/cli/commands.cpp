@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "client/arguments/number_range.hpp"
 #include "client/cli/exit_code.hpp"
 #include "client/cli/groups.hpp"
 
@@ -14,17 +15,16 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   Session session{.out = out, .err = err};
   CLI::App app("The admin program of Kinship, an experience database for robot motion planning.",
                "kinship");
-  app.footer(
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 not found, 4 no server answered.\n"
-      "Example:\n  kinship --domain 42 paths list --task box_to_shelf");
+  app.footer(std::string(kExitCodes) +
+             "Example:\n  kinship --domain 42 paths list --task box_to_shelf");
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", std::string("kinship ") + KINSHIP_VERSION);
   app.add_option("--domain", session.domain, "DDS domain (default 0)")
       ->envname("KINSHIP_DOMAIN")
-      ->check(CLI::Range(0, 230));
+      ->check(arguments::between<std::uint32_t>(0, 230));
   app.add_option("--timeout", session.timeout_s, "Seconds to wait for an answer (default 5)")
-      ->check(CLI::Range(0.01, 86'400.0));
+      ->check(arguments::between(0.01, 86'400.0));
   add_server_commands(app, session);
   add_jobs(app, session);
   add_robots(app, session);

@@ -3,11 +3,19 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
 #include "client/link/robot_names.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::cli {
 namespace {
+
+/// Who names a robot that the server does not know wants to see those that it does.
+Error with_advice(Error error) {
+  if (error.code == ErrorCode::NotFound)
+    error.message += " (see: kinship robots list, kinship robots register)";
+  return error;
+}
 
 Result<FetchRequest> request_for(link::Client& server, const DistributionWish& wish) {
   FetchRequest request;
@@ -27,7 +35,7 @@ Result<FetchRequest> request_for(link::Client& server, const DistributionWish& w
   request.selection = *selection;
   const auto robot = link::resolve_robots(server, {wish.robot});
   if (!robot)
-    return robot.error();
+    return with_advice(robot.error());
   request.robot = robot->front();
   if (!wish.selection.sources.empty()) {
     const auto names = arguments::parse_robot_names(wish.selection.sources);
@@ -35,18 +43,18 @@ Result<FetchRequest> request_for(link::Client& server, const DistributionWish& w
       return names.error();
     const auto sources = link::resolve_robots(server, *names);
     if (!sources)
-      return sources.error();
+      return with_advice(sources.error());
     request.selection.sources = *sources;
   }
   return request;
 }
 
 /// Says why there is no distribution to print. \return an exit code, kDone if there is one.
-int judge(const Result<FetchReply>& reply, std::string_view command, bool allow_failed,
-          std::ostream& err) {
+int judge(const Result<FetchReply>& reply, const DistributionWish& wish, std::string_view command,
+          bool allow_failed, std::ostream& err) {
   if (!reply)
     return refuse(command, reply.error(), err);
-  const auto say = [&](const char* what) {
+  const auto say = [&](const std::string& what) {
     err << command << ": " << what << (reply->message.empty() ? "" : ": ") << reply->message
         << '\n';
   };
@@ -60,7 +68,8 @@ int judge(const Result<FetchReply>& reply, std::string_view command, bool allow_
       say("unknown robot");
       return kNotFound;
     case FetchStatus::Pending:
-      say("still being made when the wait (--wait) was over");
+      say("still being made after " +
+          number_text(1e-3 * static_cast<double>(wish.wait.count()), 1) + " s (--wait)");
       return kFailed;
     case FetchStatus::Busy:
       say("the server is busy");
@@ -87,7 +96,7 @@ std::optional<Distribution> fetch_wish(link::Client& server, const DistributionW
     return std::nullopt;
   }
   Result<FetchReply> reply = server.fetch(*request);
-  code = judge(reply, command, allow_failed, err);
+  code = judge(reply, wish, command, allow_failed, err);
   if (code != kDone)
     return std::nullopt;
   return std::move(reply).value().distribution;

@@ -1,3 +1,4 @@
+#include "client/arguments/number_range.hpp"
 #include "client/cli/explain_command.hpp"
 #include "client/cli/export_commands.hpp"
 #include "client/cli/fetch_command.hpp"
@@ -10,7 +11,7 @@ namespace {
 
 /// What names a distribution by what it is for. \return the required options.
 std::vector<CLI::Option*> add_wish(CLI::App& command, DistributionWish& wish) {
-  CLI::Option* task = command.add_option("--task", wish.task);
+  CLI::Option* task = command.add_option("--task", wish.task, "Task whose experience is wanted");
   CLI::Option* robot =
       command.add_option("--robot", wish.robot, "Label, or beginning of its digest");
   command.add_option("--placement", wish.placement,
@@ -21,7 +22,7 @@ std::vector<CLI::Option*> add_wish(CLI::App& command, DistributionWish& wish) {
       .add_option_function<double>(
           "--wait", [&wish](double wait_s) { wish.wait = milliseconds(wait_s); },
           "Seconds until it must be there (default 30)")
-      ->check(CLI::Range(0.0, 3600.0));
+      ->check(arguments::between(0.0, 3600.0));
   return {task, robot};
 }
 
@@ -48,12 +49,15 @@ void add_fetch(CLI::App& group, Session& session) {
     option->required();
   CLI::Option* samples = command->add_option("--samples", options->samples,
                                              "Draw so many configurations and print them as CSV");
-  samples->check(CLI::Range(1.0, 1e9));
-  command->add_flag("--csv")->description("The format of --samples")->needs(samples);
+  samples->check(arguments::between<std::uint64_t>(1, 1'000'000'000));
+  command->add_flag("--csv")
+      ->description("The format of --samples; it has no other")
+      ->needs(samples);
   command->add_option("--seed", options->seed, "Of the samples (default 0)")
       ->needs(samples)
       ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
+  command->get_option("--json")->excludes(samples);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;
     return fetch_distribution(server, *options, session.out, session.err);
@@ -78,14 +82,15 @@ void add_explain(CLI::App& group, Session& session) {
 void add_distributions(CLI::App& app, Session& session) {
   CLI::App* group = add_group(app, "distributions", "Distributions made so far");
   add_list(*group, session, list_distributions, true);
-  add_one(
-      *group, session,
-      {"show", "id", "A distribution by beginning of its id", "kinship distributions show 3f9a0c"},
-      show_distribution);
+  add_one(*group, session,
+          {"show", "id", "Four digits of it or more", "A distribution by beginning of its id",
+           "kinship distributions show 3f9a0c"},
+          show_distribution);
   add_fetch(*group, session);
   add_explain(*group, session);
   add_one(*group, session,
-          {"evict", "id", "Forget a distribution: the next fetch has it made anew",
+          {"evict", "id", "Four digits of it or more",
+           "Forget a distribution: the next fetch has it made anew",
            "kinship distributions evict 3f9a0c"},
           evict_distribution);
 }

@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
 #include "client/files/output_file.hpp"
 #include "client/link/admin_rows.hpp"
 
@@ -10,9 +11,9 @@ namespace kinship::cli {
 namespace {
 
 /// Writes rows as lines; the file has its name only if all came.
+/// \param file  of `output`; empty: a stream.
 int write_rows(link::Client& server, const AdminRequest& request, const std::filesystem::path& file,
-               std::string_view command, std::ostream& out, std::ostream& err) {
-  files::OutputFile output(file, out);
+               files::OutputFile& output, std::string_view command, std::ostream& err) {
   std::size_t lines = 0;
   const auto error = link::for_each_row(server, request, [&](const std::string& row) {
     output.stream() << row << '\n';
@@ -23,7 +24,7 @@ int write_rows(link::Client& server, const AdminRequest& request, const std::fil
     return refuse(command, *error, err);
   output.keep();
   if (!file.empty())
-    err << lines << " lines in '" << file.string() << "'\n";
+    err << count_text(lines, "line") << " in '" << file.string() << "'\n";
   return kDone;
 }
 
@@ -31,16 +32,18 @@ int write_rows(link::Client& server, const AdminRequest& request, const std::fil
 
 int export_paths(link::Client& server, const ExportOptions& options, std::ostream& out,
                  std::ostream& err) {
+  files::OutputFile output(options.output, out);
   AdminRequest request;
   request.verb = AdminVerb::ExportPaths;
   request.robot = options.robot;
   request.task = options.task;
-  return write_rows(server, request, options.output, "paths export", out, err);
+  return write_rows(server, request, options.output, output, "paths export", err);
 }
 
 int export_configurations(link::Client& server, const ConfigurationsOptions& options,
                           std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "configurations export";
+  files::OutputFile output(options.output, out);  // refuses before the server has worked for it
   int code = kDone;
   AdminRequest begin;
   begin.verb = AdminVerb::ExportConfigurations;
@@ -51,7 +54,7 @@ int export_configurations(link::Client& server, const ConfigurationsOptions& opt
     AdminRequest rows;
     rows.verb = AdminVerb::JobRows;
     rows.argument = job.id;
-    return write_rows(server, rows, options.output, kCommand, out, err);
+    return write_rows(server, rows, options.output, output, kCommand, err);
   });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
 #include "client/files/lines.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/experience_line.hpp"
@@ -173,9 +174,10 @@ void print(const Counts& counts, bool json, std::ostream& out) {
         << counts.known << R"(,"recorded":)" << counts.recorded << R"(,"refused":)"
         << counts.refused << "}\n";
   else
-    out << counts.stored << " paths stored, " << counts.recorded << " unsolved attempts recorded, "
-        << counts.known << " known already, " << counts.refused << " lines refused; "
-        << counts.robots << " robots\n";
+    out << count_text(counts.stored, "path") << " stored, "
+        << count_text(counts.recorded, "unsolved attempt") << " recorded, " << counts.known
+        << " known already, " << count_text(counts.refused, "line") << " refused; "
+        << count_text(counts.robots, "robot") << '\n';
 }
 
 }  // namespace

@@ -9,10 +9,12 @@
 
 #include "client/cli/exit_code.hpp"
 #include "client/cli/robot_geometry.hpp"
+#include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"
 #include "client/files/lines.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -140,12 +142,25 @@ void measure(const CheckOptions& options, const kinematics::Chain& chain, RobotC
   check.time_per_pose_us = time_us / std::max(1, options.poses);
 }
 
-void print_check(const RobotCheck& check, std::ostream& out) {
-  out << "robot     " << check.robot.hex() << '\n'
-      << "chain     " << check.base_link << " -> " << check.tip_link << ", " << check.joints.size()
-      << " joints\n"
-      << "solver    " << check.solver << '\n'
-      << "inverse   " << number_text(check.solutions_per_pose, 2) << " solutions and "
+std::string geometry_text(const geometry::RobotShapes& geometry) {
+  const auto around_meshes = static_cast<std::uint64_t>(
+      std::ranges::count_if(geometry.shapes, &geometry::LinkShape::approximate));
+  return count_text(geometry.shapes.size(), "shape") +
+         (around_meshes > 0 ? ", " + std::to_string(around_meshes) + " of them around meshes"
+                            : "") +
+         "; " + count_text(geometry.never_colliding.size(), "pair") +
+         " of links never checked against each other";
+}
+
+void print_check(const RobotCheck& check, const RobotDescription& description,
+                 const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
+  out << "robot       " << check.robot.hex() << '\n'
+      << "chain       " << check.base_link << " -> " << check.tip_link << ", "
+      << check.joints.size() << " joints\n";
+  print_transfer(description, out);
+  out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
+      << "solver      " << check.solver << '\n'
+      << "inverse     " << number_text(check.solutions_per_pose, 2) << " solutions and "
       << number_text(check.time_per_pose_us, 1) << " us (CPU) per reachable pose; "
       << check.poses_without_solution << " of " << check.poses << " poses without a solution\n\n";
   Table table({"JOINT", "TYPE", "LOWER", "UPPER"});
@@ -164,7 +179,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (!robot)
     return code;
   const kinematics::Chain& chain = robot->chain;
-  note_missing_geometry(kCommand, options.robot, robot->description, err);
+  const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
   RobotCheck check;
   check.robot = chain.digest();
   check.base_link = chain.base_link();
@@ -176,7 +191,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (options.json)
     out << json::to_json(check) << '\n';
   else
-    print_check(check, out);
+    print_check(check, robot->description, geometry, out);
   return kDone;
 }
 

@@ -19,7 +19,8 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// The chain, its limits, the solver chosen, and solutions and CPU time per reachable pose.
+/// The chain, its limits, transfer frame, task axes and collision shapes, the solver chosen, and
+/// solutions and CPU time per reachable pose.
 int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err);
 
 struct InverseCommandOptions {

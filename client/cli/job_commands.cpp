@@ -100,6 +100,8 @@ int cancel_job(link::Client& server, const std::string& id, bool json, std::ostr
   const Result<Job> job = link::job_of(server, request);
   if (!job)
     return refuse("jobs cancel", job.error(), err);
+  if (job->state == JobState::Done || job->state == JobState::Failed)
+    err << "jobs cancel: nothing to cancel, job " << job->id << " has ended\n";
   print(*job, json, out);
   return kDone;
 }

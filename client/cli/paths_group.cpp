@@ -39,17 +39,18 @@ void add_import(CLI::App& group, Session& session) {
 }  // namespace
 
 void add_paths(CLI::App& app, Session& session) {
+  constexpr const char* kId = "UUID of the report, as paths list shows it";
   constexpr const char* kExampleUuid = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
   CLI::App* paths = add_group(app, "paths", "Reported paths");
   add_list(*paths, session, list_paths, true);
   add_one(*paths, session,
-          {"show", "id", "A path by its report's UUID",
+          {"show", "id", kId, "A path by its report's UUID",
            std::string("kinship paths show ") + kExampleUuid},
           show_path);
   add_export(*paths, session);
   add_import(*paths, session);
   add_one(*paths, session,
-          {"retire", "id", "Take a path out of every fit; it is kept for the record",
+          {"retire", "id", kId, "Take a path out of every fit; it is kept for the record",
            std::string("kinship paths retire ") + kExampleUuid},
           retire_path);
 }

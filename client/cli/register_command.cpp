@@ -27,7 +27,7 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     err << "robots register: " << description.error().message << '\n';
     return exit_code(description.error().code);
   }
-  note_missing_geometry("robots register", arguments, *description, err);
+  read_geometry("robots register", arguments, *description, err);
   const auto reply = server.register_robot(*description);
   if (!reply) {
     err << "robots register: " << reply.error().message << '\n';

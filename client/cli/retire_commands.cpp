@@ -1,13 +1,17 @@
 #include "client/cli/retire_commands.hpp"
 
+#include <algorithm>
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/summaries_json.hpp"
 
 namespace kinship::cli {
 namespace {
+
+constexpr const char* kNothingToRetire = "nothing to do: retired already\n";
 
 int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
            std::string_view command, std::ostream& out, std::ostream& err) {
@@ -23,11 +27,10 @@ int retire(link::Client& server, AdminVerb verb, const std::string& argument, bo
   if (!retirement)
     return refuse(command, {ErrorCode::Internal, retirement.error().message}, err);
   if (retirement->paths == 0)
-    out << "nothing to do: retired already\n";
+    out << kNothingToRetire;
   else
-    out << retirement->paths << (retirement->paths == 1 ? " path" : " paths") << " of task '"
-        << retirement->task << "' retired, of " << retirement->robots.size()
-        << (retirement->robots.size() == 1 ? " robot" : " robots")
+    out << count_text(retirement->paths, "path") << " of task '" << retirement->task
+        << "' retired, of " << count_text(retirement->robots.size(), "robot")
         << "; distributions made of them are not served any more\n";
   return kDone;
 }
@@ -51,9 +54,16 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
   const auto summary = json::task_summary_from_json(rows.front());
   if (!summary)
     return refuse(kCommand, {ErrorCode::Internal, summary.error().message}, err);
-  err << kCommand << ": this would retire " << summary->paths << " paths of "
-      << summary->robots.size() << " robots: out of every fit, kept for the record, not to be "
-      << "undone. To do it: kinship tasks reset " << task << " --yes\n";
+  if (summary->paths == 0) {
+    out << kNothingToRetire;
+    return kDone;
+  }
+  const auto robots = std::ranges::count_if(
+      summary->robots, [](const TaskRobotSummary& robot) { return robot.paths > 0; });
+  err << kCommand << ": this would retire " << count_text(summary->paths, "path") << " of "
+      << count_text(static_cast<std::uint64_t>(robots), "robot")
+      << ": out of every fit, kept for the record, not to be undone. To do it: kinship tasks reset "
+      << task << " --yes\n";
   return kWrongUsage;
 }
 

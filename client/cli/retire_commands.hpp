@@ -14,7 +14,8 @@ int retire_path(link::Client& server, const std::string& id, bool json, std::ost
                 std::ostream& err);
 
 /// `tasks reset`: retires all paths of a task.
-/// \param confirmed  false: says what would happen and returns kWrongUsage.
+/// \param confirmed  false: says what would happen and returns kWrongUsage; kDone if that is
+/// nothing.
 int reset_task(link::Client& server, const std::string& task, bool confirmed, bool json,
                std::ostream& out, std::ostream& err);
 

@@ -7,14 +7,18 @@
 
 namespace kinship::cli {
 
-void note_missing_geometry(const char* command, const models::RobotArguments& arguments,
-                           const RobotDescription& description, std::ostream& err) {
+std::optional<geometry::RobotShapes> read_geometry(const char* command,
+                                                   const models::RobotArguments& arguments,
+                                                   const RobotDescription& description,
+                                                   std::ostream& err) {
   const auto chain = kinematics::read_chain(description);
   if (!chain)
-    return;
-  const auto shapes = models::load_shapes(arguments, description, *chain);
-  if (!shapes)
-    err << command << ": without collision geometry: " << shapes.error().message << '\n';
+    return std::nullopt;
+  auto shapes = models::load_shapes(arguments, description, *chain);
+  if (shapes)
+    return *std::move(shapes);
+  err << command << ": without collision geometry: " << shapes.error().message << '\n';
+  return std::nullopt;
 }
 
 }  // namespace kinship::cli

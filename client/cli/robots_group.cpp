@@ -1,3 +1,4 @@
+#include "client/arguments/number_range.hpp"
 #include "client/arguments/robot_options.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/inverse_commands.hpp"
@@ -14,17 +15,26 @@ void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
   arguments::add_robot_options(command, robot);
 }
 
+/// Which solutions of a pose are wanted.
+void add_choice(CLI::App& command, int& max_solutions, double& min_distance) {
+  command
+      .add_option("--max-solutions", max_solutions,
+                  "Solutions per pose at most (default 8; 0: all)")
+      ->check(arguments::between(0, 1000));
+  command
+      .add_option("--min-distance", min_distance,
+                  "Between the solutions of a pose, joint units (default 0.2)")
+      ->check(arguments::between(0.0, 100.0));
+}
+
 void add_check(CLI::App& group, Session& session) {
   const auto options = std::make_shared<CheckOptions>();
   CLI::App* command = add_command(group, "check", "What Kinship makes of a robot (no server)",
                                   "kinship robots check ur10e.urdf --base base_link --tip tool0");
   add_robot_arguments(*command, options->robot);
   command->add_option("--poses", options->poses, "Reachable poses to solve (default 200)")
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--max-solutions", options->max_solutions, "A pose (default 8; 0: all)")
-      ->check(CLI::Range(0, 1000));
-  command->add_option("--min-distance", options->min_distance, "Between solutions (default 0.2)")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(arguments::between(1, 1'000'000));
+  add_choice(*command, options->max_solutions, options->min_distance);
   command->add_option("--seed", options->seed, "Of the poses and solutions (default 0)")
       ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
@@ -44,10 +54,7 @@ void add_inverse(CLI::App& group, Session& session) {
   poses->add_option("--pose", options->pose, "Tip link in base link, \"x y z qx qy qz qw\"");
   poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]");
   poses->require_option(1);
-  command->add_option("--max-solutions", options->max_solutions, "Default 8; 0: all")
-      ->check(CLI::Range(0, 1000));
-  command->add_option("--min-distance", options->min_distance, "Between solutions (default 0.2)")
-      ->check(CLI::Range(0.0, 100.0));
+  add_choice(*command, options->max_solutions, options->min_distance);
   command->add_option("--seed", options->seed, "Equal seed, equal solutions (default 0)")
       ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
@@ -74,10 +81,10 @@ void add_register(CLI::App& group, Session& session) {
 void add_robots(CLI::App& app, Session& session) {
   CLI::App* robots = add_group(app, "robots", "Registered robots; inverse kinematics of any");
   add_list(*robots, session, list_robots);
-  add_one(
-      *robots, session,
-      {"show", "robot", "A robot by label or beginning of its digest", "kinship robots show ur10e"},
-      show_robot);
+  add_one(*robots, session,
+          {"show", "robot", "Label, or four digits of its digest or more",
+           "A robot by label or beginning of its digest", "kinship robots show ur10e"},
+          show_robot);
   add_register(*robots, session);
   add_check(*robots, session);
   add_inverse(*robots, session);

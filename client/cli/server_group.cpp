@@ -19,9 +19,15 @@ void add_backup(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, "backup", "Copy the store of the running server into a file",
                                   "kinship backup /var/backups/kinship-2026-11-21.db\n"
                                   "  kinship backup monday.db --no-wait");
-  command->add_option("file", options->file, "New file, at the server")->required();
-  command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");
+  command
+      ->add_option("file", options->file,
+                   "New file, written by the server: on its machine, as its user. A relative name "
+                   "is completed with the folder here, which must be there too")
+      ->required();
+  CLI::Option* no_wait =
+      command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");
   const auto waiting = add_job_wait(*command, session);
+  command->get_option("--wait")->excludes(no_wait);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options, waiting](link::Client& server) {
     options->waiting = waiting();
@@ -36,8 +42,9 @@ void add_watch(CLI::App& app, Session& session) {
       app, "watch", "Reports, fetches, fits and refusals as they happen, until Control-C",
       "kinship watch\n  kinship watch --task box_to_shelf --json");
   command->add_option("--task", options->task, "Only events of this task");
-  command->add_option("--robot", options->robot, "Only events of this robot's label");
-  add_json(*command, session);
+  command->add_option("--robot", options->robot,
+                      "Only events of this robot: label or digest prefix");
+  add_json(*command, session, "One JSON document a line on standard output, one an event");
   on_run(*command, session, [&session, options] {
     options->json = session.json;
     const sigset_t until = block_end_signals();
@@ -56,19 +63,20 @@ void add_server_commands(CLI::App& app, Session& session) {
 }
 
 void add_jobs(CLI::App& app, Session& session) {
+  constexpr const char* kJob = "Its id, or the beginning of it";
   CLI::App* jobs = add_group(app, "jobs", "What takes the server long: backups, exports");
   add_list(*jobs, session, list_jobs);
   const auto id = std::make_shared<std::string>();
   CLI::App* wait =
       add_command(*jobs, "wait", "Wait for the end of a job", "kinship jobs wait 3f9a0c11");
-  wait->add_option("job", *id)->required();
+  wait->add_option("job", *id, kJob)->required();
   const auto waiting = add_job_wait(*wait, session);
   add_json(*wait, session);
   on_run_with_server(*wait, session, [&session, id, waiting](link::Client& server) {
     return wait_for_job(server, *id, waiting(), session.json, session.out, session.err);
   });
-  add_one(*jobs, session, {"cancel", "job", "End a job early", "kinship jobs cancel 3f9a0c11"},
-          cancel_job);
+  add_one(*jobs, session,
+          {"cancel", "job", kJob, "End a job early", "kinship jobs cancel 3f9a0c11"}, cancel_job);
 }
 
 }  // namespace kinship::cli

@@ -4,6 +4,8 @@
 
 #include <iostream>
 
+#include "client/arguments/number_range.hpp"
+
 namespace kinship::cli {
 
 int Session::with_server(const std::function<int(link::Client&)>& use) const {
@@ -24,6 +26,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what) {
   CLI::App* group = app.add_subcommand(name, what);
+  group->footer(kExitCodes + ("Examples: kinship " + name) + " COMMAND --help");
   group->require_subcommand(1);
   return group;
 }
@@ -36,8 +39,8 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
   return command;
 }
 
-void add_json(CLI::App& command, Session& session) {
-  command.add_flag("--json", session.json, "One JSON document on standard output");
+void add_json(CLI::App& command, Session& session, const std::string& what) {
+  command.add_flag("--json", session.json, what);
 }
 
 void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
@@ -60,7 +63,7 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
 CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show) {
   const auto argument = std::make_shared<std::string>();
   CLI::App* command = add_command(group, text.name, text.what, text.example);
-  command->add_option(text.argument, *argument)->required();
+  command->add_option(text.argument, *argument, text.meaning)->required();
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, argument, show](link::Client& server) {
     return show(server, *argument, session.json, session.out, session.err);
@@ -72,7 +75,7 @@ std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& sess
   constexpr double kDay_s = 86'400;
   const auto wait_s = std::make_shared<double>(kDay_s);
   command.add_option("--wait", *wait_s, "Seconds to wait for its end (default: a day)")
-      ->check(CLI::Range(0.0, 30 * kDay_s));
+      ->check(arguments::between(0.0, 30 * kDay_s));
   return [&session, wait_s] {
     return WaitOptions{milliseconds(*wait_s), session.is_on_terminal()};
   };

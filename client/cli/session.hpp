@@ -32,13 +32,18 @@ struct Session {
 
 std::chrono::milliseconds milliseconds(double seconds);
 
+/// The commands about one noun; its help names the exit codes as that of the program does.
 CLI::App* add_group(CLI::App& app, const std::string& name, const std::string& what);
+
+inline constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 not found, 4 no server answered.\n";
 
 /// \param examples  one a line.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
                       const std::string& examples);
 
-void add_json(CLI::App& command, Session& session);
+void add_json(CLI::App& command, Session& session,
+              const std::string& what = "One JSON document on standard output");
 
 /// Has the command run `run` if it is the one that was named.
 template <typename Run>
@@ -63,6 +68,7 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter = fa
 struct OneText {
   std::string name;      ///< e.g. "show"
   std::string argument;  ///< its name in the usage line
+  std::string meaning;   ///< of the argument
   std::string what;
   std::string example;
 };

@@ -4,6 +4,7 @@
 #include "client/cli/exit_code.hpp"
 #include "client/cli/fetch_command.hpp"
 #include "client/cli/listings.hpp"
+#include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -50,9 +51,9 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
   out << "robot       " << robot.robot.hex() << '\n'
       << "label       " << robot.label << '\n'
       << "chain       " << robot.base_link << " -> " << robot.tip_link << ", " << robot.dof
-      << " joints\n"
-      << "transfer    " << pose_text(description.T_tip_transfer) << " in " << robot.tip_link << '\n'
-      << "solver      " << robot.solver << '\n'
+      << " joints\n";
+  print_transfer(description, out);
+  out << "solver      " << robot.solver << '\n'
       << "experience  " << robot.paths << " paths, " << robot.attempts << " attempts\n"
       << "registered  " << time_text(robot.registered_ms) << '\n';
 }
@@ -101,18 +102,21 @@ void print_status(const ServerStatus& status, std::ostream& out) {
   out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
       << "store          " << status.store_file << ", " << status.store_bytes << " bytes, schema "
       << status.schema_version << ", epoch " << status.store_epoch.text() << '\n'
-      << "writable       " << (status.writable ? "yes" : "no")
-      << (status.storage_message.empty() ? "" : ": ") << status.storage_message << '\n'
-      << "holds          " << status.robots << " robots, " << status.tasks << " tasks, "
-      << status.paths << " paths, " << status.attempts << " attempts, " << status.distributions
-      << " distributions\n"
-      << "since start    " << status.reports_received << " reports (" << status.reports_refused
-      << " refused), " << status.fetches << " fetches (" << status.fetches_from_memory
-      << " from memory), " << status.fits << " fits\n"
-      << "queued         " << status.queued_reports << " reports, " << status.queued_fits
-      << " fits\n"
-      << "under way      " << status.jobs << " jobs; " << status.followed
-      << " distributions followed\n";
+      << "writable       " << (status.writable ? "yes" : "no") << '\n';
+  if (!status.storage_message.empty())
+    out << (status.writable ? "note           " : "because        ") << status.storage_message
+        << '\n';
+  out << "holds          " << count_text(status.robots, "robot") << ", "
+      << count_text(status.tasks, "task") << ", " << count_text(status.paths, "path") << ", "
+      << count_text(status.attempts, "attempt") << ", "
+      << count_text(status.distributions, "distribution") << '\n'
+      << "since start    " << count_text(status.reports_received, "report") << " ("
+      << status.reports_refused << " refused), " << status.fetches << " fetches ("
+      << status.fetches_from_memory << " from memory), " << count_text(status.fits, "fit") << '\n'
+      << "queued         " << count_text(status.queued_reports, "report") << ", "
+      << count_text(status.queued_fits, "fit") << '\n'
+      << "under way      " << count_text(status.jobs, "job") << "; "
+      << count_text(status.followed, "distribution") << " followed\n";
 }
 
 }  // namespace

@@ -70,6 +70,10 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+std::string count_text(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string pose_text(const Eigen::Isometry3d& T_a_b) {
   constexpr int kDigits = 4;
   std::string text;

@@ -29,6 +29,9 @@ std::string time_text(std::int64_t unix_ms);
 /// With `digits` behind the point.
 std::string number_text(double value, int digits);
 
+/// "1 path", "6 paths", "0 paths".
+std::string count_text(std::uint64_t count, const std::string& noun);
+
 std::string pose_text(const Eigen::Isometry3d& T_a_b);  ///< x y z qx qy qz qw
 
 }  // namespace kinship::cli

@@ -2,18 +2,36 @@
 
 #include <algorithm>
 #include <ostream>
+#include <vector>
 
 #include "client/cli/exit_code.hpp"
 #include "client/cli/table.hpp"
+#include "client/link/robot_names.hpp"
 #include "proto/json/event_json.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::cli {
 namespace {
 
-bool is_wanted(const Event& event, const WatchOptions& options) {
-  return (options.task.empty() || event.task == options.task) &&
-         (options.robot.empty() || event.robot == options.robot);
+/// What events may call the robot that is watched; all of them if it is empty.
+using RobotNames = std::vector<std::string>;
+
+/// An event names a robot by its label, or by the short form of a digest that the server does not
+/// know: so the server is asked once which robot is meant.
+RobotNames names_of(link::Client& server, const std::string& robot, std::ostream& err) {
+  if (robot.empty())
+    return {};
+  const Result<RobotSummary> summary = link::find_robot(server, robot);
+  if (summary)
+    return {summary->label, summary->robot.short_hex()};
+  err << "watch: " << summary.error().message << ": only events that name it '" << robot
+      << "' are shown" << std::endl;
+  return {robot};
+}
+
+bool is_wanted(const Event& event, const std::string& task, const RobotNames& robot) {
+  return (task.empty() || event.task == task) &&
+         (robot.empty() || std::ranges::find(robot, event.robot) != robot.end());
 }
 
 /// Texts come from whoever talks to the server: a terminal is not to obey them.
@@ -48,10 +66,11 @@ sigset_t block_end_signals() {
 
 int watch_events(link::Client& server, const WatchOptions& options, const sigset_t& until,
                  std::ostream& out, std::ostream& err) {
+  const RobotNames robot = names_of(server, options.robot, err);
   const auto watcher =
       server.watch({.on_event =
                         [&](const Event& event) {
-                          if (is_wanted(event, options))
+                          if (is_wanted(event, options.task, robot))
                             print(event, options.json, out);
                         },
                     .on_server = [&] { err << "watch: the server is there" << std::endl; },

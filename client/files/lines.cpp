@@ -67,6 +67,9 @@ void for_each_line(std::istream& stream, const std::string& name,
 }
 
 std::ifstream open_input(const std::filesystem::path& file) {
+  std::error_code unknown;  // then opening says it
+  if (std::filesystem::is_directory(file, unknown))
+    throw Failure(ErrorCode::InvalidInput, "cannot read '" + file.string() + "': it is a folder");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream)

@@ -27,7 +27,9 @@ void for_each_line(std::istream& stream, const std::string& name,
                    const std::function<bool(const Line&)>& use,
                    std::size_t max_bytes = kMaxLineBytes);
 
-/// \throws Failure(NotFound) that names the file if it cannot be opened.
+/// \throws Failure(NotFound) that names the file if it cannot be opened, Failure(InvalidInput) if
+/// it
+///         is a folder.
 std::ifstream open_input(const std::filesystem::path& file);
 
 }  // namespace kinship::files

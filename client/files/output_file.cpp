@@ -59,6 +59,15 @@ OutputFile::~OutputFile() {
     fs::remove(part_, ignored);
 }
 
+bool OutputFile::has_part() {
+  if (part_.empty() || is_kept_)
+    return false;
+  output_.flush();
+  std::error_code unknown;
+  const std::uintmax_t bytes = fs::file_size(part_, unknown);
+  return !unknown && bytes > 0;
+}
+
 void OutputFile::keep() {
   errno = 0;
   stream_->flush();

@@ -29,6 +29,9 @@ class OutputFile {
   /// \throws Failure(Storage) if something could not be written; the old file stays then.
   void keep();
 
+  /// Whether something is written that is not kept: it stays as part().
+  bool has_part();
+
   /// Where the content is as long as it is not kept; empty for a stream or what is written through.
   const std::filesystem::path& part() const noexcept { return part_; }
 

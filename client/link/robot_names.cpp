@@ -6,9 +6,8 @@
 #include "proto/json/summaries_json.hpp"
 
 namespace kinship::link {
-namespace {
 
-Result<Digest> resolve_robot(Client& client, const std::string& name) {
+Result<RobotSummary> find_robot(Client& client, const std::string& name) {
   AdminRequest request;
   request.verb = AdminVerb::ShowRobot;
   request.argument = name;
@@ -17,23 +16,21 @@ Result<Digest> resolve_robot(Client& client, const std::string& name) {
     return rows.error();
   if (rows->empty())
     return Error{ErrorCode::Internal, "the server said nothing of robot '" + name + "'"};
-  const Result<RobotSummary> summary = json::robot_summary_from_json(rows->front());
+  Result<RobotSummary> summary = json::robot_summary_from_json(rows->front());
   if (!summary)
     return Error{ErrorCode::Internal,
                  "robot '" + name + "': cannot read the server's row: " + summary.error().message};
-  return summary->robot;
+  return summary;
 }
-
-}  // namespace
 
 Result<std::vector<Digest>> resolve_robots(Client& client, const std::vector<std::string>& names) {
   std::vector<Digest> robots;
   robots.reserve(names.size());
   for (const std::string& name : names) {
-    const Result<Digest> robot = resolve_robot(client, name);
+    const Result<RobotSummary> robot = find_robot(client, name);
     if (!robot)
       return robot.error();
-    robots.push_back(*robot);
+    robots.push_back(robot->robot);
   }
   std::ranges::sort(robots);
   robots.erase(std::unique(robots.begin(), robots.end()), robots.end());

@@ -6,8 +6,14 @@
 #include "client/link/client.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
+#include "proto/types/summaries.hpp"
 
 namespace kinship::link {
+
+/// The robot that the server knows by a name, in one request.
+/// \param name  a label, or the beginning of a digest (four digits or more).
+/// \return      NotFound, InvalidInput (more than one robot) or Unavailable if there is none.
+Result<RobotSummary> find_robot(Client& client, const std::string& name);
 
 /// What the server knows robots by: one request per name, each up to the client's timeout.
 /// \param names  labels or beginnings of digests (four digits or more).

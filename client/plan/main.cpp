@@ -36,9 +36,12 @@ int run(const kinship::plan::PlanOptions& options) {
   const int code = kinship::plan::run_plan(options, streams, [] { return interrupted.load(); });
   if (code == kinship::kDone)
     output.keep();
-  else if (!output.part().empty())
-    std::cerr << "kinship-plan: '" << options.output.string() << "' is left as it was; results of "
-              << "this run, if any, are in '" << output.part().string() << "'\n";
+  else if (output.has_part())
+    std::cerr << "kinship-plan: the results so far are in '" << output.part().string() << "', '"
+              << options.output.string() << "' is left as it was\n";
+  else if (!options.output.empty())
+    std::cerr << "kinship-plan: no results, '" << options.output.string()
+              << "' is left as it was\n";
   return code;
 }
 

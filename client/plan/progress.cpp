@@ -9,6 +9,13 @@ namespace {
 
 constexpr std::size_t kLines = 10;  // where the output is not a terminal
 
+/// "shelf-1-0003: 3804 checks"; why a line could not be read begins with its name already.
+std::string outcome_text(const ProblemResult& result) {
+  const std::string outcome =
+      result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason;
+  return outcome.starts_with(result.name + ":") ? outcome : result.name + ": " + outcome;
+}
+
 }  // namespace
 
 void Progress::add(const ProblemResult& result, bool attempted) {
@@ -24,9 +31,7 @@ void Progress::add(const ProblemResult& result, bool attempted) {
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
-          << solved_ << ", last: " << result.name << " "
-          << (result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason)
-          << (terminal_ ? "" : "\n") << std::flush;
+          << solved_ << ", last: " << outcome_text(result) << (terminal_ ? "" : "\n") << std::flush;
 }
 
 void Progress::finish() {

@@ -27,28 +27,68 @@ Examples:
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>)";
 
+/// What the help of a verb ends with, before its example.
+constexpr const char* kVerbFooter =
+    R"(No server may have the store open. Exit codes: 0 done, 1 failed or damage found, 2 wrong usage,
+3 no such file.
+
+Example:
+  )";
+
 std::size_t default_workers() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
+/// What serving needs, each also in a file that --config names.
+void add_server_options(CLI::App& app, ServerOptions& options) {
+  constexpr std::size_t kMostWorkers = 256;
+  app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
+      ->capture_default_str();
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
+      ->capture_default_str();
+  app.add_option("--interface", options.network_interface,
+                 "Network interface to serve, e.g. eth0; default: loopback, this machine only");
+  app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
+      ->check(CLI::Range(std::size_t{1}, kMostWorkers))
+      ->capture_default_str();
+  app.add_option("--fit-niceness", options.fit_niceness,
+                 "How far these threads step back for others on this machine")
+      ->check(CLI::Range(0, 19))
+      ->capture_default_str();
+  app.add_option("--log-level", options.log_level, "What goes to stderr")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+}
+
 /// The verbs, as subcommands that fill `options`.
 void add_verbs(CLI::App& app, OfflineOptions& options) {
-  const auto add = [&](const char* name, OfflineVerb verb, const char* description) {
+  const auto add = [&](const char* name, OfflineVerb verb, const char* description,
+                       const char* example) {
     CLI::App* const command = app.add_subcommand(name, description)->configurable(false);
+    command->footer(std::string(kVerbFooter) + example);
     command->add_option("--store", options.store, "SQLite file")->capture_default_str();
     command->callback([&options, verb] { options.verb = verb; });
     return command;
   };
   app.require_subcommand(0, 1);
-  add("check", OfflineVerb::Check, "Read every page, row and checksum of the store")
+  add("check", OfflineVerb::Check, "Read every page, row and checksum of the store",
+      "kinshipd check --store fleet.db --json")
       ->add_flag("--json", options.json, "One document on stdout");
-  add("backup", OfflineVerb::Backup, "Copy the store into a new file")
+  add("backup", OfflineVerb::Backup, "Copy the store into a new file",
+      "kinshipd backup --store fleet.db copy.db")
       ->add_option("FILE", options.file, "The copy; must not be there yet")
       ->required();
-  add("restore", OfflineVerb::Restore, "Put a backup in the place of the store; keeps the old one")
+  add("restore", OfflineVerb::Restore, "Put a backup in the place of the store; keeps the old one",
+      "kinshipd restore --store fleet.db copy.db      keeps the old one as "
+      "fleet.db.replaced-<time>")
       ->add_option("FILE", options.file, "The backup; it stays as it is")
       ->required();
-  add("migrate", OfflineVerb::Migrate, "Bring the store to this version's schema; copies it first");
+  add("migrate", OfflineVerb::Migrate, "Bring the store to this version's schema; copies it first",
+      "kinshipd migrate --store fleet.db              as it was: fleet.db.backup-<version>");
 }
 
 }  // namespace
@@ -69,39 +109,23 @@ std::filesystem::path default_store() {
 }
 
 Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  constexpr std::size_t kMostWorkers = 256;
   ServerOptions options;
   options.store = default_store();
   options.workers = default_workers();
+  OfflineOptions offline;
+  offline.store = options.store;
 
   CLI::App app(kDescription, "kinshipd");
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("kinshipd ") + KINSHIP_VERSION);
-  app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
-  app.allow_config_extras(CLI::config_extras_mode::error);
-  app.add_option("--store", options.store, "SQLite file; made if there is none")
-      ->capture_default_str();
-  app.add_option("--domain", options.domain, "DDS domain")
-      ->envname("KINSHIP_DOMAIN")
-      ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
-      ->capture_default_str();
-  app.add_option("--interface", options.network_interface,
-                 "Network interface to serve, e.g. eth0; default: loopback, this machine only");
-  app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
-      ->check(CLI::Range(std::size_t{1}, kMostWorkers))
-      ->capture_default_str();
-  app.add_option("--fit-niceness", options.fit_niceness,
-                 "How far these threads step back for others on this machine")
-      ->check(CLI::Range(0, 19))
-      ->capture_default_str();
-  app.add_option("--log-level", options.log_level, "What goes to stderr")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
-  OfflineOptions offline;
-  offline.store = options.store;
+  add_server_options(app, options);
   add_verbs(app, offline);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ConfigError& error) {  // says what of it, but not where
+    err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>()
+        << "': " << error.what() << '\n';
+    return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
   }

@@ -180,7 +180,7 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
   teach(server_);
   const Answer asked = server_.kinship({"tasks", "reset", "sweep"});
   EXPECT_EQ(asked.code, 2);
-  EXPECT_NE(asked.err.find("would retire 6 paths of 1 robots"), std::string::npos) << asked.err;
+  EXPECT_NE(asked.err.find("would retire 6 paths of 1 robot:"), std::string::npos) << asked.err;
   EXPECT_EQ(count_lines(server_.kinship({"paths", "export"}).out), 8U);
   const Answer reset = server_.kinship({"tasks", "reset", "sweep", "--yes", "--json"});
   EXPECT_EQ(reset.code, 0) << reset.err;
@@ -190,6 +190,9 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
       server_.kinship({"distributions", "fetch", "--task", "sweep", "--robot", "ur10e"});
   EXPECT_EQ(fetched.code, 3) << fetched.err;
   EXPECT_EQ(server_.kinship({"tasks", "reset", "dance", "--yes"}).code, 3);
+  const Answer again = server_.kinship({"tasks", "reset", "sweep"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.out, "nothing to do: retired already\n");
 }
 
 TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {
@@ -274,6 +277,32 @@ TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
   server_.process().terminate();
   while (test::read_text(folder_ / "watch.err").find("the server has gone") == std::string::npos)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, WatchTakesARobotByItsDigestAndTellsNothingOfOthers) {
+  teach(server_);
+  const std::string panda = attempts_.front().robot.hex().substr(0, 8);
+  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--robot", panda}),
+                      folder_ / "watch.err");
+  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (const std::string robot : {"ur10e", "panda"})
+    EXPECT_EQ(server_.kinship({"distributions", "fetch", "--task", "dance", "--robot", robot}).code,
+              3);
+  const std::string event = watch.read_line();
+  EXPECT_NE(event.find("\"robot\":\"panda\""), std::string::npos) << event;
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, WatchSaysThatItDoesNotKnowARobot) {
+  test::Program watch("kinship", server_.with_domain({"watch", "--robot", "nobody"}),
+                      folder_ / "watch.err");
+  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_NE(test::read_text(folder_ / "watch.err").find("no robot 'nobody'"), std::string::npos);
   watch.signal(SIGINT);
   EXPECT_EQ(watch.wait(), 0);
 }

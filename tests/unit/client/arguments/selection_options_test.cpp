@@ -41,6 +41,14 @@ TEST(ParseSince, CountsAgesFromNow) {
   EXPECT_EQ(*parse_since("100d", Time(std::chrono::hours(24))), 0) << "before 1970";
 }
 
+TEST(ParseSince, TakesUnixTimeInMsAsJsonPrintsIt) {
+  EXPECT_EQ(*parse_since(std::to_string(kMidnight_ms), kNow), kMidnight_ms);
+  EXPECT_EQ(*parse_since("1000000000", kNow), 1'000'000'000);
+  EXPECT_FALSE(parse_since("999999999", kNow)) << "too short: an age without its letter?";
+  EXPECT_FALSE(parse_since("2026", kNow)) << "a year";
+  EXPECT_FALSE(parse_since("253402300800000", kNow)) << "the year 10000";
+}
+
 TEST(ParseSince, RefusesWhatIsNoTimeAndShowsIt) {
   for (const char* text : {"",
                            "d",

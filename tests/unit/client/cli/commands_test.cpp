@@ -57,6 +57,40 @@ TEST(Commands, WrongUsageIsCodeTwo) {
             kWrongUsage);
 }
 
+TEST(Commands, NoNumberIsNoTime) {
+  const Answer answer = run_command({"--timeout", "nan", "status"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("'nan' is not a number from 0.01 to 86400"), std::string::npos)
+      << answer.err;
+}
+
+TEST(Commands, RefusesOptionsThatExcludeEachOther) {
+  EXPECT_EQ(run_command({"backup", "copy.db", "--no-wait", "--wait", "3"}).code, kWrongUsage);
+  const Answer samples =
+      run_command({"--domain", "198", "--timeout", "0.1", "distributions", "fetch", "--task",
+                   "pick", "--robot", "panda", "--samples", "3", "--json"});
+  EXPECT_EQ(samples.code, kWrongUsage);
+}
+
+TEST(Commands, AFileThatCannotBeWrittenIsNamedBeforeAServerIsAsked) {
+  const std::vector<std::vector<std::string>> exports = {
+      {"paths", "export"}, {"configurations", "export", "--distribution", "3f9a0c"}};
+  for (std::vector<std::string> command : exports) {
+    command.insert(command.begin(), {"--domain", "198", "--timeout", "0.1"});
+    command.insert(command.end(), {"--output", "/nowhere/rows"});
+    const Answer answer = run_command(command);
+    EXPECT_EQ(answer.code, kFailed) << answer.err;
+    EXPECT_NE(answer.err.find("/nowhere/rows"), std::string::npos) << answer.err;
+  }
+}
+
+TEST(Commands, TheHelpOfANounIsAboutThatNoun) {
+  const Answer answer = run_command({"robots", "--help"});
+  EXPECT_EQ(answer.code, kDone);
+  EXPECT_EQ(answer.out.find("paths list"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("Exit codes: 0 done"), std::string::npos) << answer.out;
+}
+
 TEST(Commands, EachHasHelpWithAnExample) {
   const std::vector<std::vector<std::string>> commands = {{"status"},
                                                           {"backup"},
@@ -145,6 +179,15 @@ TEST(RobotsCheck, TellsChainSolverAndYield) {
   EXPECT_EQ(answer.code, kDone) << answer.err;
   EXPECT_NE(answer.out.find("6 joints"), std::string::npos) << answer.out;
   EXPECT_NE(answer.out.find("Levenberg-Marquardt"), std::string::npos) << answer.out;
+}
+
+TEST(RobotsCheck, TellsWhatDecidesTheTransferAndWhatCollides) {
+  const Answer planar = run_command({"robots", "check", kModels + "planar_5r_a", "--poses", "1"});
+  EXPECT_NE(planar.out.find("axes        x y yaw\n"), std::string::npos) << planar.out;
+  const Answer panda = run_command({"robots", "check", kModels + "panda", "--poses", "1"});
+  EXPECT_NE(panda.out.find("axes        all\n"), std::string::npos) << panda.out;
+  EXPECT_NE(panda.out.find("held        finger_left_joint = 0.0425, "), std::string::npos);
+  EXPECT_NE(panda.out.find("pairs of links never checked"), std::string::npos) << panda.out;
 }
 
 TEST(RobotsCheck, NamesAMissingFile) {

@@ -75,5 +75,17 @@ TEST(OpenInput, NamesAFileThatIsNotThere) {
   }
 }
 
+TEST(OpenInput, AFolderIsNoFile) {
+  const test::TemporaryDirectory folder;
+  try {
+    open_input(folder.path());
+    FAIL() << "opened";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::InvalidInput);
+    EXPECT_EQ(std::string(failure.what()),
+              "cannot read '" + folder.path().string() + "': it is a folder");
+  }
+}
+
 }  // namespace
 }  // namespace kinship::files

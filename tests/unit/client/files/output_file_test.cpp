@@ -62,6 +62,19 @@ TEST_F(OutputFileTest, NothingWrittenLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
+TEST_F(OutputFileTest, ThereIsAPartOnceSomethingIsWrittenAndUntilItIsKept) {
+  OutputFile output(file_, otherwise_);
+  EXPECT_FALSE(output.has_part());
+  output.stream() << "half";
+  EXPECT_TRUE(output.has_part()) << "not flushed by its user";
+  output.keep();
+  EXPECT_FALSE(output.has_part());
+
+  OutputFile no_file({}, otherwise_);
+  no_file.stream() << "half";
+  EXPECT_FALSE(no_file.has_part());
+}
+
 TEST_F(OutputFileTest, AnEmptyResultIsAResult) {
   put(file_, "old\n");
   OutputFile(file_, otherwise_).keep();

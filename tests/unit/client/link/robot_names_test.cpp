@@ -72,6 +72,7 @@ TEST(ResolveRobots, GivesAscendingDistinctDigests) {
   EXPECT_EQ(*resolve_robots(client, {"panda", "iiwa14", "0900"}),
             (std::vector<Digest>{digest(3), digest(9)}));
   EXPECT_TRUE(resolve_robots(client, {})->empty());
+  EXPECT_EQ(find_robot(client, "iiwa14")->robot, digest(3));
 }
 
 TEST(ResolveRobots, NamesTheRobotThatIsNotThere) {

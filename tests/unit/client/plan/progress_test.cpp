@@ -24,7 +24,18 @@ TEST(Progress, WritesALineForEveryTenthWhereNobodyCanWriteOver) {
     progress.add(solved("p", 100), true);
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
-  EXPECT_NE(text.find("planned 2/20, solved 2, last: p 100 checks\n"), std::string::npos);
+  EXPECT_NE(text.find("planned 2/20, solved 2, last: p: 100 checks\n"), std::string::npos);
+}
+
+TEST(Progress, NamesALineThatCouldNotBeReadOnce) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 1);
+  ProblemResult unreadable;
+  unreadable.name = "line 3";
+  unreadable.reason = "line 3: problem: not JSON at byte 9";
+  progress.add(unreadable, false);
+  EXPECT_NE(stream.str().find("last: line 3: problem: not JSON at byte 9\n"), std::string::npos)
+      << stream.str();
 }
 
 TEST(Progress, WritesOverOneLineOnATerminal) {

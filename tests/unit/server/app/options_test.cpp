@@ -128,6 +128,21 @@ TEST_F(Options, WhatIsWrongInTheFileIsWrongUsageThatNamesIt) {
   }
 }
 
+TEST_F(Options, AWrongLineOfAConfigurationIsSaidWithItsFile) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.ini").string();
+  std::ofstream(file) << "storee=x\n";
+  EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage);
+  EXPECT_NE(err_.str().find("'" + file + "'"), std::string::npos) << err_.str();
+  EXPECT_NE(err_.str().find("storee"), std::string::npos) << err_.str();
+}
+
+TEST_F(Options, TheHelpOfAVerbIsNotThatOfTheServer) {
+  EXPECT_EQ(code({"check", "--help"}), kDone);
+  EXPECT_NE(out_.str().find("kinshipd check --store fleet.db"), std::string::npos) << out_.str();
+  EXPECT_EQ(out_.str().find("ready domain"), std::string::npos) << out_.str();
+}
+
 TEST_F(Options, AnEmptyStoreIsSaidToBeEmpty) {
   setenv("HOME", "/home/someone", 1);
   EXPECT_EQ(code({"--store", ""}), kWrongUsage);
