@@ -47,6 +47,15 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
       ->check(CLI::Range(1, 10'000))
       ->excludes(tunes);
   command
+      .add_option("--problems", options.problems_of,
+                  "write the test instances of this robot for kinship-plan, on standard output")
+      ->excludes(tunes);
+  command
+      .add_option("--study", options.sides,
+                  "side studies on the test instances: pooled, components, paper, scenes, sizes")
+      ->delimiter(',')
+      ->excludes(tunes);
+  command
       .add_flag("--report", options.reports,
                 "write the report of what the folder holds again, without planning")
       ->excludes(tunes);
@@ -68,7 +77,13 @@ void add_study_commands(CLI::App& app, StudyOptions& options) {
 
 void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
   const Study& study = find_study(options.study);
-  if (options.reports)
+  for (const std::string& side : options.sides)
+    run_side_study(study, side, options.run, messages);
+  if (!options.sides.empty())
+    return;
+  if (!options.problems_of.empty())
+    write_test_problems(study, options.run, options.problems_of, out);
+  else if (options.reports)
     report_study(study, options.run, messages);
   else if (options.calibration_instances > 0)
     calibrate_study(study, options.run, options.calibration_instances, out, messages);

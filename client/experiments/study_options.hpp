@@ -2,6 +2,7 @@
 
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "client/experiments/pipeline/study_run.hpp"
 
@@ -15,10 +16,12 @@ namespace kinship::experiments {
 struct StudyOptions {
   std::string study;  ///< empty: none is to be run
   RunOptions run;
-  bool reports = false;  ///< only the report is written again
+  std::vector<std::string> sides;  ///< side studies to run, nothing else
+  bool reports = false;            ///< only the report is written again
   bool tunes = false;
   TuningOptions tuning;
   std::uint32_t calibration_instances = 0;  ///< 0: no calibration
+  std::string problems_of;                  ///< robot whose test instances are written; empty: none
 };
 
 /// A subcommand for every study.

@@ -61,6 +61,13 @@ void add_planning_options(CLI::App& app, PlanOptions& options) {
                  "collision checks spent on shortening a path; 0: none")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
+  app.add_option("--overshoot", settings.overshoot,
+                 "extend this much farther than the sample, for uniform and guided alike")
+      ->check(CLI::Range(1.0, 10.0))
+      ->capture_default_str();
+  app.add_option("--max-goals", settings.max_goals, "configurations looked for at a goal pose")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--seed-offset", options.seed_offset, "added to the seed of every problem");
   app.add_option("--output", options.output, "file for the results; standard output if missing");
 }

@@ -125,8 +125,8 @@ class Recording {
     settings.overshoot = 1;
     settings.shortcut_checks = kLearningShortcutChecks;
     const Problem problem = member_.draw(seed_, index);
-    const plan::PlannedProblem planned =
-        plan::plan_problem(member_.planned, problem, nullptr, settings, [] { return false; });
+    const plan::PlannedProblem planned = plan::plan_problem(
+        member_.planned, problem, plan::QueryGuidance{}, settings, [] { return false; });
     if (!planned.attempted)
       throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
     const plan::Reporter reporter{member_.digest, "experiments", study_.name};

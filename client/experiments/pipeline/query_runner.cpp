@@ -9,9 +9,11 @@ namespace {
 
 QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& problem,
                    QueryKey key) {
-  const plan::Guidance* const guidance = cell.guidance ? &*cell.guidance : nullptr;
+  plan::QueryGuidance query;
+  if (cell.guidance)
+    query = {.guidance = &*cell.guidance, .arm = Arm::Guided};
   const plan::PlannedProblem planned =
-      plan::plan_problem(member.planned, problem, guidance, cell.settings, [] { return false; });
+      plan::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
   if (!planned.attempted)
     throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
   const ProblemResult& result = planned.result;
@@ -50,8 +52,7 @@ void answer_instance(const StudyMember& member, const std::vector<const Cell*>& 
 std::optional<plan::Guidance> always_guided(const Distribution& distribution, double share) {
   if (!distribution.mixture)
     return std::nullopt;
-  const planning::ArmPlan always{.share = share, .is_guided = true, .trial_part = 0};
-  return plan::Guidance{distribution.id, distribution.revision, *distribution.mixture, always};
+  return plan::Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
 }
 
 void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,

@@ -8,11 +8,13 @@
 #include "client/experiments/analysis/ratio_table.hpp"
 #include "client/experiments/pipeline/compressed_file.hpp"
 #include "client/experiments/pipeline/run_record.hpp"
+#include "client/experiments/pipeline/side_study.hpp"
 #include "client/experiments/pipeline/study_session.hpp"
 #include "client/experiments/report/study_report.hpp"
 #include "client/files/lines.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/json/distribution_json.hpp"
+#include "proto/json/problem_json.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -68,6 +70,14 @@ std::vector<Cell> main_cells(const Study& study, StudySession& session,
   return cells;
 }
 
+QueryPlan test_plan(const Study& study, const RunOptions& options) {
+  QueryPlan plan;
+  plan.seed = seed_of(InstanceSet::Test, 0);
+  plan.instances = options.quick ? kQuickInstances : study.test_instances;
+  plan.seeds = options.quick ? 1 : kTestSeeds;
+  return plan;
+}
+
 /// Fetched distributions as run_study wrote them.
 std::vector<Distribution> read_distributions(const std::filesystem::path& file) {
   expand_file(file);
@@ -113,11 +123,7 @@ void run_study(const Study& study, const RunOptions& options, std::ostream& mess
   distributions.keep();
   QueryLog log(session.files().test);
   const std::size_t known = log.results().size();
-  QueryPlan plan;
-  plan.seed = seed_of(InstanceSet::Test, 0);
-  plan.instances = options.quick ? kQuickInstances : study.test_instances;
-  plan.seeds = options.quick ? 1 : kTestSeeds;
-  session.run("test", cells, plan, log);
+  session.run("test", cells, test_plan(study, options), log);
   record.planned = log.results().size() - known;
   record.duration_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -125,6 +131,29 @@ void run_study(const Study& study, const RunOptions& options, std::ostream& mess
   compress_file(session.files().test);
   compress_file(session.files().distributions);
   report_study(study, options, messages);
+}
+
+void run_side_study(const Study& study, const std::string& name, const RunOptions& options,
+                    std::ostream& messages) {
+  const SideStudy side = find_side_study(study, name);
+  RunOptions again = options;
+  again.resume = true;
+  StudySession session(study, again, messages);
+  session.learn();
+  for (const SideStudy::Shortened& shortened : side.shortened)
+    session.report_as(shortened.task, shortened.paths);
+  std::vector<Cell> cells;
+  for (const WishedCell& wished : side.cells) {
+    plan::PlanSettings settings = study.settings;
+    settings.overshoot = wished.overshoot;
+    if (auto cell = guided_cell(wished.wish.target, wished.name, settings,
+                                session.fetch(wished.wish), wished.share))
+      cells.push_back(*std::move(cell));
+  }
+  QueryLog log(session.files().side(name));
+  session.run(name, cells, test_plan(study, options), log);
+  compress_file(session.files().side(name));
+  report_study(study, again, messages);
 }
 
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages) {
@@ -135,10 +164,22 @@ void report_study(const Study& study, const RunOptions& options, std::ostream& m
   data.test = read_query_results(files.test);
   data.distributions = read_distributions(files.distributions);
   data.runs = read_runs(files.runs);
+  for (const SideStudy& side : side_studies(study))
+    if (expand_file(files.side(side.name)))
+      data.sides.push_back({side, read_query_results(files.side(side.name))});
   files::OutputFile page(files.report, messages);
   write_study_report(study, load_fleet(study, options.models), data, page.stream());
   page.keep();
   messages << study.name << ": " << files.report.string() << std::endl;
+}
+
+void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
+                         std::ostream& out) {
+  const std::vector<StudyMember> fleet = load_fleet(study, options.models);
+  const StudyMember& member = fleet[find_member(fleet, robot)];
+  const QueryPlan plan = test_plan(study, options);
+  for (std::uint32_t index = 0; index < plan.instances; ++index)
+    out << json::to_json(member.draw(plan.seed, index)) << '\n';
 }
 
 void tune_study(const Study& study, const RunOptions& options, const TuningOptions& tuning,

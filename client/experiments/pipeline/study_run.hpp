@@ -36,8 +36,17 @@ struct TuningOptions {
 /// Results go into `<folder>/<study>/`, and on `messages` how far it is.
 void run_study(const Study& study, const RunOptions& options, std::ostream& messages);
 
+/// Plans the cells of a side study (side_study.hpp) on the test instances of a study that was run
+/// before, and writes the report again.
+void run_side_study(const Study& study, const std::string& name, const RunOptions& options,
+                    std::ostream& messages);
+
 /// Writes `<folder>/<study>/report.html` of the results that the folder holds, without planning.
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages);
+
+/// Writes the test instances of one robot as problems for kinship-plan, one a line.
+void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
+                         std::ostream& out);
 
 /// Plans tuning instances, never test instances, and writes what guidance was worth on `out`.
 /// Learning sets, store and results of earlier tries in the folder are used again.

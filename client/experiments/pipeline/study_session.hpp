@@ -27,6 +27,9 @@ struct StudyFiles {
   std::filesystem::path distributions;  ///< as they were fetched, one a line
   std::filesystem::path runs;           ///< of the test set
   std::filesystem::path report;
+
+  /// Results of a side study.
+  std::filesystem::path side(const std::string& name) const { return folder / (name + ".jsonl"); }
 };
 
 /// A study under way: its fleet, its learning sets and its server.

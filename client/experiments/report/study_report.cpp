@@ -74,6 +74,28 @@ std::string calibration_html(const Study& study, const std::vector<QueryResult>&
   return table.rows.empty() ? "" : html::to_html(table);
 }
 
+/// The variants of a side study against uniform planning with the same overshoot.
+std::string side_html(const Study& study, const StudyResults& results, const SideResults& side) {
+  std::map<std::string, VariantCells> variants;
+  std::vector<std::string> order;
+  for (const WishedCell& wished : side.side.cells) {
+    const std::string& robot = study.robots.at(wished.wish.target).model;
+    const std::string variant = variant_of(wished.name);
+    CellResults cell = collect_cell(side.results, robot, wished.name, study.settings.max_checks);
+    const CellResults* const uniform = results.find(robot, uniform_name(wished.overshoot));
+    if (cell.instances.empty() || uniform == nullptr)
+      continue;
+    if (!variants.contains(variant))
+      order.push_back(variant);
+    const bool is_own = wished.wish.sources == std::vector<std::size_t>{wished.wish.target};
+    variants[variant].push_back({std::move(cell), uniform, is_own});
+  }
+  std::vector<std::pair<std::string, VariantCells>> rows;
+  for (const std::string& variant : order)
+    rows.emplace_back(variant, std::move(variants.at(variant)));
+  return html::to_html(variant_table(side.side.purpose, rows));
+}
+
 using Values = const std::vector<std::vector<double>>& (*)(const CellResults&);
 
 std::string bars_html(const StudyResults& results, const char* caption, const char* unit,
@@ -145,6 +167,10 @@ void write_study_report(const Study& study, const std::vector<StudyMember>& flee
   body += bars_html(
       results, "Mean planning time with 95 % intervals over instances.", "s",
       [](const CellResults& cell) -> const auto& { return cell.cpu_s; });
+  if (!data.sides.empty())
+    body += html::heading(2, "Beyond the main tables");
+  for (const SideResults& side : data.sides)
+    body += side_html(study, results, side);
   body += html::heading(2, "Transfer and fit") +
           html::to_html(distribution_table(data.distributions, labels)) +
           html::heading(2, "What the distributions look like") +

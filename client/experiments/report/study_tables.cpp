@@ -155,6 +155,30 @@ html::Table summary_table(const StudyResults& results) {
        row("all", Pairs::All, "")}};
 }
 
+html::Table variant_table(const std::string& caption,
+                          const std::vector<std::pair<std::string, VariantCells>>& variants) {
+  html::Table table{"Side study: " + caption,
+                    {"variant", "robot", "experience of", "uniform", "guided", "ratio", "95 %"},
+                    {}};
+  for (const auto& [variant, cells] : variants) {
+    std::vector<std::pair<const CellResults*, const CellResults*>> own, others;
+    for (const VariantCell& cell : cells) {
+      const PairRatio pair = compare_cells(*cell.uniform, cell.guided);
+      table.rows.push_back({variant, pair.robot, pair.guidance.substr(0, pair.guidance.find('|')),
+                            formatted("%.0f", moments_of(flat(cell.uniform->checks)).mean),
+                            formatted("%.0f", moments_of(flat(cell.guided.checks)).mean),
+                            formatted("%.2f", pair.checks_ratio),
+                            formatted("[%.2f, %.2f]", pair.low, pair.high)});
+      (cell.is_own ? own : others).emplace_back(cell.uniform, &cell.guided);
+    }
+    for (const auto& [what, pairs] : {std::pair("own", &own), std::pair("not only own", &others)})
+      if (!pairs->empty())
+        table.rows.push_back({variant, "geometric mean", what, "", "", "",
+                              mean_text(geometric_mean_ratio(*pairs, Quantity::Checks))});
+  }
+  return table;
+}
+
 html::Table distribution_table(const std::vector<Distribution>& distributions,
                                const std::map<Digest, std::string>& labels) {
   html::Table table{

@@ -20,6 +20,18 @@ html::Table pair_table(const StudyResults& results);
 /// Geometric means over own and over transferred experience.
 html::Table summary_table(const StudyResults& results);
 
+/// A cell of a variant, and the uniform one that it is compared with.
+struct VariantCell {
+  CellResults guided;
+  const CellResults* uniform = nullptr;
+  bool is_own = false;  ///< guided by the robot's own experience alone
+};
+using VariantCells = std::vector<VariantCell>;
+
+/// A row per cell of each variant, then its geometric means.
+html::Table variant_table(const std::string& caption,
+                          const std::vector<std::pair<std::string, VariantCells>>& variants);
+
 /// What the server made of each source for each target, and how long it took.
 /// \param labels  of the robots by digest.
 html::Table distribution_table(const std::vector<Distribution>& distributions,

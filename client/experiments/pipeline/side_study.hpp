@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/experiments/pipeline/experience_server.hpp"
+#include "client/experiments/studies/study.hpp"
+
+namespace kinship::experiments {
+
+/// A guided cell before its distribution was fetched.
+struct WishedCell {
+  std::string name;  ///< of the cell: "<sources>|<variant>"
+  DistributionWish wish;
+  double overshoot = 1;
+  double share = 1;  ///< of guided samples
+};
+
+/// Further cells over the test instances: what the main tables do not tell.
+struct SideStudy {
+  std::string name;     ///< of its log, and on the command line
+  std::string purpose;  ///< for people
+  std::vector<WishedCell> cells;
+  /// Learning sets that are handed over once more, shortened, each under a task of its own.
+  struct Shortened {
+    std::string task;
+    std::size_t paths = 0;
+  };
+  std::vector<Shortened> shortened;
+};
+
+/// Every side study there is for a study.
+std::vector<SideStudy> side_studies(const Study& study);
+
+/// \throws Failure(NotFound) that names the side studies there are.
+SideStudy find_side_study(const Study& study, std::string_view name);
+
+/// The two parts of a cell's name.
+std::string cell_name(const std::string& sources, const std::string& variant);
+std::string variant_of(const std::string& cell_name);
+
+inline constexpr const char* kOthers = "the others";  ///< experience of all but the robot itself
+inline constexpr const char* kAll = "all";            ///< and its own
+
+}  // namespace kinship::experiments
