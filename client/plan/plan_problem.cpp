@@ -38,7 +38,7 @@ std::optional<std::string> beyond_limits(const kinematics::Chain& chain,
 }
 
 /// The configurations where planning may go: within limits to rounding, turning joints in the
-/// turn of the start. Those that no turn brings there are left out.
+/// turn of the start.
 Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matrix2Xd& bounds,
                               const Eigen::MatrixXd& configurations) {
   const std::vector<bool> turning = planning::turning_joints(chain);
@@ -148,14 +148,8 @@ class Planning {
  private:
   /// All of them count: the nearest may lie behind an obstacle.
   Eigen::MatrixXd find_goals(ProblemResult& result) {
-    if (!problem_.T_task_goal) {
-      Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
-      if (goals.cols() == 0)
-        result.reason =
-            "every goal is outside the planning bounds: joints wider than a turn move "
-            "at most half a turn from the start";
-      return goals;
-    }
+    if (!problem_.T_task_goal)
+      return within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
     planning::GoalOptions options;
     options.max_configurations = settings_.max_goals;
     options.seed = problem_.seed;

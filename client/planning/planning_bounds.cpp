@@ -30,11 +30,10 @@ Eigen::Matrix2Xd planning_bounds(const kinematics::Chain& chain,
     const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
     if (!is_turning(joint))
       continue;
-    bounds.col(i) << start[i] - kTurn / 2, start[i] + kTurn / 2;
-    if (joint.type == kinematics::JointType::Continuous)
-      continue;
-    bounds(0, i) = std::clamp(bounds(0, i), joint.lower, joint.upper);
-    bounds(1, i) = std::clamp(bounds(1, i), joint.lower, joint.upper);
+    double lower = start[i] - kTurn / 2;
+    if (joint.type != kinematics::JointType::Continuous)
+      lower = std::clamp(lower, joint.lower, joint.upper - kTurn);
+    bounds.col(i) << lower, lower + kTurn;
   }
   return bounds;
 }

@@ -9,8 +9,9 @@
 namespace kinship::planning {
 
 /// Where a plan from `start` may go: the joint limits, but joints wider than a turn, continuous
-/// ones among them, only within half a turn of the start (clipped to their limits). Over several
-/// turns each posture exists many times, and trees that meet in different turns do not meet.
+/// ones among them, only one turn, with the start in its middle or, near a limit, up to the limit.
+/// So each posture exists once, in the turn nearest to the start: over several turns it exists
+/// many times, and trees that meet in different turns do not meet.
 /// \return 2 x dof: lower, upper, joint units.
 /// \throws std::invalid_argument if start has another size than the chain or is not finite.
 Eigen::Matrix2Xd planning_bounds(const kinematics::Chain& chain,

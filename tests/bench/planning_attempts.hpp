@@ -23,6 +23,8 @@
 namespace kinship::bench {
 
 inline constexpr std::uint64_t kMaxPlanChecks = 200'000;
+/// Of OMPL's: it can project for minutes without one check. A plan that it ends counts all checks.
+inline constexpr double kMaxOmplTime_s = 10;
 
 struct Instance {
   Eigen::VectorXd start;
@@ -65,8 +67,10 @@ inline Attempt run_rrt_connect(
   if (range > 0)
     planner->setRange(range);
   setup.setPlanner(planner);
-  const auto status = setup.solve(ob::PlannerTerminationCondition(
-      [&world, before] { return world.checks() - before >= kMaxPlanChecks; }));
+  const auto status = setup.solve(ob::PlannerTerminationCondition([&world, before, begin_s] {
+    return world.checks() - before >= kMaxPlanChecks ||
+           planning::thread_time_s() - begin_s >= kMaxOmplTime_s;
+  }));
   const bool solved = status == ob::PlannerStatus::EXACT_SOLUTION;
   return {solved, static_cast<double>(solved ? world.checks() - before : kMaxPlanChecks),
           planning::thread_time_s() - begin_s};

@@ -245,15 +245,80 @@ TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
   EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 4, 1e-9);
 }
 
-TEST(PlanProblem, AGoalThatNoTurnBringsNearTheStartIsSaid) {
+TEST(PlanProblem, AStartNearALimitLeavesEveryPostureOfAWideJointInReach) {
   const PlannedRobot robot = planar_robot("-6.2", "6.2");
   Problem problem = wall_problem();
+  problem.scene.objects.clear();
   problem.start[0] = 6;
-  problem.goal_configurations(0, 0) = 0.5;
-  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
-  EXPECT_FALSE(answer.result.solved);
-  EXPECT_NE(answer.result.reason.find("outside the planning bounds"), std::string::npos)
-      << answer.result.reason;
+  for (const double goal : {0.5, -0.2, -6.2}) {  // -0.2 is 6.08, -6.2 is 0.083
+    problem.goal_configurations(0, 0) = goal;
+    const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+    ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+    const double end = answer.result.waypoints->rightCols(1)(0);
+    EXPECT_NEAR(end, goal < 0 ? goal + 2 * M_PI : goal, 1e-9);
+  }
+}
+
+/// The wall's problem without the wall, the transfer frame on the line x = const of its start.
+Problem line_problem() {
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.3, -0.2, 0));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion line;
+  line.T_task_region.translation() =
+      (*problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, problem.start))
+          .translation();
+  line.bounds.row(0) << 0, -kInfinity, 0, 0, 0, -kInfinity;
+  line.bounds.row(1) = -line.bounds.row(0);
+  problem.constraint = line;
+  return problem;
+}
+
+TEST(PlanProblem, UnderAConstraintEveryWaypointKeepsToIt) {
+  const Problem problem = line_problem();
+  PlanSettings direct;
+  direct.shortcut_checks = 0;
+  for (const PlanSettings& settings : {direct, PlanSettings()}) {
+    const PlannedProblem answer = planned(problem, settings);
+    ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+    EXPECT_GT(answer.result.projections, 0u);
+    const Eigen::MatrixXd& path = *answer.result.waypoints;
+    EXPECT_EQ(path.col(0), problem.start);
+    EXPECT_EQ(path.rightCols<1>(), problem.goal_configurations);
+    const double x = problem.constraint->T_task_region.translation().x();
+    for (Eigen::Index i = 0; i < path.cols(); ++i) {
+      const Eigen::Isometry3d T_task_transfer =
+          *problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, path.col(i));
+      EXPECT_NEAR(T_task_transfer.translation().x(), x, 1e-3);
+      if (i > 0) {
+        EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), settings.resolution + 1e-8);
+      }
+    }
+  }
+}
+
+TEST(PlanProblem, ShortcutsUnderAConstraintKeepTheirBudgetAndShortenThePath) {
+  const Problem problem = line_problem();
+  PlanSettings direct;
+  direct.shortcut_checks = 0;
+  const PlannedProblem one = planned(problem, direct), two = planned(problem);
+  ASSERT_TRUE(one.result.solved && two.result.solved);
+  EXPECT_EQ(one.result.collision_checks, two.result.collision_checks);
+  EXPECT_LE(two.result.shortcut_checks, PlanSettings().shortcut_checks);
+  EXPECT_LE(planning::path_length(*two.result.waypoints),
+            planning::path_length(*one.result.waypoints) + 1e-9);
+}
+
+TEST(PlanProblem, AStartOrGoalOutsideTheConstraintIsSaid) {
+  Problem problem = line_problem();
+  problem.constraint->T_task_region.translation().x() -= 0.25;
+  EXPECT_EQ(planned(problem).result.reason,
+            "start violates the constraint: x by 0.250000 outside Bw");
+  problem = line_problem();
+  problem.goal_configurations(3, 0) += 0.5;
+  EXPECT_EQ(planned(problem).result.reason, "every goal violates the constraint");
+  EXPECT_EQ(planned(problem).outcome, Outcome::Failed);
 }
 
 TEST(PlanProblem, AStartThatIsTheGoalIsAPathOfTwoWaypoints) {

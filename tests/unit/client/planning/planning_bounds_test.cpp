@@ -35,10 +35,29 @@ TEST(PlanningBounds, AreTheLimitsOfJointsUpToATurn) {
   expect_bounds(bounds, 1, -M_PI, M_PI);
 }
 
-TEST(PlanningBounds, OfWideJointsAreHalfATurnAroundTheStartClippedToTheLimits) {
+TEST(PlanningBounds, OfWideJointsAreOneTurnAroundTheStartOrUpToALimit) {
   const auto bounds = planning_bounds(arm(2 * M_PI), Eigen::Vector2d(0.5, 1.5 * M_PI));
   expect_bounds(bounds, 0, 0.5 - M_PI, 0.5 + M_PI);
-  expect_bounds(bounds, 1, 0.5 * M_PI, 2 * M_PI);
+  expect_bounds(bounds, 1, 0, 2 * M_PI);
+  const auto other = planning_bounds(arm(2 * M_PI), Eigen::Vector2d(-2 * M_PI, M_PI));
+  expect_bounds(other, 0, -2 * M_PI, 0);
+  expect_bounds(other, 1, 0, 2 * M_PI);
+}
+
+TEST(PlanningBounds, HoldEveryPostureOfAWideJointWhereverTheStartIs) {
+  std::mt19937_64 generator(kSeed);
+  for (const double limit : {M_PI + 0.01, 3.5, 2 * M_PI, 9.0}) {
+    std::uniform_real_distribution<double> angle(-limit, limit);
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Vector2d start(angle(generator), angle(generator));
+      const auto bounds = planning_bounds(arm(limit), start);
+      EXPECT_GE(bounds.minCoeff(), -limit - 1e-12);
+      EXPECT_LE(bounds.maxCoeff(), limit + 1e-12);
+      EXPECT_EQ(turned_into(bounds, {true, true}, start), start);
+      EXPECT_TRUE(
+          turned_into(bounds, {true, true}, Eigen::Vector2d(angle(generator), angle(generator))));
+    }
+  }
 }
 
 TEST(PlanningBounds, OfAUr10eAreATurnAroundTheStartButForItsElbow) {
@@ -87,10 +106,11 @@ TEST(TurnedInto, MovesByFullTurnsIntoBoundsOfATurn) {
   }
 }
 
-TEST(TurnedInto, IsEmptyWhereNoTurnLiesWithinClippedBounds) {
-  const auto bounds = planning_bounds(arm(2 * M_PI), Eigen::Vector2d(0, 1.5 * M_PI));
-  EXPECT_FALSE(turned_into(bounds, {true, true}, Eigen::Vector2d(0, 0.25 * M_PI)));
-  EXPECT_TRUE(turned_into(bounds, {true, true}, Eigen::Vector2d(0, -0.25 * M_PI)));
+TEST(TurnedInto, IsEmptyWhereNoTurnLiesWithin) {
+  Eigen::Matrix2Xd bounds(2, 2);
+  bounds << -1, -1, 1, 1;
+  EXPECT_FALSE(turned_into(bounds, {true, true}, Eigen::Vector2d(0, M_PI)));
+  EXPECT_TRUE(turned_into(bounds, {true, true}, Eigen::Vector2d(0, 2 * M_PI - 0.5)));
 }
 
 TEST(TurnedInto, LeavesWhatLiesWithinAndNeverTurnsOtherJoints) {
