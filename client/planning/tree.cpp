@@ -46,7 +46,7 @@ Eigen::MatrixXd Tree::branch(Eigen::Index index) const {
   std::vector<Eigen::Index> indices;
   for (Eigen::Index i = index; i >= 0; i = parents_[static_cast<std::size_t>(i)])
     indices.push_back(i);
-  Eigen::MatrixXd branch(nodes_.cols(), static_cast<Eigen::Index>(indices.size()));
+  Eigen::MatrixXd branch(nodes_.rows(), static_cast<Eigen::Index>(indices.size()));
   for (std::size_t i = 0; i < indices.size(); ++i)
     branch.col(static_cast<Eigen::Index>(i)) = node(indices[i]);
   return branch;

@@ -89,7 +89,12 @@ Source source_of(const store::ExperienceSummary& experience) {
 
 SourceTransfer::SourceTransfer(const store::Store& store, RobotRegistry& robots,
                                const DistributionKey& key, const Robot& target)
-    : store_(store), robots_(robots), key_(key), target_(target), pool_(target.chain.dof()) {
+    : store_(store),
+      robots_(robots),
+      key_(key),
+      target_(target),
+      scenes_(store, key, target),
+      pool_(target.chain.dof()) {
   if (key.profile.transfer.avoid_self_collision)
     filters_.self = transfer::collision_filter(target.chain, target.shapes);
 }
@@ -141,16 +146,28 @@ void SourceTransfer::add_paths(const Robot& robot, std::uint64_t wanted,
   write(total, summary.source);
 }
 
+void SourceTransfer::count_scene(const transfer::TransferSummary& path,
+                                 SourceSummary& summary) const {
+  if (!filters_.scene || path.filter_checks == 0)
+    return;  // nothing was asked: waypoints that were taken over were free on their robot
+  ++summary.source.paths_with_scene;
+  if (path.configurations == 0 && path.scene_collisions > 0)
+    ++summary.paths_blocked;
+  summary.scene_problem = scenes_.ignored();
+}
+
 bool SourceTransfer::add_path(const store::StoredPath& stored, const transfer::ArmPair& pair,
                               SourceSummary& summary, transfer::TransferSummary& total) {
   try {
     if (stored.path.dof() != pair.source().dof())
       throw Failure(ErrorCode::InvalidInput,
                     "a path of " + std::to_string(stored.path.dof()) + " joints");
+    filters_.scene = scenes_.find(stored);
     transfer::TransferredPath moved = transfer::transfer_path(
         stored.path, pair, T_target_source(key_.T_task_base, stored.T_task_base),
         key_.profile.transfer, key_.profile.seed, filters_);
     total.add(moved.summary);
+    count_scene(moved.summary, summary);
     pool_.add(std::move(moved), stored.report_uuid);
     (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
     return true;

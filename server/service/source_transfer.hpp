@@ -11,6 +11,7 @@
 #include "server/service/distribution_key.hpp"
 #include "server/service/pooled_configurations.hpp"
 #include "server/service/robot_registry.hpp"
+#include "server/service/scene_filters.hpp"
 #include "server/store/store.hpp"
 #include "server/transfer/filters.hpp"
 #include "server/transfer/transferred_path.hpp"
@@ -23,6 +24,8 @@ struct SourceSummary {
   std::uint64_t paths_selected = 0;  ///< of them the key wants: all, or those since its date
   std::uint64_t paths_left_out = 0;  ///< bad data
   std::string problem;               ///< with the robot or the first path left out
+  std::uint64_t paths_blocked = 0;   ///< their recorded scene left nothing of them
+  std::string scene_problem;         ///< what was not looked at in the recorded scenes
   bool has_placed = false, has_unplaced = false;
 };
 
@@ -51,6 +54,7 @@ class SourceTransfer {
  private:
   void add_paths(const Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
                  SourceSummary& summary);
+  void count_scene(const transfer::TransferSummary& path, SourceSummary& summary) const;
   bool add_path(const store::StoredPath& stored, const transfer::ArmPair& pair,
                 SourceSummary& summary, transfer::TransferSummary& total);
 
@@ -58,7 +62,8 @@ class SourceTransfer {
   RobotRegistry& robots_;
   const DistributionKey& key_;
   const Robot& target_;
-  transfer::Filters filters_;
+  SceneFilters scenes_;
+  transfer::Filters filters_;  // the scene is that of the path under way
   PooledConfigurations pool_;
 };
 

@@ -44,6 +44,12 @@ std::string warnings_in_words(const std::vector<SourceSummary>& sources, bool ta
                            ? std::to_string(summary.paths_left_out) + " paths left out, first "
                            : "left out, ") +
                       summary.problem);
+    if (summary.paths_blocked > 0)
+      found.push_back(name + "of " + std::to_string(summary.paths_blocked) + " of " +
+                      std::to_string(summary.source.paths_with_scene) +
+                      " paths with a recorded scene nothing is free of it");
+    if (!summary.scene_problem.empty())
+      found.push_back(name + summary.scene_problem);
     const std::uint64_t tried = summary.source.paths_used + summary.paths_left_out;
     if (tried > 0 && tried < summary.paths_selected)
       found.push_back(name + std::to_string(tried) + " of " +
