@@ -39,10 +39,12 @@ std::vector<Track> ShapeTracker::find_tracks() {
   std::vector<Track> tracks;
   const double least = parameters_.least_coverage * static_cast<double>(poses_.size());
   const auto wanted = static_cast<std::size_t>(parameters_.tracks);
-  for (int i = 0; i < kTriesPerTrack * parameters_.tracks && tracks.size() < wanted; ++i) {
+  for (int idle = 0; idle < kTriesPerTrack && tracks.size() < wanted; ++idle) {
     std::optional<Track> track = try_track();
-    if (track && static_cast<double>(track->configurations.cols()) >= least)
-      tracks.push_back(std::move(*track));
+    if (!track || static_cast<double>(track->configurations.cols()) < least)
+      continue;
+    tracks.push_back(std::move(*track));
+    idle = -1;
   }
   return tracks;
 }

@@ -35,8 +35,8 @@ class ShapeTracker {
   ShapeTracker(const ArmPair& pair, const PathPoses& poses, const TransferParameters& parameters,
                std::uint64_t seed, CountedFilters& filters);
 
-  /// Up to parameters.tracks tracks that cover at least parameters.least_coverage of the poses, in
-  /// at most kTriesPerTrack times as many tries.
+  /// Up to parameters.tracks tracks that cover at least parameters.least_coverage of the poses.
+  /// Gives up after kTriesPerTrack tries in a row that brought none.
   std::vector<Track> find_tracks();
 
   std::uint64_t tried() const noexcept { return tried_; }

@@ -363,6 +363,69 @@ TEST_F(FitDistribution, ACalibratedUr10eTakesItsTwinsWaypointsOverInEveryProfile
   }
 }
 
+TEST_F(FitDistribution, IsThinExactlyBelowAFifthOfThePosesAndStartsWithHalfTheSamples) {
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  int thin = 0, ready = 0;
+  for (const double away_m : {0.0, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3}) {
+    DistributionKey key = key_of(pupil_);
+    key.profile.density.components = 2;
+    key.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(away_m, 0, 0));
+    const Distribution distribution = fitted(key);
+    if (!has_mixture(distribution.state))
+      continue;
+    const Source& source = distribution.sources.at(0);
+    const double solved =
+        static_cast<double>(source.poses_solved) / static_cast<double>(source.poses);
+    const bool is_thin = distribution.state == DistributionState::Thin;
+    EXPECT_EQ(is_thin, solved < kThinShare) << away_m << " m away, " << solved;
+    EXPECT_DOUBLE_EQ(distribution.advice.recommended_share, is_thin ? 0.5 : 0.9);
+    ++(is_thin ? thin : ready);
+  }
+  EXPECT_GT(thin, 0);
+  EXPECT_GT(ready, 0);
+}
+
+TEST_F(FitDistribution, TheTargetsOwnGeometryFiltersItsConfigurations) {
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  RobotDescription thick = fleet::planar("thick", {0.3, 0.3, 0.2, 0.15});
+  for (const std::string link : {"link1", "link2", "link3", "link4"}) {
+    const std::string bare = "<link name='" + link + "'/>";
+    thick.urdf.replace(thick.urdf.find(bare), bare.size(),
+                       "<link name='" + link +
+                           "'><collision><origin xyz='0.1 0 0'/><geometry>"
+                           "<box size='0.2 0.12 0.1'/></geometry></collision></link>");
+  }
+  DistributionKey key = key_of(pupil_);
+  key.robot = registry_.register_robot(thick, 1).robot;
+  key.profile.density.components = 2;
+  key.profile.transfer.tracks = 0;
+  const Source filtered = fitted(key).sources.at(0);
+  EXPECT_GT(filtered.self_collisions, 0U);
+  EXPECT_GT(filtered.filter_checks, filtered.self_collisions);
+  EXPECT_EQ(filtered.scene_collisions, 0U);
+
+  key.profile.transfer.avoid_self_collision = false;
+  const Source all = fitted(key).sources.at(0);
+  EXPECT_EQ(all.filter_checks, 0U);
+  EXPECT_GT(all.configurations, filtered.configurations);
+}
+
+TEST_F(FitDistribution, SaysHowTracksFared) {
+  report(fleet::solved(teacher_, "shelf", 5, 1));
+  DistributionKey key = key_of(pupil_);
+  key.profile.density.components = 2;
+  const Source tracked = fitted(key).sources.at(0);
+  EXPECT_GT(tracked.tracks_kept, 0U);
+  EXPECT_LE(tracked.tracks_kept, tracked.tracks_tried);
+  EXPECT_LT(tracked.random_configurations, tracked.configurations);
+  key.profile = *find_profile("paper");
+  key.profile.density.components = 2;
+  const Source paper = fitted(key).sources.at(0);
+  EXPECT_EQ(paper.tracks_tried, 0U);
+  EXPECT_EQ(paper.filter_checks, 0U);
+  EXPECT_EQ(paper.random_configurations, paper.configurations);
+}
+
 TEST_F(FitDistribution, GivesUpWhenAskedTo) {
   report(fleet::solved(teacher_, "shelf", 5, 1));
   std::stop_source stop;
