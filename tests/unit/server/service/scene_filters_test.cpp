@@ -72,7 +72,7 @@ class FitAmongScenes : public testing::Test {
     const Eigen::MatrixXd configurations = transfer.pool().configurations();
     std::size_t touching = 0;
     for (const auto& q : configurations.colwise())
-      touching += filter.keep(q) ? 0 : 1;
+      touching += filter.keep(q) ? 0U : 1U;
     return touching;
   }
 
