@@ -224,7 +224,7 @@ TEST(PlanProblem, AGoalIsTurnedIntoTheTurnOfTheStart) {
   problem.scene.objects.clear();
   problem.start[0] = 3;
   problem.goal_configurations(0, 0) = -3;
-  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+  const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
   ASSERT_TRUE(answer.result.solved) << answer.result.reason;
   EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 2 * M_PI - 3, 1e-9);
 }
@@ -240,7 +240,7 @@ TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
   problem.scene.objects.clear();
   problem.start[0] = 3;
   problem.goal_configurations(0, 0) = 4;
-  const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+  const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
   ASSERT_TRUE(answer.result.solved) << answer.result.reason;
   EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 4, 1e-9);
 }
@@ -252,7 +252,7 @@ TEST(PlanProblem, AStartNearALimitLeavesEveryPostureOfAWideJointInReach) {
   problem.start[0] = 6;
   for (const double goal : {0.5, -0.2, -6.2}) {  // -0.2 is 6.08, -6.2 is 0.083
     problem.goal_configurations(0, 0) = goal;
-    const PlannedProblem answer = plan_problem(robot, problem, nullptr, {}, never);
+    const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
     ASSERT_TRUE(answer.result.solved) << answer.result.reason;
     const double end = answer.result.waypoints->rightCols(1)(0);
     EXPECT_NEAR(end, goal < 0 ? goal + 2 * M_PI : goal, 1e-9);
@@ -332,7 +332,7 @@ TEST(PlanProblem, AStartThatIsTheGoalIsAPathOfTwoWaypoints) {
 TEST(PlanProblem, StopsWhenAsked) {
   int asked = 0;
   const PlannedProblem answer =
-      plan_problem(planar_robot(), wall_problem(), nullptr, {}, [&] { return ++asked > 10; });
+      plan_problem(planar_robot(), wall_problem(), {}, {}, [&] { return ++asked > 10; });
   EXPECT_TRUE(answer.interrupted);
   EXPECT_EQ(asked, 11);
 }
