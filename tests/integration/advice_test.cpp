@@ -222,7 +222,7 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
   const std::vector<ProblemResult> uniform = plan({"--share", "0"});
   for (std::size_t i = 0; i < uniform.size(); ++i) {
     EXPECT_EQ(uniform[i].arm, Arm::Uniform);
-    equal += uniform[i].collision_checks == checks[i] ? 1 : 0;
+    equal += uniform[i].collision_checks == checks[i] ? 1U : 0U;
   }
   EXPECT_EQ(equal, kProblems);
   EXPECT_EQ(advice_after(client, kProblems).guided->attempts, kProblems)
