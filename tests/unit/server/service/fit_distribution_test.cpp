@@ -366,7 +366,7 @@ TEST_F(FitDistribution, ACalibratedUr10eTakesItsTwinsWaypointsOverInEveryProfile
 TEST_F(FitDistribution, IsThinExactlyBelowAFifthOfThePosesAndStartsWithHalfTheSamples) {
   report(fleet::solved(teacher_, "shelf", 5, 1));
   int thin = 0, ready = 0;
-  for (const double away_m : {0.0, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3}) {
+  for (const double away_m : {0.0, 0.7, 1.5, 1.52, 1.54, 1.55, 1.56, 1.57, 1.58}) {
     DistributionKey key = key_of(pupil_);
     key.profile.density.components = 2;
     key.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(away_m, 0, 0));
@@ -393,7 +393,7 @@ TEST_F(FitDistribution, TheTargetsOwnGeometryFiltersItsConfigurations) {
     thick.urdf.replace(thick.urdf.find(bare), bare.size(),
                        "<link name='" + link +
                            "'><collision><origin xyz='0.1 0 0'/><geometry>"
-                           "<box size='0.2 0.12 0.1'/></geometry></collision></link>");
+                           "<box size='0.2 0.4 0.1'/></geometry></collision></link>");
   }
   DistributionKey key = key_of(pupil_);
   key.robot = registry_.register_robot(thick, 1).robot;
