@@ -26,8 +26,8 @@ inline constexpr double kHalfLifeInTask = 150;  ///< newer attempts of either ar
 /// The cost of an arm is its collision checks / its solutions, both summed with weights
 /// 2^(-newer of the arm / kHalfLifeInArm) 2^(-newer of either / kHalfLifeInTask): an unsolved
 /// attempt is censored, so its checks count and it adds no solution; an arm without solutions
-/// counts as if it had one. log(cost) is taken as normal; its variance is, by the delta method for a
-/// ratio of two correlated means,
+/// counts as if it had one. log(cost) is taken as normal; its variance is, by the delta method for
+/// a ratio of two correlated means,
 ///
 ///     (cv(checks)^2 + cv(solved)^2 - 2 cov(checks, solved) / (means)) / sum of weights
 ///

@@ -23,8 +23,8 @@ struct ArmEvidence {
 inline constexpr std::size_t kJudgedAttemptsPerArm = 64;  ///< the newest ones; older are forgotten
 
 /// One attempt of a (task, robot) from which the worth of guidance is judged: guided, or uniform
-/// although guidance was there (control). One that could not be planned at all (start in collision, no
-/// goal: Outcome::Failed) says nothing about samples and is none.
+/// although guidance was there (control). One that could not be planned at all (start in collision,
+/// no goal: Outcome::Failed) says nothing about samples and is none.
 struct JudgedAttempt {
   Arm arm = Arm::Guided;  ///< Guided or Control
   bool solved = false;

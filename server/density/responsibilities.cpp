@@ -3,8 +3,8 @@
 namespace kinship::density {
 namespace {
 
-/// Exponents below it count as it: exp(-300) is nothing beside 1, but no subnormal number, with which
-/// the products that follow are 30 times slower on some processors.
+/// Exponents below it count as it: exp(-300) is nothing beside 1, but no subnormal number, with
+/// which the products that follow are 30 times slower on some processors.
 constexpr double kLeastExponent = -300;
 
 }  // namespace

@@ -108,7 +108,8 @@ TEST(DistributionKey, RequestsThatBreakARuleAreRefused) {
   EXPECT_EQ(make_key(bad).error().message, "task: is empty");
   bad = request();
   bad.profile = "best";
-  EXPECT_EQ(make_key(bad).error().message, "profile 'best': it does not begin with default or paper");
+  EXPECT_EQ(make_key(bad).error().message,
+            "profile 'best': it does not begin with default or paper");
   bad = request();
   bad.selection.since_ms = -1;
   EXPECT_EQ(make_key(bad).error().message, "since: -1 ms is below 0");
