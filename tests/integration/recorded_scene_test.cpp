@@ -35,9 +35,10 @@ Problem turn_below_the_ceiling(int number) {
   const auto at = [](double x, double z) {
     return Eigen::Isometry3d(Eigen::Translation3d(x, 0, z));
   };
-  problem.scene.objects = {{"table", BoxShape{{2, 2, 0.1}}, at(0, -0.1)},
+  problem.scene.objects = {{"table", BoxShape{{2, 2, 0.1}}, at(0, -0.25)},
                            {"ceiling", BoxShape{{3, 3, 0.1}}, at(0, 1.0)}};
-  problem.attached = {{"can", "palm", SphereShape{0.02}, at(0, 0.05), {}}};
+  problem.attached = {
+      {"can", "palm", SphereShape{0.02}, at(0, 0.05), {"finger_left", "finger_right"}}};
   problem.allowed_collisions = {{"can", "table"}};
   return problem;
 }
@@ -102,7 +103,8 @@ class RecordedScenes : public testing::Test {
     request.T_task_base = Eigen::Isometry3d::Identity();
     request.deadline = seconds(120);
     const FetchReply reply = client_.fetch(request).value_or_throw();
-    EXPECT_TRUE(reply.distribution) << reply.message;
+    EXPECT_TRUE(reply.distribution)
+        << reply.message << "; planned: " << test::read_text(directory_ / "results.jsonl");
     AdminRequest explain;
     explain.verb = AdminVerb::ExplainDistribution;
     explain.argument = reply.distribution.value().id.hex();
