@@ -94,7 +94,7 @@ TEST_F(StudyCell, CanBeRepeatedByHand) {
   };
   const auto uniform = plan({"--guidance", "none"});
   const auto guided = plan({"--task", "open_table", "--guidance", "require", "--sources", kSource,
-                            "--share", "1", "--control-share", "0"});
+                            "--share", "1", "--control-share", "0", "--wait", "600"});
   int compared = 0;
   for (const experiments::QueryResult& result : results) {
     if (result.key.robot != kTarget ||
