@@ -1,21 +1,9 @@
 #include "client/experiments/pipeline/fleet.hpp"
 
-#include <utility>
-
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
-namespace {
-
-/// Instances with the numbers that a problem file gives, so that who repeats one plans the same.
-DrawInstance as_written(DrawInstance draw) {
-  return [draw = std::move(draw)](std::uint64_t seed, std::uint32_t index) {
-    return json::problem_from_json(json::to_json(draw(seed, index))).value_or_throw();
-  };
-}
-
-}  // namespace
 
 std::vector<StudyMember> load_fleet(const Study& study, const std::filesystem::path& models) {
   std::vector<StudyMember> fleet;
@@ -26,9 +14,13 @@ std::vector<StudyMember> load_fleet(const Study& study, const std::filesystem::p
                      robot,
                      {robot.chain, robot.shapes},
                      robot.chain.digest(),
-                     as_written(study.make_instances(robot, placed))});
+                     study.make_instances(robot, placed)});
   }
   return fleet;
+}
+
+Problem read_instance(const StudyMember& member, std::uint64_t seed, std::uint32_t index) {
+  return json::problem_from_json(json::to_json(member.draw(seed, index))).value_or_throw();
 }
 
 std::size_t find_member(const std::vector<StudyMember>& fleet, std::string_view label) {

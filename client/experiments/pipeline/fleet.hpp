@@ -21,6 +21,10 @@ struct StudyMember {
   const std::string& label() const noexcept { return robot.description.label; }
 };
 
+/// An instance with the numbers that its line in a problem file gives (a pose changes in its last
+/// bit when it is written and read): who repeats one plans the same.
+Problem read_instance(const StudyMember& member, std::uint64_t seed, std::uint32_t index);
+
 /// Every robot of a study, in its order.
 /// \param models  folder of the robots' model folders.
 /// \throws Failure(NotFound) and others of models::load_robot and Study::make_instances.

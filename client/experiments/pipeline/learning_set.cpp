@@ -124,7 +124,7 @@ class Recording {
     plan::PlanSettings settings = study_.settings;
     settings.overshoot = 1;
     settings.shortcut_checks = kLearningShortcutChecks;
-    const Problem problem = member_.draw(seed_, index);
+    const Problem problem = read_instance(member_, seed_, index);
     const plan::PlannedProblem planned = plan::plan_problem(
         member_.planned, problem, plan::QueryGuidance{}, settings, [] { return false; });
     if (!planned.attempted)

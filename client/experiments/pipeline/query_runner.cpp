@@ -30,7 +30,7 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
 /// All queries of one robot and instance.
 void answer_instance(const StudyMember& member, const std::vector<const Cell*>& cells,
                      std::uint32_t index, const QueryPlan& plan, QueryLog& log) {
-  Problem problem = member.draw(plan.seed, index);
+  Problem problem = read_instance(member, plan.seed, index);
   const std::uint64_t own_seed = problem.seed;
   for (std::uint32_t seed = 0; seed < plan.seeds; ++seed) {
     problem.seed = own_seed + seed;
