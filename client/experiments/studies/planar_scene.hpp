@@ -39,6 +39,6 @@ struct PlanarLayout {
 DrawInstance make_planar_instances(const PlanarLayout& layout, const models::LoadedRobot& robot,
                                    const StudyRobot& placed);
 
-inline constexpr std::uint32_t kMaxPlanarDraws = 10;
+inline constexpr std::uint32_t kMaxPlanarDraws = 100;
 
 }  // namespace kinship::experiments
