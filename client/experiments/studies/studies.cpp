@@ -1,3 +1,6 @@
+#include <utility>
+
+#include "client/experiments/studies/cobot_studies.hpp"
 #include "client/experiments/studies/planar_studies.hpp"
 #include "client/experiments/studies/study.hpp"
 #include "proto/types/failure.hpp"
@@ -33,7 +36,12 @@ std::uint64_t seed_of(InstanceSet set, std::size_t robot) {
 }
 
 const std::vector<Study>& studies() {
-  static const std::vector<Study> kStudies = planar_studies();
+  static const std::vector<Study> kStudies = [] {
+    std::vector<Study> all = planar_studies();
+    for (Study& study : cobot_studies())
+      all.push_back(std::move(study));
+    return all;
+  }();
   return kStudies;
 }
 

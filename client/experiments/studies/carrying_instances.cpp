@@ -1,0 +1,172 @@
+#include "client/experiments/studies/carrying_instances.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "client/experiments/studies/instance_random.hpp"
+#include "client/planning/goal_configurations.hpp"
+#include "client/planning/planning_bounds.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/inverse/descent.hpp"
+#include "robots/inverse/inverse.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+constexpr double kJointNoise_rad = 0.1;
+constexpr int kStartTries = 20;
+constexpr double kReached = 1e-6;       // m and rad
+constexpr double kTimeLimit_s = 86400;  // checks end a query, never seconds
+
+/// Draws the instances of one robot.
+class CarryingInstances {
+ public:
+  CarryingInstances(CarryingLayout layout, const models::LoadedRobot& robot,
+                    const StudyRobot& placed)
+      : layout_(std::move(layout)),
+        robot_(robot),
+        T_task_base_(placed.T_task_base),
+        descent_(robot.chain),
+        nominal_start_(find_nominal_start()) {}
+
+  Problem draw(std::uint64_t seed, std::uint32_t index) const {
+    for (std::uint32_t draw = 0; draw < kMaxCarryingDraws; ++draw)
+      if (std::optional<Problem> problem = try_draw({seed, index, draw}))
+        return *std::move(problem);
+    throw Failure(ErrorCode::NotFound, "robot '" + robot_.description.label +
+                                           "' has no free start and goals in " +
+                                           std::to_string(kMaxCarryingDraws) + " draws of " +
+                                           instance_name(layout_.name, {seed, index, 0}));
+  }
+
+ private:
+  Problem make_problem(const CarryingScene& instance) const {
+    Problem problem;
+    problem.T_task_base = T_task_base_;
+    problem.time_limit_s = kTimeLimit_s;
+    problem.scene = instance.scene;
+    problem.constraint = upright_region(layout_.tilt_rad);
+    AttachedObject container{"container",
+                             robot_.chain.tip_link(),
+                             BoxShape{layout_.container},
+                             robot_.chain.T_tip_transfer() * T_transfer_container(layout_),
+                             {}};
+    for (const kinematics::ChainLink& link : robot_.chain.links())
+      if (link.joint == robot_.chain.dof() - 1)
+        container.touch_links.push_back(link.name);
+    problem.attached.push_back(std::move(container));
+    return problem;
+  }
+
+  collision::CollisionWorld make_world(const Problem& problem) const {
+    return {robot_.chain,
+            robot_.shapes,
+            {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}};
+  }
+
+  /// How far a configuration is from the middle of the limits, each joint by its range.
+  double off_middle(const Eigen::VectorXd& q) const {
+    const auto lower = robot_.chain.lower().array(), upper = robot_.chain.upper().array();
+    return ((q.array() - (lower + upper) / 2) / (upper - lower)).matrix().norm();
+  }
+
+  Eigen::VectorXd find_nominal_start() const {
+    const CarryingScene nominal = nominal_carrying_scene(layout_);
+    collision::CollisionWorld world = make_world(make_problem(nominal));
+    inverse::InverseOptions options;
+    options.max_solutions = 0;  // all
+    const Eigen::Isometry3d T_base_tip =
+        T_task_base_.inverse() * nominal.T_task_pick * robot_.chain.T_tip_transfer().inverse();
+    std::optional<Eigen::VectorXd> best;
+    const inverse::InverseSolutions found = inverse::inverse(robot_.chain, T_base_tip, options);
+    for (const auto& q : found.configurations.colwise())
+      if ((!best || off_middle(q) < off_middle(*best)) && !world.collides(q))
+        best = q;
+    if (!best)
+      throw Failure(ErrorCode::NotFound, "robot '" + robot_.description.label +
+                                             "' has no free start in '" + layout_.name +
+                                             "': is its placement right?");
+    return *std::move(best);
+  }
+
+  std::optional<Eigen::VectorXd> draw_start(const Eigen::Isometry3d& T_task_pick, Noise& noise,
+                                            collision::CollisionWorld& world) const {
+    constexpr int kIterations = 100;
+    const Eigen::Isometry3d T_base_transfer = T_task_base_.inverse() * T_task_pick;
+    for (int i = 0; i < kStartTries; ++i) {
+      inverse::JointVector q = nominal_start_;
+      for (double& angle : q)
+        angle += noise(kJointNoise_rad);
+      const double error =
+          descent_.run(T_base_transfer, inverse::Descent::Limits::Steer, kIterations, q);
+      if (error <= kReached * kReached && robot_.chain.within_limits(q) && !world.collides(q))
+        return q;
+    }
+    return std::nullopt;
+  }
+
+  /// Free configurations where a plan from the start may go: dof x n.
+  Eigen::MatrixXd find_goals(const CarryingScene& instance, const Problem& problem,
+                             collision::CollisionWorld& world) const {
+    const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot_.chain, problem.start);
+    planning::GoalOptions options;
+    options.max_configurations = 2 * layout_.goal_branches;
+    options.min_distance = 0.5;
+    std::vector<Eigen::MatrixXd> ways;
+    for (const Eigen::Isometry3d& T_task_place : instance.T_task_places) {
+      options.seed = problem.seed + ways.size();
+      ways.push_back(planning::goal_configurations(
+                         robot_.chain, T_task_base_.inverse() * T_task_place, bounds,
+                         [&](const Eigen::VectorXd& q) { return !world.collides(q); }, options)
+                         .configurations);
+    }
+    Eigen::MatrixXd goals(robot_.chain.dof(), layout_.goal_branches);
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < options.max_configurations; ++i)
+      for (const Eigen::MatrixXd& way : ways)
+        if (i < way.cols() && count < goals.cols())
+          goals.col(count++) = way.col(i);
+    return goals.leftCols(count);
+  }
+
+  /// \return empty if the robot cannot start or end the instance.
+  std::optional<Problem> try_draw(const InstanceKey& key) const {
+    std::mt19937_64 scene_generator = generator_for(key, Use::Scene);
+    const CarryingScene instance = draw_carrying_scene(layout_, scene_generator);
+    Problem problem = make_problem(instance);
+    problem.name = instance_name(layout_.name, key);
+    problem.seed = planner_seed(key);
+    collision::CollisionWorld world = make_world(problem);
+    std::mt19937_64 start_generator = generator_for(key, Use::Start);
+    Noise start_noise(start_generator);
+    const auto start = draw_start(instance.T_task_pick, start_noise, world);
+    if (!start)
+      return std::nullopt;
+    problem.start = *start;
+    problem.goal_configurations = find_goals(instance, problem, world);
+    if (problem.goal_configurations.cols() < layout_.least_goal_branches)
+      return std::nullopt;
+    return problem;
+  }
+
+  const CarryingLayout layout_;
+  const models::LoadedRobot robot_;
+  const Eigen::Isometry3d T_task_base_;
+  const inverse::Descent descent_;
+  const Eigen::VectorXd nominal_start_;
+};
+
+}  // namespace
+
+DrawInstance make_carrying_instances(const CarryingLayout& layout, const models::LoadedRobot& robot,
+                                     const StudyRobot& placed) {
+  // Shared by the copies of the function; immutable.
+  const auto instances = std::make_shared<const CarryingInstances>(layout, robot, placed);
+  return
+      [instances](std::uint64_t seed, std::uint32_t index) { return instances->draw(seed, index); };
+}
+
+}  // namespace kinship::experiments

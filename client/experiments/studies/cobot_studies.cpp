@@ -1,0 +1,76 @@
+#include "client/experiments/studies/cobot_studies.hpp"
+
+#include <utility>
+
+#include "client/experiments/studies/carrying_instances.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+constexpr double kStep_rad = 0.1;
+constexpr std::uint64_t kMaxChecks = 200'000;
+
+/// A robot at the edge of the table, its base this much above the top.
+Eigen::Isometry3d on_stand(double height_m) {
+  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, height_m));
+}
+
+std::vector<StudyRobot> placed_cobots() {
+  return {{.model = "sara_like", .T_task_base = on_stand(0.05), .paper_checks = 5689},
+          {.model = "iiwa14", .T_task_base = on_stand(0.1), .paper_checks = 8054},
+          {.model = "ur10e", .T_task_base = on_stand(0.3), .paper_checks = 11604},
+          {.model = "panda", .T_task_base = on_stand(0.25), .paper_checks = 10321},
+          {.model = "sawyer", .T_task_base = on_stand(0.2), .paper_checks = 9155}};
+}
+
+Study cobot_study(CarryingLayout layout, std::string purpose) {
+  Study study;
+  study.name = layout.name;
+  study.purpose = std::move(purpose);
+  study.robots = placed_cobots();
+  study.settings.resolution = kStep_rad;
+  study.settings.overshoot = 1;
+  study.settings.max_checks = kMaxChecks;
+  study.settings.max_goals = layout.goal_branches;
+  study.learning_instances = 500;
+  study.test_instances = 100;
+  study.make_instances = [layout = std::move(layout)](const models::LoadedRobot& robot,
+                                                      const StudyRobot& placed) {
+    return make_carrying_instances(layout, robot, placed);
+  };
+  return study;
+}
+
+/// From the table over a post into the free half of a bin.
+CarryingLayout into_the_bin() {
+  return {.name = "cobots",
+          .pick = {0.5, 0.3, 0},
+          .place = {0.5, -0.3, 0},
+          .between_places_m = 0.13,
+          .bin = Bin{.length_m = 0.26, .width_m = 0.14, .height_m = 0.18, .wall_m = 0.024},
+          .objects = {{"post", {0.55, 0, 0}, {0.08, 0.08, 0.7}}},
+          .container = {0.11, 0.08, 0.1},
+          .tilt_rad = 0.15,
+          .goal_branches = 10};
+}
+
+/// The same motion over an empty table: next to nothing is in the way.
+CarryingLayout over_the_table() {
+  CarryingLayout layout = into_the_bin();
+  layout.name = "open_table_cobots";
+  layout.bin.reset();
+  layout.objects.clear();
+  return layout;
+}
+
+}  // namespace
+
+std::vector<Study> cobot_studies() {
+  std::vector<Study> studies;
+  studies.push_back(
+      cobot_study(into_the_bin(), "the paper's second experiment: five cobots carry a container"));
+  studies.push_back(cobot_study(over_the_table(), "five cobots carry over an empty table"));
+  return studies;
+}
+
+}  // namespace kinship::experiments
