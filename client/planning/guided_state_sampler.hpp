@@ -35,8 +35,12 @@ class GuidedStateSampler : public ompl::base::StateSampler {
 };
 
 /// Makes every planner of the space draw from the sampler; the n-th allocated sampler is seeded
-/// with seed + n.
-/// \throws std::invalid_argument if space and sampler differ in size.
+/// with seed + n. Planners keep the samplers that they have: install before they are set up.
+/// \param space  from make_state_space, or a ProjectedStateSpace over one: there the sampler is
+///        set on the ambient space, and what it draws is projected onto the constraint. (Set on
+///        the projected space itself, OMPL 1.5 would silently ignore it.)
+/// \throws std::invalid_argument if space and sampler differ in size, or if the space is another
+///         one: an AtlasStateSpace or TangentBundleStateSpace draws from its charts.
 void install_guided_sampler(ompl::base::StateSpace& space,
                             std::shared_ptr<const ConfigurationSampler> sampler,
                             std::uint64_t seed);
