@@ -139,9 +139,11 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
 
 QueryGuidance GuidanceBook::choose(const Problem& problem) const {
   const auto known = answers_.find(key_of(problem.T_task_base));
-  if (known == answers_.end() || !known->second.guidance)
-    return {};
-  return {&*known->second.guidance, arms_->choose(planning::arm_seed(problem))};
+  if (known == answers_.end())
+    return {.why_not = "nobody was asked for guidance at its placement"};
+  if (!known->second.guidance)
+    return {.why_not = known->second.message};
+  return {.guidance = &*known->second.guidance, .arm = arms_->choose(planning::arm_seed(problem))};
 }
 
 void GuidanceBook::add(const PlannedProblem& planned) {

@@ -30,11 +30,17 @@ int run(const kinship::plan::PlanOptions& options) {
     throw kinship::Failure(kinship::ErrorCode::InvalidInput,
                            "--output '" + options.output.string() + "' is the problem file");
   kinship::files::OutputFile output(options.output, std::cout);
-  const kinship::plan::RunStreams streams = {options.problems == "-" ? std::cin : problem_file,
-                                             output.stream(), std::cerr,
-                                             isatty(STDERR_FILENO) == 1};
-  const int code = kinship::plan::run_plan(options, streams, [] { return interrupted.load(); });
-  if (code == kinship::kDone)
+  const bool is_read_by_people =
+      !options.json && options.output.empty() && isatty(STDOUT_FILENO) == 1;
+  const kinship::plan::RunStreams streams = {
+      .problems = options.problems == "-" ? std::cin : problem_file,
+      .results = output.stream(),
+      .messages = std::cerr,
+      .messages_on_terminal = isatty(STDERR_FILENO) == 1 && !is_read_by_people,
+      .results_for_people = is_read_by_people};
+  const kinship::plan::RunSummary summary =
+      kinship::plan::run_plan(options, streams, [] { return interrupted.load(); });
+  if (summary.is_complete)
     output.keep();
   else if (output.has_part())
     std::cerr << "kinship-plan: the results so far are in '" << output.part().string() << "', '"
@@ -42,7 +48,7 @@ int run(const kinship::plan::PlanOptions& options) {
   else if (!options.output.empty())
     std::cerr << "kinship-plan: no results, '" << options.output.string()
               << "' is left as it was\n";
-  return code;
+  return summary.exit_code;
 }
 
 }  // namespace

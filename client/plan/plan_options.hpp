@@ -16,7 +16,12 @@
 
 namespace kinship::plan {
 
-enum class GuidanceMode { None, Auto, Require };
+enum class GuidanceMode {
+  Uniform,  ///< no distribution is asked for
+  Auto,     ///< guided or control, query by query, by what both ways cost so far
+  Always,   ///< every query that has a distribution is guided, without control
+  Require   ///< as Auto, and a run without a distribution fails
+};
 
 /// The command line of kinship-plan.
 struct PlanOptions {
@@ -34,12 +39,15 @@ struct PlanOptions {
   PlanSettings settings;
   std::uint64_t seed_offset = 0;  ///< added to each problem's seed
   std::filesystem::path output;   ///< empty: standard output
+  bool json = false;              ///< results as JSON Lines also where people read them
   std::uint32_t domain = 0;
+  std::string server = "127.0.0.1";  ///< host of kinshipd
   std::chrono::milliseconds timeout{5000};
   std::chrono::milliseconds wait{30000};
   std::filesystem::path outbox;  ///< empty: the client's default
 };
 
+/// An option that has no effect beside the others is told on `err`, or refused.
 /// \return the options, or the exit code after help (0) or a wrong command line (2, with what is
 ///         wrong on `err`).
 std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,

@@ -55,15 +55,22 @@ Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matri
   return kept.leftCols(count);
 }
 
+std::string joint_names(const kinematics::Chain& chain) {
+  std::string names;
+  for (const kinematics::Joint& joint : chain.joints())
+    names += (names.empty() ? "'" : ", '") + joint.name + "'";
+  return names;
+}
+
 /// What is wrong with the problem for this robot.
 std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Problem& problem) {
   const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
+  const auto of_robot = [&] { return std::to_string(chain.dof()) + ": " + joint_names(chain); };
   if (problem.start.size() != chain.dof())
-    return "start has " + joints(problem.start.size()) + ", the robot " +
-           std::to_string(chain.dof());
+    return "start has " + joints(problem.start.size()) + ", the robot " + of_robot();
   if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
     return "goal configurations have " + joints(problem.goal_configurations.rows()) +
-           ", the robot " + std::to_string(chain.dof());
+           ", the robot " + of_robot();
   if (const auto outside = beyond_limits(chain, problem.start))
     return "start: " + *outside;
   for (Eigen::Index i = 0; i < problem.goal_configurations.cols(); ++i)
@@ -88,6 +95,21 @@ std::string described(const planning::RegionConstraint::Vector6& excess) {
       text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
               std::to_string(excess[i]);
   return text + " outside Bw";
+}
+
+/// Empty for a query that is to be guided.
+std::string why_unguided(const QueryGuidance& query) {
+  if (query.guidance == nullptr)
+    return query.why_not;
+  switch (query.arm) {
+    case Arm::Control:
+      return "planned uniformly as control";
+    case Arm::Uniform:
+      return "planned uniformly by wish";
+    case Arm::Guided:
+      break;
+  }
+  return query.guidance->share == 0 ? "the share of guided samples is 0" : "";
 }
 
 Outcome outcome_of(const planning::PlanSummary& summary) {
@@ -148,15 +170,24 @@ class Planning {
  private:
   /// All of them count: the nearest may lie behind an obstacle.
   Eigen::MatrixXd find_goals(ProblemResult& result) {
-    if (!problem_.T_task_goal)
-      return within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
+    if (!problem_.T_task_goal) {
+      Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
+      if (goals.cols() > 0)
+        first_goal_ = goals.col(0);
+      return goals;
+    }
+    const planning::IsFree is_free = [this](const Eigen::VectorXd& q) {
+      if (!first_goal_)
+        first_goal_ = q;
+      return is_free_(q);
+    };
     planning::GoalOptions options;
     options.max_configurations = settings_.max_goals;
     options.seed = problem_.seed;
     planning::GoalConfigurations goals = planning::goal_configurations(
-        robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free_, options);
+        robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free, options);
     result.goal_checks = goals.collision_checks;
-    result.reason = goals.reason;
+    result.reason = explained(goals.reason);
     return std::move(goals.configurations);
   }
 
@@ -168,8 +199,10 @@ class Planning {
     result.gate_fired =
         planning::query_distance(robot_.chain, guidance->mixture, problem_.start, goals)
             .is_beyond(settings_.gate_distance);
-    if (result.gate_fired)
+    if (result.gate_fired) {
       result.share = 0;
+      result.guidance_reason = "start or goals are far from all that the distribution knows";
+    }
   }
 
   void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
@@ -186,8 +219,9 @@ class Planning {
 
   std::string explained(const std::string& reason) {
     if (reason == "start collides")
-      if (const auto contact = world_.find_contact(problem_.start))
-        return reason + ": '" + contact->first + "' touches '" + contact->second + "'";
+      return reason + contact_text(": ", problem_.start);
+    if (reason == "every goal collides" && first_goal_)
+      return reason + contact_text(", at the first one ", *first_goal_);
     if (reason == "start violates the constraint")
       return reason + ": " + described(constraint_->excess(problem_.start));
     if (reason == "checks")
@@ -195,6 +229,11 @@ class Planning {
     if (reason == "time")
       return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
     return reason;
+  }
+
+  std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
+    const auto contact = world_.find_contact(q);
+    return contact ? before + "'" + contact->first + "' touches '" + contact->second + "'" : "";
   }
 
   const PlannedRobot& robot_;
@@ -205,6 +244,7 @@ class Planning {
   planning::IsFree is_free_;
   Eigen::Matrix2Xd bounds_;
   std::optional<planning::RegionConstraint> constraint_;
+  std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
   std::mt19937_64 generator_;
 };
 
@@ -222,13 +262,18 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     planned.result.arm = query.arm;
     planned.result.share = query.arm == Arm::Guided ? query.guidance->share : 0;
   }
-  if (const auto misfit = find_misfit(robot.chain, problem)) {
+  planned.result.guidance_reason = why_unguided(query);
+  const Result<Planner> planner = planner_for(settings.planner, problem.constraint.has_value());
+  const auto misfit =
+      planner ? find_misfit(robot.chain, problem) : std::optional(planner.error().message);
+  if (misfit) {
     planned.result.reason = *misfit;
     return planned;
   }
   try {
     Planning planning(robot, problem, settings, stop);
     planned.attempted = true;
+    planned.result.planner = name_of(*planner);
     planning.run(query.guidance, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;

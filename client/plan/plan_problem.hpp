@@ -33,6 +33,7 @@ struct Guidance {
 struct QueryGuidance {
   const Guidance* guidance = nullptr;  ///< null: there is none
   Arm arm = Arm::Uniform;              ///< Guided uses it; Control and Uniform plan without
+  std::string why_not = {};            ///< for people: why there is none
 };
 
 struct PlannedProblem {
@@ -43,8 +44,8 @@ struct PlannedProblem {
 };
 
 /// Plans one problem: goal configurations by inverse kinematics (all that are free, up to
-/// settings.max_goals), BiRRT, or CBiRRT2 under a constraint, light shortcutting. A problem that
-/// does not fit the robot, or cannot be solved, is answered with its reason. Equal problem,
+/// settings.max_goals), the planner of the settings, light shortcutting. A problem that does not
+/// fit the robot or the planner, or cannot be solved, is answered with its reason. Equal problem,
 /// guidance and settings give an equal path and equal checks, as long as the time limit does not
 /// end it.
 /// \param query  one that is not guided is planned exactly as if there were no guidance; so is a

@@ -11,6 +11,7 @@
 #include "client/plan/attempt_record.hpp"
 #include "client/plan/problem_lines.hpp"
 #include "client/plan/progress.hpp"
+#include "client/plan/result_text.hpp"
 #include "client/plan/scene_record.hpp"
 #include "client/plan/server_line.hpp"
 #include "proto/json/problem_json.hpp"
@@ -38,9 +39,10 @@ int exit_code_without(NoGuidance why_not) {
   return kFailed;
 }
 
-void write_result(const ProblemResult& result, std::ostream& results) {
-  results << json::to_json(result) << std::endl;  // flushed: a reader may follow
-  if (!results)
+void write_result(const ProblemResult& result, const RunStreams& streams) {
+  streams.results << (streams.results_for_people ? result_text(result) : json::to_json(result))
+                  << std::endl;  // flushed: a reader may follow
+  if (!streams.results)
     throw Failure(ErrorCode::Storage, "cannot write the results");
 }
 
@@ -80,61 +82,89 @@ GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain)
   return wish;
 }
 
-}  // namespace
+/// The problems of a run, one after another.
+class Run {
+ public:
+  Run(const PlanOptions& options, const models::LoadedRobot& robot, ServerLine& server,
+      const RunStreams& streams)
+      : options_(options),
+        robot_{robot.chain, robot.shapes},
+        server_(server),
+        streams_(streams),
+        reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
+                  options.task},
+        scenes_(options, robot_.chain, streams.messages) {}
 
-int run_plan(const PlanOptions& options, const RunStreams& streams,
-             const std::function<bool()>& stop) {
-  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
-  const PlannedRobot planned_robot = {robot.chain, robot.shapes};
-  std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
-  ServerLine server(options, robot.description, streams.messages, stop);
-  const GuidanceWish wish = wish_of(options, robot.chain);
-  const NoGuidance why_not = server.fetch_guidance(wish, lines);
-  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
-    streams.messages << "nothing is planned: --guidance require, and there is none\n";
-    return exit_code_without(why_not);
+  /// \return whether every line has its result; false if `stop` ended it.
+  bool answer(std::vector<ProblemLine>& lines, Progress& progress,
+              const std::function<bool()>& stop) {
+    for (ProblemLine& line : lines) {
+      if (stop())
+        return false;
+      PlannedProblem planned;
+      if (line.problem)
+        planned = plan(*std::move(line.problem), stop);
+      else
+        planned.result = broken_line_result(line.number, line.problem.error());
+      if (planned.interrupted)
+        return false;
+      write_result(planned.result, streams_);  // after: what has a result is in the outbox
+      progress.add(planned.result, planned.attempted);
+    }
+    return true;
   }
 
-  const std::string machine = options.machine.empty() ? host_name() : options.machine;
-  const Reporter reporter{wish.robot, machine, options.task};
-  SceneRecorder scenes(options, robot.chain, streams.messages);
-  Progress progress(streams.messages, streams.messages_on_terminal, lines.size());
-  bool complete = true;
-  for (ProblemLine& line : lines) {
-    if (stop()) {
-      complete = false;
-      break;
-    }
-    if (!line.problem) {
-      const ProblemResult broken = broken_line_result(line.number, line.problem.error());
-      write_result(broken, streams.results);
-      progress.add(broken, false);
-      continue;
-    }
-    Problem problem = *std::move(line.problem);
-    problem.seed += options.seed_offset;
-    const PlannedProblem planned =
-        plan_problem(planned_robot, problem, server.choose(problem), options.settings, stop);
-    if (planned.interrupted) {
-      complete = false;
-      break;
-    }
-    if (planned.attempted)
-      server.add(planned);
-    if (options.report && planned.attempted)
-      server.report([&] {
-        Attempt attempt = make_attempt(reporter, problem, planned, options.settings);
-        scenes.add(problem, attempt);
+ private:
+  PlannedProblem plan(Problem problem, const std::function<bool()>& stop) {
+    problem.seed += options_.seed_offset;
+    PlannedProblem planned =
+        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop);
+    if (planned.interrupted || !planned.attempted)
+      return planned;
+    server_.add(planned);
+    if (options_.report)
+      server_.report([&] {
+        Attempt attempt = make_attempt(reporter_, problem, planned, options_.settings);
+        scenes_.add(problem, attempt);
         return attempt;
       });
-    write_result(planned.result, streams.results);  // after: what has a result is in the outbox
-    progress.add(planned.result, planned.attempted);
+    return planned;
   }
+
+  const PlanOptions& options_;
+  const PlannedRobot robot_;
+  ServerLine& server_;
+  const RunStreams& streams_;
+  const Reporter reporter_;
+  SceneRecorder scenes_;
+};
+
+}  // namespace
+
+RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
+                    const std::function<bool()>& stop) {
+  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
+  ServerLine server(options, robot.description, streams.messages, stop);
+  if (server.is_robot_refused()) {
+    streams.messages << "nothing is planned: the robot cannot be registered\n";
+    return {kFailed, false};
+  }
+  const NoGuidance why_not = server.fetch_guidance(wish_of(options, robot.chain), lines);
+  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
+    streams.messages << "nothing is planned: --guidance require, and there is none\n";
+    return {exit_code_without(why_not), false};
+  }
+
+  Progress progress(streams.messages, streams.messages_on_terminal, lines.size());
+  const bool is_complete = Run(options, robot, server, streams).answer(lines, progress, stop);
   progress.finish();
-  server.finish();
-  if (!complete)
+  const bool is_all_kept = server.finish();
+  if (!is_complete)
     streams.messages << "interrupted: the remaining problems were not planned\n";
-  return complete ? kDone : kFailed;
+  const bool is_done =
+      is_complete && is_all_kept && !progress.nothing_attempted() && !server.is_robot_refused();
+  return {is_done ? kDone : kFailed, is_complete};
 }
 
 }  // namespace kinship::plan

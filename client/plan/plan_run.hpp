@@ -14,14 +14,23 @@ struct RunStreams {
   std::ostream& results;
   std::ostream& messages;  ///< for people
   bool messages_on_terminal = false;
+  bool results_for_people = false;  ///< lines of text instead of JSON
+};
+
+/// How a run ended.
+struct RunSummary {
+  int exit_code = kDone;
+  bool is_complete = false;  ///< every line has its result, whatever the exit code
 };
 
 /// Reads the problems, fetches guidance once per placement, plans each problem and writes its
 /// result in input order, reports the attempts.
 /// \param stop  asked often; true ends the run cleanly: what is planned is written and reported.
-/// \return      an exit code.
+/// \return      fails if the server refuses the robot (nothing is planned if it does so at once),
+/// if
+///              no problem could be attempted, or a report could not be kept.
 /// \throws Failure if the robot cannot be read or the results cannot be written.
-int run_plan(const PlanOptions& options, const RunStreams& streams,
-             const std::function<bool()>& stop);
+RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
+                    const std::function<bool()>& stop);
 
 }  // namespace kinship::plan

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "client/plan/planner_choice.hpp"
 #include "client/planning/guidance_gate.hpp"
 
 namespace kinship::plan {
@@ -15,6 +16,7 @@ struct PlanSettings {
   int max_goals = 20;                   ///< goal configurations found for a goal pose
   /// Guided queries farther from the distribution are planned uniformly (planning::query_distance).
   double gate_distance = planning::kGateDistance;
+  Planner planner = Planner::ByProblem;
 };
 
 }  // namespace kinship::plan

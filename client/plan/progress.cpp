@@ -37,7 +37,7 @@ void Progress::add(const ProblemResult& result, bool attempted) {
 void Progress::finish() {
   if (terminal_)
     stream_ << "\r\033[K";
-  const std::size_t attempted = guided_ + control_ + uniform_;
+  const std::size_t attempted = this->attempted();
   stream_ << "planned " << attempted << " of " << total_ << " problems, " << solved_ << " solved";
   if (attempted > 0) {
     char text[96];

@@ -21,7 +21,12 @@ class Progress {
   /// Ends the line and writes the sums.
   void finish();
 
+  /// Whether there were problems, and none of them could be planned at all.
+  bool nothing_attempted() const noexcept { return done_ > 0 && attempted() == 0; }
+
  private:
+  std::size_t attempted() const noexcept { return guided_ + control_ + uniform_; }
+
   std::ostream& stream_;
   bool terminal_;
   std::size_t total_;

@@ -26,10 +26,13 @@ NoGuidance why_not(const Error& error) {
 ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
                        std::ostream& messages, const std::function<bool()>& stop)
     : options_(options), description_(description), messages_(messages), stop_(stop) {
-  if (options_.guidance == GuidanceMode::None && !options_.report)
+  if (options_.guidance == GuidanceMode::Uniform)
+    why_unguided_ = options_.task.empty() ? "no task is named" : "--guidance uniform";
+  if (options_.guidance == GuidanceMode::Uniform && !options_.report)
     return;
   link::ClientOptions client;
   client.domain = options_.domain;
+  client.server = options_.server;
   client.has_outbox = options_.report;  // who only looks delivers nothing
   client.outbox = options_.outbox;
   client.timeout = options_.timeout;
@@ -60,13 +63,16 @@ void ServerLine::register_robot() {
   const Result<RegisterReply> reply =
       wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
   trouble_.reset();
+  is_robot_refused_ = reply && reply->status == RegisterStatus::Refused;
   if (!reply)
     trouble_ = reply.error();
-  else if (reply->status == RegisterStatus::Refused)
+  else if (is_robot_refused_)
     trouble_ = Error{ErrorCode::InvalidInput, "the server refused it: " + reply->message};
   if (trouble_)
     messages_ << "robot '" << description_.label << "' not registered: " << trouble_->message
               << '\n';
+  else if (!reply->message.empty())
+    messages_ << "robot '" << description_.label << "': " << reply->message << '\n';
 }
 
 /// \return nothing, or why the named robots cannot be the sources.
@@ -82,11 +88,12 @@ std::optional<Error> ServerLine::find_sources(Selection& selection) {
 }
 
 NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines) {
-  if (options_.guidance == GuidanceMode::None)
+  if (options_.guidance == GuidanceMode::Uniform)
     return NoGuidance::None;
   const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wish.selection);
   if (trouble) {
-    messages_ << "no guidance: " << trouble->message << '\n';
+    messages_ << "no guidance, all is planned uniformly: " << trouble->message << '\n';
+    why_unguided_ = trouble->message;
     return why_not(*trouble);
   }
   guidance_ = std::make_unique<GuidanceBook>(
@@ -113,7 +120,7 @@ NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<Probl
 }
 
 QueryGuidance ServerLine::choose(const Problem& problem) const {
-  return guidance_ ? guidance_->choose(problem) : QueryGuidance{};
+  return guidance_ ? guidance_->choose(problem) : QueryGuidance{.why_not = why_unguided_};
 }
 
 void ServerLine::add(const PlannedProblem& planned) {
@@ -133,9 +140,9 @@ void ServerLine::report(const std::function<Attempt()>& make_attempt) {
   }
 }
 
-void ServerLine::finish() {
+bool ServerLine::finish() {
   if (!options_.report)
-    return;
+    return true;
   if (client_ && trouble_)
     register_robot();
   messages_ << "reports: " << reported_ << " attempts";
@@ -148,6 +155,7 @@ void ServerLine::finish() {
   if (unreportable_ > 0)
     messages_ << "; " << unreportable_ << " attempts could not be kept";
   messages_ << std::endl;
+  return unreportable_ == 0;
 }
 
 void ServerLine::flush() {

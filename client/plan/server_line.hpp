@@ -4,6 +4,7 @@
 #include <iosfwd>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "client/link/client.hpp"
@@ -20,7 +21,7 @@ namespace kinship::plan {
 class ServerLine {
  public:
   /// Registers the robot if the options need the server. A line that cannot be had, or a refused
-  /// registration, is said and means no guidance; it never throws.
+  /// registration, is said and means no guidance.
   /// \param messages  for people; borrowed.
   /// \param stop      asked while a server is waited for; true ends the waiting. Borrowed.
   ServerLine(const PlanOptions& options, const RobotDescription& description,
@@ -29,6 +30,10 @@ class ServerLine {
   /// Asks for guidance for every placement of the problems, and says what came of it.
   /// \return why guidance that the options require is missing.
   NoGuidance fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines);
+
+  /// Whether a server refused the robot, for example because its label belongs to another one. That
+  /// may come out only in finish(): the server may come up later than this.
+  bool is_robot_refused() const noexcept { return is_robot_refused_; }
 
   /// How the next problem shall be planned; without guidance uniformly. Never waits.
   QueryGuidance choose(const Problem& problem) const;
@@ -41,7 +46,8 @@ class ServerLine {
 
   /// Waits, at most for the timeout, for receipts of what was reported, and says how many came.
   /// Never throws: the run is answered.
-  void finish();
+  /// \return whether every attempt that was to be reported is kept or acknowledged.
+  bool finish();
 
  private:
   /// What `call` brings, or that it was cancelled, soon after `stop` says so.
@@ -59,6 +65,8 @@ class ServerLine {
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had
   std::unique_ptr<GuidanceBook> guidance_;
   std::optional<Error> trouble_;  // why the robot is not registered
+  bool is_robot_refused_ = false;
+  std::string why_unguided_;  // of every query, while there is no guidance_
   std::size_t reported_ = 0;
   std::size_t unreportable_ = 0;
 };

@@ -86,6 +86,10 @@ ProblemResult read_problem_result(const Reader& reader) {
     if (const auto gate = guidance->find("gate_fired"))
       result.gate_fired = gate->boolean();
   }
+  if (const auto reason = reader.find("guidance_reason"))
+    result.guidance_reason = reason->text(kMaxMessageBytes);
+  if (const auto planner = reader.find("planner"))
+    result.planner = planner->text(kMaxPlannerBytes);
   if (const auto reason = reader.find("reason"))
     result.reason = reason->text(kMaxMessageBytes);
   return result;
@@ -138,6 +142,8 @@ std::string to_json(const ProblemResult& result) {
                           {"share", result.share},
                           {"arm", to_text(result.arm)},
                           {"gate_fired", result.gate_fired}};
+  object["guidance_reason"] = result.guidance_reason;
+  object["planner"] = result.planner;
   object["reason"] = result.reason;
   return write(object);
 }

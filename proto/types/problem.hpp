@@ -47,7 +47,9 @@ struct ProblemResult {
   double share = 0;        ///< of guided samples; 0 unless Guided, and if the gate fired
   /// Guided, but planned uniformly: start or goals are far from all that the distribution knows.
   bool gate_fired = false;
-  std::string reason;  ///< why not solved
+  std::string reason;                ///< why not solved
+  std::string planner = {};          ///< empty if none was started
+  std::string guidance_reason = {};  ///< why not guided; empty if it was
 };
 
 }  // namespace kinship

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -107,6 +108,9 @@ RobotDescription put_together(const RobotArguments& arguments) {
     description.tip_link = arguments.tip_link;
   if (!arguments.label.empty())
     description.label = arguments.label;
+  else if (const auto error = check_label(description.label))
+    throw Failure(error->code, "the robot's name is that of its file, and " + error->message +
+                                   "; give another one with --label");
   parse_packages(arguments.packages).value_or_throw();
   replace_frame_and_axes(arguments, description);
   for (const std::string& held : arguments.held)

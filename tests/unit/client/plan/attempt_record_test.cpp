@@ -14,6 +14,7 @@ PlannedProblem solved() {
   planned.result.collision_checks = 1234;
   planned.result.shortcut_checks = 300;
   planned.result.planning_time_s = 0.5;
+  planned.result.planner = "CBiRRT2";
   planned.result.time_limit_s = 10;
   planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
   return planned;
@@ -28,6 +29,7 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.path->waypoints(), *planned.result.waypoints);
   EXPECT_EQ(attempt.record.outcome, Outcome::Solved);
   EXPECT_EQ(attempt.record.collision_checks, 1234U);  // without those of shortcutting
+  EXPECT_EQ(attempt.record.planner, "CBiRRT2");
   EXPECT_EQ(attempt.record.arm, Arm::Uniform);
   EXPECT_EQ(attempt.task, "box_to_shelf");
   EXPECT_EQ(attempt.machine, "cell 3");

@@ -28,7 +28,7 @@ TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
   const PlanOptions options = parsed({"problems.jsonl", "--model", "panda"}).options();
   EXPECT_EQ(options.problems, "problems.jsonl");
   EXPECT_EQ(options.robot.source, "panda");
-  EXPECT_EQ(options.guidance, GuidanceMode::None);
+  EXPECT_EQ(options.guidance, GuidanceMode::Uniform);
   EXPECT_FALSE(options.report);
   EXPECT_EQ(options.settings.resolution, 0.05);
   EXPECT_EQ(options.settings.shortcut_checks, 300U);
@@ -41,6 +41,56 @@ TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
   EXPECT_FALSE(options.arms.control_share);
   EXPECT_EQ(options.selection, Selection{});
   EXPECT_TRUE(options.sources.empty());
+}
+
+TEST(PlanOptions, TakesEverythingByName) {
+  const Parsed answer = parsed(
+      {"--robot",  "arm.urdf",   "--base",          "b",         "--tip",   "t",          "--task",
+       "a",        "--problems", "p.jsonl",         "--planner", "cbirrt2", "--guidance", "auto",
+       "--report", "yes",        "--json",          "--server",  "cell3",   "--seed",     "7",
+       "--domain", "9",          "--control-share", "0.1"});
+  ASSERT_TRUE(std::holds_alternative<PlanOptions>(answer.answer)) << answer.err;
+  const PlanOptions& options = answer.options();
+  EXPECT_EQ(options.robot.source, "arm.urdf");
+  EXPECT_EQ(options.problems, "p.jsonl");
+  EXPECT_EQ(options.settings.planner, Planner::Cbirrt2);
+  EXPECT_EQ(options.guidance, GuidanceMode::Auto);
+  EXPECT_TRUE(options.report);
+  EXPECT_TRUE(options.json);
+  EXPECT_EQ(options.server, "cell3");
+  EXPECT_EQ(options.seed_offset, 7U);
+  EXPECT_EQ(options.arms.control_share, 0.1);
+  EXPECT_EQ(answer.err, "");
+}
+
+TEST(PlanOptions, AlwaysMeansWithoutControlUnlessSaid) {
+  const PlanOptions always = parsed({"p", "m", "--task", "a", "--guidance", "always"}).options();
+  EXPECT_EQ(always.guidance, GuidanceMode::Always);
+  EXPECT_EQ(always.arms.control_share, 0.0);
+  EXPECT_EQ(parsed({"p", "m", "--task", "a", "--guidance", "always", "--control-share", "0.2"})
+                .options()
+                .arms.control_share,
+            0.2);
+}
+
+TEST(PlanOptions, UniformIsAlsoCalledNone) {
+  for (const char* word : {"uniform", "none"})
+    EXPECT_EQ(parsed({"p", "m", "--guidance", word}).options().guidance, GuidanceMode::Uniform);
+}
+
+TEST(PlanOptions, ReportAloneMeansYes) {
+  EXPECT_TRUE(parsed({"--report", "p", "m", "--task", "a"}).options().report);
+  EXPECT_TRUE(parsed({"p", "m", "--task", "a", "--report"}).options().report);
+  EXPECT_FALSE(parsed({"p", "m", "--task", "a", "--report", "no"}).options().report);
+}
+
+TEST(PlanOptions, WhatHasNoEffectIsSaid) {
+  const Parsed uniform = parsed({"p", "m", "--task", "a", "--guidance", "uniform", "--profile",
+                                 "paper", "--machine", "cell 3", "--timeout", "9"});
+  ASSERT_TRUE(std::holds_alternative<PlanOptions>(uniform.answer));
+  for (const char* option : {"--profile", "--machine", "--timeout", "--task"})
+    EXPECT_NE(uniform.err.find(std::string("note: ") + option), std::string::npos) << uniform.err;
+  EXPECT_EQ(parsed({"p", "m", "--task", "a", "--profile", "paper", "--timeout", "9"}).err, "");
 }
 
 TEST(PlanOptions, ScenesAreRecordedUnlessSaidOtherwise) {
@@ -147,6 +197,24 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--task", "a", "--control-share", "-0.1"},
       {"p", "--model", "m", "--task", "a", "--since", "yesterday"},
       {"p", "--model", "m", "--resolution", "0"},
+      {"p", "--model", "m", "--resolution", "nan"},
+      {"p", "--model", "m", "--overshoot", "nan"},
+      {"p", "--model", "m", "--timeout", "nan"},
+      {"p", "--model", "m", "--seed", "-1"},
+      {"p", "--model", "m", "--max-checks", "-1"},
+      {"p", "--model", "m", "--planner", "rrt*"},
+      {"p", "--model", "m", "--problems", "q"},
+      {"p", "--model", "m", "--robot", "n"},
+      {"p", "--model", "m", "--task", ""},
+      {"p", "--model", "m", "--report", "maybe"},
+      {"p", "--model", "m", "--share", "0.5"},
+      {"p", "--model", "m", "--control-share", "0.5"},
+      {"p", "--model", "m", "--profile", "paper"},
+      {"p", "--model", "m", "--sources", "panda"},
+      {"p", "--model", "m", "--guidance", "always"},
+      {"p", "--model", "m", "--task", "a", "--share", "nan"},
+      {"p", "--model", "m", "--task", "a", "--wait", "nan"},
+      {"p", "--model", "m", "--task", "a", "--guidance", "always", "--share", "0"},
       {"p", "--model", "m", "--domain", "300"},
       {"p", "--model", "m", "--bogus"}};
   for (const auto& arguments : wrong) {

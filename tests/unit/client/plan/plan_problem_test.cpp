@@ -109,6 +109,7 @@ TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   EXPECT_EQ(answer.result.distribution_revision, 5U);
   EXPECT_EQ(answer.result.arm, Arm::Guided);
   EXPECT_EQ(answer.result.share, 0.9);
+  EXPECT_EQ(answer.result.guidance_reason, "");
   EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
 }
 
@@ -120,6 +121,7 @@ TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
     EXPECT_EQ(result.arm, arm);
     EXPECT_EQ(result.share, 0);
     EXPECT_FALSE(result.gate_fired);
+    EXPECT_NE(result.guidance_reason, "");
     EXPECT_EQ(result.distribution_id, guidance.distribution_id);
     EXPECT_EQ(result.collision_checks, uniform.collision_checks);
     EXPECT_EQ(*result.waypoints, *uniform.waypoints);
@@ -132,6 +134,7 @@ TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGu
   EXPECT_TRUE(gated.gate_fired);
   EXPECT_EQ(gated.arm, Arm::Guided);
   EXPECT_EQ(gated.share, 0);
+  EXPECT_NE(gated.guidance_reason, "");
   EXPECT_EQ(gated.distribution_id, far.distribution_id);
   const ProblemResult uniform = planned(wall_problem()).result;
   EXPECT_EQ(gated.collision_checks, uniform.collision_checks);
@@ -174,6 +177,21 @@ TEST(PlanProblem, ACollidingStartNamesWhatTouches) {
   EXPECT_NE(answer.result.reason.find("wall"), std::string::npos) << answer.result.reason;
 }
 
+TEST(PlanProblem, CollidingGoalsNameWhatTouches) {
+  Problem problem = wall_problem();
+  problem.scene.objects.push_back(
+      {"lump", SphereShape{0.25}, Eigen::Isometry3d(Eigen::Translation3d(0.45, -0.95, 0))});
+  EXPECT_NE(planned(problem).result.reason.find("every goal collides, at the first one '"),
+            std::string::npos)
+      << planned(problem).result.reason;
+  problem.T_task_goal =
+      kinematics::T_base_transfer(planar_robot().chain, problem.goal_configurations.col(0));
+  problem.goal_configurations.resize(0, 0);
+  const PlannedProblem posed = planned(problem);
+  EXPECT_NE(posed.result.reason.find("'lump'"), std::string::npos) << posed.result.reason;
+  EXPECT_TRUE(posed.attempted);
+}
+
 TEST(PlanProblem, AGoalOutOfReachIsSaid) {
   Problem problem = wall_problem();
   problem.goal_configurations.resize(0, 0);
@@ -188,7 +206,7 @@ TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
   problem.start = Eigen::VectorXd::Zero(6);
   const PlannedProblem answer = planned(problem);
   EXPECT_FALSE(answer.attempted);
-  EXPECT_EQ(answer.result.reason, "start has 6 joints, the robot 4");
+  EXPECT_EQ(answer.result.reason, "start has 6 joints, the robot 4: 'j1', 'j2', 'j3', 'j4'");
   problem = wall_problem();
   problem.start[2] = 3;
   EXPECT_NE(planned(problem).result.reason.find("j3"), std::string::npos);
@@ -296,6 +314,17 @@ TEST(PlanProblem, UnderAConstraintEveryWaypointKeepsToIt) {
       }
     }
   }
+}
+
+TEST(PlanProblem, APlannerThatCannotKeepToAConstraintIsNotStarted) {
+  PlanSettings settings;
+  settings.planner = Planner::Birrt;
+  const PlannedProblem refused = planned(line_problem(), settings);
+  EXPECT_FALSE(refused.attempted);
+  EXPECT_EQ(refused.result.planner, "");
+  EXPECT_NE(refused.result.reason.find("--planner cbirrt2"), std::string::npos);
+  EXPECT_EQ(planned(wall_problem(), settings).result.planner, "BiRRT");
+  EXPECT_EQ(planned(line_problem()).result.planner, "CBiRRT2");
 }
 
 TEST(PlanProblem, ShortcutsUnderAConstraintKeepTheirBudgetAndShortenThePath) {

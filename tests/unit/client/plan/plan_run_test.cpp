@@ -31,7 +31,7 @@ class PlanRun : public testing::Test {
     options_.robot.label = "planar";
     options_.robot.base_link = description.base_link;
     options_.robot.tip_link = description.tip_link;
-    options_.guidance = GuidanceMode::None;
+    options_.guidance = GuidanceMode::Uniform;
   }
   ~PlanRun() override { std::filesystem::remove_all(folder_); }
 
@@ -44,7 +44,8 @@ class PlanRun : public testing::Test {
   int run(const std::string& problems, const std::function<bool()>& stop = never) {
     std::istringstream input(problems);
     std::ostringstream output;
-    const int code = run_plan(options_, {input, output, messages_, false}, stop);
+    summary_ = run_plan(options_, {input, output, messages_}, stop);
+    const int code = summary_.exit_code;
     std::istringstream lines(output.str());
     for (std::string text; std::getline(lines, text);)
       results_.push_back(json::problem_result_from_json(text).value_or_throw());
@@ -57,6 +58,7 @@ class PlanRun : public testing::Test {
        testing::UnitTest::GetInstance()->current_test_info()->name());
   PlanOptions options_;
   std::ostringstream messages_;
+  RunSummary summary_;
   std::vector<ProblemResult> results_;
 };
 
@@ -75,6 +77,38 @@ TEST_F(PlanRun, UnsolvedIsAnAnswer) {
   EXPECT_EQ(run(line("hard")), kDone);
   ASSERT_EQ(results_.size(), 1U);
   EXPECT_FALSE(results_[0].solved);
+}
+
+TEST_F(PlanRun, FailsIfNoLineCouldBeAttempted) {
+  Problem other_robots = test::wall_problem();
+  other_robots.start = Eigen::VectorXd::Zero(6);
+  other_robots.goal_configurations = Eigen::MatrixXd::Zero(6, 1);
+  const std::string misfit = json::to_json(other_robots) + "\n";
+  EXPECT_EQ(run("{broken\n" + misfit), kFailed);
+  EXPECT_TRUE(summary_.is_complete);
+  ASSERT_EQ(results_.size(), 2U);
+  EXPECT_NE(results_[1].reason.find("the robot 4: 'j1', 'j2', 'j3', 'j4'"), std::string::npos)
+      << results_[1].reason;
+  EXPECT_EQ(run(misfit + line("fits")), kDone);
+}
+
+TEST_F(PlanRun, EachResultSaysItsPlannerAndWhyItWasNotGuided) {
+  run(line("a"));
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_EQ(results_[0].planner, "BiRRT");
+  EXPECT_EQ(results_[0].guidance_reason, "no task is named");
+}
+
+TEST_F(PlanRun, PeopleGetALineOfTextForEachProblem) {
+  std::istringstream input(line("a") + "{broken\n");
+  std::ostringstream output;
+  run_plan(
+      options_,
+      {.problems = input, .results = output, .messages = messages_, .results_for_people = true},
+      never);
+  EXPECT_NE(output.str().find("a: solved, "), std::string::npos) << output.str();
+  EXPECT_NE(output.str().find("; uniform: no task is named\nline 2: "), std::string::npos)
+      << output.str();
 }
 
 TEST_F(PlanRun, TheSeedOffsetGivesAnotherRunOfTheSameProblem) {
@@ -131,6 +165,7 @@ class PlanRunWithoutServer : public PlanRun {
     options_.domain = 187;
     options_.timeout = std::chrono::milliseconds(200);
     options_.outbox = folder_ / "outbox";
+    options_.guidance = GuidanceMode::Uniform;
   }
 };
 
@@ -156,7 +191,8 @@ TEST_F(PlanRunWithoutServer, WantedGuidanceIsDoneWithoutAndReportsWait) {
   ASSERT_EQ(results_.size(), 2U);
   EXPECT_TRUE(results_[1].solved);
   EXPECT_FALSE(results_[1].distribution_id);
-  EXPECT_NE(messages_.str().find("no guidance: "), std::string::npos);
+  EXPECT_NE(messages_.str().find("no guidance, all is planned uniformly: "), std::string::npos);
+  EXPECT_NE(results_[1].guidance_reason, "");
   EXPECT_NE(messages_.str().find("2 pending"), std::string::npos) << messages_.str();
 }
 
@@ -165,10 +201,11 @@ TEST_F(PlanRunWithoutServer, AnOutboxThatCannotBeMadeDoesNotStopPlanning) {
   options_.outbox = folder_ / "file" / "outbox";
   options_.guidance = GuidanceMode::Auto;
   options_.report = true;
-  EXPECT_EQ(run(line("a") + line("b")), kDone);
+  EXPECT_EQ(run(line("a") + line("b")), kFailed);
+  EXPECT_TRUE(summary_.is_complete);
   ASSERT_EQ(results_.size(), 2U);
   EXPECT_TRUE(results_[1].solved);
-  EXPECT_NE(messages_.str().find("no guidance: "), std::string::npos) << messages_.str();
+  EXPECT_NE(messages_.str().find("no guidance, "), std::string::npos) << messages_.str();
   EXPECT_NE(messages_.str().find("2 attempts could not be kept"), std::string::npos)
       << messages_.str();
 }
@@ -183,7 +220,7 @@ TEST_F(PlanRunWithoutServer, AnOutboxThatCannotBeMadeFailsRequiredGuidance) {
 }
 
 TEST_F(PlanRunWithoutServer, ReportIsInTheOutboxBeforeItsResultIsWritten) {
-  options_.guidance = GuidanceMode::None;
+  options_.guidance = GuidanceMode::Uniform;
   options_.report = true;
   std::vector<std::ptrdiff_t> reports;  // in the outbox, at each result
   WatchedText text([&] {
@@ -192,7 +229,7 @@ TEST_F(PlanRunWithoutServer, ReportIsInTheOutboxBeforeItsResultIsWritten) {
   });
   std::istringstream input(line("a") + line("b"));
   std::ostream output(&text);
-  EXPECT_EQ(run_plan(options_, {input, output, messages_, false}, never), kDone);
+  EXPECT_EQ(run_plan(options_, {input, output, messages_}, never).exit_code, kDone);
   EXPECT_EQ(reports, (std::vector<std::ptrdiff_t>{1, 2}));
 }
 

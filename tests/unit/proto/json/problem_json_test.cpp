@@ -152,7 +152,7 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
             R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
             R"("shortcut_checks":0,"projections":0,)"
             R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,)"
-            R"("reason":"time limit"})");
+            R"("guidance_reason":"","planner":"","reason":"time limit"})");
 }
 
 TEST(ProblemJson, GuidedResultIsReadBack) {
@@ -166,6 +166,8 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.gate_fired = true;
   result.goal_checks = 20;
   result.shortcut_checks = 300;
+  result.planner = "CBiRRT2";
+  result.guidance_reason = "far from all that it knows";
   const auto back = problem_result_from_json(to_json(result));
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(*back->waypoints, *result.waypoints);
@@ -176,6 +178,8 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   EXPECT_TRUE(back->gate_fired);
   EXPECT_EQ(back->goal_checks, 20U);
   EXPECT_EQ(back->shortcut_checks, 300U);
+  EXPECT_EQ(back->planner, "CBiRRT2");
+  EXPECT_EQ(back->guidance_reason, "far from all that it knows");
 }
 
 TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
