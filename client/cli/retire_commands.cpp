@@ -11,10 +11,12 @@
 namespace kinship::cli {
 namespace {
 
+constexpr std::string_view kRetirePath = "paths retire", kResetTask = "tasks reset";
 constexpr const char* kNothingToRetire = "nothing to do: retired already\n";
 
 int retire(link::Client& server, AdminVerb verb, const std::string& argument, bool json,
-           std::string_view command, std::ostream& out, std::ostream& err) {
+           std::ostream& out, std::ostream& err) {
+  const std::string_view command = verb == AdminVerb::RetirePath ? kRetirePath : kResetTask;
   int code = kDone;
   const auto rows = show_rows(server, verb, argument, command, err, code);
   if (code != kDone)
@@ -39,28 +41,27 @@ int retire(link::Client& server, AdminVerb verb, const std::string& argument, bo
 
 int retire_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
                 std::ostream& err) {
-  return retire(server, AdminVerb::RetirePath, id, json, "paths retire", out, err);
+  return retire(server, AdminVerb::RetirePath, id, json, out, err);
 }
 
 int reset_task(link::Client& server, const std::string& task, bool confirmed, bool json,
                std::ostream& out, std::ostream& err) {
-  constexpr const char* kCommand = "tasks reset";
   if (confirmed)
-    return retire(server, AdminVerb::ResetTask, task, json, kCommand, out, err);
+    return retire(server, AdminVerb::ResetTask, task, json, out, err);
   int code = kDone;
-  const auto rows = show_rows(server, AdminVerb::ShowTask, task, kCommand, err, code);
+  const auto rows = show_rows(server, AdminVerb::ShowTask, task, kResetTask, err, code);
   if (code != kDone)
     return code;
   const auto summary = json::task_summary_from_json(rows.front());
   if (!summary)
-    return refuse(kCommand, {ErrorCode::Internal, summary.error().message}, err);
+    return refuse(kResetTask, {ErrorCode::Internal, summary.error().message}, err);
   if (summary->paths == 0) {
     out << kNothingToRetire;
     return kDone;
   }
   const auto robots = std::ranges::count_if(
       summary->robots, [](const TaskRobotSummary& robot) { return robot.paths > 0; });
-  err << kCommand << ": this would retire " << count_text(summary->paths, "path") << " of "
+  err << kResetTask << ": this would retire " << count_text(summary->paths, "path") << " of "
       << count_text(static_cast<std::uint64_t>(robots), "robot")
       << ": out of every fit, kept for the record, not to be undone. To do it: kinship tasks reset "
       << task << " --yes\n";

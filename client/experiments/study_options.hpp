@@ -6,7 +6,7 @@
 
 #include "client/experiments/pipeline/study_run.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT: theirs
 class App;
 }
 

@@ -21,6 +21,7 @@ class CountedFilters {
  public:
   /// \param filters  outlive it.
   explicit CountedFilters(const Filters& filters) : filters_(filters) {}
+  explicit CountedFilters(Filters&&) = delete;  // would not outlive it
 
   /// Whether every filter keeps `q`.
   bool keep(const Eigen::Ref<const Eigen::VectorXd>& q);

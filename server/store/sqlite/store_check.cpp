@@ -27,9 +27,32 @@ struct Rule {
   std::string query;
 };
 
+const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
+
+// What an experience says of its attempts of one arm.
+Rule rule_of_sums(const std::string& arm, int code) {
+  // Sums of doubles depend on their order in the last bits.
+  const auto differs = [&](const std::string& sum) {
+    return "abs(" + arm + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
+  };
+  return {"experience",
+          "SELECT " + kPair + "'the sums of its " + arm +
+              " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
+              " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
+              " total(collision_checks) AS found_checks,"
+              " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
+              " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
+              "FROM attempt WHERE arm = " +
+              std::to_string(code) +
+              " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
+              "WHERE " +
+              arm + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
+              differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
+              differs("_checks_of_solved")};
+}
+
 std::vector<Rule> rules_of(std::int64_t schema) {
   const std::string in_use = schema > 1 ? "damaged = 0 AND retired_ms IS NULL" : "damaged = 0";
-  const std::string pair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
@@ -44,12 +67,12 @@ std::vector<Rule> rules_of(std::int64_t schema) {
        "JOIN path ON path.id = attempt.path_id "
        "WHERE (path.task_id, path.robot_id) <> (attempt.task_id, attempt.robot_id)"},
       {"experience",
-       "SELECT " + pair +
+       "SELECT " + kPair +
            "'says ' || paths || ' paths, has ' || found FROM (SELECT *, (SELECT count(*) FROM path "
            "WHERE path.task_id = experience.task_id AND path.robot_id = experience.robot_id AND " +
            in_use + ") AS found FROM experience) WHERE paths <> found"},
       {"experience",
-       "SELECT " + pair +
+       "SELECT " + kPair +
            "'says ' || attempts || ' attempts, has ' || found FROM (SELECT *, (SELECT count(*) "
            "FROM attempt WHERE attempt.task_id = experience.task_id "
            "AND attempt.robot_id = experience.robot_id) AS found FROM experience) "
@@ -68,28 +91,8 @@ std::vector<Rule> rules_of(std::int64_t schema) {
                      "SELECT 'path ' || path.id || ': has another scene than its attempt' "
                      "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
                      "WHERE damaged = 0 AND path.scene_id IS NOT attempt.scene_id"});
-  for (const auto& [arm, code] : {std::pair("guided", "1"), std::pair("control", "2")}) {
-    const std::string name = arm;
-    // Sums of doubles depend on their order in the last bits.
-    const auto differs = [&](const std::string& sum) {
-      return "abs(" + name + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
-    };
-    rules.push_back(
-        {"experience",
-         "SELECT " + pair + "'the sums of its " + name +
-             " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
-             " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
-             " total(collision_checks) AS found_checks,"
-             " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
-             " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
-             "FROM attempt WHERE arm = " +
-             code +
-             " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
-             "WHERE " +
-             name + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
-             differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
-             differs("_checks_of_solved")});
-  }
+  for (const auto& [arm, code] : {std::pair("guided", 1), std::pair("control", 2)})
+    rules.push_back(rule_of_sums(arm, code));
   return rules;
 }
 

@@ -97,7 +97,8 @@ TEST(ShapeTracker, FollowsAcrossPiOfContinuousJoints) {
   const ArmPair pair(source, target);
   const PathPoses poses =
       path_poses(resample(Path(turned), {}), pair, planar_pose(0, 0, 1));  // over +-pi on the way
-  CountedFilters counted{Filters{}};
+  const Filters none;
+  CountedFilters counted(none);
   const TransferParameters parameters;
   ShapeTracker tracker(pair, poses, parameters, kSeed, counted);
   const std::vector<Track> tracks = tracker.find_tracks();
