@@ -22,6 +22,9 @@ struct TransferParameters {
   double least_coverage = 0.9;  ///< of a path's poses that a track must cover to be kept, 0 to 1
   int track_candidates = 10;    ///< configurations among which the start of a track is chosen
   double shape_noise = 0.05;    ///< deviation of that choice, m
+  /// Steps at each pose of a track that pull the target's arm towards the source's shape through
+  /// its self-motion; four times as many where the track starts. 0: none.
+  int shape_steps = 5;
   bool avoid_self_collision =
       true;  ///< leaves out configurations in which the target touches itself
   bool avoid_recorded_scene = true;  ///< or the scene that came with the path

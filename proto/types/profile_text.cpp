@@ -42,6 +42,8 @@ const std::vector<Option>& options() {
        [](Profile& profile, double value) { profile.transfer.track_candidates = whole(value); }},
       {"shape_noise", 0, 10, false,
        [](Profile& profile, double value) { profile.transfer.shape_noise = value; }},
+      {"shape_steps", 0, 100, true,
+       [](Profile& profile, double value) { profile.transfer.shape_steps = whole(value); }},
       {"avoid_self_collision", 0, 1, true,
        [](Profile& profile, double value) { profile.transfer.avoid_self_collision = value != 0; }},
       {"avoid_recorded_scene", 0, 1, true,

@@ -72,7 +72,8 @@ Digest identify(const DistributionKey& key) {
   sha.add(transfer.pose_spacing).add(bits(transfer.max_poses_per_path));
   sha.add(bits(transfer.max_solutions)).add(transfer.min_distance).add(transfer.dropped_end_share);
   sha.add(bits(transfer.tracks)).add(transfer.least_coverage).add(bits(transfer.track_candidates));
-  sha.add(transfer.shape_noise).add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
+  sha.add(transfer.shape_noise).add(bits(transfer.shape_steps));
+  sha.add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
   sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
   const DensityParameters& density = key.profile.density;
   sha.add(bits(density.components)).add(density.covariance_floor);

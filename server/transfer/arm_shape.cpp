@@ -7,9 +7,17 @@
 namespace kinship::transfer {
 namespace {
 
+/// Where a point of a shape is, and the last joint before it.
+struct ShapePoint {
+  Eigen::Vector3d p_base;
+  Eigen::Index joint = 0;
+};
+
+using ShapePoints = std::array<ShapePoint, kShapeShares.size()>;
+
 /// Corners of the line along the arm.
-Eigen::Matrix3Xd corners(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q) {
-  const std::vector<Eigen::Isometry3d> T_base_joints = kinematics::joint_poses(arm, q);
+Eigen::Matrix3Xd corners(const kinematics::Chain& arm,
+                         const std::vector<Eigen::Isometry3d>& T_base_joints) {
   Eigen::Matrix3Xd points(3, arm.dof() + 1);
   for (Eigen::Index j = 0; j < arm.dof(); ++j)
     points.col(j) = T_base_joints[static_cast<std::size_t>(j)].translation();
@@ -18,15 +26,12 @@ Eigen::Matrix3Xd corners(const kinematics::Chain& arm, const Eigen::Ref<const Ei
   return points;
 }
 
-}  // namespace
-
-ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q) {
-  const Eigen::Matrix3Xd points = corners(arm, q);
+ShapePoints shape_points(const Eigen::Matrix3Xd& points) {
   const Eigen::Index last = points.cols() - 1;
   const Eigen::VectorXd lengths =
       (points.rightCols(last) - points.leftCols(last)).colwise().norm().transpose();
   const double total = lengths.sum();
-  ArmShape shape;
+  ShapePoints found;
   Eigen::Index segment = 0;
   double before = 0;  // length up to the segment
   for (std::size_t i = 0; i < kShapeShares.size(); ++i) {
@@ -34,10 +39,51 @@ ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::V
     while (segment + 1 < last && before + lengths[segment] < at)
       before += lengths[segment++];
     const double within = lengths[segment] > 0 ? (at - before) / lengths[segment] : 0;
-    shape.col(static_cast<Eigen::Index>(i)) =
-        points.col(segment) + within * (points.col(segment + 1) - points.col(segment));
+    found[i] = {points.col(segment) + within * (points.col(segment + 1) - points.col(segment)),
+                segment};
   }
+  return found;
+}
+
+ArmShape shape_of(const ShapePoints& points) {
+  ArmShape shape;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    shape.col(static_cast<Eigen::Index>(i)) = points[i].p_base;
   return shape;
+}
+
+}  // namespace
+
+ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  return shape_of(shape_points(corners(arm, kinematics::joint_poses(arm, q))));
+}
+
+ArmShapeMotion arm_shape_motion(const kinematics::Chain& arm,
+                                const Eigen::Ref<const Eigen::VectorXd>& q) {
+  const std::vector<Eigen::Isometry3d> T_base_joints = kinematics::joint_poses(arm, q);
+  const Eigen::Matrix3Xd line = corners(arm, T_base_joints);
+  const ShapePoints points = shape_points(line);
+  ArmShapeMotion motion;
+  motion.shape = shape_of(points);
+  motion.J_points.setZero(ArmShapeMotion::kRows, arm.dof());
+  motion.J_pose.setZero(6, arm.dof());
+  for (Eigen::Index j = 0; j < arm.dof(); ++j) {
+    const Eigen::Isometry3d& T_base_joint = T_base_joints[static_cast<std::size_t>(j)];
+    const kinematics::Joint& joint = arm.joints()[static_cast<std::size_t>(j)];
+    const Eigen::Vector3d axis = T_base_joint.linear() * joint.axis;
+    const bool turns = joint.type != kinematics::JointType::Prismatic;
+    const auto velocity = [&](const Eigen::Vector3d& p_base) -> Eigen::Vector3d {
+      return turns ? axis.cross(p_base - T_base_joint.translation()) : axis;
+    };
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (j <= points[i].joint)
+        motion.J_points.block<3, 1>(3 * static_cast<Eigen::Index>(i), j) =
+            velocity(points[i].p_base);
+    motion.J_pose.col(j).head<3>() = velocity(line.rightCols<1>());
+    if (turns)
+      motion.J_pose.col(j).tail<3>() = axis;
+  }
+  return motion;
 }
 
 ArmShape moved(const Eigen::Isometry3d& T_a_b, const ArmShape& shape_in_b) {

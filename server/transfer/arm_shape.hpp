@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "proto/types/limits.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::transfer {
@@ -18,6 +19,24 @@ using ArmShape = Eigen::Matrix<double, 3, static_cast<int>(kShapeShares.size())>
 /// and different lengths have shapes that can be compared.
 /// \param q  dof, joint units.
 ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// A shape, and how it and the transfer frame move with the joints.
+struct ArmShapeMotion {
+  static constexpr int kRows = ArmShape::RowsAtCompileTime * ArmShape::ColsAtCompileTime;
+  template <int Rows>
+  using Derivative =
+      Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Rows, static_cast<int>(kMaxDof)>;
+
+  ArmShape shape;
+  /// x, y, z of one point after the other, m per joint unit, each point fixed to the link it lies
+  /// on. (With prismatic joints the shares of the length wander on; that part is left out.)
+  Derivative<kRows> J_points;
+  Derivative<6> J_pose;  ///< of the transfer frame: linear velocity, then angular, in the base link
+};
+
+/// \param q  dof, joint units.
+ArmShapeMotion arm_shape_motion(const kinematics::Chain& arm,
+                                const Eigen::Ref<const Eigen::VectorXd>& q);
 
 /// The same shape seen from another frame.
 ArmShape moved(const Eigen::Isometry3d& T_a_b, const ArmShape& shape_in_b);

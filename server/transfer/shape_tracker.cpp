@@ -8,12 +8,14 @@
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/inverse/joint_space.hpp"
+#include "server/transfer/shape_pull.hpp"
 
 namespace kinship::transfer {
 namespace {
 
 constexpr double kCandidateDistance = 0.3;  // joint units
 constexpr int kIterations = 15;             // of one step along the path
+constexpr int kStartShapeSteps = 4;         // times as many at the start as at each further pose
 
 inverse::CounterGenerator generator_of(const PathPoses& poses, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -58,7 +60,7 @@ std::optional<Track> ShapeTracker::try_track() {
   if (chosen < 0)
     return std::nullopt;
   Eigen::MatrixXd along(pair_.target().dof(), poses_.size());
-  along.col(start) = candidates(start).col(chosen);
+  along.col(start) = pulled_start(start, candidates(start).col(chosen));
   Eigen::Index last = start;
   for (inverse::JointVector q = along.col(start);
        last + 1 < poses_.size() && follow(last, last + 1, q, along.col(last + 1));)
@@ -103,9 +105,22 @@ Eigen::Index ShapeTracker::choose_start(Eigen::Index pose) {
   return best;
 }
 
+Eigen::VectorXd ShapeTracker::pulled_start(Eigen::Index pose, const Eigen::VectorXd& candidate) {
+  const auto at = static_cast<std::size_t>(pose);
+  inverse::JointVector q = candidate;
+  pull_to_shape(pair_, poses_.T_base_transfer[at], poses_.source_shapes[at],
+                kStartShapeSteps * parameters_.shape_steps, q);
+  Eigen::VectorXd pulled = q;
+  const bool is_fit = inverse::normalize(pair_.target(), pulled) &&
+                      inverse::reaches(pair_.target(), poses_.T_base_transfer[at], pulled) &&
+                      filters_.keep(pulled);
+  return is_fit ? pulled : candidate;
+}
+
 bool ShapeTracker::follow(Eigen::Index from, Eigen::Index to, inverse::JointVector& q,
                           Eigen::Ref<Eigen::VectorXd> found) {
-  const Eigen::Isometry3d& T_base_transfer = poses_.T_base_transfer[static_cast<std::size_t>(to)];
+  const auto at = static_cast<std::size_t>(to);
+  const Eigen::Isometry3d& T_base_transfer = poses_.T_base_transfer[at];
   inverse::JointVector next = q;
   const double squared = pair_.target_descent().run(T_base_transfer, inverse::Descent::Limits::Hold,
                                                     kIterations, next);
@@ -113,6 +128,10 @@ bool ShapeTracker::follow(Eigen::Index from, Eigen::Index to, inverse::JointVect
   if (!(squared <= inverse::kPoseTolerance * inverse::kPoseTolerance) ||
       !((next - q).norm() <= most))
     return false;
+  inverse::JointVector pulled = next;
+  pull_to_shape(pair_, T_base_transfer, poses_.source_shapes[at], parameters_.shape_steps, pulled);
+  if ((pulled - q).norm() <= most)
+    next = pulled;
   found = next;
   if (!inverse::normalize(pair_.target(), found) ||
       !inverse::reaches(pair_.target(), T_base_transfer, found) || !filters_.keep(found))

@@ -20,7 +20,8 @@ struct Track {
 
 /// Follows a path of the source robot with the target robot: a random pose of the path, there the
 /// configuration that looks most like the source's, and from it pose by pose to both ends, each
-/// from the one before. A redundant arm so takes the path in one posture instead of one per pose.
+/// from the one before, everywhere pulled through the self-motion towards the source's shape. A
+/// redundant arm so takes the path in one posture, the source's, instead of one per pose.
 ///
 /// A step ends the track if the pose is not reached within the limits, if the target would move
 /// more than kMostMotion times as far as the source and kSpareMotion (joint units), or if a filter
@@ -46,6 +47,8 @@ class ShapeTracker {
   const Eigen::MatrixXd& candidates(Eigen::Index pose);
   /// \return a column of the candidates of a pose; -1: there are none.
   Eigen::Index choose_start(Eigen::Index pose);
+  /// The candidate, pulled towards the source's shape if filters allow where it gets to.
+  Eigen::VectorXd pulled_start(Eigen::Index pose, const Eigen::VectorXd& candidate);
   /// Moves `q` from one pose to its neighbour. \return whether it got there.
   bool follow(Eigen::Index from, Eigen::Index to, inverse::JointVector& q,
               Eigen::Ref<Eigen::VectorXd> found);

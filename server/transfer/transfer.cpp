@@ -28,6 +28,7 @@ void check(const TransferParameters& parameters) {
           "1 or more");
   require(coverage >= 0 && coverage <= 1, "least_coverage", coverage, "within 0 and 1");
   require(parameters.shape_noise >= 0, "shape_noise", parameters.shape_noise, "0 or more");
+  require(parameters.shape_steps >= 0, "shape_steps", parameters.shape_steps, "0 or more");
 }
 
 /// Configurations of the target for each pose of one path, as they are found.

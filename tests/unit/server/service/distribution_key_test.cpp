@@ -35,6 +35,7 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.transfer.least_coverage = 0.5; },
       [](DistributionKey& k) { k.profile.transfer.track_candidates = 4; },
       [](DistributionKey& k) { k.profile.transfer.shape_noise = 0; },
+      [](DistributionKey& k) { k.profile.transfer.shape_steps = 0; },
       [](DistributionKey& k) { k.profile.transfer.avoid_self_collision = false; },
       [](DistributionKey& k) { k.profile.transfer.avoid_recorded_scene = false; },
       [](DistributionKey& k) { k.profile.thin_share = 0.6; },

@@ -135,7 +135,9 @@ TEST(ShapeTracker, TakesAPostureLikeTheSources) {
     return sum / count;
   };
   // With noise of 10 m the choice is as good as random.
-  EXPECT_LT(mean_distance({.tracks = 10}), 0.7 * mean_distance({.tracks = 10, .shape_noise = 10}));
+  const double chosen = mean_distance({.tracks = 10, .shape_steps = 0});
+  EXPECT_LT(chosen, 0.7 * mean_distance({.tracks = 10, .shape_noise = 10, .shape_steps = 0}));
+  EXPECT_LT(mean_distance({.tracks = 10}), 0.5 * chosen);  // and pulled
 }
 
 TEST(ShapeTracker, EndsWhereAFilterSaysNo) {
@@ -240,6 +242,7 @@ TEST(TransferWithTracks, ParametersOutsideTheirRangeAreRefused) {
   EXPECT_THROW(run({.least_coverage = 1.1}), std::invalid_argument);
   EXPECT_THROW(run({.track_candidates = 0}), std::invalid_argument);
   EXPECT_THROW(run({.shape_noise = -0.1}), std::invalid_argument);
+  EXPECT_THROW(run({.shape_steps = -1}), std::invalid_argument);
 }
 
 }  // namespace

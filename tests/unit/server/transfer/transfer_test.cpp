@@ -143,8 +143,8 @@ TEST(Transfer, EqualInputAndSeedGiveEqualBytes) {
   EXPECT_NE(run(1).configurations, run(2).configurations);
 }
 
-TEST(Transfer, GivesAtMostLSolutionsAtLeastDApart) {
-  const TransferParameters parameters{.max_solutions = 3, .min_distance = 1.5};
+TEST(Transfer, GivesAtMostLRandomSolutionsAtLeastDApart) {
+  const TransferParameters parameters{.max_solutions = 3, .min_distance = 1.5, .tracks = 0};
   const auto transferred = transfer_path(source_path(), {source_arm(), target_arm()},
                                          planar_pose(0, 0, 0), parameters, kSeed);
   EXPECT_LT(transferred.solution_index.maxCoeff(), 3);

@@ -1,0 +1,121 @@
+#include "server/transfer/shape_pull.hpp"
+
+#include <gtest/gtest.h>
+
+#include "proto/types/profile.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/planar_arm.hpp"
+#include "tests/support/robots.hpp"
+
+namespace kinship::transfer {
+namespace {
+
+using test::PlanarArm;
+
+const PlanarArm kRedundant{.lengths_m = {0.18, 0.17, 0.16, 0.15, 0.13, 0.11, 0.1}, .limit = 2.8};
+
+/// Two postures of an arm at the same pose: `q` is where a pull starts, `wanted` what it goes to.
+struct Pull {
+  kinematics::Chain arm = kRedundant.chain();
+  ArmPair pair{arm, arm};
+  inverse::JointVector q = inverse::JointVector::Constant(7, 0.1);
+  Eigen::Isometry3d T_base_transfer;
+  ArmShape wanted;
+
+  Pull() {
+    Eigen::VectorXd posture(7);
+    posture << 0.9, -0.6, -0.7, 0.4, 0.5, -0.3, 0.2;
+    T_base_transfer = kinematics::T_base_transfer(arm, posture);
+    wanted = arm_shape(arm, posture);
+    pair.target_descent().run(T_base_transfer, inverse::Descent::Limits::Hold, 50, q);
+  }
+
+  double distance() const { return shape_distance(arm_shape(arm, q), wanted); }
+};
+
+TEST(PullToShape, BringsTheArmToTheShapeAndLeavesThePose) {
+  Pull pull;
+  ASSERT_TRUE(inverse::reaches(pull.arm, pull.T_base_transfer, pull.q));
+  const double before = pull.distance();
+  ASSERT_GT(before, 0.1);
+  const double after = pull_to_shape(pull.pair, pull.T_base_transfer, pull.wanted, 30, pull.q);
+  EXPECT_DOUBLE_EQ(after, pull.distance());
+  EXPECT_LT(after, 0.1 * before);
+  EXPECT_TRUE(inverse::reaches(pull.arm, pull.T_base_transfer, pull.q));
+  EXPECT_TRUE(pull.arm.within_limits(pull.q));
+}
+
+TEST(PullToShape, EveryFurtherStepComesNearer) {
+  double before = Pull().distance();
+  for (const int steps : {1, 2, 3, 4}) {
+    Pull pull;
+    const double after = pull_to_shape(pull.pair, pull.T_base_transfer, pull.wanted, steps, pull.q);
+    EXPECT_LT(after, before) << steps;
+    before = after;
+  }
+}
+
+TEST(PullToShape, WithoutStepsNothingMoves) {
+  Pull pull;
+  const inverse::JointVector start = pull.q;
+  EXPECT_DOUBLE_EQ(pull_to_shape(pull.pair, pull.T_base_transfer, pull.wanted, 0, pull.q),
+                   pull.distance());
+  EXPECT_EQ(pull.q, start);
+}
+
+TEST(PullToShape, StaysWithinNarrowLimits) {
+  PlanarArm narrow = kRedundant;
+  narrow.limit = 0.8;  // the posture that is wanted bends by 0.9
+  Pull pull;
+  const kinematics::Chain arm = narrow.chain();
+  const ArmPair pair(arm, arm);
+  ASSERT_TRUE(arm.within_limits(pull.q));
+  const double before = pull.distance();
+  EXPECT_LT(pull_to_shape(pair, pull.T_base_transfer, pull.wanted, 30, pull.q), before);
+  EXPECT_TRUE(arm.within_limits(pull.q));
+  EXPECT_TRUE(inverse::reaches(arm, pull.T_base_transfer, pull.q));
+}
+
+TEST(PullToShape, AnArmWithoutSelfMotionStaysWhereItIs) {
+  const kinematics::Chain arm = test::model_chain("ur10e");
+  const ArmPair pair(arm, arm);
+  inverse::JointVector q(6);
+  q << 0.3, -1.2, 1.4, -0.5, 1.1, 0.2;
+  const inverse::JointVector start = q;
+  const Eigen::Isometry3d T_base_transfer = kinematics::T_base_transfer(arm, q);
+  ArmShape wanted = arm_shape(arm, q);
+  wanted.row(2).array() += 0.1;
+  pull_to_shape(pair, T_base_transfer, wanted, 5, q);
+  EXPECT_LT((q - start).norm(), 1e-3);
+}
+
+/// Central differences of shape and pose against the derivative.
+void expect_derivative(const kinematics::Chain& arm, const Eigen::VectorXd& q) {
+  constexpr double kStep = 1e-6;
+  const ArmShapeMotion motion = arm_shape_motion(arm, q);
+  EXPECT_EQ(motion.shape, arm_shape(arm, q));
+  for (Eigen::Index j = 0; j < arm.dof(); ++j) {
+    Eigen::VectorXd above = q, below = q;
+    above[j] += kStep;
+    below[j] -= kStep;
+    const Eigen::VectorXd points =
+        ((arm_shape(arm, above) - arm_shape(arm, below)) / (2 * kStep)).reshaped();
+    EXPECT_LT((motion.J_points.col(j) - points).norm(), 1e-8) << "joint " << j;
+    const inverse::TaskError pose =
+        inverse::task_error(kinematics::T_base_transfer(arm, above),
+                            kinematics::T_base_transfer(arm, below), TaskAxes{}) /
+        (2 * kStep);
+    EXPECT_LT((motion.J_pose.col(j) - pose).norm(), 1e-8) << "joint " << j;
+  }
+}
+
+TEST(ArmShapeMotion, IsTheDerivative) {
+  Eigen::VectorXd planar(7), panda(7);
+  planar << 0.9, -0.6, -0.7, 0.4, 0.5, -0.3, 0.2;
+  panda << 0.4, -0.5, 0.3, -1.8, 0.2, 1.5, 0.7;
+  expect_derivative(kRedundant.chain(), planar);
+  expect_derivative(test::model_chain("panda"), panda);
+}
+
+}  // namespace
+}  // namespace kinship::transfer
