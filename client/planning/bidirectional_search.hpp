@@ -7,6 +7,7 @@
 
 #include "client/planning/birrt.hpp"
 #include "client/planning/planning_budget.hpp"
+#include "client/planning/region_constraint.hpp"
 #include "client/planning/tree.hpp"
 
 /// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
@@ -26,6 +27,11 @@ enum class Aim { Sample, Node };
 void check_arguments(const char* planner, const Eigen::VectorXd& start,
                      const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
                      const BirrtOptions& options);
+
+/// The goals that hold a constraint.
+/// \return empty, with a reason as plan_cbirrt2 says, if the start or all goals do not.
+std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                       const RegionConstraint& constraint, std::string& reason);
 
 /// Two trees, from the start and from every goal, extended in turn.
 /// \tparam Steering  goes from a node to a target as far as it can:

@@ -34,16 +34,25 @@ class ConstrainedSteering {
   Eigen::VectorXd q_, next_;  // kept, so that a step allocates nothing
 };
 
-Eigen::MatrixXd holding(const Eigen::MatrixXd& configurations, const RegionConstraint& constraint) {
-  Eigen::MatrixXd kept(configurations.rows(), configurations.cols());
+}  // namespace
+
+std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                       const RegionConstraint& constraint, std::string& reason) {
+  if (!constraint.holds(start)) {
+    reason = "start violates the constraint";
+    return std::nullopt;
+  }
+  Eigen::MatrixXd kept(goals.rows(), goals.cols());
   Eigen::Index count = 0;
-  for (const auto& q : configurations.colwise())
-    if (constraint.holds(q))
-      kept.col(count++) = q;
+  for (const auto& goal : goals.colwise())
+    if (constraint.holds(goal))
+      kept.col(count++) = goal;
+  if (count == 0 && goals.cols() > 0) {
+    reason = "every goal violates the constraint";
+    return std::nullopt;
+  }
   return kept.leftCols(count);
 }
-
-}  // namespace
 
 PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                          const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
@@ -51,20 +60,14 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
   check_arguments("plan_cbirrt2", start, goals, sampler, options);
   RegionConstraint& constraint = freedom.constraint;
   PlanSummary nothing;
-  if (!constraint.holds(start)) {
-    nothing.reason = "start violates the constraint";
+  const auto reachable = holding(start, goals, constraint, nothing.reason);
+  if (!reachable)
     return nothing;
-  }
-  const Eigen::MatrixXd reachable = holding(goals, constraint);
-  if (reachable.cols() == 0 && goals.cols() > 0) {
-    nothing.reason = "every goal violates the constraint";
-    return nothing;
-  }
   const std::uint64_t before = constraint.projections();
   PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
   ConstrainedSteering steering(start.size(), options.step, constraint);
   PlanSummary summary =
-      BidirectionalSearch(sampler, options, steering, budget, generator).run(start, reachable);
+      BidirectionalSearch(sampler, options, steering, budget, generator).run(start, *reachable);
   summary.projections = constraint.projections() - before;
   return summary;
 }

@@ -1,6 +1,7 @@
 #include "client/planning/constrained_stepper.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace kinship::planning {
 namespace {
@@ -42,6 +43,23 @@ bool ConstrainedStepper::advance(const Eigen::VectorXd& q, const Eigen::VectorXd
       return true;
   }
   return false;
+}
+
+std::optional<Eigen::MatrixXd> ConstrainedStepper::way(const Eigen::VectorXd& from,
+                                                       const Eigen::VectorXd& to) {
+  std::vector<Eigen::VectorXd> passed = {from};
+  Eigen::VectorXd next(from.size());
+  while (passed.back() != to) {
+    if (joins(passed.back(), to))
+      next = to;
+    else if (!advance(passed.back(), to, next))
+      return std::nullopt;
+    passed.push_back(next);
+  }
+  Eigen::MatrixXd way(from.size(), static_cast<Eigen::Index>(passed.size()));
+  for (std::size_t i = 0; i < passed.size(); ++i)
+    way.col(static_cast<Eigen::Index>(i)) = passed[i];
+  return way;
 }
 
 }  // namespace kinship::planning

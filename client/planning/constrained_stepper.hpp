@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "client/planning/region_constraint.hpp"
 
@@ -20,6 +21,11 @@ class ConstrainedStepper {
   /// \param q  holds the constraint.
   /// \return   false if there is no progress to make.
   bool advance(const Eigen::VectorXd& q, const Eigen::VectorXd& target, Eigen::VectorXd& next);
+
+  /// All configurations from `from` to `to`, both of which hold the constraint, in such steps.
+  /// Not checked for collisions.
+  /// \return dof x n, n >= 1; empty if it gets stuck on the way.
+  std::optional<Eigen::MatrixXd> way(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
 
   /// Whether two configurations that hold the constraint are one step apart.
   bool joins(const Eigen::VectorXd& q, const Eigen::VectorXd& other);
