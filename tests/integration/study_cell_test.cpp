@@ -113,6 +113,7 @@ class StudyCell : public testing::Test {
 TEST_F(StudyCell, CanBeRepeatedByHand) {
   run("kinship-experiments", study_arguments({}));
   EXPECT_NE(test::read_text(folder_ + "/report.html").find("Geometric means"), std::string::npos);
+  EXPECT_TRUE(test::read_text(folder_ + "/checks.svg").starts_with("<svg xmlns="));
   ASSERT_EQ(experiments::read_query_results(folder_ + "/test.jsonl").size(), 3U * 4 * 6);
   const RepeatedCell cell{"open_table", kTarget, kSource, "0.05"};
   EXPECT_EQ(

@@ -170,6 +170,9 @@ void report_study(const Study& study, const RunOptions& options, std::ostream& m
   files::OutputFile page(files.report, messages);
   write_study_report(study, load_fleet(study, options.models), data, page.stream());
   page.keep();
+  files::OutputFile figure(files.checks_figure, messages);
+  write_checks_figure(study, data, figure.stream());
+  figure.keep();
   messages << study.name << ": " << files.report.string() << std::endl;
 }
 

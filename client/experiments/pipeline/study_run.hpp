@@ -41,7 +41,8 @@ void run_study(const Study& study, const RunOptions& options, std::ostream& mess
 void run_side_study(const Study& study, const std::string& name, const RunOptions& options,
                     std::ostream& messages);
 
-/// Writes `<folder>/<study>/report.html` of the results that the folder holds, without planning.
+/// Writes `<folder>/<study>/report.html` and `checks.svg` of the results that the folder holds,
+/// without planning.
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages);
 
 /// Writes the test instances of one robot as problems for kinship-plan, one a line.

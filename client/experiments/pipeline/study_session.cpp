@@ -36,7 +36,8 @@ StudyFiles::StudyFiles(const Study& study, const RunOptions& options)
       tuning(folder / "tuning.jsonl"),
       distributions(folder / "distributions.jsonl"),
       runs(folder / "runs.jsonl"),
-      report(folder / "report.html") {}
+      report(folder / "report.html"),
+      checks_figure(folder / "checks.svg") {}
 
 StudySession::StudySession(const Study& study, const RunOptions& options, std::ostream& messages)
     : study_(study),

@@ -26,7 +26,7 @@ struct StudyFiles {
   std::filesystem::path tuning;         ///< results of tuning queries
   std::filesystem::path distributions;  ///< as they were fetched, one a line
   std::filesystem::path runs;           ///< of the test set
-  std::filesystem::path report;
+  std::filesystem::path report, checks_figure;
 
   /// Results of a side study.
   std::filesystem::path side(const std::string& name) const { return folder / (name + ".jsonl"); }

@@ -114,8 +114,11 @@ std::string bar_figure(const std::vector<BarGroup>& groups, const std::string& u
   width = std::max(width, kLeft + kLegendEntry * static_cast<double>(groups[0].bars.size()));
   const double height = kTop + kPlotHeight + kBottom;
   const Plot plot(highest_of(groups));
-  std::string svg = formatted("<svg viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" font-size=\"12\">\n",
-                              width, height, width) +
+  std::string svg = formatted(
+                        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
+                        "width=\"%.0f\" font-size=\"12\" font-family=\"sans-serif\">\n"
+                        "<rect width=\"100%%\" height=\"100%%\" fill=\"#ffffff\"/>\n",
+                        width, height, width) +
                     plot.axis(width, unit);
   double x = kLeft;
   for (const BarGroup& group : groups) {

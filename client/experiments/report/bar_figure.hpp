@@ -17,7 +17,7 @@ struct BarGroup {
   std::vector<Bar> bars;
 };
 
-/// A bar figure as SVG, with a legend of the series in the order of the first group.
+/// A bar figure as an SVG document, with a legend of the series in the order of the first group.
 /// \param unit  of the values, at the axis.
 std::string bar_figure(const std::vector<BarGroup>& groups, const std::string& unit);
 

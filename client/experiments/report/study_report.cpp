@@ -19,7 +19,7 @@ namespace {
 
 template <typename... Values>
 std::string formatted(const char* format, Values... values) {
-  char text[256];
+  char text[1024];
   std::snprintf(text, sizeof text, format, values...);
   return text;
 }
@@ -98,8 +98,7 @@ std::string side_html(const Study& study, const StudyResults& results, const Sid
 
 using Values = const std::vector<std::vector<double>>& (*)(const CellResults&);
 
-std::string bars_html(const StudyResults& results, const char* caption, const char* unit,
-                      Values values_of) {
+std::string bars_svg(const StudyResults& results, const char* unit, Values values_of) {
   std::vector<BarGroup> groups;
   for (const std::string& robot : results.robots()) {
     BarGroup group{robot, {}};
@@ -112,8 +111,16 @@ std::string bars_html(const StudyResults& results, const char* caption, const ch
       }
     groups.push_back(std::move(group));
   }
-  return "<figure>" + bar_figure(groups, unit) + "<figcaption>" + html::escaped(caption) +
-         "</figcaption></figure>\n";
+  return bar_figure(groups, unit);
+}
+
+std::string check_bars_svg(const StudyResults& results) {
+  return bars_svg(
+      results, "checks", [](const CellResults& cell) -> const auto& { return cell.checks; });
+}
+
+std::string figure_html(const std::string& svg, const char* caption) {
+  return "<figure>" + svg + "<figcaption>" + html::escaped(caption) + "</figcaption></figure>\n";
 }
 
 bool is_flat(const Scene& scene) {
@@ -161,12 +168,12 @@ void write_study_report(const Study& study, const std::vector<StudyMember>& flee
       html::heading(2, "Checks, time and paths");
   for (const html::Table& table : cell_tables(results, paper_table(study.name)))
     body += html::to_html(table);
-  body += bars_html(
-      results, "Mean collision checks with 95 % intervals over instances.", "checks",
-      [](const CellResults& cell) -> const auto& { return cell.checks; });
-  body += bars_html(
-      results, "Mean planning time with 95 % intervals over instances.", "s",
-      [](const CellResults& cell) -> const auto& { return cell.cpu_s; });
+  body += figure_html(check_bars_svg(results),
+                      "Mean collision checks with 95 % intervals over instances.");
+  body += figure_html(
+      bars_svg(
+          results, "s", [](const CellResults& cell) -> const auto& { return cell.cpu_s; }),
+      "Mean planning time with 95 % intervals over instances.");
   if (!data.sides.empty())
     body += html::heading(2, "Beyond the main tables");
   for (const SideResults& side : data.sides)
@@ -181,6 +188,12 @@ void write_study_report(const Study& study, const std::vector<StudyMember>& flee
   out << html::page("Kinship: study " + study.name, body);
   if (!out)
     throw Failure(ErrorCode::Storage, "the report cannot be written");
+}
+
+void write_checks_figure(const Study& study, const ReportData& data, std::ostream& out) {
+  out << check_bars_svg(StudyResults(study, data.test));
+  if (!out)
+    throw Failure(ErrorCode::Storage, "the figure of the checks cannot be written");
 }
 
 }  // namespace kinship::experiments

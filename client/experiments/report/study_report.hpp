@@ -32,4 +32,7 @@ struct ReportData {
 void write_study_report(const Study& study, const std::vector<StudyMember>& fleet,
                         const ReportData& data, std::ostream& out);
 
+/// The bars of the collision checks alone, an SVG document.
+void write_checks_figure(const Study& study, const ReportData& data, std::ostream& out);
+
 }  // namespace kinship::experiments
