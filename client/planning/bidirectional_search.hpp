@@ -4,6 +4,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "client/planning/birrt.hpp"
 #include "client/planning/planning_budget.hpp"
@@ -50,22 +51,57 @@ class BidirectionalSearch {
 
   /// Plants both trees and extends them until they meet or the budget is used up.
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    Eigen::MatrixXd free_goals;
+    if (auto answer = answer_at_once(start, goals, free_goals))
+      return *std::move(answer);
+    return search();
+  }
+
+  /// Plants both trees. \return the summary if there is nothing to search for.
+  std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
+                                            const Eigen::MatrixXd& goals,
+                                            Eigen::MatrixXd& free_goals) {
+    const std::string reason = plant(start, goals);
+    if (!reason.empty())
+      return summary(std::nullopt, reason);
+    free_goals.resize(goals.rows(), goal_tree_.size());
+    for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
+      free_goals.col(i) = goal_tree_.node(i);
+    if (auto path = standstill())
+      return summary(std::move(path), "");
+    return std::nullopt;
+  }
+
+  /// The same from trees that have been begun: the start or the free goals and what can be reached
+  /// from them; all of it was checked.
+  PlanSummary run_from(Tree start_tree, Tree goal_tree) {
+    start_tree_ = std::move(start_tree);
+    goal_tree_ = std::move(goal_tree);
+    return search();
+  }
+
+  /// What was planned and spent so far.
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, std::string reason) {
     PlanSummary summary;
-    summary.reason = plant(start, goals);
-    if (summary.reason.empty())
-      summary.waypoints = standstill();
-    while (summary.reason.empty() && !summary.waypoints && !budget_.exhausted()) {
-      ++summary.iterations;
-      summary.waypoints = iterate();
-    }
-    if (!summary.waypoints && summary.reason.empty())
-      summary.reason = budget_.reason();
+    summary.waypoints = std::move(path);
+    summary.reason = std::move(reason);
+    summary.iterations = iterations_;
     summary.collision_checks = budget_.checks();
     summary.planning_time_s = budget_.thread_time_s();
     return summary;
   }
 
  private:
+  PlanSummary search() {
+    std::optional<Eigen::MatrixXd> path;
+    while (!path && !budget_.exhausted()) {
+      ++iterations_;
+      path = iterate();
+    }
+    const std::string reason = path ? "" : budget_.reason();
+    return summary(std::move(path), reason);
+  }
+
   /// \return why there is nothing to plan, or an empty text.
   std::string plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
@@ -132,6 +168,7 @@ class BidirectionalSearch {
   Tree start_tree_{sampler_.bounds().cols()};
   Tree goal_tree_{sampler_.bounds().cols()};
   bool grow_start_ = true;
+  std::uint64_t iterations_ = 0;
 };
 
 }  // namespace kinship::planning

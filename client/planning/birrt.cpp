@@ -3,45 +3,9 @@
 #include <stdexcept>
 
 #include "client/planning/bidirectional_search.hpp"
+#include "client/planning/steering.hpp"
 
 namespace kinship::planning {
-namespace {
-
-constexpr double kTolerance = 1e-9;  // joint units: no last step as short as rounding
-
-/// Goes straight to the target, as far as it is free.
-class StraightSteering {
- public:
-  StraightSteering(Eigen::Index dof, double step) : step_(step), q_(dof) {}
-
-  Extension extend(Tree& tree, Eigen::Index from, const Eigen::VectorXd& target, Aim,
-                   PlanningBudget& budget) {
-    const Eigen::VectorXd origin = tree.node(from);
-    const double distance = (target - origin).norm();
-    if (distance == 0)
-      return {from, true};
-    const Eigen::VectorXd direction = (target - origin) / distance;
-    for (int i = 1;; ++i) {
-      const bool last = i * step_ >= distance - kTolerance;
-      if (last)
-        q_ = target;
-      else
-        q_.noalias() = origin + i * step_ * direction;
-      if (!budget.is_free(q_))
-        return {from, false};
-      from = tree.add(q_, from);
-      if (last)
-        return {from, true};
-    }
-  }
-
- private:
-  double step_;
-  Eigen::VectorXd q_;  // kept, so that a step allocates nothing
-};
-
-}  // namespace
-
 void check_arguments(const char* planner, const Eigen::VectorXd& start,
                      const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
                      const BirrtOptions& options) {

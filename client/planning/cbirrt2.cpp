@@ -1,41 +1,9 @@
 #include "client/planning/cbirrt2.hpp"
 
 #include "client/planning/bidirectional_search.hpp"
-#include "client/planning/constrained_stepper.hpp"
+#include "client/planning/steering.hpp"
 
 namespace kinship::planning {
-namespace {
-
-/// Slides along the constraint towards the target, as far as it is free and comes nearer.
-class ConstrainedSteering {
- public:
-  ConstrainedSteering(Eigen::Index dof, double step, RegionConstraint& constraint)
-      : stepper_(step, constraint), q_(dof), next_(dof) {}
-
-  Extension extend(Tree& tree, Eigen::Index from, const Eigen::VectorXd& target, Aim aim,
-                   PlanningBudget& budget) {
-    q_ = tree.node(from);
-    while (q_ != target) {
-      const bool arrives = aim == Aim::Node && stepper_.joins(q_, target);
-      if (arrives)
-        next_ = target;
-      else if (!stepper_.advance(q_, target, next_))
-        return {from, false};
-      if (!budget.is_free(next_))
-        return {from, false};
-      from = tree.add(next_, from);
-      q_.swap(next_);
-    }
-    return {from, true};
-  }
-
- private:
-  ConstrainedStepper stepper_;
-  Eigen::VectorXd q_, next_;  // kept, so that a step allocates nothing
-};
-
-}  // namespace
-
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                                        const RegionConstraint& constraint, std::string& reason) {
   if (!constraint.holds(start)) {

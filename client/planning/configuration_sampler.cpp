@@ -24,6 +24,7 @@ Eigen::Matrix2Xd draw_limits(const Eigen::Matrix2Xd& bounds, const std::vector<b
 }  // namespace
 
 ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds) : bounds_(std::move(bounds)) {
+  turning_.assign(static_cast<std::size_t>(bounds_.cols()), false);
   if (!bounds_.allFinite() || (bounds_.row(0).array() > bounds_.row(1).array()).any())
     throw std::invalid_argument("ConfigurationSampler: bounds are not finite or crossed");
 }
@@ -36,6 +37,7 @@ ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinema
   if (!(share >= 0 && share <= 1))
     throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
   turning_ = turning_joints(chain);
+  mixture_ = mixture;
   guided_.emplace(mixture, draw_limits(bounds_, turning_));
   share_ = share;
 }

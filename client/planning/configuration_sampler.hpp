@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "client/planning/planning_bounds.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/mixture.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -35,11 +36,18 @@ class ConfigurationSampler {
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
   double share() const noexcept { return share_; }  ///< 0 if uniform
+  /// Where guided samples come from; none if uniform.
+  const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
+  /// The same posture within the bounds; empty if no turn lies there.
+  std::optional<Eigen::VectorXd> moved_into_bounds(const Eigen::VectorXd& q) const {
+    return turned_into(bounds_, turning_, q);
+  }
 
  private:
   std::optional<Eigen::VectorXd> sample_guided(std::mt19937_64& generator) const;
 
   Eigen::Matrix2Xd bounds_;
+  std::optional<Mixture> mixture_;
   std::optional<mixture::Sampler> guided_;
   std::vector<bool> turning_;
   double share_ = 0;
