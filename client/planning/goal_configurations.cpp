@@ -17,6 +17,17 @@ std::string in_words(inverse::NoSolution reason) {
   }
 }
 
+/// How often an arm is asked for further solutions as long as none of them is free.
+constexpr int kMostSearches = 10;
+/// Far from the seeds of other queries: 2^64 over the golden ratio.
+constexpr std::uint64_t kNextSearch = 0x9e3779b97f4a7c15;
+
+std::string reason_of(const GoalConfigurations& goals, inverse::NoSolution why_none) {
+  if (goals.found == 0)
+    return in_words(why_none);
+  return goals.within_bounds == 0 ? "outside the planning bounds" : "every goal collides";
+}
+
 }  // namespace
 
 GoalConfigurations goal_configurations(const kinematics::Chain& chain,
@@ -29,30 +40,33 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
   search.seed = options.seed;
   const Eigen::Isometry3d T_base_tip =
       T_base_goal * chain.T_tip_transfer().inverse(Eigen::Isometry);
-  const inverse::InverseSolutions solutions = inverse::inverse(chain, T_base_tip, search);
+  const std::vector<bool> turning = turning_joints(chain);
 
   GoalConfigurations goals;
-  goals.found = static_cast<int>(solutions.configurations.cols());
-  goals.configurations.resize(chain.dof(), goals.found);
-  const std::vector<bool> turning = turning_joints(chain);
-  Eigen::Index kept = 0;
-  for (int i = 0; i < goals.found; ++i) {
-    const auto q = turned_into(bounds, turning, solutions.configurations.col(i));
-    if (!q)
-      continue;
-    ++goals.within_bounds;
-    ++goals.collision_checks;
-    if (is_free(*q))
-      goals.configurations.col(kept++) = *q;
+  for (int searches = 1;; ++searches, search.seed += kNextSearch) {
+    const inverse::InverseSolutions solutions = inverse::inverse(chain, T_base_tip, search);
+    const Eigen::Index found = solutions.configurations.cols();
+    goals.found += static_cast<int>(found);
+    goals.configurations.resize(chain.dof(), found);
+    Eigen::Index kept = 0;
+    for (const auto& solution : solutions.configurations.colwise()) {
+      const auto q = turned_into(bounds, turning, solution);
+      if (!q)
+        continue;
+      ++goals.within_bounds;
+      ++goals.collision_checks;
+      if (is_free(*q))
+        goals.configurations.col(kept++) = *q;
+    }
+    goals.configurations.conservativeResize(Eigen::NoChange, kept);
+    if (kept > 0)
+      return goals;
+    // Who gives fewer than were asked for has no others.
+    if (found < options.max_configurations || searches == kMostSearches) {
+      goals.reason = reason_of(goals, solutions.reason);
+      return goals;
+    }
   }
-  goals.configurations.conservativeResize(Eigen::NoChange, kept);
-  if (kept > 0)
-    return goals;
-  if (goals.found == 0)
-    goals.reason = in_words(solutions.reason);
-  else
-    goals.reason = goals.within_bounds == 0 ? "outside the planning bounds" : "every goal collides";
-  return goals;
 }
 
 }  // namespace kinship::planning

@@ -25,7 +25,8 @@ struct GoalConfigurations {
   std::string reason;
 };
 
-/// Goal configurations of a plan that shall bring the transfer frame to a pose.
+/// Goal configurations of a plan that shall bring the transfer frame to a pose. Where none of
+/// `max_configurations` is free, a redundant arm is asked for further ones, up to ten times.
 /// \param T_base_goal  pose of the transfer frame in the base link, m.
 /// \param bounds       2 x dof (see planning_bounds); solutions are moved by full turns into them.
 GoalConfigurations goal_configurations(const kinematics::Chain& chain,

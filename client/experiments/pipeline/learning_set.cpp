@@ -13,6 +13,7 @@
 #include "client/files/lines.hpp"
 #include "client/files/output_file.hpp"
 #include "client/plan/attempt_record.hpp"
+#include "client/plan/scene_record.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
@@ -104,7 +105,9 @@ class Recording {
                                              " is no attempt of study '" + study_.name +
                                              "' by robot '" + member_.label() +
                                              "' as they are now");
-    attempts_.insert_or_assign(known->second, attempt);
+    Attempt& kept = attempts_.insert_or_assign(known->second, attempt).first->second;
+    if (!kept.scene)  // a set of before scenes were recorded; they follow from the index
+      kept.scene = scene_of(read_instance(member_, seed_, known->second));
   }
 
   void write() const {
@@ -132,9 +135,14 @@ class Recording {
     const plan::Reporter reporter{member_.digest, "experiments", study_.name};
     Attempt attempt = plan::make_attempt(reporter, problem, planned, settings);
     attempt.report_uuid = uuid_of(study_.name, member_.label(), index);
+    attempt.scene = scene_of(problem);
     if (attempt.path)
       attempt.path = rounded(*attempt.path, member_.robot.chain);
     return attempt;
+  }
+
+  RecordedScene scene_of(const Problem& problem) const {
+    return plan::record_scene(member_.robot.chain, problem).value_or_throw();
   }
 
   void add(std::uint32_t index, Attempt attempt) {

@@ -26,7 +26,7 @@ std::vector<StudyRobot> planar_arms() {
 std::vector<StudyRobot> placed_arms() {
   std::vector<StudyRobot> arms = planar_arms();
   arms[1].T_task_base = at(-0.05, 0);
-  arms[2].T_task_base = at(-0.03, 0);
+  arms[2].T_task_base = at(0.03, 0.06);
   return arms;
 }
 

@@ -73,6 +73,28 @@ TEST(GoalConfigurations, AreTurnedToTheStart) {
   }
 }
 
+TEST(GoalConfigurations, ARedundantArmIsAskedAgainUntilOneIsFree) {
+  PlanarArm redundant = arm();
+  redundant.lengths_m = {0.3, 0.3, 0.2, 0.1};
+  const auto chain = redundant.chain();
+  const Eigen::Matrix2Xd bounds = bounds_around_zero(chain);
+  int asked = 0;
+  const IsFree from_the_seventh = [&](const Eigen::VectorXd&) { return ++asked > 6; };
+  const auto goals =
+      goal_configurations(chain, kGoal, bounds, from_the_seventh, {.max_configurations = 4});
+  EXPECT_EQ(goals.configurations.cols(), 2);  // of the second four
+  EXPECT_EQ(goals.found, 8);
+  EXPECT_EQ(goals.collision_checks, 8U);
+  EXPECT_EQ(goals.reason, "");
+
+  asked = -1'000'000;
+  const auto none =
+      goal_configurations(chain, kGoal, bounds, from_the_seventh, {.max_configurations = 4});
+  EXPECT_EQ(none.configurations.cols(), 0);
+  EXPECT_EQ(none.found, 40);
+  EXPECT_EQ(none.reason, "every goal collides");
+}
+
 TEST(GoalConfigurations, SayWhyThereAreNone) {
   const auto chain = arm().chain();
   const Eigen::Matrix2Xd bounds = bounds_around_zero(chain);
