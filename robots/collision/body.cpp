@@ -16,9 +16,10 @@ void require_finite(const Eigen::Isometry3d& T, const std::string& what) {
     refuse(what + ": pose is not finite");
 }
 
-Solid make_solid(const Shape& shape, const std::string& what) {
+Solid make_solid(const Shape& shape, const std::string& what,
+                 const Eigen::Matrix3Xd* triangles = nullptr) {
   try {
-    return Solid(shape);
+    return Solid(shape, triangles);
   } catch (const Failure& failure) {
     throw Failure(failure.code(), what + ": " + failure.what());
   }
@@ -86,7 +87,7 @@ std::vector<Body> make_bodies(const kinematics::Chain& chain, const geometry::Ro
                       shape.link,
                       link.joint,
                       link.T_joint_link * shape.T_link_shape,
-                      make_solid(shape.shape, what),
+                      make_solid(shape.shape, what, shape.triangles.get()),
                       {}});
   }
   for (const AttachedObject& object : surroundings.attached)

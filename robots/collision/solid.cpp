@@ -1,5 +1,6 @@
 #include "robots/collision/solid.hpp"
 
+#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "proto/types/failure.hpp"
 #include "robots/geometry/shape_rules.hpp"
@@ -27,6 +29,19 @@ std::shared_ptr<const fcl::CollisionGeometry<double>> make_geometry(const Shape&
     return std::make_shared<fcl::Sphere<double>>(sphere->radius_m);
   const auto& capsule = std::get<CapsuleShape>(shape);
   return std::make_shared<fcl::Capsule<double>>(capsule.radius_m, capsule.length_m);
+}
+
+std::shared_ptr<const fcl::CollisionGeometry<double>> make_mesh(const Eigen::Matrix3Xd& triangles) {
+  if (triangles.cols() == 0 || triangles.cols() % 3 != 0 || !triangles.allFinite())
+    throw Failure(ErrorCode::InvalidInput, "mesh: " + std::to_string(triangles.cols()) +
+                                               " corners are no triangles, or not finite");
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSS<double>>>();
+  mesh->beginModel(static_cast<int>(triangles.cols() / 3), static_cast<int>(triangles.cols()));
+  for (Eigen::Index i = 0; i < triangles.cols(); i += 3)
+    mesh->addTriangle(triangles.col(i), triangles.col(i + 1), triangles.col(i + 2));
+  mesh->endModel();
+  mesh->computeLocalAABB();
+  return mesh;
 }
 
 Eigen::Vector3d half_extents(const Shape& shape) {
@@ -52,10 +67,10 @@ double cross_radius(const Shape& shape, const Eigen::Vector3d& half, Eigen::Inde
 
 }  // namespace
 
-Solid::Solid(const Shape& shape) {
+Solid::Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles) {
   if (const auto why = geometry::broken_rule(shape))
     throw Failure(ErrorCode::InvalidInput, *why);
-  geometry_ = make_geometry(shape);
+  geometry_ = triangles != nullptr ? make_mesh(*triangles) : make_geometry(shape);
   half_extents_m_ = half_extents(shape);
   Eigen::Index axis = 2;
   if (!std::holds_alternative<SphereShape>(shape))

@@ -15,10 +15,15 @@ namespace kinship::collision {
 
 /// A shape prepared for many questions: spheres that cover it and its own bounding box, both of
 /// which say "apart" cheaply, and FCL's geometry for when they cannot. Immutable, cheap to copy.
+///
+/// Of a mesh the shape only says how far it reaches, and its triangles are what touches: what lies
+/// wholly within a closed mesh does not touch it.
 class Solid {
  public:
-  /// \throws Failure(InvalidInput) if a size is not finite and positive.
-  explicit Solid(const Shape& shape);
+  /// \param triangles  null, or a mesh within the shape, in its frame: 3 x 3 n, three columns a
+  ///                   triangle, n >= 1. Copied.
+  /// \throws Failure(InvalidInput) if a size is not finite and positive, or the triangles are none.
+  explicit Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles = nullptr);
 
   /// Whether two solids share a point, given their poses in one frame.
   friend bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,

@@ -25,18 +25,27 @@ std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   return std::nullopt;
 }
 
-/// The solid around a scaled mesh; nothing if it is to be left out.
-Result<std::optional<FittedShape>> fit_mesh(const urdf::Mesh& mesh, const MeshSource& meshes) {
+/// A mesh in the solid around it.
+struct FittedMesh {
+  FittedShape fitted;
+  std::shared_ptr<const Eigen::Matrix3Xd> triangles;  // in the frame of the solid
+};
+
+/// A scaled mesh; nothing if it is to be left out.
+Result<std::optional<FittedMesh>> fit_mesh(const urdf::Mesh& mesh, const MeshSource& meshes) {
   const auto corners = meshes(mesh.filename);
   if (!corners)
     return corners.error();
   if (!*corners)
-    return std::optional<FittedShape>();
+    return std::optional<FittedMesh>();
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
   const Eigen::Matrix3Xd scaled = scale.asDiagonal() * **corners;
-  if (!scaled.allFinite() || scaled.cols() == 0)
-    return invalid("mesh '" + mesh.filename + "': no corners, or not finite once scaled");
-  return std::optional<FittedShape>(fit_shape(scaled));
+  if (!scaled.allFinite() || scaled.cols() == 0 || scaled.cols() % 3 != 0)
+    return invalid("mesh '" + mesh.filename + "': no triangles, or not finite once scaled");
+  const FittedShape fitted = fit_shape(scaled);
+  const Eigen::Isometry3d T_shape_points = fitted.T_points_shape.inverse();
+  return std::optional<FittedMesh>(
+      {fitted, std::make_shared<const Eigen::Matrix3Xd>(T_shape_points * scaled)});
 }
 
 Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
@@ -62,8 +71,9 @@ Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision
       return fitted.error();
     if (!*fitted)
       return std::optional<LinkShape>();
-    result.shape = (*fitted)->shape;
-    result.T_link_shape = result.T_link_shape * (*fitted)->T_points_shape;
+    result.shape = (*fitted)->fitted.shape;
+    result.T_link_shape = result.T_link_shape * (*fitted)->fitted.T_points_shape;
+    result.triangles = (*fitted)->triangles;
     result.approximate = true;
   } else if (const auto shape = to_shape(*collision.geometry)) {
     result.shape = *shape;

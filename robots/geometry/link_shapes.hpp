@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,9 @@ struct LinkShape {
   Shape shape;
   Eigen::Isometry3d T_link_shape = Eigen::Isometry3d::Identity();  ///< of the shape's centre
   bool approximate = false;  ///< fitted around a mesh, which lies inside
+  /// The surface of that mesh in the frame of the shape: 3 x 3 n, m, three columns a triangle. Null
+  /// without a mesh. Shared by the copies of a robot's shapes, and never changed.
+  std::shared_ptr<const Eigen::Matrix3Xd> triangles = nullptr;
 };
 
 /// The collision geometry of a robot and the pairs of links that are never checked.
@@ -29,8 +33,9 @@ struct RobotShapes {
 };
 
 /// Where the corners of a mesh come from, by the URI or file name that the URDF gives.
-/// \return 3 x n, m, in the mesh's frame, not scaled; nothing if the mesh is to be left out; or
-///         why it cannot be had, which names the URI.
+/// \return 3 x 3 n, m, three columns a triangle, in the mesh's frame, not scaled; nothing if the
+/// mesh
+///         is to be left out; or why it cannot be had, which names the URI.
 using MeshSource = std::function<Result<std::optional<Eigen::Matrix3Xd>>(const std::string& uri)>;
 
 /// A MeshSource for who must not miss a solid: InvalidInput for every mesh.
@@ -42,7 +47,8 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 
 /// Reads the collision elements of a description's URDF for the links of its chain: boxes,
 /// cylinders, spheres; a cylinder and two spheres of its radius at its ends become one capsule;
-/// a mesh becomes the box or capsule that fit_shape puts around it, scaled as the URDF says.
+/// a mesh keeps its triangles, scaled as the URDF says, in the box or capsule that fit_shape puts
+/// around them.
 /// Shapes come in the order of the links; a link paired with itself is left out.
 /// \return InvalidInput with the link named for a size that is not finite and positive, or a pair
 ///         that names no link; what parse_urdf says of the text; what `meshes` says of a mesh,

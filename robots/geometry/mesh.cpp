@@ -49,13 +49,22 @@ class Corners {
   }
 
   void add(const aiMesh& mesh, const aiMatrix4x4& T) {
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i)
-      triangles_ += std::max(mesh.mFaces[i].mNumIndices, 2U) - 2U;
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-      const aiVector3D corner = T * mesh.mVertices[i];
-      values_.insert(values_.end(), {static_cast<double>(corner.x), static_cast<double>(corner.y),
-                                     static_cast<double>(corner.z)});
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices < 3)
+        continue;  // a point or a line
+      triangles_ += face.mNumIndices - 2;
+      if (triangles_ > kMaxMeshTriangles)
+        return;
+      for (unsigned k = 2; k < face.mNumIndices; ++k)  // a fan around the face's first corner
+        for (const unsigned at : {0U, k - 1, k})
+          add(T * mesh.mVertices[face.mIndices[at]]);
     }
+  }
+
+  void add(const aiVector3D& corner) {
+    values_.insert(values_.end(), {static_cast<double>(corner.x), static_cast<double>(corner.y),
+                                   static_cast<double>(corner.z)});
   }
 
   const aiScene& scene_;

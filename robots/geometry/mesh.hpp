@@ -11,8 +11,8 @@ namespace kinship::geometry {
 inline constexpr std::size_t kMaxMeshBytes = 64'000'000;
 inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
-/// The corners of the triangles of a mesh, in its own frame: 3 x n, m, an order that the format
-/// decides; corners may be repeated.
+/// The corners of the triangles of a mesh, in its own frame: 3 x 3 n, m, three columns a triangle;
+/// a face with more corners is a fan of triangles.
 ///
 /// A unit that a DAE file names is applied; its up-axis is not: x, y and z mean what they say, as
 /// in other readers of URDF.

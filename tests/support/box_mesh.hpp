@@ -18,6 +18,16 @@ class BoxMesh {
           Eigen::Vector3d(i & 1 ? size.x() : 0, i & 2 ? size.y() : 0, i & 4 ? size.z() : 0);
   }
 
+  /// 3 x 36, three columns a triangle.
+  Eigen::Matrix3Xd triangles() const {
+    Eigen::Matrix3Xd columns(3, 3 * static_cast<Eigen::Index>(kTriangles.size()));
+    Eigen::Index column = 0;
+    for (const auto& triangle : kTriangles)
+      for (const std::size_t corner : triangle)
+        columns.col(column++) = corners_.at(corner);
+    return columns;
+  }
+
   std::string binary_stl() const {
     std::string bytes(80, ' ');
     append(bytes, static_cast<std::uint32_t>(kTriangles.size()));

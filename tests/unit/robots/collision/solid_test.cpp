@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "proto/types/failure.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision {
@@ -72,7 +73,48 @@ TEST(Solid, BoxCylinderCornersAreExact) {
   EXPECT_FALSE(touch_at(box, cylinder, shift(diagonal + 1e-4, diagonal + 1e-4)));
 }
 
+/// A column of 0.8 m with a shelf of 0.4 m at its foot, about the middle of the box around both.
+Solid column_and_shelf() {
+  const Eigen::Matrix3Xd column = kinship::test::BoxMesh({0.1, 0.3, 0.8}).triangles();
+  const Eigen::Matrix3Xd shelf = kinship::test::BoxMesh({0.5, 0.3, 0.1}).triangles();
+  Eigen::Matrix3Xd both(3, column.cols() + shelf.cols());
+  both << column, shelf;
+  both.colwise() -= Eigen::Vector3d(0.25, 0.15, 0.4);
+  return Solid(BoxShape{{0.5, 0.3, 0.8}}, &both);
+}
+
+TEST(Solid, AMeshTouchesWhereItsTrianglesAre) {
+  const Solid mesh = column_and_shelf();
+  const Eigen::Isometry3d T_base_mesh = shift(0.3, -0.2, 1.1);
+  const auto touches_at = [&](const Shape& shape, double x, double y, double z) {
+    const Eigen::Isometry3d T_base_other = T_base_mesh * shift(x, y, z);
+    const bool there = touch(mesh, T_base_mesh, Solid(shape), T_base_other);
+    EXPECT_EQ(there, touch(Solid(shape), T_base_other, mesh, T_base_mesh));
+    return there;
+  };
+  for (const Shape& shape : {Shape(SphereShape{0.1}), Shape(BoxShape{{0.2, 0.2, 0.2}}),
+                             Shape(CapsuleShape{0.1, 0.05}), Shape(CylinderShape{0.1, 0.2})}) {
+    EXPECT_FALSE(touches_at(shape, 0.1, 0, 0.1)) << "above the shelf";
+    EXPECT_TRUE(touches_at(shape, 0.1, 0, -0.22)) << "on the shelf";
+    EXPECT_TRUE(touches_at(shape, -0.1, 0, 0.1)) << "at the column";
+    EXPECT_FALSE(touches_at(shape, 0.1, 0.3, -0.3)) << "beside it";
+  }
+}
+
+TEST(Solid, MeshesTouchEachOther) {
+  const Solid mesh = column_and_shelf();
+  Eigen::Isometry3d T_turned = shift(0.3, -0.2, 1.1);
+  T_turned.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));  // each in the other's corner
+  const Eigen::Isometry3d T = shift(0.3, -0.2, 1.1);
+  EXPECT_FALSE(touch(mesh, T, mesh, shift(0.15, 0, 0.15) * T_turned));
+  EXPECT_TRUE(touch(mesh, T, mesh, shift(0, 0.01, -0.05) * T_turned));
+  EXPECT_TRUE(touch(mesh, T, mesh, shift(0.02, 0.01, 0.03) * T));
+}
+
 TEST(Solid, RefusesWhatIsNoShape) {
+  const Eigen::Matrix3Xd eight = Eigen::Matrix3Xd::Ones(3, 8), none(3, 0);
+  EXPECT_THROW(Solid(BoxShape{{1, 1, 1}}, &eight), Failure);
+  EXPECT_THROW(Solid(BoxShape{{1, 1, 1}}, &none), Failure);
   EXPECT_THROW(Solid(SphereShape{0}), Failure);
   EXPECT_THROW(Solid(BoxShape{{1, NAN, 1}}), Failure);
 }

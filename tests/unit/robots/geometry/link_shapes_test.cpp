@@ -5,6 +5,7 @@
 #include <string>
 
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace kinship::geometry {
 namespace {
@@ -65,10 +66,8 @@ const std::string kMesh =
 /// A cube of 2 m whose middle lies at z = 10.
 Result<std::optional<Eigen::Matrix3Xd>> cube_for(const std::string& uri) {
   EXPECT_EQ(uri, "package://a/b.stl");
-  Eigen::Matrix3Xd corners(3, 8);
-  for (Eigen::Index i = 0; i < 8; ++i)
-    corners.col(i) << (i & 1 ? 1 : -1), (i & 2 ? 1 : -1), (i & 4 ? 11 : 9);
-  return std::optional<Eigen::Matrix3Xd>(corners);
+  const Eigen::Matrix3Xd triangles = test::BoxMesh({2, 2, 2}).triangles();
+  return std::optional<Eigen::Matrix3Xd>(triangles.colwise() + Eigen::Vector3d(-1, -1, 9));
 }
 
 Result<RobotShapes> read_with(const std::string& collisions, const MeshSource& meshes) {
@@ -90,9 +89,24 @@ TEST(ReadShapes, FitsASolidAroundAScaledMesh) {
   const LinkShape& fitted = shapes->shapes[0];
   EXPECT_TRUE(fitted.approximate);
   EXPECT_FALSE(shapes->shapes[1].approximate);
+  EXPECT_EQ(shapes->shapes[1].triangles, nullptr);
+  ASSERT_NE(fitted.triangles, nullptr);
+  const Eigen::Matrix3Xd in_link = fitted.T_link_shape * *fitted.triangles;
+  EXPECT_EQ(in_link.cols(), 36);
+  EXPECT_TRUE(in_link.rowwise().minCoeff().isApprox(Eigen::Vector3d(0, -2, -5.5), 1e-6));
+  EXPECT_TRUE(in_link.rowwise().maxCoeff().isApprox(Eigen::Vector3d(2, 2, -4.5), 1e-6));
   const Eigen::Vector3d size = fitted.T_link_shape.linear() * std::get<BoxShape>(fitted.shape).size;
   EXPECT_TRUE(size.cwiseAbs().isApprox(Eigen::Vector3d(2, 4, 1), 1e-6)) << size.transpose();
   EXPECT_TRUE(fitted.T_link_shape.translation().isApprox(Eigen::Vector3d(1, 0, -5), 1e-6));
+}
+
+TEST(ReadShapes, RefusesCornersThatAreNoTriangles) {
+  const auto shapes =
+      read_with(collision("<mesh filename='package://a/b.stl'/>"), [](const std::string&) {
+        return Result<std::optional<Eigen::Matrix3Xd>>(Eigen::Matrix3Xd::Ones(3, 8).eval());
+      });
+  ASSERT_FALSE(shapes);
+  EXPECT_NE(shapes.error().message.find("no triangles"), std::string::npos);
 }
 
 TEST(ReadShapes, LeavesOutMeshesForWhoHasTheTextOnly) {
@@ -116,7 +130,7 @@ TEST(ReadShapes, RefusesAScaleThatMakesAMeshEndless) {
       collision("<mesh filename='package://a/b.stl' scale='1e308 1e308 1e308'/>"), cube_for);
   ASSERT_FALSE(shapes);
   EXPECT_EQ(shapes.error().message,
-            "link 'arm': mesh 'package://a/b.stl': no corners, or not finite once scaled");
+            "link 'arm': mesh 'package://a/b.stl': no triangles, or not finite once scaled");
 }
 
 TEST(ReadShapes, TakesAVisualMesh) {

@@ -32,6 +32,23 @@ TEST(ReadMesh, ReadsEveryFormat) {
   EXPECT_EQ(extents(kBox.dae(), "dae"), kExtents);
 }
 
+TEST(ReadMesh, GivesThreeCornersATriangle) {
+  for (const auto& [bytes, format] :
+       {std::pair(kBox.binary_stl(), "stl"), std::pair(kBox.text_stl(), "stl"),
+        std::pair(kBox.obj(), "obj"), std::pair(kBox.dae(), "dae")}) {
+    const auto triangles = read_mesh(bytes, format);
+    ASSERT_TRUE(triangles) << format;
+    ASSERT_EQ(triangles->cols(), 36) << format;
+    double area_m2 = 0;
+    for (Eigen::Index i = 0; i < triangles->cols(); i += 3) {
+      const Eigen::Vector3d a = triangles->col(i), b = triangles->col(i + 1),
+                            c = triangles->col(i + 2);
+      area_m2 += (b - a).cross(c - a).norm() / 2;
+    }
+    EXPECT_NEAR(area_m2, 2 * (0.25 * 0.5 + 0.25 * 2 + 0.5 * 2), 1e-6) << format;
+  }
+}
+
 TEST(ReadMesh, EndingsMayBeInCapitals) {
   EXPECT_EQ(extents(kBox.binary_stl(), "STL"), kExtents);
   EXPECT_EQ(extents(kBox.obj(), "Obj"), kExtents);
