@@ -123,7 +123,7 @@ class HeldJoints {
  public:
   HeldJoints(const urdf::ModelInterface& model, const std::map<std::string, double>& held,
              const std::set<std::string>& on_chain)
-      : held_(held) {
+      : model_(model), held_(held), on_chain_(on_chain) {
     for (const auto& [name, value] : held) {
       if (name.size() > kMaxLinkNameBytes)
         throw invalid("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
@@ -143,7 +143,7 @@ class HeldJoints {
   Eigen::Isometry3d T_parent_moving(const urdf::Joint& joint) const {
     Eigen::Isometry3d T = T_parent_joint(joint);
     if (has_one_value(joint))
-      move(read_joint(joint), value_of(joint), T);
+      move(read_joint(joint), value_of(joint, model_.joints_.size()), T);
     return T;
   }
 
@@ -158,16 +158,35 @@ class HeldJoints {
                     number_text(limits.upper));
   }
 
-  double value_of(const urdf::Joint& joint) const {
+  /// \param followings  how many mimicked joints may still be asked, so that a ring of them ends.
+  double value_of(const urdf::Joint& joint, std::size_t followings) const {
     if (const auto held = held_.find(joint.name); held != held_.end())
       return held->second;
+    const double value = mimicked_value(joint, followings);
     if (joint.type == urdf::Joint::CONTINUOUS)
-      return 0;
+      return value;
     const Limits limits = stricter_limits(joint);
-    return std::clamp(0.0, limits.lower, limits.upper);
+    return std::clamp(value, limits.lower, limits.upper);
   }
 
+  /// Where the joint that it mimics puts a joint; 0 if that one moves, is none, or there is none.
+  double mimicked_value(const urdf::Joint& joint, std::size_t followings) const {
+    if (joint.mimic == nullptr || followings == 0 || on_chain_.contains(joint.mimic->joint_name))
+      return 0;
+    const urdf::JointConstSharedPtr leader = model_.getJoint(joint.mimic->joint_name);
+    if (leader == nullptr || !has_one_value(*leader))
+      return 0;
+    const double value =
+        joint.mimic->multiplier * value_of(*leader, followings - 1) + joint.mimic->offset;
+    if (!(std::abs(value) <= kMaxPlacement_m))
+      throw invalid(words(joint) + ": mimics joint '" + leader->name + "' at " +
+                    number_text(value) + ", more than " + number_text(kMaxPlacement_m));
+    return value;
+  }
+
+  const urdf::ModelInterface& model_;
   const std::map<std::string, double>& held_;
+  const std::set<std::string>& on_chain_;
 };
 
 /// Pose of the URDF's root link in the base link, with every joint between them held.

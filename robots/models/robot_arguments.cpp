@@ -11,6 +11,7 @@
 #include "proto/types/pose.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "robots/kinematics/urdf_model.hpp"
 #include "robots/models/mesh_files.hpp"
 #include "robots/models/model_folder.hpp"
 #include "robots/models/text_file.hpp"
@@ -42,9 +43,14 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+/// \throws Failure with what is wrong.
 RobotDescription read_urdf_file(const std::filesystem::path& file) {
   RobotDescription description;
   description.urdf = read_text(file, kMaxUrdfBytes);
+  if (description.urdf.find("<xacro:") != std::string::npos &&
+      !kinematics::parse_urdf(description.urdf))
+    throw Failure(ErrorCode::InvalidInput,
+                  "'" + file.string() + "' is a xacro file: expand it into a URDF first");
   description.label = file.stem().string();
   return description;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -71,7 +72,32 @@ TEST(ReadChain, HoldsJointsOffTheChainAtZeroOrTheNearestLimit) {
   EXPECT_TRUE(position_of(chain, "base", q).isZero());
   EXPECT_TRUE(position_of(chain, "world", q).isApprox(Eigen::Vector3d(0, 1, -0.5), kTolerance));
   EXPECT_TRUE(position_of(chain, "lamp", q).isApprox(Eigen::Vector3d(0, 1, 3), kTolerance));
-  EXPECT_TRUE(position_of(chain, "finger", q).isApprox(Eigen::Vector3d(1, 1, 0.25), kTolerance));
+}
+
+TEST(ReadChain, AMimicJointOffTheChainStandsWhereItsJointPutsIt) {
+  RobotDescription description = large_robot();
+  const Eigen::Vector2d q(0, 1);
+  const auto finger_z = [&] {
+    return position_of(read_chain(description).value_or_throw(), "finger", q).z() - 0.25;
+  };
+  EXPECT_NEAR(finger_z(), 0.5, kTolerance) << "the lift stands at its lower limit";
+  description.held_joints = {{"lift", 0.75}};
+  EXPECT_NEAR(finger_z(), 0.75, kTolerance);
+  const auto mimicking = [&](const std::string& mimic) {
+    const std::size_t at = description.urdf.find("<mimic");
+    description.urdf.replace(at, description.urdf.find('>', at) + 1 - at, mimic);
+  };
+  mimicking("<mimic joint='lift' multiplier='-1' offset='0.5'/>");
+  EXPECT_NEAR(finger_z(), -0.25, kTolerance);
+  mimicking("<mimic joint='lift' multiplier='9'/>");
+  EXPECT_NEAR(finger_z(), 2, kTolerance) << "its own upper limit";
+  mimicking("<mimic joint='j2' offset='0.5'/>");
+  EXPECT_NEAR(finger_z(), 0, kTolerance) << "a joint of the chain is not followed";
+  mimicking("<mimic joint='grip' multiplier='0.5' offset='0.5'/>");
+  EXPECT_TRUE(std::isfinite(finger_z())) << "its own leader";
+  mimicking("<mimic joint='lift' multiplier='1e200'/>");
+  EXPECT_NE(message(description).find("mimics joint 'lift'"), std::string::npos)
+      << message(description);
 }
 
 TEST(ReadChain, HoldsJointsWhereToldAndNowhereElse) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
+
+#include "tests/support/temporary_directory.hpp"
 
 namespace kinship::models {
 namespace {
@@ -36,6 +39,29 @@ TEST(DescribeRobot, ArgumentsReplaceWhatTheFolderSays) {
   ASSERT_TRUE(renamed);
   EXPECT_EQ(renamed->label, "cell3");
   EXPECT_EQ(renamed->tip_link, folder->tip_link);
+}
+
+/// What is wrong with a URDF file of this name and text.
+std::string complaint(const std::string& name, const std::string& text) {
+  const test::TemporaryDirectory directory;
+  std::ofstream(directory.path() / name) << text;
+  const auto robot =
+      describe_robot({.source = directory.path() / name, .base_link = "a", .tip_link = "a"});
+  return robot ? "" : robot.error().message;
+}
+
+TEST(DescribeRobot, AFileWhoseNameIsNoLabelNeedsAnother) {
+  EXPECT_EQ(complaint("arm.urdf", "<robot name='r'><link name='a'/></robot>"), "");
+  EXPECT_NE(complaint("my arm.urdf", "<robot name='r'><link name='a'/></robot>").find("--label"),
+            std::string::npos);
+}
+
+TEST(DescribeRobot, AXacroFileIsToldToBeOne) {
+  EXPECT_NE(complaint("arm.xacro", "<robot name='r'><xacro:include filename='b'/></robot>")
+                .find("is a xacro file"),
+            std::string::npos);
+  EXPECT_EQ(complaint("arm.urdf", "<robot name='r'><!-- <xacro:arm/> --><link name='a'/></robot>"),
+            "");
 }
 
 TEST(DescribeRobot, RefusesAHeldJointWithoutValue) {
