@@ -61,6 +61,8 @@ void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& 
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
+  if (options.settings.planner.kind == PlannerKind::Ompl)
+    note_unused(app, {"--overshoot"}, "on planners of OMPL", notes);
   if (is_uniform && !options.report) {
     note_unused(app, kOfServer, "where no server is needed", notes);
     note_unused(app, {"--task"}, "with neither guidance nor reports", notes);

@@ -25,7 +25,7 @@ Examples:
   kinship-plan --robot robots/models/ur10e --task box_to_shelf --problems problems.jsonl --guidance always --sources panda,iiwa14
       --since 14d
       a model folder; every query guided, by these robots' experience of the last two weeks
-  kinship-plan --robot robots/models/panda --problems pour.jsonl --planner cbirrt2 --max-checks 200000
+  kinship-plan --robot robots/models/panda --problems pour.jsonl --planner ompl:RRTConnect --max-checks 200000
       name the planner (without --planner: birrt, and cbirrt2 for problems with a constraint)
 
 A problem that cannot be planned (start or goal in collision, goal out of reach, wrong number of joints, a planner that
@@ -50,9 +50,10 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   constexpr std::uint64_t kMost = 1'000'000'000;
   PlanSettings& settings = options.settings;
   app.add_option("--planner", raw.planner,
-                 "birrt or cbirrt2 (default: birrt, and cbirrt2 for problems with a constraint)")
+                 "birrt, cbirrt2, or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
+                 "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
       ->check([](const std::string& text) {
-        const Result<Planner> planner = parse_planner(text);
+        const Result<PlannerChoice> planner = parse_planner(text);
         return planner ? std::string() : planner.error().message;
       });
   app.add_option("--resolution", settings.resolution,

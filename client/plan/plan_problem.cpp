@@ -12,6 +12,7 @@
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/goal_configurations.hpp"
 #include "client/planning/guidance_gate.hpp"
+#include "client/planning/ompl_planner.hpp"
 #include "client/planning/planning_bounds.hpp"
 #include "client/planning/region_constraint.hpp"
 #include "client/planning/shortcut.hpp"
@@ -141,7 +142,7 @@ class Planning {
       constraint_.emplace(robot.chain, *problem.constraint, T_task_base_, bounds_);
   }
 
-  void run(const Guidance* guidance, PlannedProblem& planned) {
+  void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
     const Eigen::MatrixXd goals = find_goals(planned.result);
     if (goals.cols() == 0)
       return;
@@ -152,11 +153,7 @@ class Planning {
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     heed_gate(goals, guidance, planned.result);
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
-    const planning::PlanSummary summary =
-        constraint_
-            ? planning::plan_cbirrt2(problem_.start, goals, {is_free_, *constraint_}, sampler,
-                                     options, generator_)
-            : planning::plan_birrt(problem_.start, goals, is_free_, sampler, options, generator_);
+    const planning::PlanSummary summary = search(planner, goals, sampler, options);
     planned.outcome = outcome_of(summary);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks = summary.collision_checks;
@@ -168,6 +165,22 @@ class Planning {
   }
 
  private:
+  planning::PlanSummary search(const PlannerChoice& planner, const Eigen::MatrixXd& goals,
+                               const planning::ConfigurationSampler& sampler,
+                               const planning::BirrtOptions& options) {
+    const Eigen::VectorXd& start = problem_.start;
+    if (planner.kind == PlannerKind::Ompl) {
+      const planning::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
+      return constraint_
+                 ? planning::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler, ompl,
+                                            generator_)
+                 : planning::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
+    }
+    return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
+                                                options, generator_)
+                       : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
+  }
+
   /// All of them count: the nearest may lie behind an obstacle.
   Eigen::MatrixXd find_goals(ProblemResult& result) {
     if (!problem_.T_task_goal) {
@@ -263,7 +276,8 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     planned.result.share = query.arm == Arm::Guided ? query.guidance->share : 0;
   }
   planned.result.guidance_reason = why_unguided(query);
-  const Result<Planner> planner = planner_for(settings.planner, problem.constraint.has_value());
+  const Result<PlannerChoice> planner =
+      planner_for(settings.planner, problem.constraint.has_value());
   const auto misfit =
       planner ? find_misfit(robot.chain, problem) : std::optional(planner.error().message);
   if (misfit) {
@@ -274,7 +288,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     Planning planning(robot, problem, settings, stop);
     planned.attempted = true;
     planned.result.planner = name_of(*planner);
-    planning.run(query.guidance, planned);
+    planning.run(*planner, query.guidance, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;
   } catch (const std::exception& exception) {  // of one problem: the others are planned

@@ -16,7 +16,7 @@ struct PlanSettings {
   int max_goals = 20;                   ///< goal configurations found for a goal pose
   /// Guided queries farther from the distribution are planned uniformly (planning::query_distance).
   double gate_distance = planning::kGateDistance;
-  Planner planner = Planner::ByProblem;
+  PlannerChoice planner = {};
 };
 
 }  // namespace kinship::plan

@@ -1,32 +1,62 @@
 #include "client/plan/planner_choice.hpp"
 
+#include <algorithm>
+#include <vector>
+
+#include "client/planning/ompl_planner.hpp"
+
 namespace kinship::plan {
+namespace {
 
-Result<Planner> parse_planner(std::string_view text) {
+constexpr std::string_view kOmpl = "ompl:";
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+Result<PlannerChoice> parse_planner(std::string_view text) {
   if (text == "birrt")
-    return Planner::Birrt;
+    return PlannerChoice{PlannerKind::Birrt};
   if (text == "cbirrt2")
-    return Planner::Cbirrt2;
-  return Error{ErrorCode::InvalidInput,
-               "'" + std::string(text) + "' is no planner: give birrt or cbirrt2"};
-}
-
-Result<Planner> planner_for(Planner wanted, bool is_constrained) {
-  if (!is_constrained)
-    return Planner::Birrt;
-  if (wanted == Planner::Birrt)
+    return PlannerChoice{PlannerKind::Cbirrt2};
+  if (!text.starts_with(kOmpl))
     return Error{ErrorCode::InvalidInput,
-                 "--planner birrt does not keep to a constraint: use --planner cbirrt2"};
-  return Planner::Cbirrt2;
+                 "'" + std::string(text) + "' is no planner: give birrt, cbirrt2 or ompl:NAME"};
+  const std::string name(text.substr(kOmpl.size()));
+  const std::vector<std::string> names = planning::ompl_planner_names();
+  if (std::ranges::find(names, name) == names.end())
+    return Error{
+        ErrorCode::InvalidInput,
+        "'" + name + "' is no planner of OMPL that can be guided: give one of " + joined(names)};
+  return PlannerChoice{PlannerKind::Ompl, name};
 }
 
-std::string name_of(Planner planner) {
-  switch (planner) {
-    case Planner::Birrt:
+Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained) {
+  if (wanted.kind == PlannerKind::Ompl)
+    return wanted;
+  if (!is_constrained)
+    return PlannerChoice{PlannerKind::Birrt};
+  if (wanted.kind == PlannerKind::Birrt)
+    return Error{ErrorCode::InvalidInput,
+                 "--planner birrt does not keep to a constraint: use --planner cbirrt2 or "
+                 "ompl:RRTConnect"};
+  return PlannerChoice{PlannerKind::Cbirrt2};
+}
+
+std::string name_of(const PlannerChoice& planner) {
+  switch (planner.kind) {
+    case PlannerKind::Birrt:
       return "BiRRT";
-    case Planner::Cbirrt2:
+    case PlannerKind::Cbirrt2:
       return "CBiRRT2";
-    case Planner::ByProblem:
+    case PlannerKind::Ompl:
+      return "OMPL " + planner.ompl_planner;
+    case PlannerKind::ByProblem:
       break;
   }
   return "";

@@ -7,22 +7,28 @@
 
 namespace kinship::plan {
 
-/// Which planner answers the problems of a run.
-enum class Planner {
+enum class PlannerKind {
   ByProblem,  ///< BiRRT, or CBiRRT2 under a constraint
   Birrt,
-  Cbirrt2
+  Cbirrt2,
+  Ompl
 };
 
-/// "birrt" or "cbirrt2".
+/// Which planner answers the problems of a run.
+struct PlannerChoice {
+  PlannerKind kind = PlannerKind::ByProblem;
+  std::string ompl_planner = {};  ///< of planning::ompl_planner_names(); with Ompl only
+};
+
+/// "birrt", "cbirrt2" or "ompl:NAME".
 /// \return InvalidInput that shows the text and what can be said.
-Result<Planner> parse_planner(std::string_view text);
+Result<PlannerChoice> parse_planner(std::string_view text);
 
 /// The planner of one problem; never ByProblem. CBiRRT2 without a constraint is BiRRT.
 /// \return InvalidInput that names planners which can do what this one cannot.
-Result<Planner> planner_for(Planner wanted, bool is_constrained);
+Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained);
 
-/// As results and reports name it: "BiRRT", "CBiRRT2".
-std::string name_of(Planner planner);
+/// As results and reports name it: "BiRRT", "CBiRRT2", "OMPL RRTConnect".
+std::string name_of(const PlannerChoice& planner);
 
 }  // namespace kinship::plan

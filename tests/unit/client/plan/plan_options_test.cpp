@@ -53,7 +53,7 @@ TEST(PlanOptions, TakesEverythingByName) {
   const PlanOptions& options = answer.options();
   EXPECT_EQ(options.robot.source, "arm.urdf");
   EXPECT_EQ(options.problems, "p.jsonl");
-  EXPECT_EQ(options.settings.planner, Planner::Cbirrt2);
+  EXPECT_EQ(options.settings.planner.kind, PlannerKind::Cbirrt2);
   EXPECT_EQ(options.guidance, GuidanceMode::Auto);
   EXPECT_TRUE(options.report);
   EXPECT_TRUE(options.json);
@@ -203,6 +203,7 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--seed", "-1"},
       {"p", "--model", "m", "--max-checks", "-1"},
       {"p", "--model", "m", "--planner", "rrt*"},
+      {"p", "--model", "m", "--planner", "ompl:Nobody"},
       {"p", "--model", "m", "--problems", "q"},
       {"p", "--model", "m", "--robot", "n"},
       {"p", "--model", "m", "--task", ""},

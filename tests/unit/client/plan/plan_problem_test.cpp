@@ -318,13 +318,40 @@ TEST(PlanProblem, UnderAConstraintEveryWaypointKeepsToIt) {
 
 TEST(PlanProblem, APlannerThatCannotKeepToAConstraintIsNotStarted) {
   PlanSettings settings;
-  settings.planner = Planner::Birrt;
+  settings.planner.kind = PlannerKind::Birrt;
   const PlannedProblem refused = planned(line_problem(), settings);
   EXPECT_FALSE(refused.attempted);
   EXPECT_EQ(refused.result.planner, "");
   EXPECT_NE(refused.result.reason.find("--planner cbirrt2"), std::string::npos);
   EXPECT_EQ(planned(wall_problem(), settings).result.planner, "BiRRT");
   EXPECT_EQ(planned(line_problem()).result.planner, "CBiRRT2");
+}
+
+TEST(PlanProblem, APlannerOfOmplAnswersWithAndWithoutAConstraint) {
+  PlanSettings settings;
+  settings.planner = parse_planner("ompl:RRTConnect").value();
+  const ProblemResult free = planned(wall_problem(), settings).result;
+  ASSERT_TRUE(free.solved) << free.reason;
+  EXPECT_EQ(free.planner, "OMPL RRTConnect");
+  EXPECT_EQ(collisions_along(*free.waypoints, wall_problem()), 0);
+  const Problem problem = line_problem();
+  const ProblemResult along = planned(problem, settings).result;
+  ASSERT_TRUE(along.solved) << along.reason;
+  for (const auto& q : along.waypoints->colwise()) {
+    const Eigen::Isometry3d T_task_transfer =
+        *problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, q);
+    EXPECT_NEAR(T_task_transfer.translation().x(),
+                problem.constraint->T_task_region.translation().x(), 1e-3);
+  }
+}
+
+TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {
+  PlanSettings settings;
+  settings.planner = parse_planner("ompl:RRT").value();
+  int asked = 0;
+  EXPECT_TRUE(plan_problem(planar_robot(), wall_problem(), {}, settings, [&] {
+                return ++asked > 10;
+              }).interrupted);
 }
 
 TEST(PlanProblem, ShortcutsUnderAConstraintKeepTheirBudgetAndShortenThePath) {

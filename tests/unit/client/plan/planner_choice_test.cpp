@@ -5,21 +5,37 @@
 namespace kinship::plan {
 namespace {
 
+PlannerKind kind_for(PlannerKind wanted, bool is_constrained) {
+  return planner_for({wanted}, is_constrained).value().kind;
+}
+
 TEST(PlannerChoice, ReadsWhatItCanBeTold) {
-  EXPECT_EQ(parse_planner("birrt").value(), Planner::Birrt);
-  EXPECT_EQ(parse_planner("cbirrt2").value(), Planner::Cbirrt2);
-  for (const char* unknown : {"", "BiRRT", "rrt", "by problem"})
+  EXPECT_EQ(parse_planner("birrt").value().kind, PlannerKind::Birrt);
+  EXPECT_EQ(parse_planner("cbirrt2").value().kind, PlannerKind::Cbirrt2);
+  const PlannerChoice ompl = parse_planner("ompl:LazyPRM").value();
+  EXPECT_EQ(ompl.kind, PlannerKind::Ompl);
+  EXPECT_EQ(ompl.ompl_planner, "LazyPRM");
+  EXPECT_EQ(name_of(ompl), "OMPL LazyPRM");
+  for (const char* unknown : {"", "BiRRT", "rrt", "by problem", "ompl:", "ompl"})
     EXPECT_FALSE(parse_planner(unknown)) << unknown;
 }
 
+TEST(PlannerChoice, AnUnknownPlannerOfOmplIsAnsweredWithThoseThereAre) {
+  const Result<PlannerChoice> planner = parse_planner("ompl:Nobody");
+  ASSERT_FALSE(planner);
+  EXPECT_NE(planner.error().message.find("'Nobody'"), std::string::npos);
+  EXPECT_NE(planner.error().message.find("RRTConnect"), std::string::npos);
+}
+
 TEST(PlannerChoice, TheProblemDecidesUnlessSaid) {
-  EXPECT_EQ(planner_for(Planner::ByProblem, false).value(), Planner::Birrt);
-  EXPECT_EQ(planner_for(Planner::ByProblem, true).value(), Planner::Cbirrt2);
-  EXPECT_EQ(planner_for(Planner::Cbirrt2, false).value(), Planner::Birrt);
+  EXPECT_EQ(kind_for(PlannerKind::ByProblem, false), PlannerKind::Birrt);
+  EXPECT_EQ(kind_for(PlannerKind::ByProblem, true), PlannerKind::Cbirrt2);
+  EXPECT_EQ(kind_for(PlannerKind::Cbirrt2, false), PlannerKind::Birrt);
+  EXPECT_EQ(planner_for(parse_planner("ompl:RRT").value(), true).value().ompl_planner, "RRT");
 }
 
 TEST(PlannerChoice, WhatAPlannerCannotDoIsRefusedWithWhatCan) {
-  const Result<Planner> planner = planner_for(Planner::Birrt, true);
+  const Result<PlannerChoice> planner = planner_for({PlannerKind::Birrt}, true);
   ASSERT_FALSE(planner);
   EXPECT_NE(planner.error().message.find("--planner cbirrt2"), std::string::npos);
 }

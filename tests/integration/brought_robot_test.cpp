@@ -1,0 +1,208 @@
+// A robot with all that public URDFs bring (a lift, a gripper with a mimic joint, a mesh in a
+// package, an SRDF) is registered, planned for, reported and guided by kinship-plan alone.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "proto/json/problem_json.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship {
+namespace {
+
+std::string box_link(const std::string& name, const std::string& center, const std::string& size) {
+  return "<link name='" + name + "'><collision><origin xyz='" + center +
+         "'/><geometry><box size='" + size + "'/></geometry></collision></link>";
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& links,
+                  const std::string& rest) {
+  const std::size_t space = links.find(' ');
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + links.substr(0, space) +
+         "'/><child link='" + links.substr(space + 1) + "'/>" + rest + "</joint>";
+}
+
+std::string turning(const std::string& at) {
+  return "<origin xyz='" + at +
+         "'/><axis xyz='0 0 1'/><limit lower='-2' upper='2' effort='1' velocity='1'/>";
+}
+
+const std::string kSliding = "<limit lower='0' upper='0.04' effort='1' velocity='1'/>";
+
+/// base -lift- carriage -j1- upper -j2- fore -j3- hand with two fingers, of which one mimics the
+/// other; a column that is a mesh in mm; a cable on the base that the hand touches at the start.
+std::string lifter_urdf() {
+  return "<robot name='lifter'>" + box_link("base", "0 0 -0.1", "0.2 0.2 0.1") +
+         "<link name='column'><collision><origin xyz='-0.2 -0.025 0'/><geometry><mesh "
+         "filename='package://lifter/meshes/Column.STL' scale='0.001 0.001 0.001'/></geometry>"
+         "</collision></link>" +
+         box_link("cable", "0.68 0 0.22", "0.05 0.02 0.02") +
+         box_link("carriage", "0 0 0", "0.08 0.08 0.08") +
+         box_link("upper", "0.15 0 0", "0.3 0.05 0.04") +
+         box_link("fore", "0.15 0 0", "0.3 0.05 0.04") +
+         box_link("hand", "0.04 0 0", "0.06 0.1 0.04") +
+         box_link("left", "0.04 0 0", "0.06 0.01 0.02") +
+         box_link("right", "0.04 0 0", "0.06 0.01 0.02") +
+         joint("stand", "fixed", "base column", "") + joint("clip", "fixed", "base cable", "") +
+         joint("lift", "prismatic", "base carriage",
+               "<origin xyz='0 0 0.1'/><axis xyz='0 0 1'/><limit lower='0' upper='0.4' effort='1' "
+               "velocity='1'/>") +
+         joint("j1", "revolute", "carriage upper", turning("0 0 0.07")) +
+         joint("j2", "revolute", "upper fore", turning("0.3 0 0.05")) +
+         joint("j3", "revolute", "fore hand", turning("0.32 0 0")) +
+         joint("grip", "prismatic", "hand left",
+               "<origin xyz='0.04 0.01 0'/><axis xyz='0 1 0'/>" + kSliding) +
+         joint("grip_too", "prismatic", "hand right",
+               "<origin xyz='0.04 -0.01 0'/><axis xyz='0 -1 0'/><mimic joint='grip'/>" + kSliding) +
+         "</robot>";
+}
+
+/// From beside the cable to the other side of a post, and up.
+Problem past_the_post(int number) {
+  Problem problem;
+  problem.name = "past-" + std::to_string(number);
+  problem.T_task_base = Eigen::Isometry3d::Identity();
+  problem.start = Eigen::Vector4d(0, 0, 0, 0);
+  problem.goal_configurations = Eigen::Vector4d(0.3, 1.2, 0.2, 0.1 * number);
+  problem.scene.objects.push_back({"post", BoxShape{{0.04, 0.04, 0.2}},
+                                   Eigen::Isometry3d(Eigen::Translation3d(0.35, 0.35, 0.1))});
+  problem.time_limit_s = 600;
+  problem.seed = static_cast<std::uint64_t>(number);
+  return problem;
+}
+
+class BroughtRobot : public testing::Test {
+ protected:
+  BroughtRobot() {
+    std::filesystem::create_directories(directory_ / "lifter/meshes");
+    write("lifter/meshes/Column.STL", test::BoxMesh({50, 50, 600}).binary_stl());
+    write("lifter.urdf", lifter_urdf());
+    write("lifter.srdf",
+          "<robot name='lifter'><disable_collisions link1='cable' link2='hand' "
+          "reason='Never'/><disable_collisions link1='left' link2='cable'/>"
+          "<disable_collisions link1='right' link2='cable'/></robot>");
+    std::string lines;
+    for (int i = 0; i < 6; ++i)
+      lines += json::to_json(past_the_post(i)) + "\n";
+    write("problems.jsonl", lines);
+  }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_.path() / name, std::ios::binary) << text;
+    return directory_.path() / name;
+  }
+
+  /// Runs kinship-plan for the lifter; what it writes is left in results_ and messages_.
+  int plan(const std::vector<std::string>& more, bool with_srdf = true) {
+    std::vector<std::string> arguments = {
+        "--robot",    directory_ / "lifter.urdf",
+        "--tip",      tip_,
+        "--package",  "lifter=" + (directory_ / "lifter").string(),
+        "--problems", directory_ / "problems.jsonl",
+        "--domain",   std::to_string(domain_.number()),
+        "--timeout",  timeout_,
+        "--json"};
+    if (with_srdf)
+      arguments.insert(arguments.end(), {"--srdf", directory_ / "lifter.srdf"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::filesystem::remove(directory_ / "messages");
+    test::Program program("kinship-plan", arguments, directory_ / "messages");
+    std::istringstream lines(program.read_all());
+    const int code = program.wait();
+    messages_ = test::read_text(directory_ / "messages");
+    results_.clear();
+    for (std::string line; std::getline(lines, line);)
+      results_.push_back(json::problem_result_from_json(line).value_or_throw());
+    return code;
+  }
+
+  std::vector<std::string> with_server(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {
+        "--base",   "base",     "--axes", "x,y,z,yaw", "--transfer", "0.08 0 0 0 0 0 1",
+        "--task",   "past",     "--wait", "600",       "--outbox",   directory_ / "outbox",
+        "--server", "127.0.0.1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  std::string tip_ = "hand", timeout_ = "60";  // s
+  test::ReservedDomain domain_;
+  test::TemporaryDirectory directory_;
+  std::vector<ProblemResult> results_;
+  std::string messages_;
+};
+
+TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  EXPECT_EQ(plan(with_server({"--guidance", "auto", "--report", "yes"})), 0) << messages_;
+  ASSERT_EQ(results_.size(), 6U);
+  for (const ProblemResult& result : results_) {
+    EXPECT_TRUE(result.solved) << result.reason;
+    EXPECT_NE(result.guidance_reason, "") << "nobody has experience yet";
+  }
+  EXPECT_NE(messages_.find("6 acknowledged, 0 pending, 0 refused"), std::string::npos) << messages_;
+
+  EXPECT_EQ(plan(with_server({"--guidance", "always"})), 0) << messages_;
+  ASSERT_EQ(results_.size(), 6U);
+  for (const ProblemResult& result : results_) {
+    EXPECT_TRUE(result.solved) << result.reason;
+    EXPECT_TRUE(result.distribution_id) << messages_;
+    EXPECT_EQ(result.arm, Arm::Guided);
+    EXPECT_EQ(result.guidance_reason.empty(), result.share > 0) << result.guidance_reason;
+  }
+}
+
+TEST_F(BroughtRobot, ALabelOfAnotherRobotEndsTheRun) {
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  EXPECT_EQ(plan(with_server({"--label", "cell7"})), 0) << messages_;
+  const int code = plan({"--base", "carriage", "--label", "cell7", "--task", "past"});
+  EXPECT_EQ(code, 1) << messages_;
+  EXPECT_TRUE(results_.empty());
+  EXPECT_NE(messages_.find("cell7"), std::string::npos) << messages_;
+  EXPECT_NE(messages_.find("nothing is planned"), std::string::npos) << messages_;
+}
+
+TEST_F(BroughtRobot, WithoutAServerItPlansUniformlyAndKeepsItsReportsUntilThereIsOne) {
+  timeout_ = "0.3";
+  EXPECT_EQ(plan(with_server({"--report", "yes"})), 0) << messages_;
+  timeout_ = "60";
+  ASSERT_EQ(results_.size(), 6U);
+  EXPECT_TRUE(results_[5].solved) << results_[5].reason;
+  EXPECT_NE(results_[5].guidance_reason, "");
+  EXPECT_NE(messages_.find("planned uniformly"), std::string::npos) << messages_;
+  EXPECT_NE(messages_.find("6 pending"), std::string::npos) << messages_;
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  EXPECT_EQ(plan(with_server({"--report", "yes", "--guidance", "uniform"})), 0) << messages_;
+  EXPECT_NE(messages_.find("12 acknowledged, 0 pending, 0 refused"), std::string::npos)
+      << messages_;
+}
+
+TEST_F(BroughtRobot, TheSrdfSaysWhichLinksMayTouch) {
+  EXPECT_EQ(plan({"--base", "base"}, false), 0) << messages_;
+  ASSERT_EQ(results_.size(), 6U);
+  EXPECT_FALSE(results_[0].solved);
+  EXPECT_NE(results_[0].reason.find("'cable'"), std::string::npos) << results_[0].reason;
+  EXPECT_EQ(plan({"--base", "base"}), 0) << messages_;
+  EXPECT_TRUE(results_.at(0).solved) << results_.at(0).reason;
+}
+
+TEST_F(BroughtRobot, AMimicJointOnTheChainIsRefusedByName) {
+  tip_ = "right";
+  EXPECT_EQ(plan({"--base", "base"}), 2);
+  EXPECT_TRUE(results_.empty());
+  EXPECT_NE(messages_.find("joint 'grip_too' on the chain mimics joint 'grip'"), std::string::npos)
+      << messages_;
+}
+
+}  // namespace
+}  // namespace kinship
