@@ -49,9 +49,10 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   using arguments::between;
   constexpr std::uint64_t kMost = 1'000'000'000;
   PlanSettings& settings = options.settings;
-  app.add_option("--planner", raw.planner,
-                 "birrt, cbirrt2, or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
-                 "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
+  app.add_option(
+         "--planner", raw.planner,
+         "birrt, cbirrt2, roadmap, or ompl:NAME with a planner of OMPL (RRT, RRTConnect, PRM, "
+         "LazyPRM ...; default: birrt, and cbirrt2 for problems with a constraint)")
       ->check([](const std::string& text) {
         const Result<PlannerChoice> planner = parse_planner(text);
         return planner ? std::string() : planner.error().message;

@@ -15,6 +15,7 @@
 #include "client/planning/ompl_planner.hpp"
 #include "client/planning/planning_bounds.hpp"
 #include "client/planning/region_constraint.hpp"
+#include "client/planning/repetition_roadmap.hpp"
 #include "client/planning/shortcut.hpp"
 #include "robots/collision/collision_world.hpp"
 
@@ -169,6 +170,14 @@ class Planning {
                                const planning::ConfigurationSampler& sampler,
                                const planning::BirrtOptions& options) {
     const Eigen::VectorXd& start = problem_.start;
+    if (planner.kind == PlannerKind::Roadmap) {
+      planning::RoadmapOptions roadmap;
+      roadmap.tree = options;
+      return constraint_
+                 ? planning::plan_roadmap(start, goals, {is_free_, *constraint_}, sampler, roadmap,
+                                          generator_)
+                 : planning::plan_roadmap(start, goals, is_free_, sampler, roadmap, generator_);
+    }
     if (planner.kind == PlannerKind::Ompl) {
       const planning::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
       return constraint_

@@ -24,9 +24,12 @@ Result<PlannerChoice> parse_planner(std::string_view text) {
     return PlannerChoice{PlannerKind::Birrt};
   if (text == "cbirrt2")
     return PlannerChoice{PlannerKind::Cbirrt2};
+  if (text == "roadmap")
+    return PlannerChoice{PlannerKind::Roadmap};
   if (!text.starts_with(kOmpl))
-    return Error{ErrorCode::InvalidInput,
-                 "'" + std::string(text) + "' is no planner: give birrt, cbirrt2 or ompl:NAME"};
+    return Error{
+        ErrorCode::InvalidInput,
+        "'" + std::string(text) + "' is no planner: give birrt, cbirrt2, roadmap or ompl:NAME"};
   const std::string name(text.substr(kOmpl.size()));
   const std::vector<std::string> names = planning::ompl_planner_names();
   if (std::ranges::find(names, name) == names.end())
@@ -37,7 +40,7 @@ Result<PlannerChoice> parse_planner(std::string_view text) {
 }
 
 Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained) {
-  if (wanted.kind == PlannerKind::Ompl)
+  if (wanted.kind == PlannerKind::Ompl || wanted.kind == PlannerKind::Roadmap)
     return wanted;
   if (!is_constrained)
     return PlannerChoice{PlannerKind::Birrt};
@@ -54,6 +57,8 @@ std::string name_of(const PlannerChoice& planner) {
       return "BiRRT";
     case PlannerKind::Cbirrt2:
       return "CBiRRT2";
+    case PlannerKind::Roadmap:
+      return "Repetition Roadmap";
     case PlannerKind::Ompl:
       return "OMPL " + planner.ompl_planner;
     case PlannerKind::ByProblem:

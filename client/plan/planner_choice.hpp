@@ -11,6 +11,7 @@ enum class PlannerKind {
   ByProblem,  ///< BiRRT, or CBiRRT2 under a constraint
   Birrt,
   Cbirrt2,
+  Roadmap,
   Ompl
 };
 
@@ -20,7 +21,7 @@ struct PlannerChoice {
   std::string ompl_planner = {};  ///< of planning::ompl_planner_names(); with Ompl only
 };
 
-/// "birrt", "cbirrt2" or "ompl:NAME".
+/// "birrt", "cbirrt2", "roadmap" or "ompl:NAME".
 /// \return InvalidInput that shows the text and what can be said.
 Result<PlannerChoice> parse_planner(std::string_view text);
 
@@ -28,7 +29,7 @@ Result<PlannerChoice> parse_planner(std::string_view text);
 /// \return InvalidInput that names planners which can do what this one cannot.
 Result<PlannerChoice> planner_for(const PlannerChoice& wanted, bool is_constrained);
 
-/// As results and reports name it: "BiRRT", "CBiRRT2", "OMPL RRTConnect".
+/// As results and reports name it: "BiRRT", "CBiRRT2", "Repetition Roadmap", "OMPL RRTConnect".
 std::string name_of(const PlannerChoice& planner);
 
 }  // namespace kinship::plan

@@ -345,6 +345,21 @@ TEST(PlanProblem, APlannerOfOmplAnswersWithAndWithoutAConstraint) {
   }
 }
 
+TEST(PlanProblem, TheRoadmapAnswersWithAndWithoutGuidanceAndConstraint) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::Roadmap;
+  settings.gate_distance = std::numeric_limits<double>::infinity();
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  for (const QueryGuidance& query : {QueryGuidance{}, QueryGuidance{&guidance, Arm::Guided}}) {
+    const ProblemResult free = planned(wall_problem(), settings, query).result;
+    ASSERT_TRUE(free.solved) << free.reason;
+    EXPECT_EQ(free.planner, "Repetition Roadmap");
+    EXPECT_EQ(collisions_along(*free.waypoints, wall_problem()), 0);
+  }
+  const ProblemResult along = planned(line_problem(), settings).result;
+  EXPECT_TRUE(along.solved) << along.reason;
+}
+
 TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {
   PlanSettings settings;
   settings.planner = parse_planner("ompl:RRT").value();

@@ -12,6 +12,7 @@ PlannerKind kind_for(PlannerKind wanted, bool is_constrained) {
 TEST(PlannerChoice, ReadsWhatItCanBeTold) {
   EXPECT_EQ(parse_planner("birrt").value().kind, PlannerKind::Birrt);
   EXPECT_EQ(parse_planner("cbirrt2").value().kind, PlannerKind::Cbirrt2);
+  EXPECT_EQ(parse_planner("roadmap").value().kind, PlannerKind::Roadmap);
   const PlannerChoice ompl = parse_planner("ompl:LazyPRM").value();
   EXPECT_EQ(ompl.kind, PlannerKind::Ompl);
   EXPECT_EQ(ompl.ompl_planner, "LazyPRM");
@@ -31,6 +32,8 @@ TEST(PlannerChoice, TheProblemDecidesUnlessSaid) {
   EXPECT_EQ(kind_for(PlannerKind::ByProblem, false), PlannerKind::Birrt);
   EXPECT_EQ(kind_for(PlannerKind::ByProblem, true), PlannerKind::Cbirrt2);
   EXPECT_EQ(kind_for(PlannerKind::Cbirrt2, false), PlannerKind::Birrt);
+  EXPECT_EQ(kind_for(PlannerKind::Roadmap, false), PlannerKind::Roadmap);
+  EXPECT_EQ(kind_for(PlannerKind::Roadmap, true), PlannerKind::Roadmap);
   EXPECT_EQ(planner_for(parse_planner("ompl:RRT").value(), true).value().ompl_planner, "RRT");
 }
 
