@@ -2,7 +2,11 @@
 // the files it left, `paths import`, `distributions fetch` and `kinship-plan`.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -10,9 +14,11 @@
 #include <vector>
 
 #include "client/experiments/pipeline/query_log.hpp"
+#include "client/experiments/pipeline/server_process.hpp"
 #include "client/experiments/pipeline/study_run.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -144,6 +150,41 @@ TEST_F(StudyCell, UnderAConstraintCanBeRepeatedByHand) {
   }
   experiments::write_test_problems(study, options, "panda", problems);
   EXPECT_EQ(repeat_by_hand({study.name, "panda", "ur10e", "0.1"}, folder, problems.str()), 12);
+}
+
+TEST_F(StudyCell, ARunThatIsKilledTakesItsServerAlong) {
+  const experiments::ServerProcess::Options options{KINSHIP_BIN_DIR "/kinshipd",
+                                                    directory_ / "killed.db", domain_.number(), 1};
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t run = fork();
+  if (run == 0) {
+    const experiments::ServerProcess server(options);
+    const ssize_t told = write(ends[1], "!", 1);
+    pause();
+    _exit(told == 1 ? 0 : 1);
+  }
+  char serves = 0;
+  ASSERT_EQ(read(ends[0], &serves, 1), 1);
+  EXPECT_THROW(experiments::ServerProcess{options}, Failure) << "two servers on one store";
+  kill(run, SIGKILL);
+  waitpid(run, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
+  // The server needs a moment to end; each try takes one.
+  constexpr int kTries = 200;
+  const auto serves_again = [&] {
+    try {
+      const experiments::ServerProcess server(options);
+      return true;
+    } catch (const Failure&) {
+      return false;
+    }
+  };
+  int tries = 1;
+  while (!serves_again() && tries < kTries)
+    ++tries;
+  EXPECT_LT(tries, kTries) << test::read_text(directory_ / "killed.db.log");
 }
 
 TEST_F(StudyCell, AFolderIsNotUsedAgainUnasked) {

@@ -1,11 +1,12 @@
 #include "client/experiments/pipeline/server_process.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <string>
@@ -16,24 +17,24 @@
 namespace kinship::experiments {
 namespace {
 
-/// Where a child's output and messages go.
-class FileActions {
- public:
-  FileActions(int output, const std::filesystem::path& log) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log.c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND, 0644);
-  }
-  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-
-  const posix_spawn_file_actions_t* get() const noexcept { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
+/// Starts a program that ends with this one, however this one ends: left alone it would keep the
+/// store locked against the run that goes on.
+/// \param output  becomes its standard output; its messages are appended to `log`.
+/// \return        its process id; -1 if there is none.
+pid_t start_program(char* const* arguments, int output, const char* log) {
+  const pid_t self = getpid();
+  const pid_t child = fork();
+  if (child != 0)
+    return child;
+  // Between fork and exec: nothing but what a signal handler may call.
+  constexpr int kMode = 0644, kCannotStart = 127;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  const int messages = open(log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, kMode);
+  if (getppid() == self && messages >= 0 && dup2(output, STDOUT_FILENO) >= 0 &&
+      dup2(messages, STDERR_FILENO) >= 0)
+    execv(arguments[0], arguments);
+  _exit(kCannotStart);
+}
 
 /// The next line without the line feed; what there was at the end of the output.
 std::string read_line(int descriptor) {
@@ -69,14 +70,14 @@ ServerProcess::ServerProcess(const Options& options) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
     throw Failure(ErrorCode::Internal, std::string("pipe: ") + std::strerror(errno));
   output_ = ends[0];
-  const int error = posix_spawn(&pid_, options.program.c_str(), FileActions(ends[1], log).get(),
-                                nullptr, arguments.data(), environ);
+  pid_ = start_program(arguments.data(), ends[1], log.c_str());
+  const int error = errno;
   close(ends[1]);
-  const std::string ready = error == 0 ? read_line(output_) : "";
+  const std::string ready = pid_ > 0 ? read_line(output_) : "";
   if (ready.starts_with("ready "))
     return;
   const std::string how =
-      error == 0 ? "ended with " + std::to_string(wait_for_end()) : std::strerror(error);
+      pid_ > 0 ? "ended with " + std::to_string(wait_for_end()) : std::strerror(error);
   close(output_);
   throw Failure(ErrorCode::Unavailable,
                 options.program.string() + " does not serve: " + how + ", see '" + log + "'");
