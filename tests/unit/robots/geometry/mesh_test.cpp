@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <string>
 
 #include "tests/support/box_mesh.hpp"
