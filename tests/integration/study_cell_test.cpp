@@ -49,9 +49,11 @@ struct RepeatedCell {
 class StudyCell : public testing::Test {
  protected:
   std::vector<std::string> study_arguments(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {
-        "open_table", "--quick",  "--out",  out_,         "--models",
-        kModels,      "--domain", domain(), "--kinshipd", KINSHIP_BIN_DIR "/kinshipd"};
+    std::vector<std::string> arguments = {"open_table", "--quick",
+                                          "--out",      out_,
+                                          "--models",   kModels,
+                                          "--domain",   domain(),
+                                          "--kinshipd", std::string(KINSHIP_BIN_DIR) + "/kinshipd"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

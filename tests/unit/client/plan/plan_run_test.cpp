@@ -22,6 +22,9 @@ bool never() { return false; }
 
 /// A folder of this test's own, and the planar arm's URDF in it.
 class PlanRun : public testing::Test {
+ public:
+  ~PlanRun() override { std::filesystem::remove_all(folder_); }
+
  protected:
   PlanRun() {
     std::filesystem::create_directories(folder_);
@@ -33,7 +36,6 @@ class PlanRun : public testing::Test {
     options_.robot.tip_link = description.tip_link;
     options_.guidance = GuidanceMode::Uniform;
   }
-  ~PlanRun() override { std::filesystem::remove_all(folder_); }
 
   static std::string line(const std::string& name) {
     Problem problem = test::wall_problem();
