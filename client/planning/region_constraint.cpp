@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 namespace kinship::planning {
@@ -55,6 +56,15 @@ Eigen::Isometry3d z_to(const Eigen::Vector3d& axis) {
 }
 
 }  // namespace
+
+TaskSpaceRegion upright_region(double tilt_rad) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion region;
+  region.T_region_end.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+  region.bounds.row(0) << -kInfinity, -kInfinity, -kInfinity, -tilt_rad, -tilt_rad, -kInfinity;
+  region.bounds.row(1) = -region.bounds.row(0);
+  return region;
+}
 
 RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpaceRegion& region,
                                    const Eigen::Isometry3d& T_task_base,

@@ -11,6 +11,10 @@
 
 namespace kinship::planning {
 
+/// Carrying upright with a hand that points down: the transfer frame anywhere, its approach
+/// direction within `tilt_rad` of straight down (roll and pitch each).
+TaskSpaceRegion upright_region(double tilt_rad);
+
 /// A task space region as a constraint on the configurations of one robot at one place. Holds its
 /// own copy of the kinematics; allocates nothing after construction. Counts its projections, so
 /// not shared between threads.

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
 
+#include "client/planning/region_constraint.hpp"
 #include "proto/types/task_space_region.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -20,17 +20,6 @@ struct CarryingCell {
   Eigen::Isometry3d T_base_pick = Eigen::Isometry3d::Identity();   ///< of the transfer frame
   Eigen::Isometry3d T_base_place = Eigen::Isometry3d::Identity();  ///< or half a turn about z
 };
-
-/// The transfer frame anywhere, its approach direction within `tilt_rad` of straight down (roll
-/// and pitch each).
-inline TaskSpaceRegion upright_region(double tilt_rad) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  TaskSpaceRegion region;
-  region.T_region_end.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-  region.bounds.row(0) << -kInfinity, -kInfinity, -kInfinity, -tilt_rad, -tilt_rad, -kInfinity;
-  region.bounds.row(1) = -region.bounds.row(0);
-  return region;
-}
 
 /// Bin, post, the container's place and which half of the bin is taken vary.
 inline CarryingCell make_carrying_cell(const kinematics::Chain& chain, std::mt19937_64& generator) {
@@ -67,7 +56,7 @@ inline CarryingCell make_carrying_cell(const kinematics::Chain& chain, std::mt19
   const Eigen::AngleAxisd down(std::numbers::pi, Eigen::Vector3d::UnitX());
   cell.T_base_pick = upright_at(pick_x, pick_y, kPalm_m, 3 * noise(generator)) * down;
   cell.T_base_place = T_base_bin * Eigen::Translation3d(-taken, 0, kPalm_m) * down;
-  cell.upright = upright_region(0.15);
+  cell.upright = planning::upright_region(0.15);
 
   AttachedObject held;
   held.name = "container";

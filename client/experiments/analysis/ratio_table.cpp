@@ -7,16 +7,10 @@
 #include <ostream>
 
 #include "client/experiments/analysis/cell_statistics.hpp"
+#include "client/experiments/formatted.hpp"
 
 namespace kinship::experiments {
 namespace {
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 using Pairs = std::vector<std::pair<const CellResults*, const CellResults*>>;
 

@@ -105,9 +105,7 @@ class Recording {
                                              " is no attempt of study '" + study_.name +
                                              "' by robot '" + member_.label() +
                                              "' as they are now");
-    Attempt& kept = attempts_.insert_or_assign(known->second, attempt).first->second;
-    if (!kept.scene)  // a set of before scenes were recorded; they follow from the index
-      kept.scene = scene_of(read_instance(member_, seed_, known->second));
+    attempts_.insert_or_assign(known->second, attempt);
   }
 
   void write() const {
@@ -135,14 +133,10 @@ class Recording {
     const plan::Reporter reporter{member_.digest, "experiments", study_.name};
     Attempt attempt = plan::make_attempt(reporter, problem, planned, settings);
     attempt.report_uuid = uuid_of(study_.name, member_.label(), index);
-    attempt.scene = scene_of(problem);
+    attempt.scene = plan::record_scene(member_.robot.chain, problem).value_or_throw();
     if (attempt.path)
       attempt.path = rounded(*attempt.path, member_.robot.chain);
     return attempt;
-  }
-
-  RecordedScene scene_of(const Problem& problem) const {
-    return plan::record_scene(member_.robot.chain, problem).value_or_throw();
   }
 
   void add(std::uint32_t index, Attempt attempt) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "client/experiments/formatted.hpp"
 #include "client/experiments/report/html.hpp"
 
 namespace kinship::experiments {
@@ -17,13 +18,6 @@ constexpr double kLegendEntry = 130;
 
 constexpr std::array<const char*, 7> kColours = {"#8a97a5", "#0072b2", "#d55e00", "#009e73",
                                                  "#cc79a7", "#e69f00", "#56b4e9"};
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string text_at(double x, double y, const char* anchor, const std::string& text) {
   return formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor) +

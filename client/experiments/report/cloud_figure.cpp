@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "client/experiments/formatted.hpp"
 #include "client/experiments/report/html.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -16,13 +17,6 @@ constexpr double kSide = 300, kMargin = 12, kTitle = 20;  // pixels
 
 constexpr std::array<const char*, kCloudPostures> kColours = {"#d55e00", "#009e73", "#cc79a7",
                                                               "#e69f00", "#7a3e9d"};
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 Eigen::Matrix3Xd posture_of(const kinematics::Chain& chain, const Eigen::Isometry3d& T_task_base,
                             const Eigen::VectorXd& q) {

@@ -7,6 +7,7 @@
 
 #include "client/experiments/analysis/ratio_table.hpp"
 #include "client/experiments/analysis/study_results.hpp"
+#include "client/experiments/formatted.hpp"
 #include "client/experiments/report/bar_figure.hpp"
 #include "client/experiments/report/cloud_figure.hpp"
 #include "client/experiments/report/html.hpp"
@@ -16,13 +17,6 @@
 
 namespace kinship::experiments {
 namespace {
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[1024];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string protocol_text(const Study& study, const ReportData& data) {
   std::uint32_t seeds = 0;

@@ -7,17 +7,11 @@
 #include <numbers>
 
 #include "client/experiments/analysis/ratio_table.hpp"
+#include "client/experiments/formatted.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::experiments {
 namespace {
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 constexpr const char* kNothing = "\u2013";
 constexpr double kDegrees = 180 / std::numbers::pi;

@@ -5,20 +5,18 @@
 #include <optional>
 #include <utility>
 
+#include "client/experiments/studies/instance_draws.hpp"
 #include "client/experiments/studies/instance_random.hpp"
 #include "client/planning/goal_configurations.hpp"
 #include "client/planning/planning_bounds.hpp"
+#include "client/planning/region_constraint.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/inverse/descent.hpp"
 #include "robots/inverse/inverse.hpp"
 
 namespace kinship::experiments {
 namespace {
 
-constexpr double kJointNoise_rad = 0.1;
-constexpr int kStartTries = 20;
-constexpr double kReached = 1e-6;       // m and rad
 constexpr double kTimeLimit_s = 86400;  // checks end a query, never seconds
 
 /// Draws the instances of one robot.
@@ -29,17 +27,12 @@ class CarryingInstances {
       : layout_(std::move(layout)),
         robot_(robot),
         T_task_base_(placed.T_task_base),
-        descent_(robot.chain),
-        nominal_start_(find_nominal_start()) {}
+        starts_(robot_.chain, find_nominal_start()) {}
 
   Problem draw(std::uint64_t seed, std::uint32_t index) const {
-    for (std::uint32_t draw = 0; draw < kMaxCarryingDraws; ++draw)
-      if (std::optional<Problem> problem = try_draw({seed, index, draw}))
-        return *std::move(problem);
-    throw Failure(ErrorCode::NotFound, "robot '" + robot_.description.label +
-                                           "' has no free start and goals in " +
-                                           std::to_string(kMaxCarryingDraws) + " draws of " +
-                                           instance_name(layout_.name, {seed, index, 0}));
+    return first_possible({seed, index, 0}, kMaxCarryingDraws,
+                          "robot '" + robot_.description.label + "' has no free start and goals in",
+                          layout_.name, [this](const InstanceKey& key) { return try_draw(key); });
   }
 
  private:
@@ -48,15 +41,10 @@ class CarryingInstances {
     problem.T_task_base = T_task_base_;
     problem.time_limit_s = kTimeLimit_s;
     problem.scene = instance.scene;
-    problem.constraint = upright_region(layout_.tilt_rad);
-    AttachedObject container{"container",
-                             robot_.chain.tip_link(),
-                             BoxShape{layout_.container},
+    problem.constraint = planning::upright_region(layout_.tilt_rad);
+    AttachedObject container{"container", robot_.chain.tip_link(), BoxShape{layout_.container},
                              robot_.chain.T_tip_transfer() * T_transfer_container(layout_),
-                             {}};
-    for (const kinematics::ChainLink& link : robot_.chain.links())
-      if (link.joint == robot_.chain.dof() - 1)
-        container.touch_links.push_back(link.name);
+                             last_links(robot_.chain)};
     problem.attached.push_back(std::move(container));
     return problem;
   }
@@ -90,22 +78,6 @@ class CarryingInstances {
                                              "' has no free start in '" + layout_.name +
                                              "': is its placement right?");
     return *std::move(best);
-  }
-
-  std::optional<Eigen::VectorXd> draw_start(const Eigen::Isometry3d& T_task_pick, Noise& noise,
-                                            collision::CollisionWorld& world) const {
-    constexpr int kIterations = 100;
-    const Eigen::Isometry3d T_base_transfer = T_task_base_.inverse() * T_task_pick;
-    for (int i = 0; i < kStartTries; ++i) {
-      inverse::JointVector q = nominal_start_;
-      for (double& angle : q)
-        angle += noise(kJointNoise_rad);
-      const double error =
-          descent_.run(T_base_transfer, inverse::Descent::Limits::Steer, kIterations, q);
-      if (error <= kReached * kReached && robot_.chain.within_limits(q) && !world.collides(q))
-        return q;
-    }
-    return std::nullopt;
   }
 
   /// Free configurations where a plan from the start may go: dof x n.
@@ -142,7 +114,8 @@ class CarryingInstances {
     collision::CollisionWorld world = make_world(problem);
     std::mt19937_64 start_generator = generator_for(key, Use::Start);
     Noise start_noise(start_generator);
-    const auto start = draw_start(instance.T_task_pick, start_noise, world);
+    const auto start = starts_.draw(T_task_base_.inverse() * instance.T_task_pick, start_noise,
+                                    [&](const Eigen::VectorXd& q) { return !world.collides(q); });
     if (!start)
       return std::nullopt;
     problem.start = *start;
@@ -155,8 +128,7 @@ class CarryingInstances {
   const CarryingLayout layout_;
   const models::LoadedRobot robot_;
   const Eigen::Isometry3d T_task_base_;
-  const inverse::Descent descent_;
-  const Eigen::VectorXd nominal_start_;
+  const StartDraws starts_;
 };
 
 }  // namespace

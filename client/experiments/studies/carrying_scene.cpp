@@ -107,13 +107,4 @@ Eigen::Isometry3d T_transfer_container(const CarryingLayout& layout) {
   return Eigen::Isometry3d(Eigen::Translation3d(0, 0, kRimBelowPalm_m + layout.container.z() / 2));
 }
 
-TaskSpaceRegion upright_region(double tilt_rad) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  TaskSpaceRegion region;
-  region.T_region_end.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-  region.bounds.row(0) << -kInfinity, -kInfinity, -kInfinity, -tilt_rad, -tilt_rad, -kInfinity;
-  region.bounds.row(1) = -region.bounds.row(0);
-  return region;
-}
-
 }  // namespace kinship::experiments

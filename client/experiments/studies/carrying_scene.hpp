@@ -62,7 +62,4 @@ CarryingScene nominal_carrying_scene(const CarryingLayout& layout);
 /// The container in the transfer frame: its rim between the fingers.
 Eigen::Isometry3d T_transfer_container(const CarryingLayout& layout);
 
-/// The transfer frame anywhere, looking down but for the tilt.
-TaskSpaceRegion upright_region(double tilt_rad);
-
 }  // namespace kinship::experiments

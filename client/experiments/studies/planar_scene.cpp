@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "client/experiments/studies/instance_draws.hpp"
 #include "client/experiments/studies/instance_random.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/inverse/descent.hpp"
 #include "robots/inverse/inverse.hpp"
 
 namespace kinship::experiments {
@@ -21,10 +21,7 @@ constexpr double kCarriedLength_m = 0.06, kCarriedWidth_m = 0.08;
 constexpr double kBoxNoise_m = 0.02, kBoxNoise_rad = 0.04;
 constexpr double kStartNoise_m = 0.02, kStartNoise_rad = 0.06;
 constexpr double kGoalNoise_m = 0.01, kGoalNoise_rad = 0.04;
-constexpr double kJointNoise_rad = 0.1;
 
-constexpr int kStartTries = 20;
-constexpr double kReached = 1e-6;       // m and rad
 constexpr double kTimeLimit_s = 86400;  // checks end a query, never seconds
 
 Eigen::Isometry3d in_space(const PlanarPose& pose) {
@@ -58,17 +55,12 @@ class PlanarInstances {
       : layout_(std::move(layout)),
         robot_(robot),
         T_task_base_(placed.T_task_base),
-        descent_(robot.chain),
-        nominal_start_(find_nominal_start()) {}
+        starts_(robot_.chain, find_nominal_start()) {}
 
   Problem draw(std::uint64_t seed, std::uint32_t index) const {
-    for (std::uint32_t draw = 0; draw < kMaxPlanarDraws; ++draw)
-      if (std::optional<Problem> problem = try_draw({seed, index, draw}))
-        return *std::move(problem);
-    throw Failure(ErrorCode::NotFound, "robot '" + robot_.description.label +
-                                           "' has no free start and goal in " +
-                                           std::to_string(kMaxPlanarDraws) + " draws of " +
-                                           instance_name(layout_.name, {seed, index, 0}));
+    return first_possible({seed, index, 0}, kMaxPlanarDraws,
+                          "robot '" + robot_.description.label + "' has no free start and goal in",
+                          layout_.name, [this](const InstanceKey& key) { return try_draw(key); });
   }
 
  private:
@@ -84,14 +76,9 @@ class PlanarInstances {
                                        in_space(box.pose)});
     }
     AttachedObject carried{
-        "carried",
-        robot_.chain.tip_link(),
+        "carried", robot_.chain.tip_link(),
         BoxShape{{kCarriedLength_m + 2 * spare_m, kCarriedWidth_m + 2 * spare_m, kHeight_m}},
-        robot_.chain.T_tip_transfer(),
-        {}};
-    for (const kinematics::ChainLink& link : robot_.chain.links())
-      if (link.joint == robot_.chain.dof() - 1)
-        carried.touch_links.push_back(link.name);
+        robot_.chain.T_tip_transfer(), last_links(robot_.chain)};
     problem.attached.push_back(std::move(carried));
     problem.T_task_goal = in_space(layout.goal);
     return problem;
@@ -127,22 +114,6 @@ class PlanarInstances {
     return *std::move(best);
   }
 
-  std::optional<Eigen::VectorXd> draw_start(const PlanarPose& pose, Noise& noise,
-                                            collision::CollisionWorld& world) const {
-    constexpr int kIterations = 100;
-    const Eigen::Isometry3d T_base_transfer = T_task_base_.inverse() * in_space(pose);
-    for (int i = 0; i < kStartTries; ++i) {
-      inverse::JointVector q = nominal_start_;
-      for (double& angle : q)
-        angle += noise(kJointNoise_rad);
-      const double error =
-          descent_.run(T_base_transfer, inverse::Descent::Limits::Steer, kIterations, q);
-      if (error <= kReached * kReached && robot_.chain.within_limits(q) && !world.collides(q))
-        return q;
-    }
-    return std::nullopt;
-  }
-
   bool has_free_goal(const PlanarLayout& layout, std::uint64_t seed) const {
     constexpr int kCandidates = 20;
     collision::CollisionWorld world = make_world(make_problem(layout, layout.spare_m));
@@ -164,7 +135,8 @@ class PlanarInstances {
     collision::CollisionWorld world = make_world(problem);
     std::mt19937_64 start_generator = generator_for(key, Use::Start);
     Noise start_noise(start_generator);
-    const std::optional<Eigen::VectorXd> start = draw_start(layout.start, start_noise, world);
+    const auto start = starts_.draw(T_task_base_.inverse() * in_space(layout.start), start_noise,
+                                    [&](const Eigen::VectorXd& q) { return !world.collides(q); });
     if (!start || !has_free_goal(layout, problem.seed))
       return std::nullopt;
     problem.start = *start;
@@ -174,8 +146,7 @@ class PlanarInstances {
   const PlanarLayout layout_;
   const models::LoadedRobot robot_;
   const Eigen::Isometry3d T_task_base_;
-  const inverse::Descent descent_;
-  const Eigen::VectorXd nominal_start_;
+  const StartDraws starts_;
 };
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST(CarryingScene, TheHandMayTiltAsFarAsTheTaskSaysAndTurnAboutTheVertical) {
   const Study& study = find_study("cobots");
   const Problem problem = study.make_instances(robot, study.robots.at(3))(kSeed, 0);
   const planning::RegionConstraint constraint(
-      robot.chain, upright_region(kTilt_rad), *problem.T_task_base,
+      robot.chain, planning::upright_region(kTilt_rad), *problem.T_task_base,
       planning::planning_bounds(robot.chain, problem.start));
   Eigen::VectorXd q = problem.start;
   q[6] += 0.3;  // the last axis is vertical
