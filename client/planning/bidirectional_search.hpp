@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/planning/birrt.hpp"
 #include "client/planning/planning_budget.hpp"
@@ -54,6 +57,8 @@ class BidirectionalSearch {
     Eigen::MatrixXd free_goals;
     if (auto answer = answer_at_once(start, goals, free_goals))
       return *std::move(answer);
+    if (auto path = go_straight(free_goals))
+      return summary(std::move(path), "");
     return search();
   }
 
@@ -126,6 +131,24 @@ class BidirectionalSearch {
     Eigen::MatrixXd path(start.size(), 2);
     path << start, goal;
     return path;
+  }
+
+  /// Extends the start tree from its root towards one goal after the other, the nearest first.
+  /// Where nothing is in the way, no sample can do better. \return the path to the first one reached.
+  std::optional<Eigen::MatrixXd> go_straight(const Eigen::MatrixXd& goals) {
+    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd distances = (goals.colwise() - start).colwise().norm();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(goals.cols()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::ranges::stable_sort(order, {}, [&](Eigen::Index goal) { return distances[goal]; });
+    for (const Eigen::Index goal : order) {
+      if (budget_.exhausted())
+        return std::nullopt;
+      const Extension there = steering_.extend(start_tree_, 0, goals.col(goal), Aim::Node, budget_);
+      if (there.reached)
+        return join(there.node, goal);
+    }
+    return std::nullopt;
   }
 
   /// One extension of each tree. \return the path if they met.
