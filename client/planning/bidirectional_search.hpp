@@ -134,7 +134,8 @@ class BidirectionalSearch {
   }
 
   /// Extends the start tree from its root towards one goal after the other, the nearest first.
-  /// Where nothing is in the way, no sample can do better. \return the path to the first one reached.
+  /// Where nothing is in the way, no sample can do better. \return the path to the first one
+  /// reached.
   std::optional<Eigen::MatrixXd> go_straight(const Eigen::MatrixXd& goals) {
     const Eigen::VectorXd start = start_tree_.node(0);
     const Eigen::VectorXd distances = (goals.colwise() - start).colwise().norm();
@@ -156,7 +157,7 @@ class BidirectionalSearch {
     Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
     Tree& other = grow_start_ ? goal_tree_ : start_tree_;
     grow_start_ = !grow_start_;
-    const Eigen::VectorXd sample = sampler_.sample(generator_);
+    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_share());
     const Eigen::Index near = grown.nearest(sample);
     const Extension there =
         steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
@@ -166,6 +167,14 @@ class BidirectionalSearch {
       return std::nullopt;
     const bool start_grew = &grown == &start_tree_;
     return join(start_grew ? there.node : met.node, start_grew ? met.node : there.node);
+  }
+
+  /// A query that the mixture has not solved soon may need what it does not cover, and without any
+  /// uniform samples no patience would find that.
+  double guided_share() const {
+    constexpr std::uint64_t kPatience = 1000;  // samples
+    constexpr double kLateShare = 0.9;
+    return iterations_ <= kPatience ? sampler_.share() : std::min(sampler_.share(), kLateShare);
   }
 
   Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {

@@ -42,9 +42,9 @@ ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinema
   share_ = share;
 }
 
-Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator) const {
+Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator, double share) const {
   std::uniform_real_distribution<double> unit(0, 1);
-  if (guided_ && unit(generator) < share_)
+  if (guided_ && unit(generator) < share)
     if (auto q = sample_guided(generator))
       return *std::move(q);
   Eigen::VectorXd q(bounds_.cols());

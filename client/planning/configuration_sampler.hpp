@@ -32,7 +32,9 @@ class ConfigurationSampler {
   ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
                        const Mixture& mixture, double share);
 
-  Eigen::VectorXd sample(std::mt19937_64& generator) const;
+  Eigen::VectorXd sample(std::mt19937_64& generator) const { return sample(generator, share_); }
+  /// The same with another share of guided samples; a uniform sampler has none.
+  Eigen::VectorXd sample(std::mt19937_64& generator, double share) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
   double share() const noexcept { return share_; }  ///< 0 if uniform

@@ -34,7 +34,7 @@ struct TransferParameters {
 
 /// How configurations become a mixture.
 struct DensityParameters {
-  int components = 50;                       ///< K, lowered if there are too few configurations
+  int components = 100;                      ///< K, lowered if there are too few configurations
   double covariance_floor = 1e-4;            ///< added to each variance, squared joint units
   bool equal_path_weights = true;            ///< every path weighs the same, however long
   Weighting weighting = Weighting::Sources;  ///< of source robots against each other

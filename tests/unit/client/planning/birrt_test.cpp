@@ -62,6 +62,32 @@ TEST(Birrt, AStartThatIsAGoalIsAPathOfTwoEqualWaypoints) {
   }
 }
 
+TEST(Birrt, GoesStraightToTheNearestGoalThatNothingHides) {
+  Eigen::MatrixXd goals(2, 3);
+  goals << at(0.8, -0.5), at(-0.8, 0.9), at(-0.8, 0.8);  // behind the wall, on this side twice
+  WallWorld world;
+  const PlanSummary summary = plan(world, goals, 1);
+  ASSERT_TRUE(summary.waypoints);
+  EXPECT_EQ(summary.iterations, 0U) << "no sample was needed";
+  EXPECT_EQ(summary.waypoints->rightCols(1), goals.col(2));
+  EXPECT_EQ(summary.waypoints->row(0).minCoeff(), summary.waypoints->row(0).maxCoeff());
+  EXPECT_EQ(summary.collision_checks, world.asked);
+  EXPECT_EQ(summary.collision_checks, 1U + 3 + 26) << "start, goals, 1.3 in steps of 0.05";
+}
+
+TEST(Birrt, AMixtureThatCoversNoWayOutDelaysAPathButNeverPreventsIt) {
+  const Mixture beside_the_start(Eigen::VectorXd::Ones(1), kStart,
+                                 {1e-4 * Eigen::MatrixXd::Identity(2, 2)});
+  const ConfigurationSampler sampler(square_bounds(), test::PlanarArm{{0.5, 0.5}}.chain(),
+                                     beside_the_start, 1);
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    WallWorld world;
+    const PlanSummary summary = plan(world, kGoal, seed, options(), sampler);
+    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    EXPECT_GT(summary.iterations, 1000U);
+  }
+}
+
 TEST(Birrt, CountsEveryConfigurationItAsksAbout) {
   WallWorld world;
   const PlanSummary summary = plan(world, kGoal, 1);
