@@ -172,7 +172,7 @@ class BidirectionalSearch {
   /// A query that the mixture has not solved soon may need what it does not cover, and without any
   /// uniform samples no patience would find that.
   double guided_share() const {
-    constexpr std::uint64_t kPatience = 1000;  // samples
+    constexpr std::uint64_t kPatience = 300;  // samples
     constexpr double kLateShare = 0.9;
     return iterations_ <= kPatience ? sampler_.share() : std::min(sampler_.share(), kLateShare);
   }

@@ -34,7 +34,7 @@ struct PlanSummary {
 /// constraints. Every goal configuration is a root of the goal tree. First the straight line from
 /// the start to each goal is tried, the nearest first. Then each iteration extends one tree towards
 /// a sample (overshot) until something is in the way, then the other tree towards where that came;
-/// then they swap. From the 1000th sample on at most nine of ten are guided, so that a mixture
+/// then they swap. From the 300th sample on at most nine of ten are guided, so that a mixture
 /// which does not cover the way out delays a path and never prevents it.
 /// Every waypoint was checked, start and goal included. A start that is a free goal is answered
 /// with [start, goal], without an iteration.
