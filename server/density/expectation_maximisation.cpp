@@ -1,85 +1,124 @@
 #include "server/density/expectation_maximisation.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
-#include "proto/mixture/component_densities.hpp"
-#include "server/density/responsibilities.hpp"
+#include "server/density/block_posterior.hpp"
+#include "server/density/packed_mixture.hpp"
+#include "server/density/parallel.hpp"
 
 namespace kinship::density {
 namespace {
 
-constexpr Eigen::Index kBlock = 256;  // points whose responsibilities stay in the cache
+constexpr int kMostChunks = 32;
 
-/// All sums at once: one matrix product with the features 1, q_i, q_i q_j of each point.
-class MomentSums {
- public:
-  MomentSums(Eigen::Index dimension, Eigen::Index components)
-      : dimension_(dimension),
-        sums_(Eigen::MatrixXd::Zero(1 + dimension + dimension * (dimension + 1) / 2, components)) {}
+/// How many parts a sum over blocks has: a function of the sizes alone, so that its value does not
+/// depend on the threads; few enough that their sums take no more memory than the points.
+int chunks(const BlockPoints& points, int numbers_per_chunk) {
+  const double numbers = static_cast<double>(points.blocks()) * kBlockPoints * points.dimension();
+  return static_cast<int>(std::clamp(numbers / numbers_per_chunk, 1.0,
+                                     static_cast<double>(std::min(kMostChunks, points.blocks()))));
+}
 
-  /// \param points   d x n.
-  /// \param masses   n x K, responsibility times point weight.
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& points,
-           const Eigen::Ref<const Eigen::MatrixXd>& masses) {
-    features_.resize(points.cols(), sums_.rows());
-    features_.col(0).setOnes();
-    features_.middleCols(1, dimension_) = points.transpose();
-    Eigen::Index column = 1 + dimension_;
-    for (Eigen::Index i = 0; i < dimension_; ++i)
-      for (Eigen::Index j = i; j < dimension_; ++j)
-        features_.col(column++) = features_.col(1 + i).cwiseProduct(features_.col(1 + j));
-    sums_.noalias() += features_.transpose() * masses;
-  }
+int begin_of_chunk(const BlockPoints& points, int chunk, int count) {
+  return static_cast<int>(static_cast<std::int64_t>(points.blocks()) * chunk / count);
+}
 
-  Moments moments() const {
-    return {sums_.row(0).transpose(), sums_.middleRows(1, dimension_),
-            sums_.bottomRows(dimension_ * (dimension_ + 1) / 2)};
-  }
-
- private:
-  Eigen::Index dimension_;
-  Eigen::MatrixXd sums_;      // features x K
-  Eigen::MatrixXd features_;  // n x features
+/// The sums of one chunk.
+struct Partial {
+  AlignedNumbers sums;  // packed_size(d) x K, component by component
+  double log_likelihood = 0;
 };
+
+void add_block(const BlockPoints& points, int block, const BlockPosterior& posterior,
+               const Computation& computation, Partial& partial) {
+  const int packed = packed_size(points.dimension());
+  const double least_peak = computation.prune ? std::exp(-BlockPosterior::kNegligible) : 0;
+  const double* weights = points.weights(block);
+  for (int i = 0; i < kBlockPoints; ++i)
+    partial.log_likelihood += weights[i] * posterior.log_densities()[i];
+  for (int row = 0; row < posterior.count(); ++row)
+    if (posterior.peak(row) > least_peak)
+      computation.kernels->add_moments(
+          points.dimension(), points.points(block), posterior.responsibilities(row), weights,
+          partial.sums.data() + static_cast<std::ptrdiff_t>(posterior.component(row)) * packed);
+}
+
+/// \param visit  called with each block of a chunk, in order, and its posterior.
+template <typename Visit>
+void visit_blocks(const PackedMixture& packed, const BlockPoints& points, int chunk_count,
+                  const Computation& computation, const Visit& visit) {
+  for_each_part(computation.threads, chunk_count, [&](int chunk) {
+    BlockPosterior posterior(packed, *computation.kernels, computation.prune);
+    const int end = begin_of_chunk(points, chunk + 1, chunk_count);
+    for (int block = begin_of_chunk(points, chunk, chunk_count); block < end; ++block) {
+      posterior.evaluate(points, block);
+      visit(chunk, block, posterior);
+    }
+  });
+}
 
 }  // namespace
 
-Expectation expectation(const Mixture& mixture, const WeightedPoints& points) {
-  const mixture::ComponentDensities components(mixture);
-  MomentSums sums(mixture.dimension(), mixture.size());
-  double log_likelihood = 0;
-  for (Eigen::Index begin = 0; begin < points.points.cols(); begin += kBlock) {
-    const Eigen::Index count = std::min(kBlock, points.points.cols() - begin);
-    Posterior block = posterior(components, points.points.middleCols(begin, count));
-    const Eigen::VectorXd weights = points.weights.segment(begin, count);
-    log_likelihood += weights.dot(block.log_densities);
-    block.responsibilities.array().colwise() *= weights.array();
-    sums.add(points.points.middleCols(begin, count), block.responsibilities);
+Expectation expectation(const Mixture& mixture, const BlockPoints& points,
+                        const Computation& computation) {
+  const PackedMixture packed(mixture, points.offset());
+  const int numbers = packed_size(points.dimension()) * packed.size();
+  const int count = chunks(points, numbers);
+  std::vector<Partial> partials(static_cast<std::size_t>(count));
+  for (Partial& partial : partials)
+    partial.sums.assign(static_cast<std::size_t>(numbers), 0.0);
+  visit_blocks(packed, points, count, computation,
+               [&](int chunk, int block, const BlockPosterior& posterior) {
+                 add_block(points, block, posterior, computation,
+                           partials[static_cast<std::size_t>(chunk)]);
+               });
+
+  Expectation result;
+  result.moments.dimension = points.dimension();
+  result.moments.sums = Eigen::MatrixXd::Zero(packed_size(points.dimension()), packed.size());
+  for (const Partial& partial : partials) {
+    result.moments.sums += Eigen::Map<const Eigen::MatrixXd>(
+        partial.sums.data(), result.moments.sums.rows(), result.moments.sums.cols());
+    result.mean_log_likelihood += partial.log_likelihood;
   }
-  return {sums.moments(), log_likelihood / points.weights.sum()};
+  result.mean_log_likelihood /= points.total_weight();
+  return result;
 }
 
-Moments moments_of_clusters(const WeightedPoints& points,
-                            const std::vector<Eigen::Index>& component_of_point,
-                            Eigen::Index components) {
-  MomentSums sums(points.points.rows(), components);
-  for (Eigen::Index begin = 0; begin < points.points.cols(); begin += kBlock) {
-    const Eigen::Index count = std::min(kBlock, points.points.cols() - begin);
-    Eigen::MatrixXd masses = Eigen::MatrixXd::Zero(count, components);
-    for (Eigen::Index i = 0; i < count; ++i)
-      masses(i, component_of_point[static_cast<std::size_t>(begin + i)]) =
-          points.weights[begin + i];
-    sums.add(points.points.middleCols(begin, count), masses);
-  }
-  return sums.moments();
+double mean_log_density(const Mixture& mixture, const BlockPoints& points, double background_share,
+                        double log_background, const Computation& computation) {
+  const PackedMixture packed(mixture, points.offset());
+  const int count = chunks(points, 1);
+  const double background =
+      background_share > 0 ? std::log(background_share) + log_background : -1e300;
+  const double log_share = std::log1p(-background_share);
+  std::vector<double> sums(static_cast<std::size_t>(count), 0.0);
+  visit_blocks(packed, points, count, computation,
+               [&](int chunk, int block, const BlockPosterior& posterior) {
+                 for (int i = 0; i < kBlockPoints; ++i) {
+                   const double fitted = log_share + posterior.log_densities()[i];
+                   const double most = std::max(fitted, background);
+                   const double least = std::min(fitted, background);
+                   sums[static_cast<std::size_t>(chunk)] +=
+                       points.weights(block)[i] * (most + std::log1p(std::exp(least - most)));
+                 }
+               });
+  double total = 0;
+  for (const double sum : sums)
+    total += sum;
+  return total / points.total_weight();
 }
 
-Mixture maximisation(const Moments& moments, double covariance_floor) {
-  const Eigen::Index dimension = moments.sums.rows();
-  const double least_mass = std::min(static_cast<double>(dimension + 1), moments.masses.maxCoeff());
+Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
+                     const Eigen::VectorXd& floors) {
+  const Eigen::Index dimension = moments.dimension;
+  const double least_mass =
+      std::min(static_cast<double>(dimension + 1), moments.sums.row(0).maxCoeff());
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index k = 0; k < moments.masses.size(); ++k)
-    if (moments.masses[k] >= least_mass)
+  for (Eigen::Index k = 0; k < moments.components(); ++k)
+    if (moments.mass(k) >= least_mass)
       kept.push_back(k);
 
   Eigen::VectorXd weights(static_cast<Eigen::Index>(kept.size()));
@@ -87,17 +126,18 @@ Mixture maximisation(const Moments& moments, double covariance_floor) {
   std::vector<Eigen::MatrixXd> covariances;
   for (Eigen::Index column = 0; column < weights.size(); ++column) {
     const Eigen::Index k = kept[static_cast<std::size_t>(column)];
-    const double mass = moments.masses[k];
+    const double mass = moments.mass(k);
+    const Eigen::VectorXd mean = moments.sums.col(k).segment(1, dimension) / mass;
     weights[column] = mass;
-    means.col(column) = moments.sums.col(k) / mass;
+    means.col(column) = mean + offset;
     Eigen::MatrixXd covariance(dimension, dimension);
-    Eigen::Index entry = 0;
+    Eigen::Index entry = 1 + dimension;
     for (Eigen::Index i = 0; i < dimension; ++i)
       for (Eigen::Index j = i; j < dimension; ++j) {
-        covariance(i, j) = moments.squares(entry++, k) / mass - means(i, column) * means(j, column);
+        covariance(i, j) = moments.sums(entry++, k) / mass - mean[i] * mean[j];
         covariance(j, i) = covariance(i, j);
       }
-    covariance.diagonal() = covariance.diagonal().cwiseMax(0).array() + covariance_floor;
+    covariance.diagonal() = covariance.diagonal().cwiseMax(0) + floors;
     covariances.push_back(std::move(covariance));
   }
   return {weights / weights.sum(), std::move(means), std::move(covariances)};

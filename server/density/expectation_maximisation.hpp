@@ -1,20 +1,31 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "proto/types/mixture.hpp"
-#include "server/density/weighted_points.hpp"
+#include "server/density/block_kernels.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/instruction_set.hpp"
 
 namespace kinship::density {
 
+/// How sums over points are computed; what comes out differs by rounding only, and by nothing
+/// between numbers of threads.
+struct Computation {
+  int threads = 1;
+  bool prune = true;  ///< leave out what no digit of the result shows
+  const BlockKernels* kernels = &widest_kernels();
+};
+
 /// What the points say about each component: sums over the points, weighted by point weight and
-/// responsibility. Relative to the points' offset.
+/// responsibility, relative to the points' offset. Column k holds those of 1 (the mass), of
+/// q_0 ... q_{d-1}, and of q_i q_j, (0,0), (0,1) ... (1,1) ...
 struct Moments {
-  Eigen::VectorXd masses;  ///< K
-  Eigen::MatrixXd sums;    ///< d x K, of points
-  Eigen::MatrixXd
-      squares;  ///< d (d + 1) / 2 x K, of products of two joints, (0,0), (0,1) ... (1,1) ...
+  Eigen::MatrixXd sums;  ///< (d + 1) (d + 2) / 2 x K
+  int dimension = 0;
+
+  Eigen::Index components() const noexcept { return sums.cols(); }
+  double mass(Eigen::Index k) const { return sums(0, k); }
 };
 
 struct Expectation {
@@ -22,21 +33,28 @@ struct Expectation {
   double mean_log_likelihood = 0;  ///< weighted, per point, nats
 };
 
-/// E-step: the moments under the responsibilities of a mixture, block by block.
+/// E-step: the moments under the responsibilities of a mixture.
+///
+/// Pruned, a component is left out of a block whose box bounds say that it has at most e^-42 of the
+/// density of another one at each point there: of a sum it would have been 6e-19.
 /// \throws Failure(Internal) if a covariance is not positive definite.
 /// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 9.23 and 9.28.
-Expectation expectation(const Mixture& mixture, const WeightedPoints& points);
+Expectation expectation(const Mixture& mixture, const BlockPoints& points,
+                        const Computation& computation);
 
-/// The moments if each point belongs to one component entirely.
-/// \param component_of_point  n indices below `components`.
-Moments moments_of_clusters(const WeightedPoints& points,
-                            const std::vector<Eigen::Index>& component_of_point,
-                            Eigen::Index components);
+/// The weighted mean over the points of log((1 - background_share) p + background_share *
+/// exp(log_background)), where p is the mixture's density: a score that a few points far away
+/// cannot decide.
+double mean_log_density(const Mixture& mixture, const BlockPoints& points, double background_share,
+                        double log_background, const Computation& computation);
 
-/// M-step: the mixture that fits the moments best, with `covariance_floor` added to each variance.
-/// Components whose mass is below d + 1 average points have lost their data and are left out; the
-/// heaviest stays in any case.
+/// M-step: the mixture that fits the moments best, with the floor of its joint added to each
+/// variance. Components whose mass is below d + 1 average points have lost their data and are left
+/// out; the heaviest stays in any case.
+/// \param offset  d: of the points.
+/// \param floors  d, squared joint units.
 /// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 9.24 to 9.27.
-Mixture maximisation(const Moments& moments, double covariance_floor);
+Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
+                     const Eigen::VectorXd& floors);
 
 }  // namespace kinship::density

@@ -2,21 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "server/density/expectation_maximisation.hpp"
-#include "server/density/kmeans.hpp"
-#include "server/density/weighted_points.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/distinct_points.hpp"
+#include "server/density/em_run.hpp"
 
 namespace kinship::density {
 namespace {
 
-constexpr Eigen::Index kMaxStartPoints = 20'000;  // k-means sees at most so many
-constexpr int kLloydIterations = 10;
 constexpr double kLargestValue = 1e6;  // joint units; squares of it still leave room for the floor
+
+void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                   const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
+  if (configurations.cols() != weights.size())
+    throw std::invalid_argument("fit_mixture: one weight per configuration");
+  if (options.components < 1 || !(options.covariance_floor >= 0) ||
+      !std::isfinite(options.covariance_floor))
+    throw std::invalid_argument(
+        "fit_mixture: need components >= 1, a finite covariance_floor >= 0");
+  const Eigen::VectorXd& floors = options.floors_of_joints;
+  if (floors.size() != 0 &&
+      (floors.size() != configurations.rows() || !floors.allFinite() || floors.minCoeff() < 0))
+    throw std::invalid_argument("fit_mixture: need one finite floor >= 0 per joint");
+}
 
 std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                  const Eigen::Ref<const Eigen::VectorXd>& weights) {
@@ -36,41 +47,24 @@ std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& config
   return std::nullopt;
 }
 
-/// Every how-many-th point, so that at most kMaxStartPoints are left.
-WeightedPoints thinned(const WeightedPoints& points) {
-  const Eigen::Index step = (points.points.cols() - 1) / kMaxStartPoints + 1;
-  const auto every = Eigen::seq(Eigen::Index{0}, points.points.cols() - 1, step);
-  return {points.points(Eigen::all, every), points.weights(every), points.offset};
+EmOptions em_options(Eigen::Index dimension, const FitOptions& options) {
+  return {options.floors_of_joints.size() > 0
+              ? options.floors_of_joints
+              : Eigen::VectorXd::Constant(dimension, options.covariance_floor),
+          options.max_iterations, options.tolerance, options.computation};
 }
 
-/// The mixture of k-means clusters.
-Mixture start_mixture(const WeightedPoints& points, Eigen::Index components,
+FitSummary fit_points(const BlockPoints& points, Eigen::Index components,
                       const FitOptions& options) {
-  std::mt19937_64 generator(options.seed);
-  const WeightedPoints sample = thinned(points);
-  const Eigen::MatrixXd centres = move_centres(
-      sample.points, sample.weights,
-      choose_centres(sample.points, sample.weights, components, generator), kLloydIterations);
-  return maximisation(
-      moments_of_clusters(points, nearest_centres(points.points, centres), centres.cols()),
-      options.covariance_floor);
-}
-
-FitSummary fit_points(const WeightedPoints& points, Eigen::Index components,
-                      const FitOptions& options) {
-  Mixture mixture = start_mixture(points, components, options);
-  Expectation current = expectation(mixture, points);
-  std::vector<double> log_likelihoods;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    mixture = maximisation(current.moments, options.covariance_floor);
-    const double before = current.mean_log_likelihood;
-    current = expectation(mixture, points);
-    log_likelihoods.push_back(current.mean_log_likelihood);
-    if (current.mean_log_likelihood - before < options.tolerance)
-      break;
+  EmOptions em = em_options(points.dimension(), options);
+  Mixture start = start_mixture(thinned(points, kSamplePoints), components, options.seed, em);
+  const Eigen::Index sample = std::max(kSamplePoints, kSamplePointsPerComponent * components);
+  if (points.size() > 4 * sample) {
+    start = run_em(std::move(start), thinned(points, sample), em).mixture;
+    em.max_iterations = std::min(em.max_iterations, kFullPasses);
   }
-  return {{mixture.weights(), mixture.means().colwise() + points.offset, mixture.covariances()},
-          std::move(log_likelihoods)};
+  EmRun run = run_em(std::move(start), points, em);
+  return {std::move(run.mixture), std::move(run.log_likelihoods)};
 }
 
 }  // namespace
@@ -78,27 +72,23 @@ FitSummary fit_points(const WeightedPoints& points, Eigen::Index components,
 Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
                                const FitOptions& options) {
-  if (configurations.cols() != weights.size())
-    throw std::invalid_argument("fit_mixture: one weight per configuration");
-  if (options.components < 1 || !(options.covariance_floor >= 0) ||
-      !std::isfinite(options.covariance_floor))
-    throw std::invalid_argument(
-        "fit_mixture: need components >= 1, a finite covariance_floor >= 0");
+  check_options(configurations, weights, options);
   if (const auto error = check_input(configurations, weights))
     return *error;
 
-  const WeightedPoints points = prepare_points(configurations, weights);
-  const Eigen::Index distinct = points.points.cols();
+  DistinctPoints distinct = distinct_points(configurations, weights);
+  const auto count = static_cast<Eigen::Index>(distinct.columns.size());
   const Eigen::Index least = configurations.rows() + 1;
-  if (distinct < least)
-    return Error{ErrorCode::InvalidInput, "fit: " + std::to_string(distinct) +
+  if (count < least)
+    return Error{ErrorCode::InvalidInput, "fit: " + std::to_string(count) +
                                               " distinct configurations, need at least " +
                                               std::to_string(least) + " for " +
                                               std::to_string(configurations.rows()) + " joints"};
   const Eigen::Index components =
-      std::clamp(distinct / (2 * least), Eigen::Index{1}, Eigen::Index{options.components});
+      std::clamp(count / (2 * least), Eigen::Index{1}, Eigen::Index{options.components});
   try {
-    return fit_points(points, components, options);
+    const Eigen::VectorXd mean = mean_of(configurations, distinct);
+    return fit_points({configurations, std::move(distinct), mean}, components, options);
   } catch (const Failure& failure) {
     return Error{ErrorCode::InvalidInput,
                  std::string("fit: ") + failure.what() + "; covariance_floor " +

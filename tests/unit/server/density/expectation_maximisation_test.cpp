@@ -13,14 +13,31 @@ namespace {
 
 constexpr std::uint64_t kSeed = 9;
 
-WeightedPoints random_points(Eigen::Index dimension, Eigen::Index count) {
+/// Points, and the same as columns with weights, to compare with formulas written out.
+struct Example {
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd weights;  // mean 1
+  BlockPoints points;
+};
+
+Example example_of(const Eigen::MatrixXd& columns, Eigen::VectorXd weights) {
+  weights /= weights.mean();
+  const DistinctPoints distinct = distinct_points(columns, weights);
+  return {columns, weights, BlockPoints(columns, distinct, mean_of(columns, distinct))};
+}
+
+Example random_points(Eigen::Index dimension, Eigen::Index count) {
   std::mt19937_64 generator(kSeed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> weight(0.5, 2);
-  const Eigen::MatrixXd points =
-      Eigen::MatrixXd::NullaryExpr(dimension, count, [&] { return normal(generator); });
-  return prepare_points(points,
-                        Eigen::VectorXd::NullaryExpr(count, [&] { return weight(generator); }));
+  return example_of(
+      Eigen::MatrixXd::NullaryExpr(dimension, count, [&] { return normal(generator); }),
+      Eigen::VectorXd::NullaryExpr(count, [&] { return weight(generator); }));
+}
+
+Mixture next_of(const Mixture& start, const Example& example, double floor) {
+  return maximisation(expectation(start, example.points, {}).moments, example.points.offset(),
+                      Eigen::VectorXd::Constant(start.dimension(), floor));
 }
 
 Mixture start_of(Eigen::Index dimension, Eigen::Index components) {
@@ -33,38 +50,106 @@ Mixture start_of(Eigen::Index dimension, Eigen::Index components) {
 }
 
 TEST(Expectation, MassesSumToTheWeightsAndTheLikelihoodIsTheMixtures) {
-  const WeightedPoints points = random_points(3, 700);
-  const Mixture mixture = start_of(3, 5);
-  const Expectation result = expectation(mixture, points);
-  EXPECT_NEAR(result.moments.masses.sum(), 700, 1e-9);
-  EXPECT_NEAR(result.mean_log_likelihood,
-              points.weights.dot(mixture::log_density(mixture, points.points)) / 700, 1e-12);
+  for (const Eigen::Index dimension : {1, 3, 7, 11, 32}) {
+    const Example example = random_points(dimension, 700);
+    const Mixture mixture = start_of(dimension, 5);
+    const Expectation result = expectation(mixture, example.points, {});
+    EXPECT_NEAR(result.moments.sums.row(0).sum(), 700, 1e-9);
+    EXPECT_NEAR(result.mean_log_likelihood,
+                example.weights.dot(mixture::log_density(mixture, example.columns)) / 700,
+                1e-13 * std::abs(result.mean_log_likelihood));
+  }
+}
+
+TEST(MeanLogDensity, IsThatOfTheMixtureWithItsBackground) {
+  const Example example = random_points(3, 500);
+  const Mixture mixture = start_of(3, 4);
+  const Eigen::ArrayXd densities = mixture::log_density(mixture, example.columns).array().exp();
+  EXPECT_NEAR(mean_log_density(mixture, example.points, 0, 0, {}),
+              expectation(mixture, example.points, {}).mean_log_likelihood, 1e-13);
+  const double expected =
+      example.weights.dot((0.99 * densities + 0.01 * std::exp(-3.0)).log().matrix()) / 500;
+  EXPECT_NEAR(mean_log_density(mixture, example.points, 0.01, -3, {}), expected, 1e-12);
+}
+
+/// Tight components among spread ones, so that most pairs of block and component can be left out.
+Mixture uneven_start(const Example& example, Eigen::Index components) {
+  Eigen::MatrixXd means(example.columns.rows(), components);
+  std::vector<Eigen::MatrixXd> covariances;
+  for (Eigen::Index k = 0; k < components; ++k) {
+    means.col(k) = example.columns.col(k * (example.columns.cols() / components));
+    covariances.emplace_back(std::pow(10.0, -static_cast<double>(k % 4)) *
+                             Eigen::MatrixXd::Identity(means.rows(), means.rows()));
+  }
+  return {Eigen::VectorXd::Constant(components, 1.0 / static_cast<double>(components)), means,
+          covariances};
+}
+
+TEST(Expectation, PrunedEqualsDense) {
+  for (const Eigen::Index dimension : {2, 5, 7, 9}) {
+    const Example example = random_points(dimension, 3000);
+    const Mixture start = uneven_start(example, 40);
+    const Expectation dense = expectation(start, example.points, {.prune = false});
+    const Expectation pruned = expectation(start, example.points, {.prune = true});
+    EXPECT_NEAR(pruned.mean_log_likelihood, dense.mean_log_likelihood,
+                1e-12 * std::abs(dense.mean_log_likelihood));
+    EXPECT_LT((pruned.moments.sums - dense.moments.sums).cwiseAbs().maxCoeff(),
+              1e-12 * dense.moments.sums.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(Expectation, SameBytesForAnyNumberOfThreads) {
+  const Example example = random_points(6, 9000);
+  const Mixture start = uneven_start(example, 30);
+  const Expectation one = expectation(start, example.points, {.threads = 1});
+  for (const int threads : {2, 3, 16}) {
+    const Expectation several = expectation(start, example.points, {.threads = threads});
+    EXPECT_EQ(several.moments.sums, one.moments.sums);
+    EXPECT_EQ(several.mean_log_likelihood, one.mean_log_likelihood);
+  }
+}
+
+TEST(Expectation, InstructionSetsDifferByRoundingOnly) {
+  const Example example = random_points(7, 3000);
+  const Mixture start = uneven_start(example, 30);
+  const Expectation baseline =
+      expectation(start, example.points, {.kernels = find_kernels(InstructionSet::Baseline)});
+  for (const InstructionSet set : {InstructionSet::Avx2, InstructionSet::Avx512}) {
+    const BlockKernels* kernels = find_kernels(set);
+    if (kernels == nullptr)
+      continue;
+    const Expectation other = expectation(start, example.points, {.kernels = kernels});
+    EXPECT_NEAR(other.mean_log_likelihood, baseline.mean_log_likelihood, 1e-11);
+    EXPECT_LT((other.moments.sums - baseline.moments.sums).cwiseAbs().maxCoeff(), 1e-9);
+  }
 }
 
 TEST(Maximisation, OfOneComponentIsWeightedMeanAndCovariance) {
-  const WeightedPoints points = random_points(3, 300);
-  const Mixture mixture = maximisation(expectation(start_of(3, 1), points).moments, 0);
+  const Example example = random_points(3, 300);
+  const Mixture mixture = next_of(start_of(3, 1), example, 0);
+  const Eigen::VectorXd mean = example.columns * example.weights / 300;
+  const Eigen::MatrixXd centred = example.columns.colwise() - mean;
   const Eigen::MatrixXd covariance =
-      points.points * points.weights.asDiagonal() * points.points.transpose() / 300;
-  EXPECT_LT(mixture.means().cwiseAbs().maxCoeff(), 1e-12);  // points are relative to their mean
+      centred * example.weights.asDiagonal() * centred.transpose() / 300;
+  EXPECT_LT((mixture.means().col(0) - mean).norm(), 1e-12);
   EXPECT_TRUE(mixture.covariances()[0].isApprox(covariance, 1e-12));
 }
 
 TEST(Maximisation, EqualsTheFormulasWrittenOut) {
-  const WeightedPoints points = random_points(2, 400);
+  const Example example = random_points(2, 400);
   const Mixture start = start_of(2, 3);
-  const Mixture next = maximisation(expectation(start, points).moments, 1e-3);
+  const Mixture next = next_of(start, example, 1e-3);
   Eigen::MatrixXd r(400, 3);
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Mixture alone(Eigen::VectorXd::Ones(1), start.means().col(k),
                         {start.covariances()[static_cast<std::size_t>(k)]});
-    r.col(k) = start.weights()[k] * mixture::log_density(alone, points.points).array().exp();
+    r.col(k) = start.weights()[k] * mixture::log_density(alone, example.columns).array().exp();
   }
-  r.array().colwise() *= points.weights.array() / r.rowwise().sum().array();
+  r.array().colwise() *= example.weights.array() / r.rowwise().sum().array();
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double mass = r.col(k).sum();
-    const Eigen::Vector2d mean = points.points * r.col(k) / mass;
-    const Eigen::MatrixXd centred = points.points.colwise() - mean;
+    const Eigen::Vector2d mean = example.columns * r.col(k) / mass;
+    const Eigen::MatrixXd centred = example.columns.colwise() - mean;
     const Eigen::Matrix2d covariance =
         centred * r.col(k).asDiagonal() * centred.transpose() / mass +
         1e-3 * Eigen::Matrix2d::Identity();
@@ -75,34 +160,34 @@ TEST(Maximisation, EqualsTheFormulasWrittenOut) {
 }
 
 TEST(Maximisation, ComponentThatLostItsDataIsLeftOut) {
-  const WeightedPoints points = random_points(2, 200);
+  const Example example = random_points(2, 200);
   Mixture start = start_of(2, 3);
   Eigen::MatrixXd means = start.means();
   means.col(1).setConstant(500);
   start = Mixture(start.weights(), means, start.covariances());
-  const Mixture next = maximisation(expectation(start, points).moments, 1e-4);
+  const Mixture next = next_of(start, example, 1e-4);
   EXPECT_EQ(next.size(), 2);
   EXPECT_NEAR(next.weights().sum(), 1, 1e-15);
 }
 
+TEST(Maximisation, FloorOfEachJointIsAddedToItsVariance) {
+  const Example example = random_points(3, 200);
+  const Eigen::Vector3d floors(1e-4, 2e-2, 0);
+  const Moments moments = expectation(start_of(3, 4), example.points, {}).moments;
+  const Mixture with = maximisation(moments, example.points.offset(), floors);
+  const Mixture without = maximisation(moments, example.points.offset(), Eigen::Vector3d::Zero());
+  const Eigen::MatrixXd difference = with.covariances()[2] - without.covariances()[2];
+  EXPECT_TRUE(difference.isApprox(Eigen::MatrixXd(floors.asDiagonal()), 1e-12));
+}
+
 TEST(Maximisation, FloorIsTheLeastEigenvalue) {
-  WeightedPoints points = random_points(3, 200);
-  points.points.row(1) = 2 * points.points.row(0);  // singular without the floor
-  const Mixture mixture = maximisation(expectation(start_of(3, 4), points).moments, 1e-4);
+  Example example = random_points(3, 200);
+  example.columns.row(1) = 2 * example.columns.row(0);  // singular without the floor
+  example = example_of(example.columns, example.weights);
+  const Mixture mixture = next_of(start_of(3, 4), example, 1e-4);
   for (const Eigen::MatrixXd& covariance : mixture.covariances())
     EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues()[0],
               1e-4 * (1 - 1e-9));
-}
-
-TEST(MomentsOfClusters, AreThoseOfTheirPoints) {
-  const WeightedPoints points = random_points(2, 300);
-  std::vector<Eigen::Index> cluster(300, 0);
-  for (std::size_t i = 150; i < 300; ++i)
-    cluster[i] = 1;
-  const Moments moments = moments_of_clusters(points, cluster, 2);
-  EXPECT_NEAR(moments.masses[1], points.weights.tail(150).sum(), 1e-10);
-  const Eigen::Vector2d sum = points.points.leftCols(150) * points.weights.head(150);
-  EXPECT_TRUE(moments.sums.col(0).isApprox(sum, 1e-10));
 }
 
 }  // namespace

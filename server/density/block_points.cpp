@@ -1,0 +1,124 @@
+#include "server/density/block_points.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace kinship::density {
+namespace {
+
+using Rank = std::uint32_t;  // of a distinct point
+
+/// Orders points so that each kBlockPoints in a row are neighbours: halves by the median of the
+/// joint that spreads most, again and again (a k-d tree of which only the leaves are kept).
+class NeighbourOrder {
+ public:
+  NeighbourOrder(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                 const std::vector<std::uint32_t>& columns)
+      : configurations_(configurations), columns_(columns), ranks_(columns.size()) {
+    std::iota(ranks_.begin(), ranks_.end(), Rank{0});
+    order(0, ranks_.size());
+  }
+  const std::vector<Rank>& ranks() const noexcept { return ranks_; }
+
+ private:
+  void order(std::size_t begin, std::size_t end) {
+    while (end - begin > kBlockPoints) {
+      const std::size_t blocks = (end - begin + kBlockPoints - 1) / kBlockPoints;
+      const std::size_t middle = begin + blocks / 2 * kBlockPoints;
+      const Eigen::Index joint = widest_joint(begin, end);
+      const auto at = [this](std::size_t i) {
+        return ranks_.begin() + static_cast<std::ptrdiff_t>(i);
+      };
+      std::nth_element(at(begin), at(middle), at(end), [&](Rank a, Rank b) {
+        return configurations_(joint, columns_[a]) < configurations_(joint, columns_[b]);
+      });
+      order(begin, middle);
+      begin = middle;
+    }
+  }
+
+  /// Of a thousand of the points or so: it need not be exact.
+  Eigen::Index widest_joint(std::size_t begin, std::size_t end) const {
+    const std::size_t step = (end - begin) / 1024 + 1;
+    Eigen::VectorXd least = configurations_.col(columns_[ranks_[begin]]);
+    Eigen::VectorXd most = least;
+    for (std::size_t i = begin; i < end; i += step) {
+      const auto point = configurations_.col(columns_[ranks_[i]]);
+      least = least.cwiseMin(point);
+      most = most.cwiseMax(point);
+    }
+    Eigen::Index widest = 0;
+    (most - least).maxCoeff(&widest);
+    return widest;
+  }
+
+  const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
+  const std::vector<std::uint32_t>& columns_;
+  std::vector<Rank> ranks_;
+};
+
+}  // namespace
+
+BlockPoints::BlockPoints(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                         DistinctPoints distinct, Eigen::VectorXd offset)
+    : offset_(std::move(offset)), size_(static_cast<Eigen::Index>(distinct.columns.size())) {
+  const std::vector<Rank> order = NeighbourOrder(configurations, distinct.columns).ranks();
+  const auto count = static_cast<int>((size_ + kBlockPoints - 1) / kBlockPoints);
+  const auto padded = static_cast<std::size_t>(count) * kBlockPoints;
+  points_.resize(padded * static_cast<std::size_t>(dimension()));
+  weights_.assign(padded, 0.0);
+  centres_.resize(dimension(), count);
+  half_widths_.resize(dimension(), count);
+  for (int block = 0; block < count; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlockPoints;
+    Eigen::Map<Eigen::MatrixXd> rows(points_.data() + first * static_cast<std::size_t>(dimension()),
+                                     kBlockPoints, dimension());
+    for (std::size_t i = 0; i < kBlockPoints; ++i) {
+      const Rank rank = order[std::min(first + i, order.size() - 1)];
+      rows.row(static_cast<Eigen::Index>(i)) =
+          (configurations.col(distinct.columns[rank]) - offset_).transpose();
+      if (first + i < order.size())
+        weights_[first + i] = distinct.weights[rank];
+    }
+    const Eigen::VectorXd least = rows.colwise().minCoeff().transpose();
+    const Eigen::VectorXd most = rows.colwise().maxCoeff().transpose();
+    centres_.col(block) = (least + most) / 2;
+    half_widths_.col(block) = (most - least) / 2;
+  }
+  total_weight_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+}
+
+Eigen::VectorXd BlockPoints::point(Eigen::Index index) const {
+  Eigen::VectorXd point(dimension());
+  const double* rows = points(static_cast<int>(index / kBlockPoints));
+  for (int joint = 0; joint < dimension(); ++joint)
+    point[joint] = rows[joint * kBlockPoints + index % kBlockPoints];
+  return point;
+}
+
+Eigen::VectorXd mean_of(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                        const DistinctPoints& distinct) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(configurations.rows());
+  for (std::size_t i = 0; i < distinct.columns.size(); ++i)
+    sum += distinct.weights[i] * configurations.col(distinct.columns[i]);
+  return sum / std::accumulate(distinct.weights.begin(), distinct.weights.end(), 0.0);
+}
+
+BlockPoints thinned(const BlockPoints& points, Eigen::Index count) {
+  const Eigen::Index step = (points.size() - 1) / count + 1;
+  Eigen::MatrixXd sample(points.dimension(), (points.size() - 1) / step + 1);
+  DistinctPoints chosen;
+  for (Eigen::Index i = 0; i < sample.cols(); ++i) {
+    sample.col(i) = points.point(i * step) + points.offset();
+    chosen.columns.push_back(static_cast<std::uint32_t>(i));
+    chosen.weights.push_back(points.weight(i * step));
+  }
+  const double total = std::accumulate(chosen.weights.begin(), chosen.weights.end(), 0.0);
+  for (double& weight : chosen.weights)
+    weight *= static_cast<double>(sample.cols()) / total;
+  return {sample, std::move(chosen), points.offset()};
+}
+
+}  // namespace kinship::density

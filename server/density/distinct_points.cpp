@@ -1,0 +1,55 @@
+#include "server/density/distinct_points.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace kinship::density {
+namespace {
+
+/// A column and its first joint: enough to order almost all of them without looking further away.
+struct Candidate {
+  double first = 0;
+  std::uint32_t column = 0;
+};
+
+}  // namespace
+
+DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                               const Eigen::Ref<const Eigen::VectorXd>& weights,
+                               const std::vector<std::uint8_t>& wanted) {
+  std::vector<Candidate> order;
+  order.reserve(static_cast<std::size_t>(weights.size()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (weights[i] > 0 && (wanted.empty() || wanted[static_cast<std::size_t>(i)] != 0))
+      order.push_back({configurations(0, i), static_cast<std::uint32_t>(i)});
+  const auto less = [&](const Candidate& a, const Candidate& b) {
+    if (a.first != b.first)
+      return a.first < b.first;
+    for (Eigen::Index joint = 1; joint < configurations.rows(); ++joint)
+      if (configurations(joint, a.column) != configurations(joint, b.column))
+        return configurations(joint, a.column) < configurations(joint, b.column);
+    return weights[a.column] < weights[b.column];  // so that the sum of equal ones has one order
+  };
+  std::sort(order.begin(), order.end(), less);
+
+  DistinctPoints distinct;
+  distinct.columns.reserve(order.size());
+  distinct.weights.reserve(order.size());
+  for (const Candidate& candidate : order) {
+    const bool is_repeated =
+        !distinct.columns.empty() &&
+        configurations.col(distinct.columns.back()) == configurations.col(candidate.column);
+    if (is_repeated) {
+      distinct.weights.back() += weights[candidate.column];
+      continue;
+    }
+    distinct.columns.push_back(candidate.column);
+    distinct.weights.push_back(weights[candidate.column]);
+  }
+  const double total = std::accumulate(distinct.weights.begin(), distinct.weights.end(), 0.0);
+  for (double& weight : distinct.weights)
+    weight *= static_cast<double>(distinct.weights.size()) / total;
+  return distinct;
+}
+
+}  // namespace kinship::density

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace kinship::density {
+
+/// Which columns of a matrix of configurations stand for the distinct ones of positive weight, in
+/// lexicographic order of the configurations, and what each weighs. So neither the order of the
+/// configurations nor repetition matters to what is computed from them.
+struct DistinctPoints {
+  std::vector<std::uint32_t> columns;
+  std::vector<double> weights;  ///< positive, sum their number: the average point weighs 1
+};
+
+/// \param configurations  d x N, finite, N below 2^32.
+/// \param weights         N, finite, non-negative. Equal configurations add up.
+/// \param wanted          N, 0: left out; empty: all.
+DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                               const Eigen::Ref<const Eigen::VectorXd>& weights,
+                               const std::vector<std::uint8_t>& wanted = {});
+
+}  // namespace kinship::density

@@ -1,0 +1,40 @@
+#include "server/density/em_run.hpp"
+
+#include <random>
+#include <utility>
+
+#include "server/density/kmeans.hpp"
+
+namespace kinship::density {
+namespace {
+
+constexpr int kLloydIterations = 10;
+
+}  // namespace
+
+Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::uint64_t seed,
+                      const EmOptions& options) {
+  const BlockKernels& kernels = *options.computation.kernels;
+  std::mt19937_64 generator(seed);
+  const Eigen::MatrixXd centres = move_centres(
+      points, choose_centres(points, components, kernels, generator), kLloydIterations, kernels);
+  return maximisation(
+      moments_of_clusters(points, nearest_centres(points, centres, kernels), centres.cols()),
+      points.offset(), options.floors);
+}
+
+EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options) {
+  EmRun run{std::move(start), {}};
+  Expectation current = expectation(run.mixture, points, options.computation);
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    run.mixture = maximisation(current.moments, points.offset(), options.floors);
+    const double before = current.mean_log_likelihood;
+    current = expectation(run.mixture, points, options.computation);
+    run.log_likelihoods.push_back(current.mean_log_likelihood);
+    if (current.mean_log_likelihood - before < options.tolerance)
+      break;
+  }
+  return run;
+}
+
+}  // namespace kinship::density

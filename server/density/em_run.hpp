@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "proto/types/mixture.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/expectation_maximisation.hpp"
+
+namespace kinship::density {
+
+/// When to stop, and what to add to variances.
+struct EmOptions {
+  Eigen::VectorXd floors;  ///< d, squared joint units
+  int max_iterations = 50;
+  double tolerance = 1e-3;  ///< mean log-likelihood, nats
+  Computation computation = {};
+};
+
+struct EmRun {
+  Mixture mixture;
+  std::vector<double> log_likelihoods;  ///< after each iteration; the last is that of `mixture`
+};
+
+/// The mixture of at most `components` k-means clusters of the points.
+Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::uint64_t seed,
+                      const EmOptions& options);
+
+/// EM until the gain falls below the tolerance.
+EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options);
+
+}  // namespace kinship::density
