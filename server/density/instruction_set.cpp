@@ -1,5 +1,7 @@
 #include "server/density/instruction_set.hpp"
 
+#include <initializer_list>
+
 namespace kinship::density {
 
 extern const BlockKernels kBaselineKernels;

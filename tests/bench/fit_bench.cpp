@@ -4,6 +4,7 @@
 
 #include "proto/mixture/density.hpp"
 #include "proto/mixture/sampler.hpp"
+#include "server/density/block_points.hpp"
 #include "server/density/expectation_maximisation.hpp"
 #include "server/density/fit.hpp"
 
@@ -11,10 +12,11 @@ namespace kinship {
 namespace {
 
 constexpr Eigen::Index kDimension = 7;
+constexpr Eigen::Index kPaperConfigurations = 72'160;
 constexpr int kComponents = 50;
 
 /// Waypoints of curved bundles: 24 prototypes of cubic curves, paths of 145 points near them.
-Eigen::MatrixXd bundles(Eigen::Index count) {
+Eigen::MatrixXd bundles(Eigen::Index count, Eigen::Index dimension = kDimension) {
   constexpr Eigen::Index kPrototypes = 24;
   constexpr Eigen::Index kPathPoints = 145;
   constexpr Eigen::Index kControls = 4;
@@ -22,43 +24,56 @@ Eigen::MatrixXd bundles(Eigen::Index count) {
   std::uniform_real_distribution<double> uniform(-2, 2);
   std::normal_distribution<double> normal;
   const Eigen::MatrixXd prototypes = Eigen::MatrixXd::NullaryExpr(
-      kDimension, kPrototypes * kControls, [&] { return uniform(generator); });
-  Eigen::MatrixXd points(kDimension, count);
-  Eigen::MatrixXd controls(kDimension, kControls);
+      dimension, kPrototypes * kControls, [&] { return uniform(generator); });
+  Eigen::MatrixXd points(dimension, count);
+  Eigen::MatrixXd controls(dimension, kControls);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index on_path = i % kPathPoints;
     if (on_path == 0)
       controls = prototypes.middleCols(kControls * (i / kPathPoints % kPrototypes), kControls) +
-                 0.15 * Eigen::MatrixXd::NullaryExpr(kDimension, kControls,
+                 0.15 * Eigen::MatrixXd::NullaryExpr(dimension, kControls,
                                                      [&] { return normal(generator); });
     const double t = static_cast<double>(on_path) / static_cast<double>(kPathPoints - 1);
     const double s = 1 - t;
     const Eigen::Vector4d bernstein(s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t);
-    points.col(i) = controls * bernstein + 0.004 * Eigen::VectorXd::NullaryExpr(kDimension, [&] {
+    points.col(i) = controls * bernstein + 0.004 * Eigen::VectorXd::NullaryExpr(dimension, [&] {
                                              return normal(generator);
                                            });
   }
   return points;
 }
 
-density::FitSummary fit(const Eigen::MatrixXd& points, int max_iterations) {
-  const density::FitOptions options{.components = kComponents, .max_iterations = max_iterations};
+density::FitSummary fit(const Eigen::MatrixXd& points, int max_iterations,
+                        int components = kComponents) {
+  const density::FitOptions options{.components = components, .max_iterations = max_iterations};
   return density::fit_mixture(points, Eigen::VectorXd::Ones(points.cols()), options)
       .value_or_throw();
 }
 
+/// Arguments: dimension, components, instruction set, whether pruned.
 void em_iteration(benchmark::State& state) {
-  const Eigen::MatrixXd configurations = bundles(state.range(0));
-  const density::WeightedPoints points =
-      density::prepare_points(configurations, Eigen::VectorXd::Ones(configurations.cols()));
-  const Mixture start = fit(configurations, 1).mixture;
-  const Mixture centred(start.weights(), start.means().colwise() - points.offset,
-                        start.covariances());
+  const Eigen::MatrixXd configurations = bundles(kPaperConfigurations, state.range(0));
+  const density::DistinctPoints distinct =
+      density::distinct_points(configurations, Eigen::VectorXd::Ones(configurations.cols()));
+  const density::BlockPoints points(configurations, distinct,
+                                    density::mean_of(configurations, distinct));
+  const Mixture start = fit(configurations, 3, static_cast<int>(state.range(1))).mixture;
+  const Eigen::VectorXd floors = Eigen::VectorXd::Constant(state.range(0), 1e-4);
+  density::Computation computation{.prune = state.range(3) != 0};
+  computation.kernels = density::find_kernels(static_cast<density::InstructionSet>(state.range(2)));
+  if (computation.kernels == nullptr)
+    return state.SkipWithError("this machine does not have it");
+  state.SetLabel(computation.kernels->name);
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        density::maximisation(density::expectation(centred, points).moments, 1e-4));
+    benchmark::DoNotOptimize(density::maximisation(
+        density::expectation(start, points, computation).moments, points.offset(), floors));
 }
-BENCHMARK(em_iteration)->Arg(15'000)->Arg(72'160)->Unit(benchmark::kMillisecond);
+BENCHMARK(em_iteration)
+    ->ArgNames({"d", "K", "set", "prune"})
+    ->ArgsProduct({{7}, {10, 30, 50, 100}, {2}, {0, 1}})
+    ->ArgsProduct({{7}, {50}, {0, 1}, {0, 1}})
+    ->ArgsProduct({{5, 6, 8}, {50}, {2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 void whole_fit(benchmark::State& state) {
   const Eigen::MatrixXd configurations = bundles(state.range(0));
@@ -67,14 +82,18 @@ void whole_fit(benchmark::State& state) {
     iterations = fit(configurations, 50).log_likelihoods.size();
   state.counters["iterations"] = static_cast<double>(iterations);
 }
-BENCHMARK(whole_fit)->Arg(15'000)->Arg(72'160)->Unit(benchmark::kMillisecond);
+BENCHMARK(whole_fit)
+    ->Arg(15'000)
+    ->Arg(kPaperConfigurations)
+    ->Arg(1'000'000)
+    ->Unit(benchmark::kMillisecond);
 
 void start_only(benchmark::State& state) {
   const Eigen::MatrixXd configurations = bundles(state.range(0));
   for (auto _ : state)
     benchmark::DoNotOptimize(fit(configurations, 0));
 }
-BENCHMARK(start_only)->Arg(15'000)->Arg(72'160)->Unit(benchmark::kMillisecond);
+BENCHMARK(start_only)->Arg(15'000)->Arg(kPaperConfigurations)->Unit(benchmark::kMillisecond);
 
 void sample(benchmark::State& state) {
   Eigen::Matrix2Xd limits(2, kDimension);
