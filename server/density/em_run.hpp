@@ -23,7 +23,10 @@ struct EmRun {
   std::vector<double> log_likelihoods;  ///< after each iteration; the last is that of `mixture`
 };
 
-/// The mixture of at most `components` k-means clusters of the points.
+/// A start is made of so many points.
+inline constexpr Eigen::Index kSamplePoints = 20'000;
+
+/// The mixture of at most `components` k-means clusters of (a sample of) the points.
 Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::uint64_t seed,
                       const EmOptions& options);
 

@@ -13,20 +13,27 @@
 namespace kinship::density {
 namespace {
 
+constexpr Eigen::Index kMostComponents = 128;  // where K is chosen
 constexpr double kLargestValue = 1e6;  // joint units; squares of it still leave room for the floor
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
   if (configurations.cols() != weights.size())
     throw std::invalid_argument("fit_mixture: one weight per configuration");
-  if (options.components < 1 || !(options.covariance_floor >= 0) ||
+  if (options.components < 0 || !(options.covariance_floor >= 0) ||
       !std::isfinite(options.covariance_floor))
     throw std::invalid_argument(
-        "fit_mixture: need components >= 1, a finite covariance_floor >= 0");
+        "fit_mixture: need components >= 0, a finite covariance_floor >= 0");
   const Eigen::VectorXd& floors = options.floors_of_joints;
   if (floors.size() != 0 &&
       (floors.size() != configurations.rows() || !floors.allFinite() || floors.minCoeff() < 0))
     throw std::invalid_argument("fit_mixture: need one finite floor >= 0 per joint");
+  if (options.limits.size() != 0 &&
+      (options.limits.cols() != configurations.rows() || !options.limits.allFinite()))
+    throw std::invalid_argument("fit_mixture: need finite limits of each joint");
+  if (options.components == 0 &&
+      options.path_of_configuration.size() != static_cast<std::size_t>(configurations.cols()))
+    throw std::invalid_argument("fit_mixture: to choose K, the path of each configuration");
 }
 
 std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
@@ -54,20 +61,122 @@ EmOptions em_options(Eigen::Index dimension, const FitOptions& options) {
           options.max_iterations, options.tolerance, options.computation};
 }
 
-FitSummary fit_points(const BlockPoints& points, Eigen::Index components,
-                      const FitOptions& options) {
-  EmOptions em = em_options(points.dimension(), options);
-  Mixture start = start_mixture(thinned(points, kSamplePoints), components, options.seed, em);
-  const Eigen::Index sample = std::max(kSamplePoints, kSamplePointsPerComponent * components);
-  if (points.size() > 4 * sample) {
-    start = run_em(std::move(start), thinned(points, sample), em).mixture;
+/// The points that may have so many components: at least 2 (d + 1) each.
+Eigen::Index components_for(const DistinctPoints& distinct, Eigen::Index dimension,
+                            Eigen::Index wanted) {
+  const auto count = static_cast<Eigen::Index>(distinct.columns.size());
+  return std::clamp(count / (2 * (dimension + 1)), Eigen::Index{1}, wanted);
+}
+
+Eigen::Index sample_size(Eigen::Index components) {
+  return std::max(kSamplePoints, kSamplePointsPerComponent * components);
+}
+
+bool is_large(const BlockPoints& points, Eigen::Index components) {
+  return points.size() > 4 * sample_size(components);
+}
+
+/// All points, or a sample if they are many.
+BlockPoints sample_of(BlockPoints points, Eigen::Index components) {
+  return is_large(points, components) ? thinned(points, sample_size(components))
+                                      : std::move(points);
+}
+
+FitSummary refined(Mixture start, const BlockPoints& points, EmOptions em) {
+  if (is_large(points, start.size()))
     em.max_iterations = std::min(em.max_iterations, kFullPasses);
-  }
   EmRun run = run_em(std::move(start), points, em);
   return {std::move(run.mixture), std::move(run.log_likelihoods)};
 }
 
+/// One fit on its way. The arguments outlive it.
+class Fit {
+ public:
+  Fit(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+      const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options)
+      : configurations_(configurations),
+        weights_(weights),
+        options_(options),
+        em_(em_options(configurations.rows(), options)) {}
+
+  FitSummary run(DistinctPoints all) const {
+    if (options_.components > 0)
+      return run_fixed(std::move(all), options_.components);
+    const std::vector<std::uint32_t>& path_of = options_.path_of_configuration;
+    const std::uint32_t paths = 1 + *std::max_element(path_of.begin(), path_of.end());
+    const std::optional<Ladder> ladder = climb(paths);
+    if (!ladder)
+      return run_fixed(std::move(all), components_of_few_paths(paths));
+    FitSummary summary = refined(ladder->best, blocks_of(std::move(all)), em_);
+    summary.curve = ladder->curve;
+    summary.held_out_score = ladder->best_score;
+    return summary;
+  }
+
+ private:
+  BlockPoints blocks_of(DistinctPoints distinct) const {
+    const Eigen::VectorXd mean = mean_of(configurations_, distinct);
+    return {configurations_, std::move(distinct), mean};
+  }
+
+  FitSummary run_fixed(DistinctPoints all, int wanted) const {
+    const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
+    const BlockPoints points = blocks_of(std::move(all));
+    Mixture start = start_mixture(points, components, options_.seed, em_);
+    if (is_large(points, components))
+      start = run_em(std::move(start), sample_of(points, components), em_).mixture;
+    return refined(std::move(start), points, em_);
+  }
+
+  /// The distinct configurations of the paths that are held out, or of the others.
+  DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const {
+    std::vector<std::uint8_t> wanted;
+    wanted.reserve(options_.path_of_configuration.size());
+    for (const std::uint32_t path : options_.path_of_configuration)
+      wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
+    return distinct_points(configurations_, weights_, wanted);
+  }
+
+  /// \return nothing if there is too little to hold a part of it out.
+  std::optional<Ladder> climb(std::uint32_t paths) const {
+    if (paths < kLeastPathsToScore)
+      return std::nullopt;
+    const std::vector<std::uint8_t> held_out = held_out_paths(paths, options_.seed);
+    DistinctPoints training = part(held_out, false);
+    DistinctPoints scored = part(held_out, true);
+    const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
+    if (training.columns.size() < least || scored.columns.empty())
+      return std::nullopt;
+    const Eigen::Index most = components_for(training, configurations_.rows(), kMostComponents);
+    return climb_down(sample_of(blocks_of(std::move(training)), most),
+                      sample_of(blocks_of(std::move(scored)), most), most, log_uniform(),
+                      options_.seed, em_);
+  }
+
+  /// Logarithm of the density of the uniform distribution within the limits.
+  double log_uniform() const {
+    constexpr double kLeastWidth = 1e-6;  // of a joint that does not move
+    Eigen::Matrix2Xd box = options_.limits;
+    if (box.size() == 0) {
+      box.resize(2, configurations_.rows());
+      box.row(0) = configurations_.rowwise().minCoeff().transpose();
+      box.row(1) = configurations_.rowwise().maxCoeff().transpose();
+    }
+    const Eigen::ArrayXd widths = (box.row(1) - box.row(0)).transpose().array();
+    return -widths.max(kLeastWidth).log().sum();
+  }
+
+  const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
+  const Eigen::Ref<const Eigen::VectorXd>& weights_;
+  const FitOptions& options_;
+  const EmOptions em_;
+};
+
 }  // namespace
+
+int components_of_few_paths(std::uint32_t paths) {
+  return std::max(1, static_cast<int>(paths / 4));
+}
 
 Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
@@ -84,11 +193,8 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
                                               " distinct configurations, need at least " +
                                               std::to_string(least) + " for " +
                                               std::to_string(configurations.rows()) + " joints"};
-  const Eigen::Index components =
-      std::clamp(count / (2 * least), Eigen::Index{1}, Eigen::Index{options.components});
   try {
-    const Eigen::VectorXd mean = mean_of(configurations, distinct);
-    return fit_points({configurations, std::move(distinct), mean}, components, options);
+    return Fit(configurations, weights, options).run(std::move(distinct));
   } catch (const Failure& failure) {
     return Error{ErrorCode::InvalidInput,
                  std::string("fit: ") + failure.what() + "; covariance_floor " +

@@ -2,17 +2,21 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "proto/types/mixture.hpp"
 #include "proto/types/profile.hpp"
 #include "proto/types/result.hpp"
 #include "server/density/expectation_maximisation.hpp"
+#include "server/density/hold_out.hpp"
+#include "server/density/ladder.hpp"
 
 namespace kinship::density {
 
 struct FitOptions {
-  int components = 50;             ///< K; lowered to what the configurations can carry
+  /// K, lowered to what the configurations can carry. 0: chosen by hold-out of paths.
+  int components = 50;
   double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
   /// d, instead of covariance_floor, where joints have different units; empty: all the same.
   Eigen::VectorXd floors_of_joints = {};
@@ -20,6 +24,11 @@ struct FitOptions {
   double tolerance = 1e-3;  ///< stop when the mean log-likelihood gains less, nats
   std::uint64_t seed = 0;
   Computation computation = {};
+  /// N, counted from 0 without gaps: which path each configuration comes from. Needed to choose K.
+  std::vector<std::uint32_t> path_of_configuration = {};
+  /// 2 x d, lower and upper, joint units: within them scores have their uniform background. Empty:
+  /// the box of the configurations.
+  Eigen::Matrix2Xd limits = {};
 };
 
 struct FitSummary {
@@ -27,9 +36,17 @@ struct FitSummary {
   /// Weighted mean per configuration after each iteration over all of them, nats; the last is that
   /// of `mixture`.
   std::vector<double> log_likelihoods;
+  /// If K was chosen by hold-out: what was tried, from most components to fewest.
+  std::vector<ComponentScore> curve = {};
+  std::optional<double> held_out_score = {};  ///< the highest of them
 };
 
 /// Fits a Gaussian mixture with full covariances: k-means++ start, Lloyd iterations, EM.
+///
+/// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
+/// climb_down) when the others are fitted; the mixture of that K is then refitted to all. Below
+/// kLeastPathsToScore paths it is components_of_few_paths, without a curve.
+///
 /// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
 /// that lose their data on the way are left out. With more than four times kSamplePoints or
 /// kSamplePointsPerComponent K configurations EM sees such a sample first, and then all of them at
@@ -48,9 +65,11 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
                                const FitOptions& options);
 
-inline constexpr Eigen::Index kSamplePoints = 20'000;
 inline constexpr Eigen::Index kSamplePointsPerComponent = 400;
 inline constexpr int kFullPasses = 6;
+
+/// K where there are too few paths to choose it: one per four paths, at least 1.
+int components_of_few_paths(std::uint32_t paths);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
 inline constexpr int kDensityVersion = 2;

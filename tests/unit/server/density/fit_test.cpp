@@ -209,7 +209,7 @@ TEST(FitMixture, OptionsOutsideTheirRangeAreACallersBug) {
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(100);
   EXPECT_THROW(fit_mixture(configurations, weights.head(99), {}).has_value(),
                std::invalid_argument);
-  EXPECT_THROW(fit_mixture(configurations, weights, {.components = 0}).has_value(),
+  EXPECT_THROW(fit_mixture(configurations, weights, {.components = -1}).has_value(),
                std::invalid_argument);
   EXPECT_THROW(fit_mixture(configurations, weights, {.covariance_floor = -1}).has_value(),
                std::invalid_argument);

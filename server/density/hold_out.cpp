@@ -1,0 +1,22 @@
+#include "server/density/hold_out.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace kinship::density {
+
+std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed) {
+  std::vector<std::uint8_t> held_out(count, 0);
+  if (count < kLeastPathsToScore)
+    return held_out;
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  std::mt19937_64 generator(seed);
+  std::shuffle(order.begin(), order.end(), generator);
+  for (std::uint32_t i = 0; i < count / 5; ++i)
+    held_out[order[i]] = 1;
+  return held_out;
+}
+
+}  // namespace kinship::density

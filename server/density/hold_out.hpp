@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace kinship::density {
+
+/// From so many paths on a part of them is held out to score numbers of components.
+inline constexpr std::uint32_t kLeastPathsToScore = 10;
+
+/// Which paths of `count` are held out: a fifth of them, chosen by the seed; none below
+/// kLeastPathsToScore. Whole paths, because waypoints of one path are not independent.
+/// \return count flags.
+std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed);
+
+}  // namespace kinship::density
