@@ -1,10 +1,14 @@
 #include "client/cli/fetch_command.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <ostream>
 #include <random>
+#include <vector>
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
@@ -17,19 +21,39 @@ namespace {
 
 constexpr const char* kCommand = "distributions fetch";
 
+/// The limits, but none for continuous joints, whose samples are turned back instead.
+Eigen::Matrix2Xd limits_of_draws(const Distribution& distribution) {
+  Eigen::Matrix2Xd limits = distribution.limits;
+  for (std::size_t joint = 0; joint < distribution.cuts.size(); ++joint)
+    if (distribution.cuts[joint])
+      limits.col(static_cast<Eigen::Index>(joint)) << -std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::infinity();
+  return limits;
+}
+
+/// Continuous joints in [-pi, pi].
+void turn_back(const Distribution& distribution, Eigen::VectorXd& q) {
+  for (std::size_t joint = 0; joint < distribution.cuts.size(); ++joint)
+    if (distribution.cuts[joint]) {
+      double& angle = q[static_cast<Eigen::Index>(joint)];
+      angle = std::remainder(angle, 2 * std::numbers::pi);
+    }
+}
+
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {
-  const mixture::Sampler sampler(*distribution.mixture, distribution.limits);
+  const mixture::Sampler sampler(*distribution.mixture, limits_of_draws(distribution));
   std::mt19937_64 generator(options.seed);
   for (Eigen::Index joint = 0; joint < sampler.dimension(); ++joint)
     out << (joint == 0 ? "q_" : ",q_") << joint + 1;
   out << '\n' << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (std::uint64_t i = 0; i < options.samples; ++i) {
-    const auto q = sampler.sample(generator);
+    auto q = sampler.sample(generator);
     if (!q) {
       err << kCommand << ": the mixture lies outside the joint limits\n";
       return kFailed;
     }
+    turn_back(distribution, *q);
     for (Eigen::Index joint = 0; joint < q->size(); ++joint)
       out << (joint == 0 ? "" : ",") << (*q)(joint);
     out << '\n';
@@ -88,6 +112,28 @@ void print_transfer(const Distribution& distribution, std::ostream& out) {
   table.print(out);
 }
 
+/// The score of each number of components that was tried, drawn as bars.
+void print_curve(const Distribution& distribution, std::ostream& out) {
+  constexpr double kWidth = 40;
+  constexpr int kDigits = 3;
+  const auto by_score = [](const ComponentScore& a, const ComponentScore& b) {
+    return a.score < b.score;
+  };
+  const std::vector<ComponentScore>& scores = distribution.component_scores;
+  const auto [least, best] = std::minmax_element(scores.begin(), scores.end(), by_score);
+  Table table({"COMPONENTS", "HELD-OUT SCORE", ""});
+  for (const ComponentScore& score : scores) {
+    const double part = best->score > least->score
+                            ? (score.score - least->score) / (best->score - least->score)
+                            : 1;
+    table.add_row({std::to_string(score.components), number_text(score.score, kDigits),
+                   std::string(1 + static_cast<std::size_t>(kWidth * part), '#') +
+                       (score == *best ? " chosen" : "")});
+  }
+  table.print(out);
+  out << '\n';
+}
+
 }  // namespace
 
 void print_distribution(const Distribution& distribution, std::ostream& out) {
@@ -111,6 +157,8 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
   if (!distribution.reason.empty())
     out << "note          " << distribution.reason << '\n';
   out << '\n';
+  if (!distribution.component_scores.empty())
+    print_curve(distribution, out);
   Table table({"SOURCE", "ROBOT", "RELATION", "PATHS", "USED", "GENERATION", "POSES", "SOLVED",
                "LOST", "CONFIGURATIONS", "MASS"});
   constexpr int kMassDigits = 3;

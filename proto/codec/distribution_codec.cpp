@@ -1,5 +1,7 @@
 #include "proto/codec/distribution_codec.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -189,6 +191,71 @@ void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
   }
 }
 
+void write_scores(const std::vector<ComponentScore>& scores, Arena& arena,
+                  kinship_wire_Distribution& wire) {
+  arena.resize(wire.component_scores, scores.size());
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    wire.component_scores._buffer[i].components = static_cast<std::uint32_t>(scores[i].components);
+    wire.component_scores._buffer[i].score = scores[i].score;
+  }
+}
+
+std::vector<ComponentScore> read_scores(const kinship_wire_Distribution& wire, Reader& reader) {
+  std::vector<ComponentScore> scores;
+  for (const kinship_wire_ComponentScore& entry : elements(wire.component_scores)) {
+    reader.rules.at_most("component_scores: components", entry.components, kMaxComponents);
+    scores.push_back({.components = static_cast<int>(entry.components), .score = entry.score});
+  }
+  return scores;
+}
+
+void check_scores(const std::vector<ComponentScore>& scores, Rules& rules) {
+  rules.at_most("component_scores", scores.size(), kMaxComponentScores);
+  for (std::size_t i = 0; i < scores.size() && !rules.broken(); ++i) {
+    rules.finite("component_scores: score", scores[i].score)
+        .that(scores[i].components >= 1,
+              "component_scores: " + std::to_string(scores[i].components) + " components");
+    if (i > 0)
+      rules.that(scores[i].components < scores[i - 1].components,
+                 "component_scores: " + std::to_string(scores[i].components) + " after " +
+                     std::to_string(scores[i - 1].components) + " components, must fall");
+  }
+}
+
+void write_cuts(const std::vector<std::optional<double>>& cuts, Arena& arena,
+                kinship_wire_Distribution& wire) {
+  arena.resize(wire.cuts, cuts.size() - static_cast<std::size_t>(
+                                            std::count(cuts.begin(), cuts.end(), std::nullopt)));
+  std::size_t next = 0;
+  for (std::size_t joint = 0; joint < cuts.size(); ++joint)
+    if (cuts[joint]) {
+      wire.cuts._buffer[next].joint = static_cast<std::uint32_t>(joint);
+      wire.cuts._buffer[next++].angle = *cuts[joint];
+    }
+}
+
+/// \param joints  of the distribution.
+std::vector<std::optional<double>> read_cuts(const kinship_wire_Distribution& wire,
+                                             std::size_t joints, Reader& reader) {
+  const auto entries = elements(wire.cuts);
+  std::vector<std::optional<double>> cuts(entries.empty() ? 0 : joints);
+  for (const kinship_wire_JointCut& entry : entries) {
+    reader.rules.that(entry.joint < joints, "cuts: joint " + std::to_string(entry.joint) + " of " +
+                                                std::to_string(joints));
+    if (entry.joint < joints)
+      cuts[entry.joint] = entry.angle;
+  }
+  return cuts;
+}
+
+void check_cuts(const std::vector<std::optional<double>>& cuts, std::size_t joints, Rules& rules) {
+  rules.that(cuts.empty() || cuts.size() == joints, "cuts: " + std::to_string(cuts.size()) +
+                                                        " entries for " + std::to_string(joints) +
+                                                        " joints");
+  for (const std::optional<double>& cut : cuts)
+    rules.finite("cuts", cut.value_or(0));
+}
+
 void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
   rules.at_most("limits", static_cast<std::size_t>(limits.cols()), kMaxDof)
       .that(limits.allFinite(), "limits: not all finite");
@@ -224,6 +291,8 @@ std::optional<Error> check(const Distribution& distribution) {
   check_evidence("control", distribution.advice.control, rules);
   check_recent(distribution.advice.recent, rules);
   check_limits(distribution.limits, rules);
+  check_scores(distribution.component_scores, rules);
+  check_cuts(distribution.cuts, static_cast<std::size_t>(distribution.limits.cols()), rules);
   const auto& mixture = distribution.mixture;
   rules.that(mixture.has_value() == has_mixture(distribution.state),
              mixture ? "mixture: given although failed" : "mixture: missing although not failed");
@@ -268,6 +337,8 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   write_evidence(distribution.advice.control, arena, wire.control);
   wire.guided_share = distribution.advice.guided_share;
   write_recent(distribution.advice.recent, arena, wire);
+  write_scores(distribution.component_scores, arena, wire);
+  write_cuts(distribution.cuts, arena, wire);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -286,6 +357,8 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   const auto limits = elements(wire.limits);
   reader.rules.at_most("sources", wire.sources._length, kMaxSources)
       .at_most("recent", wire.recent._length, kMaxJudgedAttempts)
+      .at_most("component_scores", wire.component_scores._length, kMaxComponentScores)
+      .at_most("cuts", wire.cuts._length, kMaxDof)
       .at_most("limits (numbers)", limits.size(), 2 * kMaxDof)
       .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
   if (reader.rules.broken())
@@ -307,6 +380,8 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.advice.control = read_evidence(wire.control);
   distribution.advice.guided_share = wire.guided_share;
   distribution.advice.recent = read_recent(wire, reader);
+  distribution.component_scores = read_scores(wire, reader);
+  distribution.cuts = read_cuts(wire, limits.size() / 2, reader);
   return distribution;
 }
 

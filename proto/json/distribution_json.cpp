@@ -216,6 +216,48 @@ void read_provenance(const Reader& reader, Distribution& distribution) {
     distribution.sources.push_back(read_source(source));
 }
 
+OrderedJson curve_or_null(const std::vector<ComponentScore>& scores) {
+  if (scores.empty())
+    return nullptr;
+  OrderedJson curve = OrderedJson::array();
+  for (const ComponentScore& score : scores)
+    curve.push_back({{"K", score.components}, {"score", score.score}});
+  return curve;
+}
+
+std::vector<ComponentScore> read_curve(const Reader& reader) {
+  std::vector<ComponentScore> scores;
+  for (const Reader& entry : reader.elements(kMaxComponentScores)) {
+    const std::uint64_t components = entry.at("K").count();
+    if (components < 1 || components > kMaxComponents)
+      entry.refuse("K is not between 1 and " + std::to_string(kMaxComponents));
+    scores.push_back({static_cast<int>(components), entry.at("score").number()});
+  }
+  return scores;
+}
+
+OrderedJson cuts_or_null(const std::vector<std::optional<double>>& cuts) {
+  if (cuts.empty())
+    return nullptr;
+  OrderedJson list = OrderedJson::array();
+  for (const std::optional<double>& cut : cuts)
+    list.push_back(cut ? OrderedJson(*cut) : OrderedJson(nullptr));
+  return list;
+}
+
+std::vector<std::optional<double>> read_cuts(const Reader& reader, Eigen::Index joints) {
+  std::vector<std::optional<double>> cuts;
+  for (const Reader& entry : reader.elements(kMaxDof)) {
+    cuts.emplace_back();
+    if (!entry.is_null())
+      cuts.back() = entry.number();
+  }
+  if (static_cast<Eigen::Index>(cuts.size()) != joints)
+    reader.refuse(std::to_string(cuts.size()) + " entries for " + std::to_string(joints) +
+                  " joints");
+  return cuts;
+}
+
 void read_optional_members(const Reader& reader, Distribution& distribution) {
   if (const auto reason = reader.find("reason"))
     distribution.reason = reason->text(kMaxMessageBytes);
@@ -231,6 +273,8 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     read_recent(*recent, distribution.advice);
   if (const auto selection = reader.find("selection"))
     distribution.selection = read_selection(*selection);
+  if (const auto curve = reader.find("k_curve"))
+    distribution.component_scores = read_curve(*curve);
   if (const auto fitted = reader.find("fitted_ms"))
     distribution.fitted_ms = fitted->integer();
   if (const auto time = reader.find("transfer_time_s"))
@@ -272,7 +316,7 @@ Distribution read_distribution(const Reader& reader, MixturePart mixture) {
   if (const auto share = reader.find("guided_share"))
     distribution.advice.guided_share = share->number(0, 1);
   if (const auto cuts = reader.find("cuts"))
-    cuts->refuse("not supported yet, must be null");
+    distribution.cuts = read_cuts(*cuts, distribution.limits.cols());
   distribution.mixture = read_mixture_part(reader, distribution, mixture);
   return distribution;
 }
@@ -295,8 +339,8 @@ OrderedJson distribution_object(const Distribution& distribution) {
   object["configurations"] = distribution.configurations;
   add_mixture(distribution.mixture, object);
   object["limits"] = list_of_columns(distribution.limits);
-  object["cuts"] = nullptr;
-  object["k_curve"] = nullptr;
+  object["cuts"] = cuts_or_null(distribution.cuts);
+  object["k_curve"] = curve_or_null(distribution.component_scores);
   object["held_out_score"] = distribution.held_out_score ? OrderedJson(*distribution.held_out_score)
                                                          : OrderedJson(nullptr);
   object["recommended_share"] = distribution.advice.recommended_share;

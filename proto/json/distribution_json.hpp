@@ -13,7 +13,7 @@ namespace kinship::json {
 std::string to_json(const Distribution& distribution);
 
 /// \return the distribution, or InvalidInput or TooLarge that names field, value and limit.
-///         Doubles of mixture, limits and times come back bit by bit. `cuts` must be null.
+///         Doubles of mixture, limits and times come back bit by bit.
 Result<Distribution> distribution_from_json(std::string_view text);
 
 }  // namespace kinship::json

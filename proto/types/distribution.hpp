@@ -47,6 +47,16 @@ struct Source {
   std::uint64_t paths_with_scene = 0;  ///< of `paths_used`: filtered by their recorded scene
 };
 
+/// How well a number of components does at configurations of paths that were held out.
+struct ComponentScore {
+  int components = 0;
+  /// Weighted mean over held-out configurations of log(0.99 p + 0.01 u), nats: p the density of the
+  /// mixture of the other paths, u that of the uniform distribution within the limits.
+  double score = 0;
+
+  bool operator==(const ComponentScore&) const = default;
+};
+
 /// Ready: there is a mixture. Failed: nothing could be transferred or fitted; `reason` says why.
 /// Thin: there is a mixture, made of a small part of the experience (server/service says how
 /// small).
@@ -72,12 +82,17 @@ struct Distribution {
   std::uint64_t configurations = 0;  ///< number the mixture was fitted to
   std::optional<Mixture> mixture;    ///< present exactly unless Failed
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
+  /// Where the number of components was chosen: the highest score of `component_scores`.
   std::optional<double> held_out_score;
   /// Of the moment it was sent, not of the fit.
   Advice advice;
   std::int64_t fitted_ms = 0;  ///< Unix time, UTC
   double transfer_time_s = 0;
   double fit_time_s = 0;
+  std::vector<ComponentScore> component_scores;  ///< falling number of components; mostly empty
+  /// Per joint, where the circle of a continuous one is cut: means and limits lie in
+  /// [cut, cut + 2 pi]. Empty if no joint is continuous.
+  std::vector<std::optional<double>> cuts;
 };
 
 }  // namespace kinship

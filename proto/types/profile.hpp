@@ -34,8 +34,11 @@ struct TransferParameters {
 
 /// How configurations become a mixture.
 struct DensityParameters {
-  int components = 100;                      ///< K, lowered if there are too few configurations
-  double covariance_floor = 1e-4;            ///< added to each variance, squared joint units
+  /// K, lowered if there are too few configurations. 0: chosen by how well held-out paths are
+  /// described.
+  int components = 100;
+  double covariance_floor = 1e-4;            ///< added to each variance of a turning joint, rad^2
+  double covariance_floor_m2 = 1e-4;         ///< of a prismatic joint, m^2
   bool equal_path_weights = true;            ///< every path weighs the same, however long
   Weighting weighting = Weighting::Sources;  ///< of source robots against each other
 

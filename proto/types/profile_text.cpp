@@ -48,10 +48,12 @@ const std::vector<Option>& options() {
        [](Profile& profile, double value) { profile.transfer.avoid_self_collision = value != 0; }},
       {"avoid_recorded_scene", 0, 1, true,
        [](Profile& profile, double value) { profile.transfer.avoid_recorded_scene = value != 0; }},
-      {"components", 1, 1000, true,
+      {"components", 0, 1000, true,
        [](Profile& profile, double value) { profile.density.components = whole(value); }},
       {"covariance_floor", 1e-8, 1, false,
        [](Profile& profile, double value) { profile.density.covariance_floor = value; }},
+      {"covariance_floor_m2", 1e-8, 1, false,
+       [](Profile& profile, double value) { profile.density.covariance_floor_m2 = value; }},
       {"equal_path_weights", 0, 1, true,
        [](Profile& profile, double value) { profile.density.equal_path_weights = value != 0; }},
   };
@@ -62,7 +64,10 @@ Error refusal(std::string_view text, const std::string& why) {
   return {ErrorCode::InvalidInput, "profile '" + std::string(text) + "': " + why};
 }
 
-std::optional<double> number_of(std::string_view text) {
+/// `auto` is 0, which stands for "choose it" where it is allowed and is no use elsewhere.
+std::optional<double> number_of(const Option& option, std::string_view text) {
+  if (text == "auto" && option.name == "components")
+    return 0;
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
@@ -79,7 +84,7 @@ std::optional<std::string> change(Profile& profile, std::string_view word) {
     if (option.name != name)
       continue;
     const auto value =
-        sign == std::string_view::npos ? std::nullopt : number_of(word.substr(sign + 1));
+        sign == std::string_view::npos ? std::nullopt : number_of(option, word.substr(sign + 1));
     const bool fits = value && *value >= option.least && *value <= option.most &&
                       (!option.is_whole || *value == std::round(*value));
     if (!fits)

@@ -3,21 +3,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "proto/types/distribution.hpp"
 #include "proto/types/mixture.hpp"
 #include "server/density/block_points.hpp"
 #include "server/density/em_run.hpp"
 
 namespace kinship::density {
-
-/// How well a number of components does.
-struct ComponentScore {
-  int components = 0;
-  /// Weighted mean over held-out configurations of log(0.99 p + 0.01 u), nats: p the density of a
-  /// mixture fitted to the other paths, u that of the uniform distribution within the limits.
-  double score = 0;
-
-  bool operator==(const ComponentScore&) const = default;
-};
 
 /// What is tried, from too many components down.
 struct Ladder {

@@ -77,6 +77,7 @@ Digest identify(const DistributionKey& key) {
   sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
   const DensityParameters& density = key.profile.density;
   sha.add(bits(density.components)).add(density.covariance_floor);
+  sha.add(density.covariance_floor_m2);
   sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
   sha.add(static_cast<std::uint64_t>(density.weighting));
   sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);

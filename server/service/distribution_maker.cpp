@@ -1,6 +1,8 @@
 #include "server/service/distribution_maker.hpp"
 
+#include <algorithm>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "proto/types/failure.hpp"
@@ -9,12 +11,25 @@
 #include "server/service/freshness.hpp"
 
 namespace kinship::service {
+namespace {
+
+/// As many as the machine runs at once: fits are at low priority, and rarely many.
+int fit_threads() {
+  constexpr unsigned kMost = 8;
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMost));
+}
+
+}  // namespace
 
 DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
     : parts_(parts),
       fit_(fit ? std::move(fit) : [parts](const DistributionKey& key, const std::stop_token& stop) {
-        return fit_distribution(
-            key, {.store = parts.store, .robots = parts.robots, .clock = parts.clock}, stop);
+        return fit_distribution(key,
+                                {.store = parts.store,
+                                 .robots = parts.robots,
+                                 .clock = parts.clock,
+                                 .fit_threads = fit_threads()},
+                                stop);
       }) {}
 
 FitOutcome DistributionMaker::make(const DistributionKey& key, const std::stop_token& stop) const {

@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "proto/types/number_text.hpp"
+#include "server/density/hold_out.hpp"
 #include "server/service/freshness.hpp"
 #include "server/service/source_transfer.hpp"
+#include "server/service/turn_cuts.hpp"
 
 namespace kinship::service {
 namespace {
@@ -67,19 +69,27 @@ std::string header(Eigen::Index dof) {
 }
 
 void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights,
-                const Distribution& distribution, JobRows& rows) {
+                const Distribution& distribution, std::uint64_t seed, JobRows& rows) {
   rows.add(header(distribution.limits.cols()));
+  const auto count = static_cast<std::uint32_t>(pool.paths().size());
+  const std::vector<std::uint8_t> held_out = distribution.component_scores.empty()
+                                                 ? std::vector<std::uint8_t>(count, 0)
+                                                 : density::held_out_paths(count, seed);
+  Eigen::MatrixXd configurations = pool.configurations();
+  wrap(distribution.cuts, configurations);
   Eigen::Index row = 0;
+  std::size_t path_index = 0;
   for (const PooledConfigurations::PooledPath& pooled : pool.paths()) {
     const std::string whose =
         pooled.report.text() + "," + distribution.sources[pooled.source].robot.hex() + ",";
     const transfer::TransferredPath& path = pooled.path;
+    const bool is_held_out = held_out[path_index++] != 0;
     for (Eigen::Index i = 0; i < path.configurations.cols(); ++i, ++row) {
       std::string line = whose + std::to_string(path.pose_index(i)) + "," +
                          std::to_string(path.solution_index(i)) + "," + number_text(weights(row)) +
-                         ",0";
-      for (Eigen::Index joint = 0; joint < path.configurations.rows(); ++joint)
-        line += "," + number_text(path.configurations(joint, i));
+                         (is_held_out ? ",1" : ",0");
+      for (Eigen::Index joint = 0; joint < configurations.rows(); ++joint)
+        line += "," + number_text(configurations(joint, row));
       rows.add(line);
     }
   }
@@ -96,7 +106,7 @@ bool run_export(const FitContext& context, const DistributionKey& key,
   require_same(distribution, sources);
   run.set_progress(0.9);
   const PooledConfigurations& pool = transfer.pool();
-  write_rows(pool, pool.weights(key.profile.density), distribution, run.rows);
+  write_rows(pool, pool.weights(key.profile.density), distribution, key.profile.seed, run.rows);
   run.message = std::to_string(pool.size()) + " configurations of revision " +
                 std::to_string(distribution.revision);
   return true;

@@ -14,6 +14,7 @@
 #include "server/service/selected_experience.hpp"
 #include "server/service/source_transfer.hpp"
 #include "server/service/source_words.hpp"
+#include "server/service/turn_cuts.hpp"
 
 namespace kinship::service {
 namespace {
@@ -30,9 +31,7 @@ Distribution begun(const DistributionKey& key, const FitContext& context,
   distribution.profile = key.profile.name;
   distribution.selection = {key.sources, key.profile.density.weighting, key.since_ms};
   distribution.engines = engines();
-  distribution.limits.resize(2, target.dof());
-  distribution.limits.row(0) = target.lower().transpose();
-  distribution.limits.row(1) = target.upper().transpose();
+  distribution.limits = limits_with({}, target);
   return distribution;
 }
 
@@ -44,6 +43,18 @@ double solved_share(const std::vector<Source>& sources) {
       share += source.mass * static_cast<double>(source.poses_solved) /
                static_cast<double>(source.poses);
   return share;
+}
+
+/// What is added to the variance of each joint.
+Eigen::VectorXd covariance_floors(const kinematics::Chain& chain,
+                                  const DensityParameters& parameters) {
+  Eigen::VectorXd floors(chain.dof());
+  for (Eigen::Index joint = 0; joint < chain.dof(); ++joint)
+    floors[joint] =
+        chain.joints()[static_cast<std::size_t>(joint)].type == kinematics::JointType::Prismatic
+            ? parameters.covariance_floor_m2
+            : parameters.covariance_floor;
+  return floors;
 }
 
 /// One fit on its way.
@@ -61,6 +72,8 @@ class Fit {
   using TimePoint = std::chrono::steady_clock::time_point;
 
   void fit(Distribution& distribution) const;
+  Result<density::FitSummary> fit_mixture(Distribution& distribution,
+                                          const Eigen::VectorXd& weights) const;
   void fail(Distribution& distribution, const std::string& message) const;
   double seconds_since(TimePoint begin) const {
     return std::chrono::duration<double>(context_.clock.now() - begin).count();
@@ -93,22 +106,36 @@ FitOutcome Fit::run(const std::stop_token& stop) {
   return {FitOutcome::Kind::Fitted, std::move(distribution)};
 }
 
+Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
+                                             const Eigen::VectorXd& weights) const {
+  const PooledConfigurations& pool = transfer_.pool();
+  const DensityParameters& parameters = key_.profile.density;
+  Eigen::MatrixXd configurations = pool.configurations();
+  distribution.cuts = find_cuts(target_->chain, configurations);
+  distribution.limits = limits_with(distribution.cuts, target_->chain);
+  wrap(distribution.cuts, configurations);
+  density::FitOptions options;
+  options.components = parameters.components;
+  options.floors_of_joints = covariance_floors(target_->chain, parameters);
+  options.seed = key_.profile.seed;
+  options.limits = distribution.limits;
+  options.computation.threads = context_.fit_threads;
+  if (options.components == 0)
+    options.path_of_configuration = pool.path_of_configuration();
+  return density::fit_mixture(configurations, weights, options);
+}
+
 void Fit::fit(Distribution& distribution) const {
   const PooledConfigurations& pool = transfer_.pool();
   distribution.configurations = static_cast<std::uint64_t>(pool.size());
   if (pool.size() == 0)
     return fail(distribution, "nothing could be transferred to '" + target_->label + "'");
   const TimePoint begin = context_.clock.now();
-  const DensityParameters& parameters = key_.profile.density;
-  const Eigen::VectorXd weights = pool.weights(parameters);
+  const Eigen::VectorXd weights = pool.weights(key_.profile.density);
   const std::vector<double> masses = pool.masses(weights);
   for (std::size_t i = 0; i < masses.size(); ++i)
     distribution.sources[i].mass = masses[i];
-  Result<density::FitSummary> fitted =
-      density::fit_mixture(pool.configurations(), weights,
-                           {.components = parameters.components,
-                            .covariance_floor = parameters.covariance_floor,
-                            .seed = key_.profile.seed});
+  Result<density::FitSummary> fitted = fit_mixture(distribution, weights);
   distribution.fit_time_s = seconds_since(begin);
   if (!fitted)
     return fail(distribution, std::to_string(pool.size()) + " configurations for '" +
@@ -116,6 +143,8 @@ void Fit::fit(Distribution& distribution) const {
                                   "' could not be fitted: " + fitted.error().message);
   distribution.state = solved_share(distribution.sources) < kThinShare ? DistributionState::Thin
                                                                        : DistributionState::Ready;
+  distribution.held_out_score = fitted->held_out_score;
+  distribution.component_scores = std::move(fitted->curve);
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = warnings_in_words(sources_, key_.T_task_base.has_value());
   Profile profile = key_.profile;

@@ -20,6 +20,7 @@ struct FitContext {
   /// Of all sources together. From more than that each source contributes its share (share_paths),
   /// evenly over the order of arrival, and the distribution's reason says so.
   std::size_t max_paths = 4000;
+  int fit_threads = 1;  ///< of one fit of a mixture; the result does not depend on them
 };
 
 /// A distribution is thin if fewer of its sources' poses were solved, each source counted by its

@@ -32,6 +32,15 @@ Eigen::MatrixXd PooledConfigurations::configurations() const {
   return pooled;
 }
 
+std::vector<std::uint32_t> PooledConfigurations::path_of_configuration() const {
+  std::vector<std::uint32_t> path_of;
+  path_of.reserve(static_cast<std::size_t>(size_));
+  for (std::size_t path = 0; path < paths_.size(); ++path)
+    path_of.insert(path_of.end(), static_cast<std::size_t>(paths_[path].path.configurations.cols()),
+                   static_cast<std::uint32_t>(path));
+  return path_of;
+}
+
 Eigen::VectorXd PooledConfigurations::weights(const DensityParameters& parameters) const {
   Eigen::VectorXd pooled(size_);
   std::vector<double> sum_of_source(sources_.size(), 0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "proto/types/profile.hpp"
@@ -36,6 +37,8 @@ class PooledConfigurations {
   /// In the order of addition; their configurations one after the other are configurations().
   const std::vector<PooledPath>& paths() const noexcept { return paths_; }
   Eigen::MatrixXd configurations() const;  ///< dof x N, in the order of addition
+  /// N, which of paths() each comes from.
+  std::vector<std::uint32_t> path_of_configuration() const;
 
   /// N weights with sum N. Equal path weights: those of every path with configurations of a source
   /// sum to the same; otherwise as the transfer gave them. Weighting::Sources: each source then

@@ -7,41 +7,16 @@
 #include "server/density/block_points.hpp"
 #include "server/density/expectation_maximisation.hpp"
 #include "server/density/fit.hpp"
+#include "tests/bench/bundles.hpp"
 
 namespace kinship {
 namespace {
 
+using bench::bundles;
+
 constexpr Eigen::Index kDimension = 7;
 constexpr Eigen::Index kPaperConfigurations = 72'160;
 constexpr int kComponents = 50;
-
-/// Waypoints of curved bundles: 24 prototypes of cubic curves, paths of 145 points near them.
-Eigen::MatrixXd bundles(Eigen::Index count, Eigen::Index dimension = kDimension) {
-  constexpr Eigen::Index kPrototypes = 24;
-  constexpr Eigen::Index kPathPoints = 145;
-  constexpr Eigen::Index kControls = 4;
-  std::mt19937_64 generator(3);
-  std::uniform_real_distribution<double> uniform(-2, 2);
-  std::normal_distribution<double> normal;
-  const Eigen::MatrixXd prototypes = Eigen::MatrixXd::NullaryExpr(
-      dimension, kPrototypes * kControls, [&] { return uniform(generator); });
-  Eigen::MatrixXd points(dimension, count);
-  Eigen::MatrixXd controls(dimension, kControls);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index on_path = i % kPathPoints;
-    if (on_path == 0)
-      controls = prototypes.middleCols(kControls * (i / kPathPoints % kPrototypes), kControls) +
-                 0.15 * Eigen::MatrixXd::NullaryExpr(dimension, kControls,
-                                                     [&] { return normal(generator); });
-    const double t = static_cast<double>(on_path) / static_cast<double>(kPathPoints - 1);
-    const double s = 1 - t;
-    const Eigen::Vector4d bernstein(s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t);
-    points.col(i) = controls * bernstein + 0.004 * Eigen::VectorXd::NullaryExpr(dimension, [&] {
-                                             return normal(generator);
-                                           });
-  }
-  return points;
-}
 
 density::FitSummary fit(const Eigen::MatrixXd& points, int max_iterations,
                         int components = kComponents) {
@@ -82,6 +57,34 @@ void whole_fit(benchmark::State& state) {
     iterations = fit(configurations, 50).log_likelihoods.size();
   state.counters["iterations"] = static_cast<double>(iterations);
 }
+/// K chosen: a ladder of components scored on held-out paths, then a fit to all.
+void fit_with_choice(benchmark::State& state) {
+  const Eigen::MatrixXd configurations = bundles(state.range(0));
+  density::FitOptions options;
+  options.components = 0;
+  options.computation.threads = static_cast<int>(state.range(1));
+  for (Eigen::Index i = 0; i < configurations.cols(); ++i)
+    options.path_of_configuration.push_back(
+        static_cast<std::uint32_t>(i / bench::kPointsPerBundlePath));
+  Eigen::Index components = 0;
+  for (auto _ : state)
+    components =
+        density::fit_mixture(configurations, Eigen::VectorXd::Ones(configurations.cols()), options)
+            .value_or_throw()
+            .mixture.size();
+  state.counters["components"] = static_cast<double>(components);
+}
+BENCHMARK(fit_with_choice)
+    ->ArgNames({"N", "threads"})
+    ->Args({15'000, 1})
+    ->Args({kPaperConfigurations, 1})
+    ->Args({kPaperConfigurations, 2})
+    ->Args({1'000'000, 1})
+    ->Args({1'000'000, 2})
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
 BENCHMARK(whole_fit)
     ->Arg(15'000)
     ->Arg(kPaperConfigurations)

@@ -275,7 +275,7 @@ class Vandal {
   void spoil(kinship_wire_Announcement& wire) { spoil(wire.task); }
 
   void spoil(kinship_wire_Distribution& wire) {
-    switch (values_.below(17)) {
+    switch (values_.below(19)) {
       case 0:
         return spoil(wire.task);
       case 1:
@@ -292,6 +292,11 @@ class Vandal {
         return wire.recent._length > 0 ? spoil(wire.recent._buffer[0]) : void();
       case 12:
         return spoil(wire.guided_share);
+      case 13:
+        return wire.component_scores._length > 0 ? spoil(wire.component_scores._buffer[0].score)
+                                                 : void();
+      case 14:
+        return wire.cuts._length > 0 ? spoil(wire.cuts._buffer[0].joint) : void();
       case 3:
         return spoil(wire.limits);
       case 4:

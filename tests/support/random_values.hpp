@@ -227,6 +227,12 @@ class RandomValues {
       distribution.mixture = mixture(dof);
     if (coin())
       distribution.held_out_score = number();
+    for (int components = below(40); components > 0; components -= 7)
+      distribution.component_scores.push_back({components, number()});
+    if (coin())
+      distribution.cuts.resize(static_cast<std::size_t>(dof));
+    if (!distribution.cuts.empty())
+      distribution.cuts[static_cast<std::size_t>(below(static_cast<int>(dof)))] = number();
     distribution.advice.recommended_share = share();
     distribution.advice.evidence = name(100);
     if (coin())

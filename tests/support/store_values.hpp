@@ -102,6 +102,9 @@ inline Distribution make_distribution(const Digest& robot, const std::string& ta
   distribution.limits = Eigen::Matrix2Xd::Zero(2, kDof);
   distribution.limits.row(1).setConstant(2.5);
   distribution.held_out_score = -1.5;
+  distribution.component_scores = {{20, -2.5}, {2, -1.5}};
+  distribution.cuts.resize(kDof);
+  distribution.cuts[1] = 0.5;
   distribution.advice.recommended_share = 0.9;
   distribution.advice.evidence = "none yet";
   distribution.fitted_ms = 1'700'000'000'123;

@@ -11,8 +11,9 @@ namespace kinship::store {
 namespace {
 
 // Written first. 1 knew neither the selection nor the details of a source, 2 neither how its tracks
-// and filters fared nor thin distributions; both are still read.
-constexpr std::uint64_t kFormat = 3;
+// and filters fared nor thin distributions, 3 neither how the number of components was chosen nor
+// cuts; all are still read.
+constexpr std::uint64_t kFormat = 4;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
 
 template <typename Enum>
@@ -95,6 +96,37 @@ Selection read_selection(ByteReader& in) {
   return selection;
 }
 
+/// Scores of numbers of components and cuts of continuous joints.
+void add_choice(ByteWriter& out, const Distribution& distribution) {
+  out.add(std::uint64_t{distribution.component_scores.size()});
+  for (const ComponentScore& score : distribution.component_scores)
+    out.add(static_cast<std::uint64_t>(score.components)).add(score.score);
+  out.add(std::uint64_t{distribution.cuts.size()});
+  for (const std::optional<double>& cut : distribution.cuts) {
+    out.add(std::uint64_t{cut ? 1U : 0U});
+    if (cut)
+      out.add(*cut);
+  }
+}
+
+void read_choice(ByteReader& in, Distribution& distribution) {
+  const std::uint64_t scores = in.integer();
+  if (scores > kMaxComponentScores)
+    throw std::out_of_range("distribution: too many scores of components");
+  for (std::uint64_t i = 0; i < scores; ++i) {
+    const std::uint64_t components = in.integer();
+    if (components > kMaxComponents)
+      throw std::out_of_range("distribution: a score of too many components");
+    distribution.component_scores.push_back(
+        {.components = static_cast<int>(components), .score = in.real()});
+  }
+  const std::uint64_t cuts = in.integer();
+  if (cuts > kMaxDof)
+    throw std::out_of_range("distribution: too many cuts");
+  for (std::uint64_t i = 0; i < cuts; ++i)
+    distribution.cuts.push_back(in.integer() != 0 ? std::optional(in.real()) : std::nullopt);
+}
+
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
   out.add(mixture.weights()).add(mixture.means());
   for (const Eigen::MatrixXd& covariance : mixture.covariances())
@@ -141,6 +173,8 @@ Distribution read_distribution(ByteReader& in) {
     distribution.mixture = read_mixture(in);
   if (format > 1)
     distribution.selection = read_selection(in);
+  if (format > 3)
+    read_choice(in, distribution);
   if (!in.at_end())
     throw std::out_of_range("distribution: bytes left over");
   return distribution;
@@ -169,6 +203,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
   if (distribution.mixture)
     add_mixture(out, *distribution.mixture);
   add_selection(out, distribution.selection);
+  add_choice(out, distribution);
   return out.bytes();
 }
 

@@ -132,6 +132,32 @@ TEST(FetchCodec, RecentAttemptsAreJudgedOnesOldestFirst) {
             "arm of a recent attempt: 2 is not between 0 and 1");
 }
 
+TEST(FetchCodec, ScoresFallInComponentsAndCutsNameJoints) {
+  FetchReply reply = ready_reply();
+  Distribution& distribution = *reply.distribution;
+  distribution.component_scores = {{40, 0.5}, {20, -1}};
+  distribution.cuts.assign(static_cast<std::size_t>(distribution.limits.cols()), std::nullopt);
+  distribution.cuts.back() = 1.5;
+  auto message = encode({}, reply).value_or_throw();
+  const Distribution read = *decode(message.wire).value_or_throw().distribution;
+  EXPECT_EQ(read.component_scores, distribution.component_scores);
+  EXPECT_EQ(read.cuts, distribution.cuts);
+  message.wire.distribution._buffer[0].cuts._buffer[0].joint = 32;
+  EXPECT_NE(decode(message.wire).error().message.find("cuts: joint 32 of "), std::string::npos);
+  message = encode({}, reply).value_or_throw();
+  message.wire.distribution._buffer[0].component_scores._buffer[0].components = 1025;
+  EXPECT_EQ(decode(message.wire).error().code, ErrorCode::TooLarge);
+
+  distribution.component_scores[1].components = 40;
+  EXPECT_EQ(encode({}, reply).error().message,
+            "component_scores: 40 after 40 components, must fall");
+  distribution.component_scores.assign(kMaxComponentScores + 1, {1, 0});
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
+  distribution.component_scores.clear();
+  distribution.cuts.emplace_back();
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::InvalidInput);
+}
+
 TEST(FetchCodec, StatusOutOfRangeIsRefused) {
   FetchReply reply;
   reply.status = FetchStatus::Pending;

@@ -182,8 +182,23 @@ TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
             "weights: must be null if state is 'failed'");
   EXPECT_EQ(message_of(changed("\"recommended_share\":0.9", "\"recommended_share\":2")),
             "recommended_share: 2 exceeds 1");
-  EXPECT_EQ(message_of(changed("\"cuts\":null", "\"cuts\":[0,0]")),
-            "cuts: not supported yet, must be null");
+  EXPECT_EQ(message_of(changed("\"cuts\":null", "\"cuts\":[0]")), "cuts: 1 entries for 2 joints");
+  EXPECT_EQ(message_of(changed("\"k_curve\":null", R"("k_curve":[{"K":0,"score":1}])")),
+            "k_curve[0]: K is not between 1 and 1024");
+}
+
+TEST(DistributionJson, CurveAndCutsComeBack) {
+  Distribution written = two_components();
+  written.component_scores = {{40, -0.5}, {20, 0.25}};
+  written.cuts = {std::nullopt, -1.5};
+  const std::string text = to_json(written);
+  EXPECT_NE(
+      text.find(R"("cuts":[null,-1.5],"k_curve":[{"K":40,"score":-0.5},{"K":20,"score":0.25}])"),
+      std::string::npos)
+      << text;
+  const Distribution read = distribution_from_json(text).value_or_throw();
+  EXPECT_EQ(read.component_scores, written.component_scores);
+  EXPECT_EQ(read.cuts, written.cuts);
 }
 
 TEST(DistributionJson, ComponentsAreLimited) {

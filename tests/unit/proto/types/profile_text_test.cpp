@@ -31,13 +31,19 @@ TEST(ProfileText, EveryOptionCanBeChanged) {
   }
 }
 
+TEST(ProfileText, ComponentsAreChosenByAuto) {
+  EXPECT_EQ(profile_from_text("default,components=auto")->density.components, 0);
+  EXPECT_EQ(profile_from_text("paper,components=0")->density.components, 0);
+  EXPECT_FALSE(profile_from_text("default,tracks=auto"));
+}
+
 TEST(ProfileText, RefusesWithOptionValueAndLimits) {
   const auto message = [](const char* text) { return profile_from_text(text).error().message; };
   EXPECT_EQ(message("best"), "profile 'best': it does not begin with default or paper");
   EXPECT_EQ(message(""), "profile '': it does not begin with default or paper");
   EXPECT_EQ(message("default,K=20"), "profile 'default,K=20': there is no option 'K'");
   EXPECT_EQ(message("default,components=1001"),
-            "profile 'default,components=1001': 'components=1001' is not a whole number from 1 to "
+            "profile 'default,components=1001': 'components=1001' is not a whole number from 0 to "
             "1000");
   for (const char* bad :
        {"default,", "default,components", "default,components=", "default,tracks=1.5",

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -58,8 +60,10 @@ class AdministrationChanges : public ServiceFixture {
     } while (!request.cursor.empty());
     return rows;
   }
-  Distribution fetched() {
-    const FetchReply reply = fetch(request_for(pupil_));
+  Distribution fetched(const std::string& profile = "default") {
+    FetchRequest request = request_for(pupil_);
+    request.profile = profile;
+    const FetchReply reply = fetch(request);
     if (!reply.distribution)
       throw std::runtime_error(reply.message);
     return *reply.distribution;
@@ -144,6 +148,29 @@ TEST_F(AdministrationChanges, ABackupNeverTouchesWhatIsThere) {
   EXPECT_NE(answer(folder + "/fleet.db-journal").find("belongs to the store"), std::string::npos);
   EXPECT_NE(answer(folder + "/nowhere/copy.db").find("there is no folder"), std::string::npos);
   EXPECT_TRUE(ask(AdminVerb::ListJobs).rows.empty());
+}
+
+TEST_F(AdministrationChanges, ExportSaysWhichConfigurationsWereHeldOut) {
+  report(fleet::solved(teacher_, "shelf", 15, 1));
+  const Distribution distribution = fetched("default,components=auto");
+  ASSERT_FALSE(distribution.component_scores.empty());
+  const Job job = end_of(ask(AdminVerb::ExportConfigurations, distribution.id.hex().substr(0, 8)));
+  ASSERT_EQ(job.state, JobState::Done) << job.message;
+  std::map<std::string, std::set<std::string>> flags_of_path;
+  const std::vector<std::string> rows = rows_of(job.id, 1000);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    std::istringstream line(rows[i]);
+    std::vector<std::string> fields;
+    for (std::string field; std::getline(line, field, ',');)
+      fields.push_back(field);
+    flags_of_path[fields[0]].insert(fields[5]);
+  }
+  EXPECT_EQ(flags_of_path.size(), 15U);
+  EXPECT_EQ(std::count_if(flags_of_path.begin(), flags_of_path.end(),
+                          [](const auto& path) { return path.second.count("1") > 0; }),
+            3);  // a fifth of the paths, and whole ones
+  for (const auto& [path, flags] : flags_of_path)
+    EXPECT_EQ(flags.size(), 1U) << path;
 }
 
 TEST_F(AdministrationChanges, ConfigurationsAreExportedExactlyAsTheFitSawThem) {

@@ -41,6 +41,7 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.thin_share = 0.6; },
       [](DistributionKey& k) { k.profile.density.components = 7; },
       [](DistributionKey& k) { k.profile.density.covariance_floor = 1e-3; },
+      [](DistributionKey& k) { k.profile.density.covariance_floor_m2 = 1e-3; },
       [](DistributionKey& k) { k.profile.density.equal_path_weights = false; },
       [](DistributionKey& k) { k.profile.density.weighting = Weighting::Paths; },
       [](DistributionKey& k) { k.profile.recommended_share = 0.5; },

@@ -26,6 +26,8 @@ TEST(DistributionBlob, ComesBackAsItWas) {
   EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
   EXPECT_EQ(after->limits, before.limits);
   EXPECT_EQ(after->held_out_score, before.held_out_score);
+  EXPECT_EQ(after->component_scores, before.component_scores);
+  EXPECT_EQ(after->cuts, before.cuts);
   EXPECT_EQ(after->fitted_ms, before.fitted_ms);
   // and everything else, because it is written in the same bytes again
   Distribution exact_pose = *after;

@@ -1,0 +1,40 @@
+#include "client/cli/fetch_command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace kinship::cli {
+namespace {
+
+std::string printed(const Distribution& distribution) {
+  std::ostringstream out;
+  print_distribution(distribution, out);
+  return out.str();
+}
+
+TEST(PrintDistribution, DrawsTheScoresOfNumbersOfComponents) {
+  Distribution distribution;
+  distribution.component_scores = {{40, 0.5}, {20, 0.75}, {10, -0.25}};
+  const std::string text = printed(distribution);
+  EXPECT_NE(text.find("20          0.750           " + std::string(41, '#') + " chosen"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("40          0.500           " + std::string(31, '#') + "\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("10          -0.250          #\n"), std::string::npos) << text;
+}
+
+TEST(PrintDistribution, DrawsNothingIfTheNumberWasGiven) {
+  EXPECT_EQ(printed({}).find("HELD-OUT"), std::string::npos);
+}
+
+TEST(PrintDistribution, OneScoreIsTheBest) {
+  Distribution distribution;
+  distribution.component_scores = {{1, -3}};
+  EXPECT_NE(printed(distribution).find("# chosen"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kinship::cli
