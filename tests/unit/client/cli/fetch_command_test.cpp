@@ -17,13 +17,11 @@ TEST(PrintDistribution, DrawsTheScoresOfNumbersOfComponents) {
   Distribution distribution;
   distribution.component_scores = {{40, 0.5}, {20, 0.75}, {10, -0.25}};
   const std::string text = printed(distribution);
-  EXPECT_NE(text.find("20          0.750           " + std::string(41, '#') + " chosen"),
-            std::string::npos)
+  EXPECT_NE(text.find("20           0.750  " + std::string(41, '#') + " chosen"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("40          0.500           " + std::string(31, '#') + "\n"),
-            std::string::npos)
+  EXPECT_NE(text.find("40           0.500  " + std::string(31, '#') + "\n"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("10          -0.250          #\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("10          -0.250  #\n"), std::string::npos) << text;
 }
 
 TEST(PrintDistribution, DrawsNothingIfTheNumberWasGiven) {
