@@ -3,20 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <future>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/twins.hpp"
+#include "tests/unit/server/service/fit_fixture.hpp"
 #include "tests/unit/server/service/fleet.hpp"
 
 namespace kinship::service {
@@ -51,119 +49,11 @@ double median_distance_m(const Distribution& distribution, const kinematics::Cha
   return distances_m[250];
 }
 
-class FitDistribution : public testing::Test {
- protected:
-  FitDistribution() {
-    for (const RobotDescription& robot : {fleet::teacher(), fleet::pupil(), fleet::dwarf()})
-      registry_.register_robot(robot, 1);
-  }
-
-  void report(const std::vector<Attempt>& attempts) {
-    std::promise<void> done;
-    store_->commit_reports(attempts, [&](const std::vector<Receipt>&) { done.set_value(); });
-    done.get_future().wait();
-  }
-  static DistributionKey key_of(const Robot& robot) {
-    return {.task = "shelf",
-            .robot = robot.digest,
-            .T_task_base = std::nullopt,
-            .profile = *find_profile("default"),
-            .sources = {},
-            .since_ms = 0};
-  }
-  /// For tests that count paths and masses only.
-  static DistributionKey quick_key_of(const Robot& robot) {
-    DistributionKey key = key_of(robot);
-    key.profile.density.components = 2;
-    key.profile.transfer.pose_spacing = 1;
-    key.profile.transfer.max_solutions = 1;
-    return key;
-  }
-  FitOutcome fit(const DistributionKey& key) {
-    return fit_distribution(key, context_, std::stop_token());
-  }
-  Distribution fitted(const DistributionKey& key) { return fit(key).distribution.value(); }
-  static Source source(const Distribution& distribution, const Robot& robot) {
-    for (const Source& source : distribution.sources)
-      if (source.robot == robot.digest)
-        return source;
-    throw std::logic_error("'" + robot.label + "' is no source");
-  }
-
-  test::TemporaryDirectory directory_;
-  std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
-  RobotRegistry registry_{*store_};
-  Clock clock_;
-  FitContext context_{.store = *store_, .robots = registry_, .clock = clock_};
-  const Robot teacher_ = fleet::robot_of(fleet::teacher());
-  const Robot pupil_ = fleet::robot_of(fleet::pupil());
-  const Robot dwarf_ = fleet::robot_of(fleet::dwarf());
-};
-
 TEST_F(FitDistribution, WithoutPathsThereIsNothingToFit) {
   EXPECT_EQ(fit(key_of(pupil_)).kind, FitOutcome::Kind::NoExperience);
   report({fleet::unsolved(teacher_.digest, "shelf")});
   report(fleet::solved(teacher_, "bin", 3, 1));
   EXPECT_EQ(fit(key_of(pupil_)).kind, FitOutcome::Kind::NoExperience);
-}
-
-TEST_F(FitDistribution, ComponentsAreChosenIfAsked) {
-  report(fleet::solved(teacher_, "shelf", 20, 1));
-  DistributionKey key = quick_key_of(pupil_);
-  key.profile.density.components = 0;
-  const Distribution chosen = fitted(key);
-  ASSERT_TRUE(chosen.mixture) << chosen.reason;
-  ASSERT_FALSE(chosen.component_scores.empty());
-  ASSERT_TRUE(chosen.held_out_score);
-  double best = -std::numeric_limits<double>::infinity();
-  for (const ComponentScore& score : chosen.component_scores)
-    best = std::max(best, score.score);
-  EXPECT_EQ(*chosen.held_out_score, best);
-
-  context_.fit_threads = 3;
-  EXPECT_EQ(fitted(key).mixture->means(), chosen.mixture->means());
-  key.profile.density.components = 2;
-  EXPECT_TRUE(fitted(key).component_scores.empty());
-  EXPECT_FALSE(fitted(key).held_out_score);
-}
-
-TEST_F(FitDistribution, BelowTenPathsComponentsAreNotScored) {
-  report(fleet::solved(teacher_, "shelf", 9, 1));
-  DistributionKey key = quick_key_of(pupil_);
-  key.profile.density.components = 0;
-  const Distribution distribution = fitted(key);
-  ASSERT_TRUE(distribution.mixture) << distribution.reason;
-  EXPECT_LE(distribution.mixture->size(), 2);
-  EXPECT_TRUE(distribution.component_scores.empty());
-}
-
-TEST_F(FitDistribution, AContinuousJointIsCutBesideItsAngles) {
-  RobotDescription turner = fleet::teacher();
-  turner.label = "turner";
-  const std::string limited = "type='revolute'", turning = "type='continuous'";
-  turner.urdf.replace(turner.urdf.find(limited), limited.size(), turning);
-  registry_.register_robot(turner, 2);
-  const Robot robot = fleet::robot_of(turner);
-  // A sweep of the first joint through pi.
-  std::vector<Attempt> attempts = fleet::solved(robot, "shelf", 10, 1);
-  for (Attempt& attempt : attempts) {
-    Eigen::MatrixXd waypoints = attempt.path->waypoints();
-    waypoints.row(0).setLinSpaced(2.6, 3.8);
-    attempt.path = Path(waypoints);
-  }
-  report(attempts);
-  const Distribution distribution = fitted(quick_key_of(robot));
-  ASSERT_TRUE(distribution.mixture) << distribution.reason;
-  ASSERT_EQ(distribution.cuts.size(), 3U);
-  ASSERT_TRUE(distribution.cuts[0]);
-  EXPECT_FALSE(distribution.cuts[1]);
-  const double cut = *distribution.cuts[0];
-  EXPECT_NEAR(cut, 0.06, 0.3);
-  EXPECT_EQ(distribution.limits(0, 0), cut);
-  EXPECT_NEAR(distribution.limits(1, 0) - cut, 2 * std::numbers::pi, 1e-12);
-  const Eigen::RowVectorXd means = distribution.mixture->means().row(0);
-  EXPECT_GT(means.minCoeff(), 2.5);
-  EXPECT_LT(means.maxCoeff(), 3.9);
 }
 
 TEST_F(FitDistribution, AnotherRobotsPathsGuideTheHandAlongThem) {
