@@ -144,7 +144,7 @@ void Fit::fit(Distribution& distribution) const {
   distribution.state = solved_share(distribution.sources) < kThinShare ? DistributionState::Thin
                                                                        : DistributionState::Ready;
   distribution.held_out_score = fitted->held_out_score;
-  distribution.component_scores = std::move(fitted->curve);
+  distribution.component_scores = fitted->curve;
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = warnings_in_words(sources_, key_.T_task_base.has_value());
   Profile profile = key_.profile;
