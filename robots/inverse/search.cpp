@@ -1,0 +1,199 @@
+#include "robots/inverse/search.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "robots/inverse/descent.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
+constexpr std::size_t kMostSolutions = 1000;
+constexpr std::size_t kMostBranches = 64;  // of an arm that is not redundant, before the choice
+constexpr int kIterations = 15;            // measured: more cost more than they bring
+constexpr int kPatientIterations = 60;     // for poses that no ordinary start has solved
+constexpr int kPatientStarts = 16;
+constexpr int kFewestStarts = 32;
+constexpr int kStartsPerSolution = 4;
+constexpr int kMostStarts = 4000;
+constexpr int kFirstStarts = 16;
+constexpr int kDiagnosticStarts = 8;
+constexpr int kSaturated = 96;        // ended descents in a row without a new solution
+constexpr int kBranchPatience = 48;   // the same, for the branches of an arm that is not redundant
+constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
+constexpr double kNear = 0.1;         // task error worth more patience
+constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
+constexpr double kStationary = 1e-4;  // squared step by squared error
+constexpr std::uint64_t kChoice = ~std::uint64_t{0};  // the attempt that shuffles
+
+}  // namespace
+
+Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
+               const InverseOptions& options)
+    : solver_(solver),
+      T_base_transfer_(T_base_tip * solver.T_tip_transfer()),
+      most_(options.max_solutions == 0
+                ? kMostSolutions
+                : std::min(static_cast<std::size_t>(options.max_solutions), kMostSolutions)),
+      min_distance_(std::max(options.min_distance, kSamePoint)),
+      wanted_(solver.redundant() || options.max_solutions == 0 ? most_
+                                                               : std::max(most_, kMostBranches)),
+      apart_(solver.redundant() ? min_distance_ : kSamePoint),
+      all_(options.max_solutions == 0),
+      generator_(options.seed, T_base_tip),
+      found_(solver.space().dof()) {
+  const double length_m = solver.lanes().length_m;
+  for (int i = 0; i < 12; ++i) {
+    const double value = i < 9 ? T_base_transfer_(i / 3, i % 3) : T_base_transfer_(i - 9, 3);
+    std::fill_n(batch_.target[i], kLanes, i < 9 ? value : value / length_m);
+    std::fill_n(check_.target[i], kLanes, value);
+  }
+  for (int j = 0; j < solver.lanes().dof; ++j) {
+    std::fill_n(batch_.q[j], kLanes, 0);
+    std::fill_n(check_.q[j], kLanes, 0);
+  }
+}
+
+InverseSolutions Search::run() {
+  if (!solver_.beyond_reach(T_base_transfer_))
+    find();
+  return solutions();
+}
+
+void Search::find() {
+  const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
+  const int starts =
+      all_ ? kMostStarts
+           : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
+  const int patience = all_                    ? kSaturated
+                       : solver_.redundant() ? starts
+                                             : kBranchPatience;
+  descend({kFirstStarts, kIterations, steer, kFirstStarts});
+  if (enough())
+    return;
+  if (found_.empty()) {  // learns without regard to limits what stands in the way
+    if (steer == LaneLimits::Steer)
+      descend({kDiagnosticStarts, kIterations, LaneLimits::Ignore, kDiagnosticStarts});
+    if (found_.empty() && least_squared_error_ > kNear * kNear)
+      return;
+  }
+  descend({starts - kFirstStarts, kIterations, steer, patience});
+  if (found_.empty()) {
+    stationary_ = 0;
+    descend({kPatientStarts, kPatientIterations, steer, kPatientStarts});
+  }
+}
+
+void Search::descend(const Effort& effort) {
+  int waiting = effort.starts;  // not yet in a lane
+  unsigned busy = 0;            // lanes, as bits
+  idle_ = 0;
+  for (int lane = 0; lane < kLanes && waiting > 0; ++lane, --waiting) {
+    start(lane);
+    busy |= 1U << static_cast<unsigned>(lane);
+  }
+  while (busy != 0 && !enough() && idle_ < effort.patience) {
+    solver_.kernels().step(solver_.lanes(), effort.limits, batch_);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0)
+        continue;
+      const Ended ended = progress(effort, lane);
+      if (ended == Ended::No)
+        continue;
+      ++idle_;
+      if (ended == Ended::Converged)
+        hand_over(lane);
+      if (waiting > 0) {
+        --waiting;
+        start(lane);
+      } else {
+        busy &= ~(1U << static_cast<unsigned>(lane));
+      }
+    }
+    if (found_.size() + static_cast<std::size_t>(handed_over_) >= wanted_ || busy == 0)
+      verify();
+  }
+  verify();
+}
+
+void Search::start(int lane) {
+  CounterGenerator generator = generator_.of_attempt(next_start_++);
+  const LaneChain& chain = solver_.lanes();
+  for (int j = 0; j < chain.dof; ++j) {
+    const double unit = chain.joints[j].slides ? chain.length_m : 1;
+    batch_.q[j][lane] = solver_.space().value_at(j, generator.uniform()) / unit;
+  }
+  iterations_[static_cast<std::size_t>(lane)] = 0;
+}
+
+Search::Ended Search::progress(const Effort& effort, int lane) {
+  const double squared = batch_.squared[lane];
+  if (squared < kConverged && batch_.outside[lane] == 0) {
+    least_squared_error_ = 0;
+    return Ended::Converged;
+  }
+  const bool stationary = squared >= kConverged && batch_.moved[lane] < kStationary * squared;
+  if (!stationary && ++iterations_[static_cast<std::size_t>(lane)] < effort.iterations)
+    return Ended::No;
+  stationary_ += stationary ? 1 : 0;
+  least_squared_error_ = std::min(least_squared_error_, squared);
+  return Ended::Failed;
+}
+
+void Search::hand_over(int lane) {
+  const LaneChain& chain = solver_.lanes();
+  std::array<double, kLaneJoints> q;
+  for (int j = 0; j < chain.dof; ++j)
+    q[static_cast<std::size_t>(j)] =
+        batch_.q[j][lane] * (chain.joints[j].slides ? chain.length_m : 1);
+  if (!solver_.space().normalize(q.data())) {
+    outside_limits_ = true;
+    return;
+  }
+  if (!is_apart(solver_.space(), found_, q.data(), apart_))
+    return;
+  for (int j = 0; j < chain.dof; ++j)
+    check_.q[j][handed_over_] = q[static_cast<std::size_t>(j)];
+  if (++handed_over_ == kLanes)
+    verify();
+}
+
+void Search::verify() {
+  if (handed_over_ == 0)
+    return;
+  solver_.kernels().check(solver_.arm(), check_);
+  std::array<double, kLaneJoints> q;
+  for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
+    if (!(check_.distance_m[lane] <= kPoseTolerance && check_.angle_rad[lane] <= kPoseTolerance))
+      continue;
+    for (int j = 0; j < solver_.lanes().dof; ++j)
+      q[static_cast<std::size_t>(j)] = check_.q[j][lane];
+    if (!is_apart(solver_.space(), found_, q.data(), apart_))
+      continue;
+    found_.add(q.data());
+    idle_ = 0;
+  }
+  handed_over_ = 0;
+}
+
+InverseSolutions Search::solutions() {
+  InverseSolutions result;
+  if (!found_.empty()) {
+    if (!solver_.redundant())
+      found_ = chosen(solver_.space(), std::move(found_), most_, min_distance_,
+                      generator_.of_attempt(kChoice));
+    result.configurations = found_.matrix();
+    return result;
+  }
+  result.configurations.resize(solver_.space().dof(), 0);
+  if (outside_limits_)
+    result.reason = NoSolution::Limits;
+  else if (least_squared_error_ > kFar * kFar || stationary_ >= kPatientStarts)
+    result.reason = NoSolution::OutOfReach;
+  else
+    result.reason = NoSolution::NotConverged;
+  return result;
+}
+
+}  // namespace kinship::inverse
