@@ -16,6 +16,8 @@ using kinematics::JointType;
 static_assert(kLaneJoints == kMaxDof);
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kParallel = 1e-12;    // sine between axes
+constexpr double kRightAngle = 1e-15;  // rounding of a zero
 constexpr double kShortestReach_m = 1e-3;  // an arm without lengths still has a unit
 
 void write(const Eigen::Matrix3d& matrix, double (&rows)[9]) {
@@ -28,11 +30,52 @@ void write(const Eigen::Vector3d& vector, double (&values)[3]) {
     values[i] = vector[i];
 }
 
-void write(const kinematics::Joint& joint, double length_m, LaneJoint& lane) {
-  lane.slides = joint.type == JointType::Prismatic;
-  const double unit = lane.slides ? length_m : 1;
-  lane.middle = 0.5 * (joint.lower + joint.upper) / unit;
-  lane.half = 0.5 * (joint.upper - joint.lower) / unit;
+/// A rotation as turns about z, then x, then z.
+struct Turns {
+  double first_z, x, second_z;
+};
+
+Turns turns_of(const Eigen::Matrix3d& R) {
+  Turns turns{0, std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)), 0};
+  if (std::hypot(R(0, 2), R(1, 2)) > kParallel)
+    turns.first_z = std::atan2(R(0, 2), -R(1, 2));
+  // What is left, not what the third row says: for nearly parallel axes only the sum of the two
+  // turns about z is well known.
+  const Eigen::Matrix3d left =
+      (Eigen::AngleAxisd(turns.first_z, Eigen::Vector3d::UnitZ()) *
+       Eigen::AngleAxisd(turns.x, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix()
+          .transpose() *
+      R;
+  turns.second_z = std::atan2(left(1, 0) - left(0, 1), left(0, 0) + left(1, 1));
+  return turns;
+}
+
+/// A turn about z that belongs to a joint's frame: a turning joint takes it up.
+void twist(double angle_rad, LaneJoint& joint) {
+  (joint.slides ? joint.twist : joint.offset) += angle_rad;
+}
+
+/// \param T  of a joint's frame in the moving frame of the one before, both with z along the axis.
+void link(const Eigen::Isometry3d& T, double length_m, LaneJoint& before, LaneJoint& joint) {
+  const Turns turns = turns_of(T.linear());
+  twist(turns.first_z, before);
+  twist(turns.second_z, joint);
+  joint.tilt_sine = std::sin(turns.x);
+  joint.tilt_cosine = std::cos(turns.x);
+  if (std::abs(joint.tilt_cosine) < kRightAngle)
+    joint.tilt_cosine = 0;
+  const Eigen::AngleAxisd back(-turns.first_z, Eigen::Vector3d::UnitZ());
+  write(back * T.translation() / length_m, joint.p);
+  for (double& coordinate : joint.p)
+    if (std::abs(coordinate) < kRightAngle)
+      coordinate = 0;
+}
+
+void set_limits(const kinematics::Joint& joint, double length_m, LaneJoint& lane) {
+  lane.scale = lane.slides ? 1 / length_m : 1;
+  lane.middle = 0.5 * (joint.lower + joint.upper) * lane.scale + lane.offset;
+  lane.half = 0.5 * (joint.upper - joint.lower) * lane.scale;
   lane.bounded =
       lane.slides || (joint.type == JointType::Revolute && joint.upper - joint.lower < kTurn);
 }
@@ -85,14 +128,21 @@ LaneChain lane_chain(const kinematics::Chain& chain) {
     T_joint_turned.linear() =
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
     const Eigen::Isometry3d T = T_turned_moving * joint.T_previous_joint * T_joint_turned;
-    write(T.linear(), lanes.joints[j].R);
-    write(T.translation() / lanes.length_m, lanes.joints[j].p);
-    write(joint, lanes.length_m, lanes.joints[j]);
+    LaneJoint& lane = lanes.joints[j];
+    lane.slides = joint.type == JointType::Prismatic;
+    if (j == 0) {
+      write(T.linear(), lanes.R_first);
+      write(T.translation() / lanes.length_m, lanes.p_first);
+    } else {
+      link(T, lanes.length_m, lanes.joints[j - 1], lane);
+    }
     T_turned_moving = T_joint_turned.inverse();
   }
   const Eigen::Isometry3d T = T_turned_moving * chain.T_last_tip() * chain.T_tip_transfer();
   write(T.linear(), lanes.R_last);
   write(T.translation() / lanes.length_m, lanes.p_last);
+  for (std::size_t j = 0; j < chain.joints().size(); ++j)
+    set_limits(chain.joints()[j], lanes.length_m, lanes.joints[j]);
   std::fill(std::begin(lanes.row_of), std::end(lanes.row_of), 6);
   for (int row = 0; row < 6; ++row)
     if (chain.task_axes().matters[static_cast<std::size_t>(row)])

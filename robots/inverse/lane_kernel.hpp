@@ -15,23 +15,38 @@ struct WideColumn {
   Wide rows[7];
 };
 
+/// On to the frame of the next joint.
+KINSHIP_LANE_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
+  const double c = joint.tilt_cosine, s = joint.tilt_sine;
+#pragma GCC unroll 3
+  for (int row = 0; row < 3; ++row) {
+    const Wide x = frame.R[3 * row], y = frame.R[3 * row + 1], z = frame.R[3 * row + 2];
+    frame.p[row] += x * joint.p[0] + y * joint.p[1] + z * joint.p[2];
+    frame.R[3 * row + 1] = c * y + s * z;
+    frame.R[3 * row + 2] = c * z - s * y;
+  }
+}
+
 /// Poses of the last joint: where each joint is and its axis go into columns for now.
 KINSHIP_LANE_INLINE WideFrame forward(const LaneChain& chain, const Wide* q, WideColumn* columns) {
-  WideFrame frame = frame_of(chain.joints[0].R, chain.joints[0].p);
+  WideTurns turns;
+  for (int j = 0; j < chain.dof; ++j)
+    sine_cosine(chain.joints[j].slides ? all(chain.joints[j].twist) : q[j], turns.sine[j],
+                turns.cosine[j]);
+  WideFrame frame = frame_of(chain.R_first, chain.p_first);
   for (int j = 0; j < chain.dof; ++j) {
     const LaneJoint& joint = chain.joints[j];
     if (j > 0)
-      follow(joint.R, joint.p, frame);
+      follow(joint, frame);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
       columns[j].rows[i] = frame.p[i];
       columns[j].rows[3 + i] = frame.R[3 * i + 2];
     }
     columns[j].rows[6] = Wide{};
-    if (!joint.slides) {
-      turn(q[j], frame);
+    turn(turns.sine[j], turns.cosine[j], frame);
+    if (!joint.slides)
       continue;
-    }
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       frame.p[i] += q[j] * frame.R[3 * i + 2];
@@ -83,31 +98,35 @@ KINSHIP_LANE_INLINE void hold(const LaneJoint& joint, Wide q, const Wide (&error
     column.rows[row] = stopped ? Wide{} : column.rows[row];
 }
 
-/// The lower half of a symmetric matrix, solved by L D L^T: in `wanted` the answer replaces the
-/// right side.
+/// Solves a symmetric system, given by its lower half, by L D L^T: in `wanted` the answer replaces
+/// the right side, in `system` the factors replace the matrix. Column by column both ways: the
+/// steps wait for each other, not the operations of one step.
 template <int kRows>
 KINSHIP_LANE_INLINE void solve(Wide (&system)[kRows][kRows], Wide (&wanted)[kRows]) {
-  Wide inverse[kRows];
 #pragma GCC unroll 6
   for (int c = 0; c < kRows; ++c) {
-    inverse[c] = 1.0 / system[c][c];
+    const Wide inverse = 1.0 / system[c][c];
+    const Wide scaled = wanted[c] * inverse;
+    Wide below[kRows];
 #pragma GCC unroll 6
     for (int r = c + 1; r < kRows; ++r) {
-      const Wide factor = system[r][c] * inverse[c];
+      below[r] = system[r][c];
+      system[r][c] *= inverse;
+    }
+#pragma GCC unroll 6
+    for (int r = c + 1; r < kRows; ++r) {
+      wanted[r] -= system[r][c] * wanted[c];
 #pragma GCC unroll 6
       for (int i = r; i < kRows; ++i)
-        system[i][r] -= factor * system[i][c];
-      wanted[r] -= factor * wanted[c];
+        system[i][r] -= system[i][c] * below[r];
     }
+    wanted[c] = scaled;
   }
 #pragma GCC unroll 6
-  for (int c = kRows - 1; c >= 0; --c) {
-    Wide sum = wanted[c];
+  for (int r = kRows - 1; r > 0; --r)
 #pragma GCC unroll 6
-    for (int r = c + 1; r < kRows; ++r)
-      sum -= system[r][c] * wanted[r];
-    wanted[c] = sum * inverse[c];
-  }
+    for (int c = 0; c < r; ++c)
+      wanted[c] -= system[r][c] * wanted[r];
 }
 
 /// One iteration of the lanes from `lane` on. kMapped: not every task axis matters.
@@ -138,7 +157,7 @@ KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, in
     wanted[r] = error[r];
 #pragma GCC unroll 6
     for (int c = 0; c <= r; ++c)
-      system[r][c] = r == c ? kDampingShare * squared + kSmallestDamping : Wide{};
+      system[r][c] = Wide{};
   }
   for (int j = 0; j < chain.dof; ++j) {
     const LaneJoint& joint = chain.joints[j];
@@ -161,6 +180,9 @@ KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, in
     for (int r = 0; r < kRows; ++r)
       wanted[r] -= pull[j] * column[r];  // the pull may use only what the task leaves free
   }
+#pragma GCC unroll 6
+  for (int r = 0; r < kRows; ++r)
+    system[r][r] += kDampingShare * squared + kSmallestDamping;
   solve<kRows>(system, wanted);
   for (int j = 0; j < chain.dof; ++j) {
     Wide step = limits == LaneLimits::Steer ? pull[j] : Wide{};
@@ -192,9 +214,7 @@ void step(const LaneChain& chain, LaneLimits limits, LaneBatch& batch) {
 }
 
 /// Turned about any axis. Source: Rodrigues' formula; Siciliano et al., Robotics (2009), eq. 2.25.
-KINSHIP_LANE_INLINE void turn_about(const double (&axis)[3], Wide angle, WideFrame& frame) {
-  Wide s, c;
-  sine_cosine(angle, s, c);
+KINSHIP_LANE_INLINE void turn_about(const double (&axis)[3], Wide s, Wide c, WideFrame& frame) {
   const Wide v = 1.0 - c;
   const double x = axis[0], y = axis[1], z = axis[2];
   const Wide R[9] = {x * x * v + c,     x * y * v - z * s, x * z * v + y * s,
@@ -211,16 +231,19 @@ KINSHIP_LANE_INLINE void turn_about(const double (&axis)[3], Wide angle, WideFra
 
 void check(const LaneArm& arm, LaneCheck& check) {
   for (int lane = 0; lane < kLanes; lane += KINSHIP_LANE_WIDTH) {
+    WideTurns turns;
+    for (int j = 0; j < arm.dof; ++j)
+      sine_cosine(load(check.q[j] + lane), turns.sine[j], turns.cosine[j]);
     WideFrame frame = frame_of(arm.joints[0].R, arm.joints[0].p);
     for (int j = 0; j < arm.dof; ++j) {
       const LaneArm::Joint& joint = arm.joints[j];
       if (j > 0)
         follow(joint.R, joint.p, frame);
-      const Wide q = load(check.q[j] + lane);
       if (!joint.slides) {
-        turn_about(joint.axis, q, frame);
+        turn_about(joint.axis, turns.sine[j], turns.cosine[j], frame);
         continue;
       }
+      const Wide q = load(check.q[j] + lane);
       for (int i = 0; i < 3; ++i)
         frame.p[i] += q * (frame.R[3 * i] * joint.axis[0] + frame.R[3 * i + 1] * joint.axis[1] +
                            frame.R[3 * i + 2] * joint.axis[2]);

@@ -93,6 +93,12 @@ KINSHIP_LANE_INLINE void sine_cosine(Wide angle, Wide& sine, Wide& cosine) {
   cosine = ((quarter + 1) & 2) != 0 ? -second : second;
 }
 
+/// Sines and cosines of all joints: computed side by side, before the poses that wait for each
+/// other.
+struct WideTurns {
+  Wide sine[kLaneJoints], cosine[kLaneJoints];
+};
+
 /// A pose in every lane.
 struct WideFrame {
   Wide R[9];
@@ -121,9 +127,7 @@ KINSHIP_LANE_INLINE void follow(const double* R, const double* p, WideFrame& fra
 }
 
 /// Turned about its own z axis.
-KINSHIP_LANE_INLINE void turn(Wide angle, WideFrame& frame) {
-  Wide s, c;
-  sine_cosine(angle, s, c);
+KINSHIP_LANE_INLINE void turn(Wide s, Wide c, WideFrame& frame) {
 #pragma GCC unroll 3
   for (int row = 0; row < 3; ++row) {
     const Wide x = frame.R[3 * row], y = frame.R[3 * row + 1];

@@ -11,12 +11,15 @@ inline constexpr int kLaneJoints = 32;
 /// What becomes of joints outside their limits; see Descent::Limits for the meanings.
 enum class LaneLimits { Steer, Ignore, Hold };
 
-/// A joint whose axis was turned into z. Lengths (and the values of a sliding joint) are in units
-/// of the chain's length_m.
+/// A joint, seen from frames that lie with z along the joints and were turned about z until a
+/// turn about x is all that is left between neighbours. Lengths (and the values of a sliding joint)
+/// are in units of the chain's length_m.
 struct LaneJoint {
-  double R[9];  ///< row-major: of the turned frame in the turned frame of the joint before
-  double p[3];
-  double middle, half;  ///< of the limits
+  double p[3];                    ///< in the frame of the joint before
+  double tilt_cosine, tilt_sine;  ///< of the turn about x from there
+  double twist;                   ///< of a sliding joint: constant turn about z, rad
+  double scale, offset;           ///< lane's value = scale * joint's value + offset
+  double middle, half;            ///< of the limits, lane's values
   bool slides;
   bool bounded;  ///< has less than a turn of room
 };
@@ -27,14 +30,15 @@ struct LaneChain {
   int rows;         ///< number of task axes that matter
   int row_of[6];    ///< the rows that matter, then 6, which stands for a row of zeros
   double length_m;  ///< what 1 stands for
-  LaneJoint joints[kLaneJoints];
-  double R_last[9], p_last[3];  ///< transfer frame in the last turned frame
+  double R_first[9], p_first[3];  ///< frame of the first joint in the base link, row-major
+  LaneJoint joints[kLaneJoints];  ///< p and tilt of the first are not used
+  double R_last[9], p_last[3];    ///< transfer frame in the last frame
 };
 
 /// Eight descents side by side, each towards a pose of its own. Index of lanes last.
 struct alignas(64) LaneBatch {
   double target[12][kLanes];      ///< R row-major, then p, in the base link
-  double q[kLaneJoints][kLanes];  ///< in: configurations; out: one step on
+  double q[kLaneJoints][kLanes];  ///< lane's values; in: where to start; out: one step on
   double squared[kLanes];         ///< out: squared task error before the step
   double moved[kLanes];           ///< out: squared length of the step
   double outside[kLanes];         ///< out: not 0 if a joint was steered

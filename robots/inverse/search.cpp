@@ -11,7 +11,9 @@ namespace {
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
 constexpr std::size_t kMostSolutions = 1000;
 constexpr std::size_t kMostBranches = 64;  // of an arm that is not redundant, before the choice
-constexpr int kIterations = 15;            // measured: more cost more than they bring
+constexpr int kIterations = 10;            // measured: a new start is worth more than an eleventh,
+constexpr int kMoreIterations = 5;         // unless the error is below the first of these; then,
+constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
 constexpr int kPatientIterations = 60;     // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kFewestStarts = 32;
@@ -20,8 +22,9 @@ constexpr int kMostStarts = 4000;
 constexpr int kFirstStarts = 16;
 constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;        // ended descents in a row without a new solution
-constexpr int kBranchPatience = 48;   // the same, for the branches of an arm that is not redundant
+constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
+constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
 constexpr double kNear = 0.1;         // task error worth more patience
 constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
 constexpr double kStationary = 1e-4;  // squared step by squared error
@@ -120,11 +123,11 @@ void Search::descend(const Effort& effort) {
 void Search::start(int lane) {
   CounterGenerator generator = generator_.of_attempt(next_start_++);
   const LaneChain& chain = solver_.lanes();
-  for (int j = 0; j < chain.dof; ++j) {
-    const double unit = chain.joints[j].slides ? chain.length_m : 1;
-    batch_.q[j][lane] = solver_.space().value_at(j, generator.uniform()) / unit;
-  }
+  for (int j = 0; j < chain.dof; ++j)
+    batch_.q[j][lane] = solver_.space().value_at(j, generator.uniform()) * chain.joints[j].scale +
+                        chain.joints[j].offset;
   iterations_[static_cast<std::size_t>(lane)] = 0;
+  near_[lane] = false;
 }
 
 Search::Ended Search::progress(const Effort& effort, int lane) {
@@ -133,20 +136,43 @@ Search::Ended Search::progress(const Effort& effort, int lane) {
     least_squared_error_ = 0;
     return Ended::Converged;
   }
+  int& iterations = iterations_[static_cast<std::size_t>(lane)];
+  if (squared < kPromising[0] && !near_[lane]) {
+    near_[lane] = true;
+    if (is_known(lane))
+      return Ended::Known;
+  }
   const bool stationary = squared >= kConverged && batch_.moved[lane] < kStationary * squared;
-  if (!stationary && ++iterations_[static_cast<std::size_t>(lane)] < effort.iterations)
+  int most = effort.iterations;
+  for (const double promising : kPromising)
+    most += squared < promising ? kMoreIterations : 0;
+  if (!stationary && ++iterations < most)
     return Ended::No;
   stationary_ += stationary ? 1 : 0;
   least_squared_error_ = std::min(least_squared_error_, squared);
   return Ended::Failed;
 }
 
-void Search::hand_over(int lane) {
+std::array<double, kLaneJoints> Search::configuration(int lane) const {
   const LaneChain& chain = solver_.lanes();
   std::array<double, kLaneJoints> q;
   for (int j = 0; j < chain.dof; ++j)
     q[static_cast<std::size_t>(j)] =
-        batch_.q[j][lane] * (chain.joints[j].slides ? chain.length_m : 1);
+        (batch_.q[j][lane] - chain.joints[j].offset) / chain.joints[j].scale;
+  return q;
+}
+
+bool Search::is_known(int lane) const {
+  if (solver_.redundant() || found_.empty())
+    return false;
+  std::array<double, kLaneJoints> q = configuration(lane);
+  solver_.space().normalize(q.data());
+  return !is_apart(solver_.space(), found_, q.data(), kKnown);
+}
+
+void Search::hand_over(int lane) {
+  const LaneChain& chain = solver_.lanes();
+  std::array<double, kLaneJoints> q = configuration(lane);
   if (!solver_.space().normalize(q.data())) {
     outside_limits_ = true;
     return;

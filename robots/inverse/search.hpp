@@ -29,11 +29,14 @@ class Search {
     LaneLimits limits = LaneLimits::Steer;
     int patience = 0;  ///< ended descents in a row without a new solution that end it
   };
-  enum class Ended { No, Converged, Failed };
+  enum class Ended { No, Converged, Known, Failed };
 
   void descend(const Effort& effort);
   void start(int lane);
   Ended progress(const Effort& effort, int lane);
+  std::array<double, kLaneJoints> configuration(int lane) const;  // joint units
+  /// Whether a lane is about to end at a branch that was found before.
+  bool is_known(int lane) const;
   /// Hands a converged lane over to verification if it is within limits and new.
   void hand_over(int lane);
   /// Verifies what was handed over, and keeps what is right.
@@ -54,6 +57,7 @@ class Search {
   LaneBatch batch_;
   LaneCheck check_;
   std::array<int, kLanes> iterations_{};
+  bool near_[kLanes];  // of a solution, once
   std::uint64_t next_start_ = 0;
   int handed_over_ = 0;  // lanes of check_ that wait
   int idle_ = 0;         // ended descents since the last new solution
