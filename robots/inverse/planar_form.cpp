@@ -74,12 +74,13 @@ PlanarBranches PlanarForm::solve(const std::vector<int>& free, const double* val
   const Point first = at[1] - at[0];
   const Point second = end - at[1];
   const Point hinge = std::conj(first) * second;
-  const Angles folds =
+  const Turns folds =
       solve_cosine(hinge.real(), -hinge.imag(),
                    0.5 * (std::norm(goal - at[0]) - std::norm(first) - std::norm(second)), slack);
   PlanarBranches branches;
-  for (const double fold : folds) {
-    const Point reached = first + std::polar(1.0, fold) * second;
+  for (const Turn& turn_between : folds) {
+    const double fold = turn_between.angle();
+    const Point reached = first + Point(turn_between.cosine, turn_between.sine) * second;
     const double swing = std::arg((goal - at[0]) * std::conj(reached));
     auto& q = branches.angles[static_cast<std::size_t>(branches.count++)];
     const auto sign = [&](std::size_t i) { return signs_[static_cast<std::size_t>(free[i])]; };
