@@ -30,15 +30,6 @@ struct Turn {
   }
 };
 
-/// The turn by a positive multiple of (cosine, sine); none if they are too small to tell.
-inline Turn turn_by(double cosine, double sine, double smallest_squared) {
-  const double squared = cosine * cosine + sine * sine;
-  if (squared < smallest_squared || squared == 0)
-    return {};
-  const double scale = 1 / std::sqrt(squared);
-  return {cosine * scale, sine * scale};
-}
-
 /// Up to two turns.
 struct Turns {
   std::array<Turn, 2> values{};
@@ -72,9 +63,17 @@ inline Turns solve_cosine(double a, double b, double c, double slack) {
 /// The turn about a unit vector that brings `from` towards `to` (their parts across it).
 inline Turn turn_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to) {
-  return turn_by(from.dot(to) - direction.dot(from) * direction.dot(to),
-                 direction.dot(from.cross(to)),
-                 kSingular * kSingular * from.squaredNorm() * to.squaredNorm());
+  // Both parts across are taken first: near a singularity the products of the whole would cancel.
+  const Eigen::Vector3d from_across = from - direction.dot(from) * direction;
+  const Eigen::Vector3d to_across = to - direction.dot(to) * direction;
+  const double cosine = from_across.dot(to_across);
+  const double sine = direction.dot(from_across.cross(to_across));
+  const double squared = cosine * cosine + sine * sine;
+  constexpr double kSmallest = kSingular * kSingular * kSingular * kSingular;
+  if (squared <= kSmallest * from.squaredNorm() * to.squaredNorm())
+    return {};
+  const double scale = 1 / std::sqrt(squared);
+  return {cosine * scale, sine * scale};
 }
 
 /// `v` turned about a unit vector.
