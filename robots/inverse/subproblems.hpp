@@ -164,7 +164,7 @@ inline TurnPairs turn_about_meeting(const Eigen::Vector3d& first, const Eigen::V
   const double b = (along_second - cosine * along_first) / sine_squared;
   const Eigen::Vector3d middle = a * first + b * second;
   const double squared = x.squaredNorm() - middle.squaredNorm();
-  if (squared < -slack * x.squaredNorm())
+  if (squared < -slack * x.squaredNorm() - kDouble)  // beside the centre nothing is exact
     return {};
   if (squared <= kDouble * x.squaredNorm())
     return {{TwoTurns{turn_towards(first, middle, y), turn_towards(second, x, middle)}}, 1};
