@@ -38,7 +38,7 @@ JointSpace::JointSpace(const kinematics::Chain& chain) {
     joints_.emplace_back(joint);
 }
 
-bool JointSpace::normalize(double* q) const noexcept {
+bool JointSpace::normalize(double* q, double margin) const noexcept {
   bool inside = true;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const Range& range = joints_[j];
@@ -48,7 +48,7 @@ bool JointSpace::normalize(double* q) const noexcept {
     if (range.continuous && value <= -std::numbers::pi)
       value = std::numbers::pi;
     // Written so that NaN is outside.
-    inside = inside && value >= range.lower - kLimitRounding && value <= range.upper + kLimitRounding;
+    inside = inside && value >= range.lower - margin && value <= range.upper + margin;
     q[j] = inside ? std::clamp(value, range.lower, range.upper) : value;
   }
   return inside;

@@ -20,8 +20,9 @@ class JointSpace {
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(joints_.size()); }
 
   /// See the free function.
-  /// \param q  dof values.
-  bool normalize(double* q) const noexcept;
+  /// \param q       dof values.
+  /// \param margin  by which a value may lie outside a limit before it is moved onto it.
+  bool normalize(double* q, double margin = kLimitRounding) const noexcept;
 
   /// See the free function; squared.
   double squared_distance(const double* a, const double* b) const noexcept;

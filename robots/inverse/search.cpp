@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
 constexpr std::size_t kMostSolutions = 1000;
-constexpr std::size_t kMostBranches = 64;  // of an arm that is not redundant, before the choice
+constexpr std::size_t kMostFound = 64;  // of an arm that is not redundant, before the choice
 constexpr int kIterations = 10;            // measured: a new start is worth more than an eleventh,
 constexpr int kMoreIterations = 5;         // unless the error is below the first of these; then,
 constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
@@ -24,6 +24,9 @@ constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;        // ended descents in a row without a new solution
 constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
+constexpr int kFewestLocks = 8;       // random values of the locked joints
+constexpr int kPolishSteps = 8;
+constexpr double kNearMargin = 0.1;   // beyond limits, of branches that a polish will move
 constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
 constexpr double kNear = 0.1;         // task error worth more patience
 constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
@@ -41,7 +44,7 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
                 : std::min(static_cast<std::size_t>(options.max_solutions), kMostSolutions)),
       min_distance_(std::max(options.min_distance, kSamePoint)),
       wanted_(solver.redundant() || options.max_solutions == 0 ? most_
-                                                               : std::max(most_, kMostBranches)),
+                                                               : std::max(most_, kMostFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
       generator_(options.seed, T_base_tip),
@@ -65,6 +68,12 @@ InverseSolutions Search::run() {
 }
 
 void Search::find() {
+  if (const ClosedForm* form = solver_.closed_form()) {
+    append_branches(*form);
+    // The branches of an exact structure are all there are.
+    if (enough() || (!found_.empty() && form->exact() && !solver_.redundant()))
+      return;
+  }
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
   const int starts =
       all_ ? kMostStarts
@@ -86,6 +95,56 @@ void Search::find() {
     stationary_ = 0;
     descend({kPatientStarts, kPatientIterations, steer, kPatientStarts});
   }
+}
+
+void Search::append_branches(const ClosedForm& form) {
+  const auto locks = form.locks();
+  const int attempts = locks.empty() ? 1 : std::max(kFewestLocks, 2 * static_cast<int>(wanted_));
+  const double margin = form.exact() ? kLimitRounding : kNearMargin;
+  std::array<double, kLaneJoints> locked;
+  Branches branches;
+  for (int attempt = 0; attempt < attempts && !enough(); ++attempt) {
+    CounterGenerator generator = generator_.of_attempt(next_start_++);
+    for (std::size_t i = 0; i < locks.size(); ++i)
+      locked[i] = solver_.space().value_at(locks[i], generator.uniform());
+    branches.clear();
+    form.append(T_base_transfer_, {locked.data(), locks.size()}, branches);
+    for (int i = 0; i < branches.size(); ++i)
+      propose(branches[i], margin);
+  }
+  polish();
+}
+
+void Search::propose(const double* q, double margin) {
+  const LaneChain& chain = solver_.lanes();
+  std::array<double, kLaneJoints> near;
+  std::copy_n(q, chain.dof, near.data());
+  if (!solver_.space().normalize(near.data(), margin))
+    return;
+  for (int j = 0; j < chain.dof; ++j)
+    batch_.q[j][proposed_] =
+        near[static_cast<std::size_t>(j)] * chain.joints[j].scale + chain.joints[j].offset;
+  if (++proposed_ == kLanes)
+    polish();
+}
+
+/// One step makes of the branches of an exact structure what verification asks for; singular
+/// poses, and branches of a structure that is nearly there, take more.
+void Search::polish() {
+  if (proposed_ == 0)
+    return;
+  unsigned busy = (1U << static_cast<unsigned>(proposed_)) - 1;
+  for (int i = 0; i < kPolishSteps && busy != 0; ++i) {
+    solver_.kernels().step(solver_.lanes(), LaneLimits::Ignore, batch_);
+    for (int lane = 0; lane < proposed_; ++lane) {
+      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0 || !(batch_.squared[lane] < kConverged))
+        continue;
+      hand_over(lane);
+      busy &= ~(1U << static_cast<unsigned>(lane));
+    }
+  }
+  proposed_ = 0;
+  verify();
 }
 
 void Search::descend(const Effort& effort) {

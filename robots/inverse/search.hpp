@@ -31,6 +31,10 @@ class Search {
   };
   enum class Ended { No, Converged, Known, Failed };
 
+  /// Candidates of the closed form, polished together.
+  void append_branches(const ClosedForm& form);
+  void propose(const double* q, double margin);
+  void polish();
   void descend(const Effort& effort);
   void start(int lane);
   Ended progress(const Effort& effort, int lane);
@@ -59,6 +63,7 @@ class Search {
   std::array<int, kLanes> iterations_{};
   bool near_[kLanes];  // of a solution, once
   std::uint64_t next_start_ = 0;
+  int proposed_ = 0;     // lanes of batch_ that wait for the polish
   int handed_over_ = 0;  // lanes of check_ that wait
   int idle_ = 0;         // ended descents since the last new solution
   int stationary_ = 0;   // descents that ended where the error has a minimum above 0

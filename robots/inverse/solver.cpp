@@ -7,17 +7,35 @@
 
 namespace kinship::inverse {
 
+namespace {
+
+constexpr double kWorthALock = 3;  // configurations within limits
+
+/// Whether a closed form is faster than descents: a call with random locks takes about as long as
+/// three descents, and a redundant arm's descents nearly all end at a solution.
+bool pays(const ClosedForm& form) {
+  return form.locks().empty() || form.mean_within_limits() >= kWorthALock;
+}
+
+}  // namespace
+
 Solver::Solver(const kinematics::Chain& chain)
     : Solver(chain, instruction_sets().back().kernels) {}
 
-Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels)
+Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels, Engines engines)
     : kernels_(kernels),
       lanes_(lane_chain(chain)),
       arm_(lane_arm(chain)),
       space_(chain),
       T_tip_transfer_(chain.T_tip_transfer()),
       reach_m_(inverse::reach_m(chain)),
-      p_base_first_joint_(chain.joints().front().T_previous_joint.translation()) {}
+      p_base_first_joint_(chain.joints().front().T_previous_joint.translation()) {
+  if (engines == Engines::Descents)
+    return;
+  closed_ = ClosedForm::of(chain);
+  if (engines == Engines::Best && closed_ && !pays(*closed_))
+    closed_.reset();
+}
 
 bool Solver::beyond_reach(const Eigen::Isometry3d& T_base_transfer) const {
   Eigen::Vector3d p = T_base_transfer.translation() - p_base_first_joint_;
@@ -37,6 +55,8 @@ InverseSolutions Solver::solve(const Eigen::Isometry3d& T_base_tip,
   return Search(*this, T_base_tip, options).run();
 }
 
-std::string Solver::name() const { return "multi-start Levenberg-Marquardt"; }
+std::string Solver::name() const {
+  return closed_ ? "closed form and Levenberg-Marquardt" : "multi-start Levenberg-Marquardt";
+}
 
 }  // namespace kinship::inverse

@@ -57,8 +57,9 @@ std::vector<Subject> subjects() {
   return result;
 }
 
-void print_solver(const Subject& subject, const inverse::InstructionSet& set, int count) {
-  const inverse::Solver solver(subject.chain, set.kernels);
+void print_solver(const Subject& subject, const inverse::InstructionSet& set,
+                  inverse::Solver::Engines engines, int count) {
+  const inverse::Solver solver(subject.chain, set.kernels, engines);
   const std::vector<Eigen::Isometry3d> poses = reachable_poses(subject.chain, count);
   double solutions = 0, none = 0;
   const double start_s = cpu_s();
@@ -68,7 +69,7 @@ void print_solver(const Subject& subject, const inverse::InstructionSet& set, in
     none += found.configurations.cols() == 0 ? 1 : 0;
   }
   const double taken_s = cpu_s() - start_s;
-  std::cout << "| " << subject.name << " | " << set.name << " | " << std::setprecision(1)
+  std::cout << "| " << subject.name << " | " << set.name << (solver.closed_form() ? " | closed form | " : " | descents | ") << std::setprecision(1)
             << 1e6 * taken_s / count << " | " << std::setprecision(2) << solutions / count << " | "
             << 100 * none / count << " % | " << std::setprecision(0) << solutions / taken_s
             << " |\n";
@@ -126,12 +127,23 @@ int main(int argc, char** argv) {
   using namespace kinship;
   const int count = argc > 1 ? std::stoi(argv[1]) : 2000;
   std::cout << std::fixed
-            << "| Robot | Instructions | us/pose | solutions/pose | without | configurations/s |\n"
-               "|---|---|---|---|---|---|\n";
+            << "| Robot | Instructions | Engine | us/pose | solutions/pose | without | configurations/s |\n"
+               "|---|---|---|---|---|---|---|\n";
   const std::vector<Subject> all = subjects();
   for (const Subject& subject : all)
-    for (const inverse::InstructionSet& set : inverse::instruction_sets())
-      print_solver(subject, set, count);
+    for (const inverse::InstructionSet& set : inverse::instruction_sets()) {
+      print_solver(subject, set, inverse::Solver::Engines::Descents, count);
+      if (inverse::Solver(subject.chain, set.kernels, inverse::Solver::Engines::ClosedForm)
+              .closed_form())
+        print_solver(subject, set, inverse::Solver::Engines::ClosedForm, count);
+    }
+  for (const Subject& subject : all) {
+    const double start_s = cpu_s();
+    const inverse::Solver solver(subject.chain);
+    std::cout << subject.name << ": built in " << std::setprecision(1) << 1e6 * (cpu_s() - start_s)
+              << " us, " << (solver.closed_form() ? solver.closed_form()->structure_name() : "-") << ' '
+              << (solver.closed_form() ? solver.closed_form()->mean_within_limits() : 0) << '\n';
+  }
   std::cout << "\n| Robot | branches of 10 000 seeds | recovered | others | us/pose |\n"
                "|---|---|---|---|---|\n";
   for (const Subject& subject : all)

@@ -1,0 +1,172 @@
+#include "robots/inverse/six_joints.hpp"
+
+#include <numbers>
+
+#include "robots/inverse/subproblems.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+constexpr int kFreeTurns = 8;  // of a joint that a pose leaves free, until the others can follow
+constexpr Turn kFreeStep{std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2};  // a turn in as many
+
+/// A way in which three joints place a point.
+struct Placement {
+  std::array<Turn, 3> turns;
+};
+
+/// Up to four of them.
+struct Placements {
+  std::array<Placement, 4> values;
+  int count = 0;
+
+  void add(const TwoTurns& first_two, const Turn& third) {
+    values[static_cast<std::size_t>(count++)] = {{first_two.first, first_two.second, third}};
+  }
+  const Placement* begin() const { return values.data(); }
+  const Placement* end() const { return values.data() + count; }
+};
+
+/// Turns about three axes that bring x to y; the first two meet in their points or are parallel.
+Placements place(const std::array<const Axis*, 3>& axes, const Eigen::Vector3d& x,
+                 const Eigen::Vector3d& y, bool meet, double slack) {
+  const Axis& first = *axes[0];
+  const Axis& second = *axes[1];
+  const Axis& third = *axes[2];
+  Placements placements;
+  if (meet) {
+    const Eigen::Vector3d& centre = first.point;
+    const Eigen::Vector3d to_y = y - centre;
+    for (const Turn& turn : turn_to_distance(third, x, centre, to_y.squaredNorm(), slack)) {
+      const Eigen::Vector3d to_x = turned(third, turn, x) - centre;
+      for (const TwoTurns& two :
+           turn_about_meeting(first.direction, second.direction, to_x, to_y, slack))
+        placements.add(two, turn);
+    }
+    return placements;
+  }
+  const Eigen::Vector3d& normal = first.direction;
+  for (const Turn& turn : turn_to_height(third, x, normal, normal.dot(y), slack))
+    for (const TwoTurns& two : turn_about_parallel(first, second, turned(third, turn, x), y, slack))
+      placements.add(two, turn);
+  return placements;
+}
+
+/// The same by any rule: the last two axes are the first two of the way back.
+Placements place(const std::array<Axis, 6>& axes, const Eigen::Vector3d& x,
+                 const Eigen::Vector3d& y, PointRule rule, double slack) {
+  const bool meet = rule == PointRule::FirstMeet || rule == PointRule::LastMeet;
+  if (rule == PointRule::FirstMeet || rule == PointRule::FirstParallel)
+    return place({&axes[0], &axes[1], &axes[2]}, x, y, meet, slack);
+  Placements placements = place({&axes[2], &axes[1], &axes[0]}, y, x, meet, slack);
+  for (int i = 0; i < placements.count; ++i) {
+    auto& turns = placements.values[static_cast<std::size_t>(i)].turns;
+    turns = {turns[2].back(), turns[1].back(), turns[0].back()};
+  }
+  return placements;
+}
+
+void solve_wrist(const std::array<Axis, 6>& axes, const Displacement& wanted, PointRule rule,
+                 double slack, SixJointBranches& branches) {
+  const Eigen::Vector3d& h4 = axes[3].direction;
+  const Eigen::Vector3d& h5 = axes[4].direction;
+  const Eigen::Vector3d& h6 = axes[5].direction;
+  const Eigen::Vector3d& wrist = axes[5].point;
+  const Eigen::Vector3d side = h6.unitOrthogonal();
+  const Eigen::Vector3d h6_turned = wanted.R * h6;
+  const Eigen::Vector3d side_turned = wanted.R * side;
+  for (const auto& [turns] : place(axes, wrist, wanted(wrist), rule, slack)) {
+    // What is left for the wrist to do, seen where the first three axes stand at 0.
+    const auto seen = [&](const Eigen::Vector3d& v) {
+      return turned(axes[2].direction, turns[2].back(),
+                    turned(axes[1].direction, turns[1].back(),
+                           turned(axes[0].direction, turns[0].back(), v)));
+    };
+    const Eigen::Vector3d h6_wanted = seen(h6_turned);
+    const Eigen::Vector3d side_wanted = seen(side_turned);
+    const double q1 = turns[0].angle();
+    const double q2 = turns[1].angle();
+    const double q3 = turns[2].angle();
+    for (const Turn& fifth : turn_direction(h5, h6, h4, h4.dot(h6_wanted), slack)) {
+      const Turn fourth = turn_towards(h4, turned(h5, fifth, h6), h6_wanted);
+      const Eigen::Vector3d side_left =
+          turned(h5, fifth.back(), turned(h4, fourth.back(), side_wanted));
+      const Turn sixth = turn_towards(h6, side, side_left);
+      branches.add({q1, q2, q3, fourth.angle(), fifth.angle(), sixth.angle()});
+    }
+  }
+}
+
+/// The three parallel joints of a chain whose other joints are set.
+/// \param rest  what is left for them: a displacement in their plane.
+/// \return whether they can do it.
+bool solve_parallel(const std::array<Axis, 6>& axes, const Displacement& rest, double slack,
+                    std::array<double, 6> q, SixJointBranches& branches) {
+  const Eigen::Vector3d& h = axes[1].direction;
+  const Eigen::Vector3d side = h.unitOrthogonal();
+  const Turn all = turn_towards(h, side, rest.R * side);
+  const auto along = [&](const Axis& axis, const Turn& turn) {
+    return axis.direction.dot(h) > 0 ? turn : turn.back();
+  };
+  const TurnPairs pairs =
+      turn_about_parallel(axes[1], axes[2], axes[3].point, rest(axes[3].point), slack);
+  for (const TwoTurns& pair : pairs) {
+    const Turn left = all * pair.first.back() * along(axes[2], pair.second).back();
+    q[1] = pair.first.angle();
+    q[2] = pair.second.angle();
+    q[3] = along(axes[3], left).angle();
+    branches.add(q);
+  }
+  return pairs.count > 0;
+}
+
+/// The parallel axes' direction keeps what it has of axis 5's point and direction: that gives q1,
+/// then q5. What they do to it as seen from axis 6 gives q6, the rest is a planar arm.
+void solve_three_parallel(const std::array<Axis, 6>& axes, const Displacement& wanted, double slack,
+                          SixJointBranches& branches) {
+  const Eigen::Vector3d& h = axes[1].direction;
+  const Eigen::Vector3d& h5 = axes[4].direction;
+  const Eigen::Vector3d& h6 = axes[5].direction;
+  const Eigen::Vector3d& meeting = axes[5].point;
+  const Axis back{-axes[0].direction, axes[0].point, false};
+  for (const Turn& first : turn_to_height(back, wanted(meeting), h, h.dot(meeting), slack)) {
+    const Displacement left = displacement(axes[0], first.back()) * wanted;
+    const Eigen::Vector3d h_seen = left.R.transpose() * h;  // from axis 6, after its turn
+    const double q1 = first.angle();
+    for (const Turn& fifth : turn_direction(h5, h6, h, h6.dot(h_seen), slack)) {
+      const Eigen::Vector3d h_before = turned(h5, fifth.back(), h);
+      // axis 6 parallel to the others: any q6 would do for the directions
+      const bool free = h_before.cross(h6).squaredNorm() < kDouble;
+      const Displacement beyond = displacement(axes[4], fifth.back());
+      const double q5 = fifth.angle();
+      Turn sixth = turn_towards(h6, h_seen, h_before);
+      for (int k = 0; k < (free ? kFreeTurns : 1); ++k, sixth = sixth * kFreeStep) {
+        const Displacement rest = left * (displacement(axes[5], sixth.back()) * beyond);
+        if (solve_parallel(axes, rest, slack, {q1, 0, 0, 0, q5, sixth.angle()}, branches))
+          break;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SixJointBranches solve_six_joints(const std::array<Axis, 6>& axes, const Displacement& wanted,
+                                  const SixJointRule& rule, double slack) {
+  SixJointBranches branches;
+  const std::array<Axis, 6> way_back =
+      rule.reversed ? std::array{axes[5], axes[4], axes[3], axes[2], axes[1], axes[0]} : axes;
+  const Displacement there = rule.reversed ? wanted.inverse() : wanted;
+  if (rule.kind == SixJointRule::Kind::SphericalWrist)
+    solve_wrist(way_back, there, rule.point, slack, branches);
+  else
+    solve_three_parallel(way_back, there, slack, branches);
+  if (rule.reversed)
+    for (int i = 0; i < branches.count; ++i) {
+      std::array<double, 6>& q = branches.angles[static_cast<std::size_t>(i)];
+      q = {-q[5], -q[4], -q[3], -q[2], -q[1], -q[0]};
+    }
+  return branches;
+}
+
+}  // namespace kinship::inverse
