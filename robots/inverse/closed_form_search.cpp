@@ -20,6 +20,7 @@ constexpr double kRecoveredShare = 0.9;
 constexpr double kNearlyRecoveredShare = 0.5;
 constexpr std::uint64_t kSeed = 0x6b696e;
 constexpr int kMostPlanarChoices = 60;
+constexpr double kBetter = 1.15;  // less than that is chance, and the first choice stands
 
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
 
@@ -176,7 +177,7 @@ struct ClosedFormSearch {
     ClosedForm* best = nullptr;
     for (ClosedForm& form : forms) {
       form.mean_within_limits_ = mean_within_limits(form, samples);
-      if ((best == nullptr || form.mean_within_limits_ > best->mean_within_limits_) &&
+      if ((best == nullptr || form.mean_within_limits_ > kBetter * best->mean_within_limits_) &&
           recovers(form, samples))
         best = &form;
     }

@@ -8,6 +8,7 @@ namespace kinship::inverse {
 namespace {
 
 constexpr int kFreeTurns = 8;  // of a joint that a pose leaves free, until the others can follow
+constexpr double kSmallestSineSquared = 1e-12;  // of lines whose meeting point can be told
 constexpr Turn kFreeStep{std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2};  // a turn in as many
 
 /// A way in which three joints place a point.
@@ -27,7 +28,17 @@ struct Placements {
   const Placement* end() const { return values.data() + count; }
 };
 
-/// Turns about three axes that bring x to y; the first two meet in their points or are parallel.
+/// Where two lines meet. The values of locked joints between them may have moved it.
+Eigen::Vector3d meeting_point(const Axis& a, const Axis& b) {
+  const Eigen::Vector3d normal = a.direction.cross(b.direction);
+  const double squared = normal.squaredNorm();
+  if (squared < kSmallestSineSquared)
+    return a.point;
+  const double along = (b.point - a.point).cross(b.direction).dot(normal) / squared;
+  return a.point + along * a.direction;
+}
+
+/// Turns about three axes that bring x to y; the first two meet or are parallel.
 Placements place(const std::array<const Axis*, 3>& axes, const Eigen::Vector3d& x,
                  const Eigen::Vector3d& y, bool meet, double slack) {
   const Axis& first = *axes[0];
@@ -35,7 +46,7 @@ Placements place(const std::array<const Axis*, 3>& axes, const Eigen::Vector3d& 
   const Axis& third = *axes[2];
   Placements placements;
   if (meet) {
-    const Eigen::Vector3d& centre = first.point;
+    const Eigen::Vector3d centre = meeting_point(first, second);
     const Eigen::Vector3d to_y = y - centre;
     for (const Turn& turn : turn_to_distance(third, x, centre, to_y.squaredNorm(), slack)) {
       const Eigen::Vector3d to_x = turned(third, turn, x) - centre;

@@ -38,7 +38,7 @@ struct SixJointBranches {
 };
 
 /// All branches of six turning joints whose displacements, from base to tip, make `wanted`.
-/// Meeting axes have the point where they meet as their point, parallel axes one direction (or
+/// Axes of a wrist have the point where they meet as their point, parallel axes one direction (or
 /// its opposite): the rule is followed without looking whether it holds.
 /// \param slack  how far beyond the boundary of what it can reach a step may be asked to go (share
 ///               of its reach); it then goes to the boundary.
