@@ -1,0 +1,62 @@
+#include "robots/inverse/solver.hpp"
+
+#include <stdexcept>
+
+#include "robots/inverse/descent.hpp"
+#include "robots/inverse/search.hpp"
+
+namespace kinship::inverse {
+
+namespace {
+
+constexpr double kWorthALock = 3;  // configurations within limits
+
+/// Whether a closed form is faster than descents: a call with random locks takes about as long as
+/// three descents, and a redundant arm's descents nearly all end at a solution.
+bool pays(const ClosedForm& form) {
+  return form.locks().empty() || form.mean_within_limits() >= kWorthALock;
+}
+
+}  // namespace
+
+Solver::Solver(const kinematics::Chain& chain)
+    : Solver(chain, instruction_sets().back().kernels) {}
+
+Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels, Engines engines)
+    : kernels_(kernels),
+      lanes_(lane_chain(chain)),
+      arm_(lane_arm(chain)),
+      space_(chain),
+      T_tip_transfer_(chain.T_tip_transfer()),
+      reach_m_(inverse::reach_m(chain)),
+      p_base_first_joint_(chain.joints().front().T_previous_joint.translation()) {
+  if (engines == Engines::Descents)
+    return;
+  closed_ = ClosedForm::of(chain);
+  if (engines == Engines::Best && closed_ && !pays(*closed_))
+    closed_.reset();
+}
+
+bool Solver::beyond_reach(const Eigen::Isometry3d& T_base_transfer) const {
+  Eigen::Vector3d p = T_base_transfer.translation() - p_base_first_joint_;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    p[axis] *= arm_.matters[axis];
+  return p.norm() > reach_m_ + kPoseTolerance;
+}
+
+InverseSolutions Solver::solve(const Eigen::Isometry3d& T_base_tip,
+                               const InverseOptions& options) const {
+  if (!T_base_tip.matrix().allFinite())
+    throw std::invalid_argument("inverse: the pose of the tip link is not finite");
+  if (options.max_solutions < 0)
+    throw std::invalid_argument("inverse: max_solutions must not be negative");
+  if (!(options.min_distance >= 0))
+    throw std::invalid_argument("inverse: min_distance must be 0 or more");
+  return Search(*this, T_base_tip, options).run();
+}
+
+std::string Solver::name() const {
+  return closed_ ? "closed form and Levenberg-Marquardt" : "multi-start Levenberg-Marquardt";
+}
+
+}  // namespace kinship::inverse
