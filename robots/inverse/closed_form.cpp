@@ -49,11 +49,13 @@ void ClosedForm::append_six(const Displacement& T, std::span<const double> locke
   std::array<double, kMostLocked> values{};
   for (std::size_t i = 0; i < locks_.size(); ++i)
     values[i] = prismatic_[i] ? locked[i] / scale_m_ : locked[i];
-  const FreeAxes free = lock(six_->axes, locks_, values.data());
-  Displacement wanted = T * T_transfer_base_;
-  if (!locks_.empty())
-    wanted = free.before * wanted * free.after;
-  const SixJointBranches found = solve_six_joints(free.axes, wanted, six_->rule, slack_);
+  SixJointTask task;
+  task.wanted = T * T_transfer_base_;
+  task.slack = slack_;
+  std::copy(windows_.begin(), windows_.end(), task.windows.begin());
+  lock(six_->axes, locks_, values.data(), task);
+  const SixJointBranches found = solve_six_joints(task, six_->rule);
+  branches.leave_out(found.outside);
   for (int b = 0; b < found.count; ++b) {
     double* q = branches.add();
     if (q == nullptr)
@@ -70,7 +72,8 @@ void ClosedForm::append_planar(const Displacement& T, std::span<const double> lo
   std::array<double, kMaxDof> values;
   for (std::size_t i = 0; i < locks_.size(); ++i)
     values[static_cast<std::size_t>(locks_[i])] = locked[i];
-  const PlanarBranches found = planar_->solve(free_, values.data(), T, slack_);
+  const PlanarBranches found = planar_->solve({free_, windows_, values.data(), slack_}, T);
+  branches.leave_out(found.outside);
   for (int b = 0; b < found.count; ++b) {
     double* q = branches.add();
     if (q == nullptr)

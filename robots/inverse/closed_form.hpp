@@ -20,9 +20,16 @@ class Branches {
   static constexpr int kCapacity = 16;
 
   int size() const noexcept { return size_; }
-  void clear() noexcept { size_ = 0; }
+  void clear() noexcept {
+    size_ = 0;
+    outside_limits_ = false;
+  }
   /// The values of one configuration, dof of them, joint units.
   const double* operator[](int i) const { return values_[static_cast<std::size_t>(i)].data(); }
+
+  /// Whether a joint would have left its limits: without them there might have been more.
+  bool outside_limits() const noexcept { return outside_limits_; }
+  void leave_out(bool any) noexcept { outside_limits_ = outside_limits_ || any; }
 
   /// Room for one more; nullptr if there is none.
   double* add() {
@@ -32,6 +39,7 @@ class Branches {
  private:
   std::array<std::array<double, kMaxDof>, kCapacity> values_;
   int size_ = 0;
+  bool outside_limits_ = false;
 };
 
 /// Inverse kinematics of one chain in closed form. Built once per chain; immutable, may be shared
@@ -43,6 +51,9 @@ class ClosedForm {
   /// on average. Tries it on random poses first (same chain, same answer).
   static std::optional<ClosedForm> of(const kinematics::Chain& chain);
   static constexpr double kWorthwhile = 1;
+
+  static constexpr double kExactMargin_rad = 1e-5;
+  static constexpr double kNearMargin_rad = 0.1;
 
   /// Joints whose values the caller chooses, ascending, 0 the first; empty: the pose fixes all.
   std::span<const int> locks() const noexcept { return locks_; }
@@ -62,9 +73,10 @@ class ClosedForm {
   /// What makes it work, e.g. "spherical wrist 5-6-7".
   std::string structure_name() const;
 
-  /// Appends all branches: in no particular order, any turn, neither verified nor within limits,
-  /// and at the boundary of reach also such as fall just short of the pose. Singular poses get
-  /// representatives of their families, with 0 for a joint that could have any value.
+  /// Appends all branches whose turning joints are within limits but for a margin (kNearMargin_rad
+  /// if the structure is not exact, else kExactMargin_rad): in no particular order, any turn, not
+  /// verified, and at the boundary of reach also such as fall just short of the pose. Singular
+  /// poses get representatives of their families, with 0 for a joint that could have any value.
   /// \param T_base_transfer  pose of the transfer frame in the base link, m.
   /// \param locked           one value per lock, joint units.
   void append(const Eigen::Isometry3d& T_base_transfer, std::span<const double> locked,
@@ -81,8 +93,9 @@ class ClosedForm {
   std::vector<int> locks_, free_;
   std::optional<SixJointStructure> six_;
   std::optional<PlanarForm> planar_;
-  std::vector<bool> prismatic_;   ///< per lock
-  Displacement T_transfer_base_;  ///< with every joint at 0
+  std::vector<bool> prismatic_;      ///< per lock
+  std::vector<TurnWindow> windows_;  ///< per free joint
+  Displacement T_transfer_base_;     ///< with every joint at 0
   double scale_m_ = 1;
   double slack_ = 0;
   double mean_within_limits_ = 0;

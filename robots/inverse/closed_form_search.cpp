@@ -20,6 +20,7 @@ constexpr double kRecoveredShare = 0.9;
 constexpr double kNearlyRecoveredShare = 0.5;
 constexpr std::uint64_t kSeed = 0x6b696e;
 constexpr int kMostPlanarChoices = 60;
+constexpr double kBetter = 1.15;  // less than that is chance, and the first choice stands
 
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
 
@@ -97,10 +98,22 @@ struct ClosedFormSearch {
     result.free_ = others(static_cast<int>(chain.dof()), result.locks_);
     for (const int joint : result.locks_)
       result.prismatic_.push_back(axes.axes[static_cast<std::size_t>(joint)].prismatic);
+    for (const int joint : result.free_)
+      result.windows_.push_back(window(joint, deviation));
     result.T_transfer_base_ = axes.T_base_transfer.inverse();
     result.scale_m_ = axes.scale_m;
     result.slack_ = std::max(kSmallestSlack, kSlackPerDeviation * deviation);
     return result;
+  }
+
+  TurnWindow window(int index, double deviation) const {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(index)];
+    if (joint.type != kinematics::JointType::Revolute)
+      return {};
+    const double margin =
+        deviation > kExactStructure ? ClosedForm::kNearMargin_rad : ClosedForm::kExactMargin_rad;
+    return TurnWindow::around(0.5 * (joint.lower + joint.upper),
+                              0.5 * (joint.upper - joint.lower) + margin);
   }
 
   std::vector<ClosedForm> candidates() const {
@@ -176,7 +189,7 @@ struct ClosedFormSearch {
     ClosedForm* best = nullptr;
     for (ClosedForm& form : forms) {
       form.mean_within_limits_ = mean_within_limits(form, samples);
-      if ((best == nullptr || form.mean_within_limits_ > best->mean_within_limits_) &&
+      if ((best == nullptr || form.mean_within_limits_ > kBetter * best->mean_within_limits_) &&
           recovers(form, samples))
         best = &form;
     }

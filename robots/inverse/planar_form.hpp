@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robots/inverse/axis.hpp"
+#include "robots/inverse/subproblems.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::inverse {
@@ -13,6 +14,15 @@ namespace kinship::inverse {
 struct PlanarBranches {
   std::array<std::array<double, 3>, 2> angles{};
   int count = 0;
+  bool outside = false;  ///< whether one was left out because a joint would be outside its window
+};
+
+/// Which joints of a planar arm are free, and where the others stand.
+struct PlanarTask {
+  const std::vector<int>& free;            ///< ascending, two or three
+  const std::vector<TurnWindow>& windows;  ///< of the free joints
+  const double* values;                    ///< of all joints, rad; those of free ones do not count
+  double slack = 0;                        ///< see SixJointTask
 };
 
 /// An arm whose joints all turn about one direction, which is x, y or z of its base: a planar arm
@@ -27,18 +37,15 @@ class PlanarForm {
   int free_joints() const { return turn_matters_ ? 3 : 2; }
   double deviation() const { return deviation_; }  ///< of the directions of the axes: sine
 
-  /// \param free         ascending, free_joints() of them
-  /// \param values       of all joints, rad; those of free joints do not count
-  /// \param T            of the transfer frame in the base link, in units of the arm's size
-  PlanarBranches solve(const std::vector<int>& free, const double* values, const Displacement& T,
-                       double slack) const;
+  /// \param T  of the transfer frame in the base link, in units of the arm's size.
+  PlanarBranches solve(const PlanarTask& task, const Displacement& T) const;
 
  private:
   using Point = std::complex<double>;
   PlanarForm() = default;
 
   Point in_plane(const Eigen::Vector3d& p) const { return {x_.dot(p), y_.dot(p)}; }
-  double turn_of(const Eigen::Matrix3d& R) const;
+  Turn turn_of(const Eigen::Matrix3d& R) const;
 
   Eigen::Vector3d normal_, x_, y_;
   std::vector<Point> joints_;

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "robots/inverse/axis.hpp"
+#include "robots/inverse/subproblems.hpp"
 
 namespace kinship::inverse {
 
@@ -30,6 +31,7 @@ inline constexpr int kMostBranches = 8;  ///< of six joints by these rules
 struct SixJointBranches {
   std::array<std::array<double, 6>, kMostBranches> angles;
   int count = 0;
+  bool outside = false;  ///< whether a joint would have left its window on the way to a branch
 
   void add(const std::array<double, 6>& q) {
     if (count < kMostBranches)
@@ -37,12 +39,19 @@ struct SixJointBranches {
   }
 };
 
+/// What is asked of six turning joints.
+struct SixJointTask {
+  std::array<Axis, 6> axes;
+  Displacement wanted;
+  std::array<TurnWindow, 6> windows;  ///< branches with a joint outside its own are left out
+  /// How far beyond the boundary of what it can reach a step may be asked to go (share of its
+  /// reach); it then goes to the boundary.
+  double slack = 0;
+};
+
 /// All branches of six turning joints whose displacements, from base to tip, make `wanted`.
-/// Meeting axes have the point where they meet as their point, parallel axes one direction (or
+/// Axes of a wrist have the point where they meet as their point, parallel axes one direction (or
 /// its opposite): the rule is followed without looking whether it holds.
-/// \param slack  how far beyond the boundary of what it can reach a step may be asked to go (share
-///               of its reach); it then goes to the boundary.
-SixJointBranches solve_six_joints(const std::array<Axis, 6>& axes, const Displacement& wanted,
-                                  const SixJointRule& rule, double slack);
+SixJointBranches solve_six_joints(const SixJointTask& task, const SixJointRule& rule);
 
 }  // namespace kinship::inverse

@@ -238,28 +238,26 @@ std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain) {
   return structures;
 }
 
-FreeAxes lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values) {
-  FreeAxes free;
+void lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values,
+          SixJointTask& task) {
   if (locks.empty()) {
-    std::copy(axes.begin(), axes.end(), free.axes.begin());
-    return free;
+    std::copy(axes.begin(), axes.end(), task.axes.begin());
+    return;
   }
-  const auto is_lock = [&](std::size_t j, std::size_t next) {
-    return next < locks.size() && locks[next] == static_cast<int>(j);
-  };
   // Either the axes behind the locks are carried along, or those before them are carried back,
   // whichever are fewer.
-  const auto count = static_cast<int>(axes.size());
-  if (locks.front() >= count - 1 - locks.back()) {
+  if (locks.front() >= static_cast<int>(axes.size()) - 1 - locks.back()) {
     Displacement by;
-    for (std::size_t j = 0, next = 0, i = 0; j < axes.size(); ++j) {
-      if (is_lock(j, next))
+    std::size_t next = 0;
+    std::size_t i = 0;
+    for (std::size_t j = 0; j < axes.size(); ++j) {
+      if (next < locks.size() && locks[next] == static_cast<int>(j))
         by = by * axes[j].at(values[next++]);
       else
-        free.axes[i++] = next == 0 ? axes[j] : axes[j].moved(by);
+        task.axes[i++] = next == 0 ? axes[j] : axes[j].moved(by);
     }
-    free.after = by.inverse();
-    return free;
+    task.wanted = task.wanted * by.inverse();
+    return;
   }
   Displacement back;  // inverse of the product of the locks from here on
   std::size_t left = locks.size();
@@ -269,11 +267,10 @@ FreeAxes lock(const std::vector<Axis>& axes, const std::vector<int>& locks, cons
       --left;
       back = back * axes[j].at(-values[left]);
     } else {
-      free.axes[--i] = left == locks.size() ? axes[j] : axes[j].moved(back);
+      task.axes[--i] = left == locks.size() ? axes[j] : axes[j].moved(back);
     }
   }
-  free.before = back;
-  return free;
+  task.wanted = back * task.wanted;
 }
 
 std::optional<CommonDirection> common_direction(const AxisChain& chain) {

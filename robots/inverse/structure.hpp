@@ -31,16 +31,12 @@ struct SixJointStructure {
 std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain);
 inline constexpr int kMostLocked = 2;
 
-/// The axes that are left free while others are locked, and what of a wanted displacement is left
-/// for them: `before` * wanted * `after`.
-struct FreeAxes {
-  std::array<Axis, 6> axes;
-  Displacement before, after;
-};
-
+/// Writes the axes that are left free while others are locked into a task, and takes from its
+/// wanted displacement what the locked ones do.
 /// \param locks   ascending, size axes.size() - 6.
 /// \param values  one per lock: rad, or lengths in units of the arm's size.
-FreeAxes lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values);
+void lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values,
+          SixJointTask& task);
 
 /// The common direction of parallel turning joints, and by how much (sine) they deviate from it.
 struct CommonDirection {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "robots/inverse/axis.hpp"
 
@@ -28,6 +29,24 @@ struct Turn {
   Turn operator*(const Turn& next) const {
     return {cosine * next.cosine - sine * next.sine, sine * next.cosine + cosine * next.sine};
   }
+};
+
+/// The turns that a joint's limits allow, told without an arc tangent.
+struct TurnWindow {
+  double cosine_middle = 1, sine_middle = 0;
+  double cosine_half = -2;  ///< of the half range; below -1: any turn
+
+  /// \param half  half the range, rad; pi and more: any turn.
+  static TurnWindow around(double middle, double half) {
+    if (half >= std::numbers::pi)
+      return {};
+    return {std::cos(middle), std::sin(middle), std::cos(half)};
+  }
+
+  bool holds(const Turn& turn) const {
+    return turn.cosine * cosine_middle + turn.sine * sine_middle >= cosine_half;
+  }
+  TurnWindow back() const { return {cosine_middle, -sine_middle, cosine_half}; }
 };
 
 /// Up to two turns.

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <string>
 
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
@@ -86,7 +88,47 @@ TEST_P(ClosedFormOf, GivesBackTheConfigurationAndReachesThePoseInEveryBranch) {
   }
 }
 
+/// The chain with a whole turn for every turning joint: every branch counts.
+kinematics::Chain without_limits(const kinematics::Chain& chain) {
+  kinematics::ChainParts parts;
+  parts.base_link = chain.base_link();
+  parts.tip_link = chain.tip_link();
+  parts.joints = chain.joints();
+  parts.T_last_tip = chain.T_last_tip();
+  parts.T_tip_transfer = chain.T_tip_transfer();
+  parts.task_axes = chain.task_axes();
+  for (kinematics::Joint& joint : parts.joints)
+    if (joint.type == kinematics::JointType::Revolute)
+      joint.type = kinematics::JointType::Continuous;
+  return kinematics::Chain(std::move(parts));
+}
+
+TEST_P(ClosedFormOf, LeavesOutWhatLimitsForbidAndNothingElse) {
+  const kinematics::Chain free = without_limits(chain_);
+  const ClosedFormFinding free_finding = find_closed_form(free);
+  const ClosedForm& free_form = free_finding.form ? *free_finding.form : *free_finding.left_out;
+  if (!std::ranges::equal(free_form.locks(), form_.locks()))
+    GTEST_SKIP() << "locks other joints without limits";
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::VectorXd q = test::random_configuration(chain_, generator_);
+    const Eigen::Isometry3d T = kinematics::T_base_transfer(chain_, q);
+    const Branches all = branches_at(free_form, T, q);
+    EXPECT_FALSE(all.outside_limits());
+    int inside = 0;
+    for (int b = 0; b < all.size(); ++b) {
+      Eigen::VectorXd branch = configuration(all, b, chain_.dof());
+      inside += normalize(chain_, branch) ? 1 : 0;
+    }
+    const Branches allowed = branches_at(form_, T, q);
+    EXPECT_EQ(allowed.size(), inside);
+    EXPECT_TRUE(allowed.outside_limits() || inside == all.size());
+  }
+}
+
 TEST_P(ClosedFormOf, SolvesPosesAtRoundAnglesAndBesideThem) {
+  const kinematics::Chain free = without_limits(chain_);
+  const ClosedFormFinding finding = find_closed_form(free);
+  const ClosedForm& form = finding.form ? *finding.form : *finding.left_out;
   std::uniform_int_distribution<int> quarter(-1, 2);
   std::uniform_real_distribution<double> exponent(-12, -3);
   std::normal_distribution<double> normal;
@@ -96,7 +138,7 @@ TEST_P(ClosedFormOf, SolvesPosesAtRoundAnglesAndBesideThem) {
     for (double& value : q)
       value = 0.5 * kPi * quarter(generator_) + beside * normal(generator_);
     const Eigen::Isometry3d T = kinematics::T_base_transfer(chain_, q);
-    const Branches branches = branches_at(form_, T, q);
+    const Branches branches = branches_at(form, T, q);
     double least = 1;
     for (int b = 0; b < branches.size(); ++b) {
       const Eigen::VectorXd found = configuration(branches, b, chain_.dof());
@@ -117,8 +159,10 @@ INSTANTIATE_TEST_SUITE_P(
     Arms, ClosedFormOf,
     testing::Values(
         model("ur10e", "parallel axes 2-3-4; closed form, 8 branches"),
-        model("iiwa14", "spherical "), model("iiwa7", "spherical "),
-        model("sara_like", "spherical "), model("panda", "spherical shoulder 1-2-3; lock q"),
+        model("iiwa14", "spherical wrist 5-6-7; lock q3; closed form, 8 branches per lock"),
+        model("iiwa7", "spherical wrist 5-6-7; lock q3; closed form, 8 branches per lock"),
+        model("sara_like", "spherical wrist 5-6-7; lock q3; closed form, 8 branches per lock"),
+        model("panda", "spherical shoulder 1-2-3; lock q"),
         model("planar_5r_a", "planar arm; lock q"), model("planar_7r_c", "planar arm; lock q"),
         Arm{"industrial", test::arms::industrial, "spherical wrist 4-5-6; closed form, 8 branches"},
         Arm{"hollow_wrist", test::arms::hollow_wrist, "spherical wrist 4-5-6; closed form, 8"},
