@@ -11,10 +11,10 @@ namespace {
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
 constexpr std::size_t kMostSolutions = 1000;
 constexpr std::size_t kMostFound = 64;  // of an arm that is not redundant, before the choice
-constexpr int kIterations = 10;            // measured: a new start is worth more than an eleventh,
-constexpr int kMoreIterations = 5;         // unless the error is below the first of these; then,
+constexpr int kIterations = 10;         // measured: a new start is worth more than an eleventh,
+constexpr int kMoreIterations = 5;      // unless the error is below the first of these; then,
 constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
-constexpr int kPatientIterations = 60;     // for poses that no ordinary start has solved
+constexpr int kPatientIterations = 60;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kHoldingStarts = 32;
 constexpr int kFewestStarts = 32;
@@ -26,6 +26,7 @@ constexpr int kSaturated = 96;        // ended descents in a row without a new s
 constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
 constexpr int kFewestLocks = 8;       // random values of the locked joints
+constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
 constexpr double kNearMargin = 0.1;   // beyond limits, of branches that a polish will move
 constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
@@ -77,11 +78,8 @@ void Search::find() {
   }
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
   const int starts =
-      all_ ? kMostStarts
-           : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
-  const int patience = all_                    ? kSaturated
-                       : solver_.redundant() ? starts
-                                             : kBranchPatience;
+      all_ ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
+  const int patience = all_ ? kSaturated : solver_.redundant() ? starts : kBranchPatience;
   descend({kFirstStarts, kIterations, steer, kFirstStarts});
   if (enough())
     return;
@@ -105,7 +103,10 @@ void Search::append_branches(const ClosedForm& form) {
   const double margin = form.exact() ? kLimitRounding : kNearMargin;
   std::array<double, kLaneJoints> locked;
   Branches branches;
-  for (int attempt = 0; attempt < attempts && !enough(); ++attempt) {
+  std::size_t known = 0;
+  for (int attempt = 0, idle = 0; attempt < attempts && idle < kIdleLocks && !enough(); ++attempt) {
+    idle = found_.size() == known ? idle + 1 : 0;
+    known = found_.size();
     CounterGenerator generator = generator_.of_attempt(next_start_++);
     for (std::size_t i = 0; i < locks.size(); ++i)
       locked[i] = solver_.space().value_at(locks[i], generator.uniform());

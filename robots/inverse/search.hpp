@@ -52,11 +52,11 @@ class Search {
 
   const Solver& solver_;
   const Eigen::Isometry3d T_base_transfer_;
-  const std::size_t most_;      // solutions to return
-  const double min_distance_;   // between them
-  const std::size_t wanted_;    // to be found before the choice
-  const double apart_;          // between those found
-  const bool all_;              // as many as there are
+  const std::size_t most_;     // solutions to return
+  const double min_distance_;  // between them
+  const std::size_t wanted_;   // to be found before the choice
+  const double apart_;         // between those found
+  const bool all_;             // as many as there are
   const CounterGenerator generator_;
 
   LaneBatch batch_;

@@ -19,8 +19,7 @@ bool pays(const ClosedForm& form) {
 
 }  // namespace
 
-Solver::Solver(const kinematics::Chain& chain)
-    : Solver(chain, instruction_sets().back().kernels) {}
+Solver::Solver(const kinematics::Chain& chain) : Solver(chain, instruction_sets().back().kernels) {}
 
 Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels, Engines engines)
     : kernels_(kernels),
