@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
-constexpr double kArrived = inverse::kPoseTolerance * inverse::kPoseTolerance;
+constexpr double kArrived = 1e-8;  // squared error before a last step, which squares it again
 
 bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
 unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
@@ -73,7 +73,7 @@ unsigned ShapeLanes::descend(unsigned lanes) {
   for (int i = 0; i <= kDescentIterations && arrived != lanes; ++i) {
     solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
     for (int lane = 0; lane < kCount; ++lane)
-      if (has(lanes, lane) && batch_.squared[lane] <= kArrived)
+      if (has(lanes, lane) && batch_.squared[lane] < kArrived)
         arrived |= bit(lane);
   }
   return arrived;

@@ -62,8 +62,8 @@ TEST(Distance, IsEuclideanAndWrappedForContinuousJointsOnly) {
 }
 
 TEST(RoundedInward, FloatsStayWithinTheLimitsAndNearTheirValues) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1, 1}, .limit = 2.9671}.chain();
-  const Eigen::VectorXd q = Eigen::Vector3d(2.9671, -2.9671, 0.1);
+  const auto chain = PlanarArm{.lengths_m = {1, 1, 1}, .limit = 2.9}.chain();
+  const Eigen::VectorXd q = Eigen::Vector3d(2.9, -2.9, 0.1);
   ASSERT_FALSE(chain.within_limits(q.cast<float>().cast<double>()));
   const Eigen::VectorXd rounded = rounded_inward(chain, q).cast<double>();
   EXPECT_TRUE(chain.within_limits(rounded));
