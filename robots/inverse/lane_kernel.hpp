@@ -190,11 +190,12 @@ KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, in
     for (int r = 0; r < kRows; ++r)
       step += columns[j].rows[row_of[r]] * wanted[r];
     step = clamped(step, all(-kLargestStep), all(kLargestStep));
-    moved += step * step;
+    const Wide before = q[j];
     q[j] += step;
     const LaneJoint& joint = chain.joints[j];
     if (limits == LaneLimits::Hold && joint.bounded)
       q[j] = clamped(q[j], all(joint.middle - joint.half), all(joint.middle + joint.half));
+    moved += (q[j] - before) * (q[j] - before);
     store(batch.q[j] + lane, q[j]);
   }
   store(batch.squared + lane, squared);
