@@ -129,78 +129,112 @@ KINSHIP_LANE_INLINE void solve(Wide (&system)[kRows][kRows], Wide (&wanted)[kRow
       wanted[c] -= system[r][c] * wanted[r];
 }
 
+/// One iteration while it is made. kRows: of the task; row_of maps them to those of a column.
+template <int kRows>
+struct WideIteration {
+  WideIteration(const LaneChain& of, LaneLimits with, const int* rows)
+      : chain(of), limits(with), row_of(rows) {}  // the rest is written before it is read
+
+  const LaneChain& chain;
+  const LaneLimits limits;
+  const int* row_of;
+  Wide q[kLaneJoints], pull[kLaneJoints];
+  WideColumn columns[kLaneJoints];
+  Wide error[kRows], system[kRows][kRows], wanted[kRows];
+  Wide squared, outside;
+};
+
+/// Error of the task, and the frame of the last joint.
+template <int kRows>
+KINSHIP_LANE_INLINE WideFrame evaluate(const Wide (&target)[12], WideIteration<kRows>& now) {
+  const WideFrame frame = forward(now.chain, now.q, now.columns);
+  Wide full[7];
+  task_error(target, frame, reinterpret_cast<Wide(&)[6]>(full));
+  full[6] = Wide{};
+  now.squared = Wide{};
+#pragma GCC unroll 6
+  for (int row = 0; row < kRows; ++row) {
+    now.error[row] = full[now.row_of[row]];
+    now.squared += now.error[row] * now.error[row];
+  }
+  return frame;
+}
+
+/// J J^T, damped, and what is wanted of it.
+template <int kRows>
+KINSHIP_LANE_INLINE void linearize(const WideFrame& frame, WideIteration<kRows>& now) {
+#pragma GCC unroll 6
+  for (int r = 0; r < kRows; ++r) {
+    now.wanted[r] = now.error[r];
+#pragma GCC unroll 6
+    for (int c = 0; c <= r; ++c)
+      now.system[r][c] = Wide{};
+  }
+  now.outside = Wide{};
+  for (int j = 0; j < now.chain.dof; ++j) {
+    const LaneJoint& joint = now.chain.joints[j];
+    differentiate(joint.slides, frame.p, now.columns[j]);
+    if (now.limits == LaneLimits::Hold)
+      hold(joint, now.q[j], now.error, now.row_of, now.columns[j]);
+    Wide column[kRows];
+#pragma GCC unroll 6
+    for (int r = 0; r < kRows; ++r)
+      column[r] = now.columns[j].rows[now.row_of[r]];
+#pragma GCC unroll 6
+    for (int r = 0; r < kRows; ++r)
+#pragma GCC unroll 6
+      for (int c = 0; c <= r; ++c)
+        now.system[r][c] += column[r] * column[c];
+    if (now.limits != LaneLimits::Steer)
+      continue;
+    now.pull[j] = pull_of(joint, now.q[j], now.outside);
+#pragma GCC unroll 6
+    for (int r = 0; r < kRows; ++r)
+      now.wanted[r] -= now.pull[j] * column[r];  // the pull may use only what the task leaves free
+  }
+#pragma GCC unroll 6
+  for (int r = 0; r < kRows; ++r)
+    now.system[r][r] += kDampingShare * now.squared + kSmallestDamping;
+}
+
+/// One step on with the solution in `wanted`. \return the squared length of the step.
+template <int kRows>
+KINSHIP_LANE_INLINE Wide advance(WideIteration<kRows>& now) {
+  Wide moved = Wide{};
+  for (int j = 0; j < now.chain.dof; ++j) {
+    const LaneJoint& joint = now.chain.joints[j];
+    Wide step = now.limits == LaneLimits::Steer ? now.pull[j] : Wide{};
+#pragma GCC unroll 6
+    for (int r = 0; r < kRows; ++r)
+      step += now.columns[j].rows[now.row_of[r]] * now.wanted[r];
+    step = clamped(step, all(-kLargestStep), all(kLargestStep));
+    Wide next = now.q[j] + step;
+    if (now.limits == LaneLimits::Hold && joint.bounded)
+      next = clamped(next, all(joint.middle - joint.half), all(joint.middle + joint.half));
+    moved += (next - now.q[j]) * (next - now.q[j]);
+    now.q[j] = next;
+  }
+  return moved;
+}
+
 /// One iteration of the lanes from `lane` on. kMapped: not every task axis matters.
 template <int kRows, bool kMapped>
 KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, int lane,
                                    LaneBatch& batch) {
   static constexpr int kAllRows[6] = {0, 1, 2, 3, 4, 5};
-  const int* row_of = kMapped ? chain.row_of : kAllRows;
-  Wide q[kLaneJoints], pull[kLaneJoints], target[12];
-  WideColumn columns[kLaneJoints];
-  for (int j = 0; j < chain.dof; ++j)
-    q[j] = load(batch.q[j] + lane);
+  WideIteration<kRows> now(chain, limits, kMapped ? chain.row_of : kAllRows);
+  Wide target[12];
   for (int i = 0; i < 12; ++i)
     target[i] = load(batch.target[i] + lane);
-  const WideFrame frame = forward(chain, q, columns);
-  Wide full_error[7], error[kRows], squared = Wide{}, outside = Wide{}, moved = Wide{};
-  task_error(target, frame, reinterpret_cast<Wide(&)[6]>(full_error));
-  full_error[6] = Wide{};
-#pragma GCC unroll 6
-  for (int row = 0; row < kRows; ++row) {
-    error[row] = full_error[row_of[row]];
-    squared += error[row] * error[row];
-  }
-
-  Wide system[kRows][kRows], wanted[kRows];
-#pragma GCC unroll 6
-  for (int r = 0; r < kRows; ++r) {
-    wanted[r] = error[r];
-#pragma GCC unroll 6
-    for (int c = 0; c <= r; ++c)
-      system[r][c] = Wide{};
-  }
-  for (int j = 0; j < chain.dof; ++j) {
-    const LaneJoint& joint = chain.joints[j];
-    differentiate(joint.slides, frame.p, columns[j]);
-    if (limits == LaneLimits::Hold)
-      hold(joint, q[j], error, row_of, columns[j]);
-    Wide column[kRows];
-#pragma GCC unroll 6
-    for (int r = 0; r < kRows; ++r)
-      column[r] = columns[j].rows[row_of[r]];
-#pragma GCC unroll 6
-    for (int r = 0; r < kRows; ++r)
-#pragma GCC unroll 6
-      for (int c = 0; c <= r; ++c)
-        system[r][c] += column[r] * column[c];
-    if (limits != LaneLimits::Steer)
-      continue;
-    pull[j] = pull_of(joint, q[j], outside);
-#pragma GCC unroll 6
-    for (int r = 0; r < kRows; ++r)
-      wanted[r] -= pull[j] * column[r];  // the pull may use only what the task leaves free
-  }
-#pragma GCC unroll 6
-  for (int r = 0; r < kRows; ++r)
-    system[r][r] += kDampingShare * squared + kSmallestDamping;
-  solve<kRows>(system, wanted);
-  for (int j = 0; j < chain.dof; ++j) {
-    Wide step = limits == LaneLimits::Steer ? pull[j] : Wide{};
-#pragma GCC unroll 6
-    for (int r = 0; r < kRows; ++r)
-      step += columns[j].rows[row_of[r]] * wanted[r];
-    step = clamped(step, all(-kLargestStep), all(kLargestStep));
-    const Wide before = q[j];
-    q[j] += step;
-    const LaneJoint& joint = chain.joints[j];
-    if (limits == LaneLimits::Hold && joint.bounded)
-      q[j] = clamped(q[j], all(joint.middle - joint.half), all(joint.middle + joint.half));
-    moved += (q[j] - before) * (q[j] - before);
-    store(batch.q[j] + lane, q[j]);
-  }
-  store(batch.squared + lane, squared);
-  store(batch.moved + lane, moved);
-  store(batch.outside + lane, outside);
+  for (int j = 0; j < chain.dof; ++j)
+    now.q[j] = load(batch.q[j] + lane);
+  linearize(evaluate(target, now), now);
+  solve<kRows>(now.system, now.wanted);
+  store(batch.moved + lane, advance(now));
+  for (int j = 0; j < chain.dof; ++j)
+    store(batch.q[j] + lane, now.q[j]);
+  store(batch.squared + lane, now.squared);
+  store(batch.outside + lane, now.outside);
 }
 
 void step(const LaneChain& chain, LaneLimits limits, LaneBatch& batch) {
