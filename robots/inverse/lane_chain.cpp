@@ -16,8 +16,8 @@ using kinematics::JointType;
 static_assert(kLaneJoints == kMaxDof);
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kParallel = 1e-12;    // sine between axes
-constexpr double kRightAngle = 1e-15;  // rounding of a zero
+constexpr double kParallel = 1e-12;        // sine between axes
+constexpr double kRightAngle = 1e-15;      // rounding of a zero
 constexpr double kShortestReach_m = 1e-3;  // an arm without lengths still has a unit
 
 void write(const Eigen::Matrix3d& matrix, double (&rows)[9]) {
@@ -41,12 +41,11 @@ Turns turns_of(const Eigen::Matrix3d& R) {
     turns.first_z = std::atan2(R(0, 2), -R(1, 2));
   // What is left, not what the third row says: for nearly parallel axes only the sum of the two
   // turns about z is well known.
-  const Eigen::Matrix3d left =
-      (Eigen::AngleAxisd(turns.first_z, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(turns.x, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix()
-          .transpose() *
-      R;
+  const Eigen::Matrix3d left = (Eigen::AngleAxisd(turns.first_z, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(turns.x, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix()
+                                   .transpose() *
+                               R;
   turns.second_z = std::atan2(left(1, 0) - left(0, 1), left(0, 0) + left(1, 1));
   return turns;
 }

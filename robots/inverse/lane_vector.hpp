@@ -69,15 +69,16 @@ KINSHIP_LANE_INLINE void sine_cosine(Wide angle, Wide& sine, Wide& cosine) {
   const Wide shifted = angle * 0.63661977236758134308 + kRounder;
   const WideMask quarter = WideMask(shifted);  // its lowest bits count the quarter turns
   const Wide quarters = shifted - kRounder;
-  const Wide r = (angle - quarters * 1.57079632673412561417) - quarters * 6.07710050650619224932e-11;
+  const Wide r =
+      (angle - quarters * 1.57079632673412561417) - quarters * 6.07710050650619224932e-11;
   const Wide z = r * r;
   const Wide s =
       r + r * z *
               (-1.66666666666666324348e-01 +
                z * (8.33333333332248946124e-03 +
                     z * (-1.98412698298579493134e-04 +
-                         z * (2.75573137070700676789e-06 +
-                              z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+                         z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 +
+                                                                z * 1.58969099521155010221e-10)))));
   const Wide c =
       1.0 - 0.5 * z +
       z * z *

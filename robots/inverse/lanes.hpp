@@ -27,9 +27,9 @@ struct LaneJoint {
 /// A chain as the descent sees it: plain numbers, without its own units of length.
 struct LaneChain {
   int dof;
-  int rows;         ///< number of task axes that matter
-  int row_of[6];    ///< the rows that matter, then 6, which stands for a row of zeros
-  double length_m;  ///< what 1 stands for
+  int rows;                       ///< number of task axes that matter
+  int row_of[6];                  ///< the rows that matter, then 6, which stands for a row of zeros
+  double length_m;                ///< what 1 stands for
   double R_first[9], p_first[3];  ///< frame of the first joint in the base link, row-major
   LaneJoint joints[kLaneJoints];  ///< p and tilt of the first are not used
   double R_last[9], p_last[3];    ///< transfer frame in the last frame
