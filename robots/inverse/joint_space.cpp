@@ -26,6 +26,7 @@ JointSpace::Range::Range(const kinematics::Joint& joint)
       upper(joint.upper),
       middle(0.5 * (joint.lower + joint.upper)),
       half_drawn(0.5 * (joint.upper - joint.lower)),
+      half_anywhere(joint.type == JointType::Prismatic ? 2 * half_drawn : std::numbers::pi),
       turns(joint.type != JointType::Prismatic),
       continuous(joint.type == JointType::Continuous) {
   if (turns)

@@ -34,11 +34,18 @@ class JointSpace {
     return range.middle + (2 * share - 1) * range.half_drawn;
   }
 
+  /// The same without regard to limits: a whole turn, or twice the range of a prismatic joint.
+  double value_anywhere(Eigen::Index joint, double share) const noexcept {
+    const Range& range = joints_[static_cast<std::size_t>(joint)];
+    return range.middle + (2 * share - 1) * range.half_anywhere;
+  }
+
  private:
   struct Range {
     explicit Range(const kinematics::Joint& joint);
     double lower, upper, middle;
     double half_drawn;  ///< half the interval that values are drawn from
+    double half_anywhere;
     bool turns;         ///< a whole turn changes nothing
     bool continuous;
   };

@@ -17,6 +17,7 @@ constexpr int kMoreIterations = 5;      // unless the error is below the first o
 constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
 constexpr int kPatientIterations = 60;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
+constexpr int kHoldingStarts = 32;
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
 constexpr int kMostStarts = 4000;
@@ -81,9 +82,8 @@ void Search::find() {
   descend({kFirstStarts, kIterations, steer, kFirstStarts});
   if (enough())
     return;
-  if (found_.empty()) {  // learns without regard to limits what stands in the way
-    if (steer == LaneLimits::Steer)
-      descend({kDiagnosticStarts, kIterations, LaneLimits::Ignore, kDiagnosticStarts});
+  if (found_.empty() && !outside_limits_) {  // what stands in the way?
+    descend({kDiagnosticStarts, kIterations, LaneLimits::Ignore, kDiagnosticStarts, true});
     if (found_.empty() && least_squared_error_ > kNear * kNear)
       return;
   }
@@ -91,6 +91,8 @@ void Search::find() {
   if (found_.empty()) {
     stationary_ = 0;
     descend({kPatientStarts, kPatientIterations, steer, kPatientStarts});
+    if (found_.empty() && (outside_limits_ || stationary_ < kPatientStarts))  // at the limits?
+      descend({kHoldingStarts, kPatientIterations, LaneLimits::Hold, kHoldingStarts});
   }
 }
 
@@ -169,7 +171,7 @@ void Search::descend(const Effort& effort) {
   unsigned busy = 0;            // lanes, as bits
   idle_ = 0;
   for (int lane = 0; lane < kLanes && waiting > 0; ++lane, --waiting) {
-    start(lane);
+    start(effort, lane);
     busy |= 1U << static_cast<unsigned>(lane);
   }
   while (busy != 0 && !enough() && idle_ < effort.patience) {
@@ -185,7 +187,7 @@ void Search::descend(const Effort& effort) {
         hand_over(lane);
       if (waiting > 0) {
         --waiting;
-        start(lane);
+        start(effort, lane);
       } else {
         busy &= ~(1U << static_cast<unsigned>(lane));
       }
@@ -196,12 +198,15 @@ void Search::descend(const Effort& effort) {
   verify();
 }
 
-void Search::start(int lane) {
+void Search::start(const Effort& effort, int lane) {
   CounterGenerator generator = generator_.of_attempt(next_start_++);
   const LaneChain& chain = solver_.lanes();
-  for (int j = 0; j < chain.dof; ++j)
-    batch_.q[j][lane] = solver_.space().value_at(j, generator.uniform()) * chain.joints[j].scale +
-                        chain.joints[j].offset;
+  for (int j = 0; j < chain.dof; ++j) {
+    const double share = generator.uniform();
+    const double value = effort.anywhere ? solver_.space().value_anywhere(j, share)
+                                         : solver_.space().value_at(j, share);
+    batch_.q[j][lane] = value * chain.joints[j].scale + chain.joints[j].offset;
+  }
   iterations_[static_cast<std::size_t>(lane)] = 0;
   near_[lane] = false;
 }

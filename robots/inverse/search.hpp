@@ -27,7 +27,8 @@ class Search {
     int starts = 0;
     int iterations = 0;
     LaneLimits limits = LaneLimits::Steer;
-    int patience = 0;  ///< ended descents in a row without a new solution that end it
+    int patience = 0;       ///< ended descents in a row without a new solution that end it
+    bool anywhere = false;  ///< starts are drawn without regard to limits
   };
   enum class Ended { No, Converged, Known, Failed };
 
@@ -41,7 +42,7 @@ class Search {
   /// Makes a configuration, joint units, the start of a lane.
   void put(const double* q, int lane);
   void descend(const Effort& effort);
-  void start(int lane);
+  void start(const Effort& effort, int lane);
   Ended progress(const Effort& effort, int lane);
   std::array<double, kLaneJoints> configuration(int lane) const;  // joint units
   /// Whether a lane is about to end at a branch that was found before.

@@ -11,7 +11,8 @@ ArmPair::ArmPair(const kinematics::Chain& source, const kinematics::Chain& targe
     : source_(source),
       target_(target),
       likeness_(kinematics::compare_arms(source, target)),
-      target_descent_(target) {}
+      target_descent_(target),
+      target_solver_(target) {}
 
 bool ArmPair::takes_over(const Eigen::Isometry3d& T_target_source) const {
   const double difference =

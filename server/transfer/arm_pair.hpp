@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/kinematics/same_arm.hpp"
 
@@ -18,6 +19,7 @@ class ArmPair {
   const kinematics::Chain& source() const noexcept { return source_; }
   const kinematics::Chain& target() const noexcept { return target_; }
   kinematics::ArmLikeness likeness() const noexcept { return likeness_; }
+  const inverse::Solver& target_solver() const noexcept { return target_solver_; }
   const inverse::Descent& target_descent() const noexcept { return target_descent_; }
 
   /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
@@ -29,6 +31,7 @@ class ArmPair {
   const kinematics::Chain& target_;
   kinematics::ArmLikeness likeness_;
   inverse::Descent target_descent_;
+  inverse::Solver target_solver_;
 };
 
 }  // namespace kinship::transfer

@@ -104,7 +104,7 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
       continue;
     }
     RandomSolutions random =
-        random_solutions(pair.target(), poses.T_base_transfer[pose], parameters, seed, counted);
+        random_solutions(pair.target_solver(), poses.T_base_transfer[pose], parameters, seed, counted);
     summary.count(random);
     solutions[pose] = std::move(random.configurations);
   }
