@@ -46,7 +46,7 @@ class JointSpace {
     double lower, upper, middle;
     double half_drawn;  ///< half the interval that values are drawn from
     double half_anywhere;
-    bool turns;         ///< a whole turn changes nothing
+    bool turns;  ///< a whole turn changes nothing
     bool continuous;
   };
   std::vector<Range> joints_;

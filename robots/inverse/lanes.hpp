@@ -65,6 +65,22 @@ struct alignas(64) LaneCheck {
   double angle_rad[kLanes];       ///< out: 2 sin(angle / 2)
 };
 
+inline constexpr int kLaneMarks = 4;
+
+/// Points of a chain whose joints all turn, each on the line from a joint to the next one (from the
+/// last: to the transfer frame), so far from the joint as `share` of that line.
+struct LaneMarks {
+  int joint[kLaneMarks];
+  double share[kLaneMarks];
+};
+
+/// Postures that are moved until their marks are where others want them.
+struct alignas(64) LanePull {
+  double wanted[3 * kLaneMarks][kLanes];  ///< x, y, z of one mark after the other, in the base, m
+  double q[kLaneJoints][kLanes];          ///< lane's values; in: where to start; out: one step on
+  double distance_m[kLanes];              ///< out: of the marks before the step, root of squares
+};
+
 /// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
 struct LaneKernels {
   /// One iteration of damped Levenberg-Marquardt in every lane.
@@ -74,6 +90,11 @@ struct LaneKernels {
 
   /// Forward kinematics of every lane, compared with its pose.
   void (*check)(const LaneArm& arm, LaneCheck& check);
+
+  /// One step of damped least squares on the distance of the marks in every lane, with the pose of
+  /// the transfer frame as a heavily weighted part that stays. For chains without sliding joints.
+  /// Source: Levenberg, Quarterly of Applied Mathematics 2 (1944).
+  void (*pull)(const LaneChain& chain, const LaneMarks& marks, LanePull& pull);
 };
 
 }  // namespace kinship::inverse

@@ -27,6 +27,7 @@ constexpr int kSaturated = 96;        // ended descents in a row without a new s
 constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
 constexpr int kFewestLocks = 8;       // random values of the locked joints
+constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
 constexpr double kPolished = 1e-9;    // m and rad: what singular poses exceed takes a polish
 constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
@@ -113,7 +114,10 @@ void Search::append_branches(const ClosedForm& form) {
   checking_ = form.exact();
   std::array<double, kLaneJoints> locked;
   Branches branches;
-  for (int attempt = 0; attempt < attempts && !enough(); ++attempt) {
+  std::size_t known = 0;
+  for (int attempt = 0, idle = 0; attempt < attempts && idle < kIdleLocks && !enough(); ++attempt) {
+    idle = found_.size() == known ? idle + 1 : 0;
+    known = found_.size();
     CounterGenerator generator = generator_.of_attempt(next_start_++);
     for (std::size_t i = 0; i < locks.size(); ++i)
       locked[i] = solver_.space().value_at(locks[i], generator.uniform());
@@ -277,12 +281,14 @@ void Search::verify() {
   for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
     for (int j = 0; j < solver_.lanes().dof; ++j)
       q[static_cast<std::size_t>(j)] = check_.q[j][lane];
-    const double error = std::max(check_.distance_m[lane], check_.angle_rad[lane]);
-    if (checking_ && error > kPolished) {
+    const auto within = [&](double tolerance) {
+      return check_.distance_m[lane] <= tolerance && check_.angle_rad[lane] <= tolerance;
+    };
+    if (checking_ && !within(kPolished)) {
       put(q.data(), proposed_++);
       continue;
     }
-    if (!(error <= kPoseTolerance))
+    if (!within(kPoseTolerance))
       continue;
     if (!is_apart(solver_.space(), found_, q.data(), apart_))
       continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/solver.hpp"
@@ -22,6 +23,9 @@ class ArmPair {
   const inverse::Solver& target_solver() const noexcept { return target_solver_; }
   const inverse::Descent& target_descent() const noexcept { return target_descent_; }
 
+  /// Where the target's shape is looked at; see shape_marks.
+  const std::optional<inverse::LaneMarks>& target_marks() const noexcept { return target_marks_; }
+
   /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
   /// the same place (within 1e-9 m and rad).
   bool takes_over(const Eigen::Isometry3d& T_target_source) const;
@@ -32,6 +36,7 @@ class ArmPair {
   kinematics::ArmLikeness likeness_;
   inverse::Descent target_descent_;
   inverse::Solver target_solver_;
+  std::optional<inverse::LaneMarks> target_marks_;
 };
 
 }  // namespace kinship::transfer

@@ -29,7 +29,7 @@ const std::vector<std::string> kModels = {"panda",  "iiwa14",    "iiwa7",       
                                           "sawyer", "sara_like", "planar_5r_a", "planar_7r_c"};
 
 ChainParts parts_of(const Chain& chain) {
-  return {chain.base_link(),  chain.tip_link(),       chain.joints(),    chain.T_last_tip(),
+  return {chain.base_link(),      chain.tip_link(),  chain.joints(), chain.T_last_tip(),
           chain.T_tip_transfer(), chain.task_axes(), chain.links()};
 }
 
@@ -148,9 +148,9 @@ TEST_P(InverseOf, EveryJointAtALimit) {
   int solved = 0;
   constexpr int kPoses = 30;
   for (int i = 0; i < kPoses; ++i) {
-    const Eigen::VectorXd q = (draw(chain_, generator_).array() >
-                               0.5 * (chain_.lower() + chain_.upper()).array())
-                                  .select(chain_.upper(), chain_.lower());
+    const Eigen::VectorXd q =
+        (draw(chain_, generator_).array() > 0.5 * (chain_.lower() + chain_.upper()).array())
+            .select(chain_.upper(), chain_.lower());
     solved += Asked(chain_, solver, q).solved() ? 1 : 0;
   }
   EXPECT_GE(solved, 0.9 * kPoses);  // a corner of the limits: of some arms the only configuration
@@ -174,8 +174,8 @@ TEST_P(InverseOf, RoundAngles) {
 TEST_P(InverseOf, OriginsPerturbed) {
   for (const double size : {1e-4, 1e-3, 5e-3}) {
     const Chain twin =
-        kinematics::read_chain(test::calibrated_twin(test::model_description(GetParam()), "twin",
-                                                     size, kSeed))
+        kinematics::read_chain(
+            test::calibrated_twin(test::model_description(GetParam()), "twin", size, kSeed))
             .value();
     EXPECT_GE(solved_share(twin, 60, generator_), 0.98) << size;
   }

@@ -12,7 +12,7 @@ namespace kinship::test {
 /// What a random chain is made of.
 struct RandomChain {
   int joints = 6;
-  double length_m = 0.3;  ///< mean distance between joints
+  double length_m = 0.3;            ///< mean distance between joints
   double limit = std::numbers::pi;  ///< of turning joints, both ways
   double sliding_share = 0;         ///< chance of a joint to slide
   double continuous_share = 0;      ///< chance of a turning joint to have no limits

@@ -33,7 +33,9 @@ Eigen::VectorXd draw(const kinematics::Chain& chain, std::mt19937_64& generator)
   });
 }
 
-double pose_value(const Eigen::Isometry3d& T, int i) { return i < 9 ? T(i / 3, i % 3) : T(i - 9, 3); }
+double pose_value(const Eigen::Isometry3d& T, int i) {
+  return i < 9 ? T(i / 3, i % 3) : T(i - 9, 3);
+}
 
 TEST(Lanes, EveryMachineKnowsAnInstructionSet) {
   ASSERT_FALSE(instruction_sets().empty());
