@@ -50,7 +50,7 @@ class ClosedForm {
   /// random values of its locked joints, it has to give kWorthwhile configurations within limits
   /// on average. Tries it on random poses first (same chain, same answer).
   static std::optional<ClosedForm> of(const kinematics::Chain& chain);
-  static constexpr double kWorthwhile = 1;
+  static constexpr double kWorthwhile = 0.5;
 
   static constexpr double kExactMargin_rad = 1e-5;
   static constexpr double kNearMargin_rad = 0.1;

@@ -195,8 +195,7 @@ struct ClosedFormSearch {
     }
     if (best == nullptr)
       return finding;
-    const bool pays = best->locks_.empty() || best->planar_ ||
-                      best->mean_within_limits_ >= ClosedForm::kWorthwhile;
+    const bool pays = best->locks_.empty() || best->mean_within_limits_ >= ClosedForm::kWorthwhile;
     (pays ? finding.form : finding.left_out) = std::move(*best);
     return finding;
   }

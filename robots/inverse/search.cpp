@@ -1,6 +1,7 @@
 #include "robots/inverse/search.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "robots/inverse/descent.hpp"
@@ -28,7 +29,7 @@ constexpr double kConverged = 1e-12;  // squared error before the last step, whi
 constexpr int kFewestLocks = 8;       // random values of the locked joints
 constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
-constexpr double kNearMargin = 0.1;   // beyond limits, of branches that a polish will move
+constexpr double kPolished = 1e-9;    // m and rad: what singular poses exceed takes a polish
 constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
 constexpr double kNear = 0.1;         // task error worth more patience
 constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
@@ -72,8 +73,7 @@ InverseSolutions Search::run() {
 void Search::find() {
   if (const ClosedForm* form = solver_.closed_form()) {
     append_branches(*form);
-    // The branches of an exact structure are all there are.
-    if (enough() || (!found_.empty() && form->exact() && !solver_.redundant()))
+    if (enough() || knows_all(*form))
       return;
   }
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
@@ -97,10 +97,21 @@ void Search::find() {
   }
 }
 
+/// The branches of an exact structure are all there are, and so are those of one that is nearly
+/// there if each of them led to a solution. Where limits leave none of an exact one, a singular
+/// pose may have others than the representatives that were tried.
+bool Search::knows_all(const ClosedForm& form) const {
+  if (solver_.redundant())
+    return false;
+  if (form.exact())
+    return !found_.empty() || !outside_limits_;
+  return !found_.empty() && lost_ == 0;
+}
+
 void Search::append_branches(const ClosedForm& form) {
   const auto locks = form.locks();
   const int attempts = locks.empty() ? 1 : std::max(kFewestLocks, 2 * static_cast<int>(wanted_));
-  const double margin = form.exact() ? kLimitRounding : kNearMargin;
+  checking_ = form.exact();
   std::array<double, kLaneJoints> locked;
   Branches branches;
   std::size_t known = 0;
@@ -112,27 +123,35 @@ void Search::append_branches(const ClosedForm& form) {
       locked[i] = solver_.space().value_at(locks[i], generator.uniform());
     branches.clear();
     form.append(T_base_transfer_, {locked.data(), locks.size()}, branches);
+    outside_limits_ = outside_limits_ || branches.outside_limits();
     for (int i = 0; i < branches.size(); ++i)
-      propose(branches[i], margin);
+      propose(branches[i]);
   }
+  verify();
   polish();
+  checking_ = false;
 }
 
-void Search::propose(const double* q, double margin) {
-  const LaneChain& chain = solver_.lanes();
-  std::array<double, kLaneJoints> near;
-  std::copy_n(q, chain.dof, near.data());
-  if (!solver_.space().normalize(near.data(), margin))
+void Search::propose(const double* q) {
+  std::array<double, kLaneJoints> candidate;
+  std::copy_n(q, solver_.lanes().dof, candidate.data());
+  if (checking_) {
+    offer(candidate);
     return;
-  for (int j = 0; j < chain.dof; ++j)
-    batch_.q[j][proposed_] =
-        near[static_cast<std::size_t>(j)] * chain.joints[j].scale + chain.joints[j].offset;
+  }
+  if (!solver_.space().normalize(candidate.data(), ClosedForm::kNearMargin_rad))
+    return;
+  put(candidate.data(), proposed_);
   if (++proposed_ == kLanes)
     polish();
 }
 
-/// One step makes of the branches of an exact structure what verification asks for; singular
-/// poses, and branches of a structure that is nearly there, take more.
+void Search::put(const double* q, int lane) {
+  const LaneChain& chain = solver_.lanes();
+  for (int j = 0; j < chain.dof; ++j)
+    batch_.q[j][lane] = q[j] * chain.joints[j].scale + chain.joints[j].offset;
+}
+
 void Search::polish() {
   if (proposed_ == 0)
     return;
@@ -146,6 +165,7 @@ void Search::polish() {
       busy &= ~(1U << static_cast<unsigned>(lane));
     }
   }
+  lost_ += std::popcount(busy);
   proposed_ = 0;
   verify();
 }
@@ -236,15 +256,18 @@ bool Search::is_known(int lane) const {
 }
 
 void Search::hand_over(int lane) {
-  const LaneChain& chain = solver_.lanes();
   std::array<double, kLaneJoints> q = configuration(lane);
+  offer(q);
+}
+
+void Search::offer(std::array<double, kLaneJoints>& q) {
   if (!solver_.space().normalize(q.data())) {
     outside_limits_ = true;
     return;
   }
   if (!is_apart(solver_.space(), found_, q.data(), apart_))
     return;
-  for (int j = 0; j < chain.dof; ++j)
+  for (int j = 0; j < solver_.lanes().dof; ++j)
     check_.q[j][handed_over_] = q[static_cast<std::size_t>(j)];
   if (++handed_over_ == kLanes)
     verify();
@@ -256,16 +279,28 @@ void Search::verify() {
   solver_.kernels().check(solver_.arm(), check_);
   std::array<double, kLaneJoints> q;
   for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
-    if (!(check_.distance_m[lane] <= kPoseTolerance && check_.angle_rad[lane] <= kPoseTolerance))
-      continue;
     for (int j = 0; j < solver_.lanes().dof; ++j)
       q[static_cast<std::size_t>(j)] = check_.q[j][lane];
+    const auto within = [&](double tolerance) {
+      return check_.distance_m[lane] <= tolerance && check_.angle_rad[lane] <= tolerance;
+    };
+    if (checking_ && !within(kPolished)) {
+      put(q.data(), proposed_++);
+      continue;
+    }
+    if (!within(kPoseTolerance))
+      continue;
     if (!is_apart(solver_.space(), found_, q.data(), apart_))
       continue;
     found_.add(q.data());
     idle_ = 0;
   }
   handed_over_ = 0;
+  if (checking_) {
+    checking_ = false;  // what comes from the polish is as good as it gets
+    polish();
+    checking_ = true;
+  }
 }
 
 InverseSolutions Search::solutions() {

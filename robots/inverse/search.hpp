@@ -32,10 +32,15 @@ class Search {
   };
   enum class Ended { No, Converged, Known, Failed };
 
-  /// Candidates of the closed form, polished together.
+  /// Candidates of the closed form. Those of an exact structure are verified as they are, others
+  /// polished together first.
   void append_branches(const ClosedForm& form);
-  void propose(const double* q, double margin);
+  /// Whether the closed form leaves nothing to be found.
+  bool knows_all(const ClosedForm& form) const;
+  void propose(const double* q);
   void polish();
+  /// Makes a configuration, joint units, the start of a lane.
+  void put(const double* q, int lane);
   void descend(const Effort& effort);
   void start(const Effort& effort, int lane);
   Ended progress(const Effort& effort, int lane);
@@ -44,6 +49,7 @@ class Search {
   bool is_known(int lane) const;
   /// Hands a converged lane over to verification if it is within limits and new.
   void hand_over(int lane);
+  void offer(std::array<double, kLaneJoints>& q);
   /// Verifies what was handed over, and keeps what is right.
   void verify();
   bool enough() const noexcept { return found_.size() >= wanted_; }
@@ -64,10 +70,12 @@ class Search {
   std::array<int, kLanes> iterations_{};
   bool near_[kLanes];  // of a solution, once
   std::uint64_t next_start_ = 0;
-  int proposed_ = 0;     // lanes of batch_ that wait for the polish
-  int handed_over_ = 0;  // lanes of check_ that wait
-  int idle_ = 0;         // ended descents since the last new solution
-  int stationary_ = 0;   // descents that ended where the error has a minimum above 0
+  int proposed_ = 0;       // lanes of batch_ that wait for the polish
+  int lost_ = 0;           // of those, such as no polish made a solution
+  bool checking_ = false;  // candidates go to verification without a polish
+  int handed_over_ = 0;    // lanes of check_ that wait
+  int idle_ = 0;           // ended descents since the last new solution
+  int stationary_ = 0;     // descents that ended where the error has a minimum above 0
   Configurations found_;
   bool outside_limits_ = false;
   double least_squared_error_ = std::numeric_limits<double>::infinity();

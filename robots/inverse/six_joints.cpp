@@ -93,7 +93,8 @@ void solve_wrist(const SixJointTask& task, PointRule rule, SixJointBranches& bra
   const Eigen::Vector3d side = h6.unitOrthogonal();
   const Eigen::Vector3d h6_turned = task.wanted.R * h6;
   const Eigen::Vector3d side_turned = task.wanted.R * side;
-  for (const auto& [turns] : place(axes, wrist, task.wanted(wrist), rule, task.slack)) {
+  for (const Placement& placement : place(axes, wrist, task.wanted(wrist), rule, task.slack)) {
+    const std::array<Turn, 3>& turns = placement.turns;
     if (!allowed(task.windows[0], turns[0], branches) ||
         !allowed(task.windows[1], turns[1], branches) ||
         !allowed(task.windows[2], turns[2], branches))

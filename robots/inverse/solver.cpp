@@ -1,23 +1,12 @@
 #include "robots/inverse/solver.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/search.hpp"
 
 namespace kinship::inverse {
-
-namespace {
-
-constexpr double kWorthALock = 3;  // configurations within limits
-
-/// Whether a closed form is faster than descents: a call with random locks takes about as long as
-/// three descents, and a redundant arm's descents nearly all end at a solution.
-bool pays(const ClosedForm& form) {
-  return form.locks().empty() || form.mean_within_limits() >= kWorthALock;
-}
-
-}  // namespace
 
 Solver::Solver(const kinematics::Chain& chain) : Solver(chain, instruction_sets().back().kernels) {}
 
@@ -31,9 +20,10 @@ Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels, Engin
       p_base_first_joint_(chain.joints().front().T_previous_joint.translation()) {
   if (engines == Engines::Descents)
     return;
-  closed_ = ClosedForm::of(chain);
-  if (engines == Engines::Best && closed_ && !pays(*closed_))
-    closed_.reset();
+  ClosedFormFinding finding = find_closed_form(chain);
+  closed_ = std::move(finding.form);
+  if (engines == Engines::ClosedForm && !closed_)
+    closed_ = std::move(finding.left_out);
 }
 
 bool Solver::beyond_reach(const Eigen::Isometry3d& T_base_transfer) const {

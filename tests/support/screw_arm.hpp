@@ -16,14 +16,13 @@ struct Line {
   Eigen::Vector3d point;      ///< m, in the base link
   Eigen::Vector3d direction;  ///< of any length
   kinematics::JointType type = kinematics::JointType::Revolute;
+  double limit = std::numbers::pi;  ///< both ways, joint units
 };
 
 /// The chain whose joints turn about lines. Every frame stands upright at 0.
 /// \param p_base_tip  of the tip link at 0, m.
-/// \param limit       of every joint, both ways, joint units.
 inline kinematics::Chain screw_arm(const std::vector<Line>& lines,
-                                   const Eigen::Vector3d& p_base_tip,
-                                   double limit = std::numbers::pi) {
+                                   const Eigen::Vector3d& p_base_tip) {
   kinematics::ChainParts parts;
   parts.base_link = "base";
   parts.tip_link = "tip";
@@ -34,8 +33,8 @@ inline kinematics::Chain screw_arm(const std::vector<Line>& lines,
     joint.type = line.type;
     joint.T_previous_joint.translation() = line.point - last;
     joint.axis = line.direction.normalized();
-    joint.lower = -limit;
-    joint.upper = limit;
+    joint.lower = -line.limit;
+    joint.upper = line.limit;
     parts.joints.push_back(joint);
     last = line.point;
   }
@@ -137,14 +136,14 @@ inline kinematics::Chain parallel_forearm() {
 
 /// An arm with three parallel axes on a track of 1.2 m.
 inline kinematics::Chain on_track() {
-  return screw_arm({{{0, 0, 0}, kX, kinematics::JointType::Prismatic},
+  return screw_arm({{{0, 0, 0}, kX, kinematics::JointType::Prismatic, 0.6},
                     {{0, 0, 0.3}, kZ},
                     {{0, 0.1, 0.3}, kY},
                     {{0.6, 0.1, 0.3}, kY},
                     {{1.1, 0.1, 0.3}, -kY},
                     {{1.1, 0.2, 0.3}, kZ},
                     {{1.1, 0.2, 0.2}, kY}},
-                   {1.1, 0.3, 0.2}, 0.6);
+                   {1.1, 0.3, 0.2});
 }
 
 /// No two neighbouring axes meet or are parallel.
