@@ -15,6 +15,7 @@
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -159,6 +160,7 @@ void print_check(const RobotCheck& check, const RobotDescription& description,
       << check.joints.size() << " joints\n";
   print_transfer(description, out);
   out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
+      << "structure   " << check.structure << '\n'
       << "solver      " << check.solver << '\n'
       << "inverse     " << number_text(check.solutions_per_pose, 2) << " solutions and "
       << number_text(check.time_per_pose_us, 1) << " us (CPU) per reachable pose; "
@@ -184,6 +186,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   check.robot = chain.digest();
   check.base_link = chain.base_link();
   check.tip_link = chain.tip_link();
+  check.structure = inverse::describe_structure(chain);
   check.solver = inverse::solver_name(chain);
   for (const kinematics::Joint& joint : chain.joints())
     check.joints.push_back({joint.name, type_text(joint.type), joint.lower, joint.upper});

@@ -1,7 +1,7 @@
 #include "client/planning/goal_configurations.hpp"
 
 #include "client/planning/planning_bounds.hpp"
-#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
 
 namespace kinship::planning {
 namespace {
@@ -42,9 +42,10 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
       T_base_goal * chain.T_tip_transfer().inverse(Eigen::Isometry);
   const std::vector<bool> turning = turning_joints(chain);
 
+  const inverse::Solver solver(chain);
   GoalConfigurations goals;
   for (int searches = 1;; ++searches, search.seed += kNextSearch) {
-    const inverse::InverseSolutions solutions = inverse::inverse(chain, T_base_tip, search);
+    const inverse::InverseSolutions solutions = solver.solve(T_base_tip, search);
     const Eigen::Index found = solutions.configurations.cols();
     goals.found += static_cast<int>(found);
     goals.configurations.resize(chain.dof(), found);

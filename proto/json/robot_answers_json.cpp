@@ -31,6 +31,7 @@ std::string to_json(const RobotCheck& check) {
     row["upper"] = joint.upper;
     document["joints"].push_back(std::move(row));
   }
+  document["structure"] = check.structure;
   document["solver"] = check.solver;
   document["poses"] = check.poses;
   document["poses_without_solution"] = check.poses_without_solution;

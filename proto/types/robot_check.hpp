@@ -22,6 +22,7 @@ struct RobotCheck {
   Digest robot;
   std::string base_link, tip_link;
   std::vector<CheckedJoint> joints;
+  std::string structure;  ///< of the axes, and what closed form it allows, in words
   std::string solver;
   std::uint64_t poses = 0;  ///< reachable ones that were solved
   std::uint64_t poses_without_solution = 0;

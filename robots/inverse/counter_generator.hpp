@@ -22,6 +22,11 @@ class CounterGenerator {
         state_ = mixed(state_ ^ std::bit_cast<std::uint64_t>(pose(row, column) + 0.0));
   }
 
+  /// A generator of its own for one of many attempts; this one stays as it is.
+  CounterGenerator of_attempt(std::uint64_t attempt) const noexcept {
+    return CounterGenerator(mixed(state_ ^ mixed(attempt + kStep)));
+  }
+
   std::uint64_t next() noexcept {
     state_ += kStep;
     return mixed(state_);

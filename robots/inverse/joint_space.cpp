@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace kinship::inverse {
@@ -10,38 +11,79 @@ namespace {
 using kinematics::JointType;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kRounding = 1e-9;  // joint units
+constexpr double kRounder = 0x1.8p52;  // added and taken away it rounds to the nearest integer
+
+/// An angle moved by whole turns into [-pi, pi]; std::remainder takes ten times as long.
+double wrapped(double angle) {
+  const double turns = (angle / kTurn + kRounder) - kRounder;
+  return angle - turns * kTurn;
+}
 
 }  // namespace
 
-bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q) {
+JointSpace::Range::Range(const kinematics::Joint& joint)
+    : lower(joint.lower),
+      upper(joint.upper),
+      middle(0.5 * (joint.lower + joint.upper)),
+      half_drawn(0.5 * (joint.upper - joint.lower)),
+      half_anywhere(joint.type == JointType::Prismatic ? 2 * half_drawn : std::numbers::pi),
+      turns(joint.type != JointType::Prismatic),
+      continuous(joint.type == JointType::Continuous) {
+  if (turns)
+    half_drawn = std::min(half_drawn, std::numbers::pi);
+}
+
+JointSpace::JointSpace(const kinematics::Chain& chain) {
+  joints_.reserve(chain.joints().size());
+  for (const kinematics::Joint& joint : chain.joints())
+    joints_.emplace_back(joint);
+}
+
+bool JointSpace::normalize(double* q, double margin) const noexcept {
   bool inside = true;
-  for (Eigen::Index j = 0; j < chain.dof(); ++j) {
-    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(j)];
-    if (joint.type == JointType::Continuous) {
-      const double value = std::remainder(q[j], kTurn);
-      q[j] = value <= -std::numbers::pi ? std::numbers::pi : value;
-      continue;
-    }
-    const double middle = 0.5 * (joint.lower + joint.upper);
-    if (joint.type == JointType::Revolute)
-      q[j] = middle + std::remainder(q[j] - middle, kTurn);
-    inside = inside && q[j] >= joint.lower - kRounding && q[j] <= joint.upper + kRounding;
-    q[j] = inside ? std::clamp(q[j], joint.lower, joint.upper) : q[j];
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Range& range = joints_[j];
+    double value = q[j];
+    if (range.turns)
+      value = range.middle + wrapped(value - range.middle);
+    if (range.continuous && value <= -std::numbers::pi)
+      value = std::numbers::pi;
+    // Written so that NaN is outside.
+    inside = inside && value >= range.lower - margin && value <= range.upper + margin;
+    q[j] = inside ? std::clamp(value, range.lower, range.upper) : value;
   }
   return inside;
 }
 
-double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
-                const Eigen::Ref<const Eigen::VectorXd>& b) {
+double JointSpace::squared_distance(const double* a, const double* b) const noexcept {
   double squared = 0;
-  for (Eigen::Index j = 0; j < chain.dof(); ++j) {
-    const bool continuous =
-        chain.joints()[static_cast<std::size_t>(j)].type == JointType::Continuous;
-    const double difference = continuous ? std::remainder(a[j] - b[j], kTurn) : a[j] - b[j];
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const double difference = joints_[j].continuous ? wrapped(a[j] - b[j]) : a[j] - b[j];
     squared += difference * difference;
   }
-  return std::sqrt(squared);
+  return squared;
+}
+
+bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q) {
+  return JointSpace(chain).normalize(q.data());
+}
+
+double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
+                const Eigen::Ref<const Eigen::VectorXd>& b) {
+  return std::sqrt(JointSpace(chain).squared_distance(a.data(), b.data()));
+}
+
+Eigen::VectorXf rounded_inward(const kinematics::Chain& chain,
+                               const Eigen::Ref<const Eigen::VectorXd>& q) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Eigen::VectorXf rounded = q.cast<float>();
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    if (static_cast<double>(rounded[j]) > chain.upper()[j])
+      rounded[j] = std::nextafter(rounded[j], -kInfinity);
+    else if (static_cast<double>(rounded[j]) < chain.lower()[j])
+      rounded[j] = std::nextafter(rounded[j], kInfinity);
+  }
+  return rounded;
 }
 
 }  // namespace kinship::inverse

@@ -1,14 +1,60 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::inverse {
 
+/// Rounding by which a joint may lie outside its limits before it is moved onto them, joint units.
+/// Whoever calls the result a solution has yet to verify it.
+inline constexpr double kLimitRounding = 1e-6;
+
+/// What is asked of the joints of one chain for each of thousands of configurations, without
+/// their names.
+class JointSpace {
+ public:
+  explicit JointSpace(const kinematics::Chain& chain);
+
+  Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(joints_.size()); }
+
+  /// See the free function.
+  /// \param q       dof values.
+  /// \param margin  by which a value may lie outside a limit before it is moved onto it.
+  bool normalize(double* q, double margin = kLimitRounding) const noexcept;
+
+  /// See the free function; squared.
+  double squared_distance(const double* a, const double* b) const noexcept;
+
+  /// The value of a joint for a number in [0, 1): uniform within its limits; within a turn around
+  /// mid-range where they are wider.
+  double value_at(Eigen::Index joint, double share) const noexcept {
+    const Range& range = joints_[static_cast<std::size_t>(joint)];
+    return range.middle + (2 * share - 1) * range.half_drawn;
+  }
+
+  /// The same without regard to limits: a whole turn, or twice the range of a prismatic joint.
+  double value_anywhere(Eigen::Index joint, double share) const noexcept {
+    const Range& range = joints_[static_cast<std::size_t>(joint)];
+    return range.middle + (2 * share - 1) * range.half_anywhere;
+  }
+
+ private:
+  struct Range {
+    explicit Range(const kinematics::Joint& joint);
+    double lower, upper, middle;
+    double half_drawn;  ///< half the interval that values are drawn from
+    double half_anywhere;
+    bool turns;  ///< a whole turn changes nothing
+    bool continuous;
+  };
+  std::vector<Range> joints_;
+};
+
 /// Replaces each joint's value by the one that stands for all its +-2 pi copies: continuous joints
 /// in (-pi, pi], revolute joints nearest mid-range, prismatic joints as they are.
-/// \param q  dof, joint units; values outside a limit by rounding only (1e-9) are moved onto it.
+/// \param q  dof, joint units; values outside a limit by kLimitRounding are moved onto it.
 /// \return   whether every joint is then within its limits.
 bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q);
 
@@ -16,5 +62,11 @@ bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q);
 /// cannot take the short way across them.
 double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
                 const Eigen::Ref<const Eigen::VectorXd>& b);
+
+/// A configuration to be kept with half the bytes, each value rounded to the nearest one that lies
+/// within the limits as they are written there, in double precision.
+/// \param q  dof, within the limits. Where no float lies within them the nearest float stands.
+Eigen::VectorXf rounded_inward(const kinematics::Chain& chain,
+                               const Eigen::Ref<const Eigen::VectorXd>& q);
 
 }  // namespace kinship::inverse

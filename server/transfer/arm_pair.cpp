@@ -1,5 +1,7 @@
 #include "server/transfer/arm_pair.hpp"
 
+#include "server/transfer/arm_shape.hpp"
+
 namespace kinship::transfer {
 namespace {
 
@@ -11,7 +13,9 @@ ArmPair::ArmPair(const kinematics::Chain& source, const kinematics::Chain& targe
     : source_(source),
       target_(target),
       likeness_(kinematics::compare_arms(source, target)),
-      target_descent_(target) {}
+      target_descent_(target),
+      target_solver_(target),
+      target_marks_(shape_marks(target)) {}
 
 bool ArmPair::takes_over(const Eigen::Isometry3d& T_target_source) const {
   const double difference =

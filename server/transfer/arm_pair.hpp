@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/kinematics/same_arm.hpp"
 
@@ -18,7 +20,11 @@ class ArmPair {
   const kinematics::Chain& source() const noexcept { return source_; }
   const kinematics::Chain& target() const noexcept { return target_; }
   kinematics::ArmLikeness likeness() const noexcept { return likeness_; }
+  const inverse::Solver& target_solver() const noexcept { return target_solver_; }
   const inverse::Descent& target_descent() const noexcept { return target_descent_; }
+
+  /// Where the target's shape is looked at; see shape_marks.
+  const std::optional<inverse::LaneMarks>& target_marks() const noexcept { return target_marks_; }
 
   /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
   /// the same place (within 1e-9 m and rad).
@@ -29,6 +35,8 @@ class ArmPair {
   const kinematics::Chain& target_;
   kinematics::ArmLikeness likeness_;
   inverse::Descent target_descent_;
+  inverse::Solver target_solver_;
+  std::optional<inverse::LaneMarks> target_marks_;
 };
 
 }  // namespace kinship::transfer

@@ -11,6 +11,7 @@ namespace {
 struct ShapePoint {
   Eigen::Vector3d p_base;
   Eigen::Index joint = 0;
+  double share = 0;  ///< of the line from there to the next joint
 };
 
 using ShapePoints = std::array<ShapePoint, kShapeShares.size()>;
@@ -40,7 +41,7 @@ ShapePoints shape_points(const Eigen::Matrix3Xd& points) {
       before += lengths[segment++];
     const double within = lengths[segment] > 0 ? (at - before) / lengths[segment] : 0;
     found[i] = {points.col(segment) + within * (points.col(segment + 1) - points.col(segment)),
-                segment};
+                segment, within};
   }
   return found;
 }
@@ -56,6 +57,21 @@ ArmShape shape_of(const ShapePoints& points) {
 
 ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q) {
   return shape_of(shape_points(corners(arm, kinematics::joint_poses(arm, q))));
+}
+
+std::optional<inverse::LaneMarks> shape_marks(const kinematics::Chain& arm) {
+  static_assert(kShapeShares.size() == inverse::kLaneMarks);
+  for (const kinematics::Joint& joint : arm.joints())
+    if (joint.type == kinematics::JointType::Prismatic)
+      return std::nullopt;
+  const ShapePoints points =
+      shape_points(corners(arm, kinematics::joint_poses(arm, Eigen::VectorXd::Zero(arm.dof()))));
+  inverse::LaneMarks marks{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    marks.joint[i] = static_cast<int>(points[i].joint);
+    marks.share[i] = points[i].share;
+  }
+  return marks;
 }
 
 ArmShapeMotion arm_shape_motion(const kinematics::Chain& arm,

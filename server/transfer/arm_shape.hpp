@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 
 #include "proto/types/limits.hpp"
+#include "robots/inverse/lanes.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::transfer {
@@ -19,6 +21,10 @@ using ArmShape = Eigen::Matrix<double, 3, static_cast<int>(kShapeShares.size())>
 /// and different lengths have shapes that can be compared.
 /// \param q  dof, joint units.
 ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// Where the points of a shape lie on an arm, for the kernels; none for an arm with sliding joints,
+/// along which they wander.
+std::optional<inverse::LaneMarks> shape_marks(const kinematics::Chain& arm);
 
 /// A shape, and how it and the transfer frame move with the joints.
 struct ArmShapeMotion {

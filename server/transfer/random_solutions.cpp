@@ -10,12 +10,13 @@ namespace {
 constexpr std::uint64_t kSecondSeed = 0x5bd1e995;  // added for the second search of a pose
 
 /// Appends columns of `more` that are at least `min_distance` from all before, up to `most`.
-void append_distinct(const Eigen::MatrixXd& more, const kinematics::Chain& target,
+void append_distinct(const Eigen::MatrixXd& more, const inverse::JointSpace& target,
                      const TransferParameters& parameters, Eigen::MatrixXd& kept) {
   for (Eigen::Index i = 0; i < more.cols() && kept.cols() < parameters.max_solutions; ++i) {
     bool distinct = true;
     for (Eigen::Index j = 0; j < kept.cols() && distinct; ++j)
-      distinct = inverse::distance(target, more.col(i), kept.col(j)) >= parameters.min_distance;
+      distinct = target.squared_distance(more.col(i).data(), kept.col(j).data()) >=
+                 parameters.min_distance * parameters.min_distance;
     if (!distinct)
       continue;
     kept.conservativeResize(Eigen::NoChange, kept.cols() + 1);
@@ -25,7 +26,7 @@ void append_distinct(const Eigen::MatrixXd& more, const kinematics::Chain& targe
 
 }  // namespace
 
-RandomSolutions random_solutions(const kinematics::Chain& target,
+RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
                                  CountedFilters& filters) {
@@ -33,15 +34,15 @@ RandomSolutions random_solutions(const kinematics::Chain& target,
   inverse::InverseOptions options{.max_solutions = parameters.max_solutions,
                                   .min_distance = parameters.min_distance,
                                   .seed = seed};
-  inverse::InverseSolutions first = inverse::inverse(target, T_base_tip, options);
+  inverse::InverseSolutions first = target.solve(T_base_tip, options);
   const Eigen::Index found = first.configurations.cols();
   RandomSolutions result{passed(std::move(first.configurations), filters), first.reason, false};
   if (result.configurations.cols() == found)
     return result;
   if (parameters.max_solutions > 0) {
     options.seed += kSecondSeed;
-    append_distinct(passed(inverse::inverse(target, T_base_tip, options).configurations, filters),
-                    target, parameters, result.configurations);
+    append_distinct(passed(target.solve(T_base_tip, options).configurations, filters),
+                    target.space(), parameters, result.configurations);
   }
   result.colliding = result.configurations.cols() == 0;
   return result;

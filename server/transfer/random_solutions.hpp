@@ -5,6 +5,7 @@
 
 #include "proto/types/profile.hpp"
 #include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
 #include "server/transfer/filters.hpp"
 
 namespace kinship::transfer {
@@ -19,7 +20,7 @@ struct RandomSolutions {
 /// Up to parameters.max_solutions configurations at least parameters.min_distance apart, a random
 /// choice among those that the filters keep. Where they leave some out, others are looked for once.
 /// \param T_base_transfer  pose of the transfer frame in the target's base link.
-RandomSolutions random_solutions(const kinematics::Chain& target,
+RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
                                  CountedFilters& filters);

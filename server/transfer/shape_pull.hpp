@@ -19,4 +19,8 @@ namespace kinship::transfer {
 double pull_to_shape(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
                      const ArmShape& wanted, int steps, inverse::JointVector& q);
 
+/// The same without the kernels, for arms with sliding joints: the shares of their length wander.
+double pull_alone(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
+                  const ArmShape& wanted, int steps, inverse::JointVector& q);
+
 }  // namespace kinship::transfer

@@ -5,16 +5,12 @@
 #include <limits>
 #include <numbers>
 
-#include "robots/inverse/descent.hpp"
-#include "robots/inverse/inverse.hpp"
-#include "robots/inverse/joint_space.hpp"
-#include "server/transfer/shape_pull.hpp"
+#include "robots/inverse/solver.hpp"
 
 namespace kinship::transfer {
 namespace {
 
 constexpr double kCandidateDistance = 0.3;  // joint units
-constexpr int kIterations = 15;             // of one step along the path
 constexpr int kStartShapeSteps = 4;         // times as many at the start as at each further pose
 
 inverse::CounterGenerator generator_of(const PathPoses& poses, std::uint64_t seed) {
@@ -35,55 +31,62 @@ ShapeTracker::ShapeTracker(const ArmPair& pair, const PathPoses& poses,
       seed_(seed),
       filters_(filters),
       generator_(generator_of(poses, seed)),
-      candidates_(poses.T_base_transfer.size()) {}
+      candidates_(poses.T_base_transfer.size()),
+      lanes_(pair),
+      space_(pair.target()) {}
 
 std::vector<Track> ShapeTracker::find_tracks() {
   std::vector<Track> tracks;
   const double least = parameters_.least_coverage * static_cast<double>(poses_.size());
-  const auto wanted = static_cast<std::size_t>(parameters_.tracks);
-  for (int idle = 0; idle < kTriesPerTrack && tracks.size() < wanted; ++idle) {
-    std::optional<Track> track = try_track();
-    if (!track || static_cast<double>(track->configurations.cols()) < least)
-      continue;
-    tracks.push_back(std::move(*track));
-    idle = -1;
+  const int wanted = parameters_.tracks;
+  for (int idle = 0; idle < kTriesPerTrack && static_cast<int>(tracks.size()) < wanted;) {
+    const int left = wanted - static_cast<int>(tracks.size());
+    // No more than would have been made one after the other.
+    const int count = std::min({left, kTriesPerTrack - idle, kTriesAtOnce});
+    for (Try& attempt : make_tries(count)) {
+      const Eigen::Index covered = attempt.last - attempt.first + 1;
+      came_through_ += covered == poses_.size() ? 1U : 0U;
+      ++idle;
+      if (covered == 0 || static_cast<double>(covered) < least)
+        continue;
+      tracks.push_back({attempt.first, attempt.along.middleCols(attempt.first, covered)});
+      idle = 0;
+    }
   }
   return tracks;
 }
 
-std::optional<Track> ShapeTracker::try_track() {
-  ++tried_;
-  const auto start =
-      std::min(static_cast<Eigen::Index>(generator_.uniform() * static_cast<double>(poses_.size())),
-               poses_.size() - 1);
-  const Eigen::Index chosen = choose_start(start);
-  if (chosen < 0)
-    return std::nullopt;
-  Eigen::MatrixXd along(pair_.target().dof(), poses_.size());
-  along.col(start) = pulled_start(start, candidates(start).col(chosen));
-  Eigen::Index last = start;
-  for (inverse::JointVector q = along.col(start);
-       last + 1 < poses_.size() && follow(last, last + 1, q, along.col(last + 1));)
-    ++last;
-  Eigen::Index first = start;
-  for (inverse::JointVector q = along.col(start);
-       first > 0 && follow(first, first - 1, q, along.col(first - 1));)
-    --first;
-  return Track{first, along.middleCols(first, last - first + 1)};
+std::vector<ShapeTracker::Try> ShapeTracker::make_tries(int count) {
+  std::vector<Try> tries;
+  for (int i = 0; i < count; ++i) {
+    ++tried_;
+    const auto start = std::min(
+        static_cast<Eigen::Index>(generator_.uniform() * static_cast<double>(poses_.size())),
+        poses_.size() - 1);
+    tries.push_back({start, start - 1, {}});  // covers nothing
+    const Eigen::Index chosen = choose_start(start);
+    if (chosen < 0)
+      continue;
+    tries.back().last = start;
+    tries.back().along.resize(pair_.target().dof(), poses_.size());
+    tries.back().along.col(start) = candidates(start).col(chosen);
+  }
+  pull_starts(tries);
+  follow_to_both_ends(tries);
+  return tries;
 }
 
 const Eigen::MatrixXd& ShapeTracker::candidates(Eigen::Index pose) {
   std::optional<Eigen::MatrixXd>& known = candidates_[static_cast<std::size_t>(pose)];
   if (!known) {
     const kinematics::Chain& target = pair_.target();
-    Eigen::MatrixXd found =
-        inverse::inverse(target,
-                         poses_.T_base_transfer[static_cast<std::size_t>(pose)] *
-                             target.T_tip_transfer().inverse(),
-                         {.max_solutions = parameters_.track_candidates,
-                          .min_distance = kCandidateDistance,
-                          .seed = seed_})
-            .configurations;
+    Eigen::MatrixXd found = pair_.target_solver()
+                                .solve(poses_.T_base_transfer[static_cast<std::size_t>(pose)] *
+                                           target.T_tip_transfer().inverse(),
+                                       {.max_solutions = parameters_.track_candidates,
+                                        .min_distance = kCandidateDistance,
+                                        .seed = seed_})
+                                .configurations;
     known = passed(std::move(found), filters_);
   }
   return *known;
@@ -105,39 +108,97 @@ Eigen::Index ShapeTracker::choose_start(Eigen::Index pose) {
   return best;
 }
 
-Eigen::VectorXd ShapeTracker::pulled_start(Eigen::Index pose, const Eigen::VectorXd& candidate) {
+void ShapeTracker::aim(int lane, Eigen::Index pose) {
   const auto at = static_cast<std::size_t>(pose);
-  inverse::JointVector q = candidate;
-  pull_to_shape(pair_, poses_.T_base_transfer[at], poses_.source_shapes[at],
-                kStartShapeSteps * parameters_.shape_steps, q);
-  Eigen::VectorXd pulled = q;
-  const bool is_fit = inverse::normalize(pair_.target(), pulled) &&
-                      inverse::reaches(pair_.target(), poses_.T_base_transfer[at], pulled) &&
-                      filters_.keep(pulled);
-  return is_fit ? pulled : candidate;
+  lanes_.aim(lane, poses_.T_base_transfer[at], poses_.source_shapes[at]);
 }
 
-bool ShapeTracker::follow(Eigen::Index from, Eigen::Index to, inverse::JointVector& q,
-                          Eigen::Ref<Eigen::VectorXd> found) {
-  const auto at = static_cast<std::size_t>(to);
-  const Eigen::Isometry3d& T_base_transfer = poses_.T_base_transfer[at];
-  inverse::JointVector next = q;
-  const double squared = pair_.target_descent().run(T_base_transfer, inverse::Descent::Limits::Hold,
-                                                    kIterations, next);
-  const double most = kMostMotion * poses_.source_motion[std::min(from, to)] + kSpareMotion;
-  if (!(squared <= inverse::kPoseTolerance * inverse::kPoseTolerance) ||
-      !((next - q).norm() <= most))
-    return false;
-  inverse::JointVector pulled = next;
-  pull_to_shape(pair_, T_base_transfer, poses_.source_shapes[at], parameters_.shape_steps, pulled);
-  if ((pulled - q).norm() <= most)
-    next = pulled;
-  found = next;
-  if (!inverse::normalize(pair_.target(), found) ||
-      !inverse::reaches(pair_.target(), T_base_transfer, found) || !filters_.keep(found))
-    return false;
-  q = next;
-  return true;
+void ShapeTracker::pull_starts(std::vector<Try>& tries) {
+  unsigned started = 0;
+  for (std::size_t i = 0; i < tries.size(); ++i) {
+    if (tries[i].along.size() == 0)
+      continue;
+    const int lane = static_cast<int>(i);
+    aim(lane, tries[i].first);
+    lanes_.put(lane, tries[i].along.col(tries[i].first));
+    started |= 1U << i;
+  }
+  lanes_.pull(started, kStartShapeSteps * parameters_.shape_steps);
+  Eigen::MatrixXd pulled(pair_.target().dof(), ShapeLanes::kCount);
+  for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
+    pulled.col(lane) = lanes_.at(lane);
+    if (!space_.normalize(pulled.col(lane).data()))
+      started &= ~(1U << static_cast<unsigned>(lane));
+  }
+  const unsigned right = lanes_.verified(started, pulled);
+  for (std::size_t i = 0; i < tries.size(); ++i)
+    if (const auto column = pulled.col(static_cast<Eigen::Index>(i));
+        (right >> i & 1U) != 0 && filters_.keep(column))
+      tries[i].along.col(tries[i].first) = column;
+}
+
+void ShapeTracker::follow_to_both_ends(std::vector<Try>& tries) {
+  std::vector<Walker> walkers;
+  for (std::size_t i = 0; i < tries.size(); ++i)
+    if (tries[i].along.size() > 0)
+      for (const Eigen::Index direction : {1, -1})
+        walkers.push_back({i, direction, tries[i].first, tries[i].along.col(tries[i].first)});
+  for (unsigned walking = (1U << walkers.size()) - 1; walking != 0;)
+    walking = walk(walkers, walking, tries);
+}
+
+unsigned ShapeTracker::walk(std::vector<Walker>& walkers, unsigned walking,
+                            std::vector<Try>& tries) {
+  const auto is_in = [](unsigned lanes, std::size_t i) { return (lanes >> i & 1U) != 0; };
+  const auto leave = [](unsigned& lanes, std::size_t i) { lanes &= ~(1U << i); };
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    const Eigen::Index to = walkers[i].pose + walkers[i].direction;
+    if (to < 0 || to >= poses_.size())
+      leave(walking, i);
+    if (!is_in(walking, i))
+      continue;
+    aim(static_cast<int>(i), to);
+    lanes_.put(static_cast<int>(i), walkers[i].q);
+  }
+  walking = lanes_.reach(walking);
+  const auto most = [&](const Walker& walker) {
+    const Eigen::Index before = std::min(walker.pose, walker.pose + walker.direction);
+    return kMostMotion * poses_.source_motion[before] + kSpareMotion;
+  };
+  std::vector<inverse::JointVector> next(walkers.size());
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    next[i] = lanes_.at(static_cast<int>(i));
+    if (is_in(walking, i) && !((next[i] - walkers[i].q).norm() <= most(walkers[i])))
+      leave(walking, i);
+  }
+  lanes_.pull(walking, parameters_.shape_steps);
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(pair_.target().dof(), ShapeLanes::kCount);
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    if (!is_in(walking, i))
+      continue;
+    const inverse::JointVector pulled = lanes_.at(static_cast<int>(i));
+    if ((pulled - walkers[i].q).norm() <= most(walkers[i]))
+      next[i] = pulled;
+    found.col(static_cast<Eigen::Index>(i)) = next[i];
+    if (!space_.normalize(found.col(static_cast<Eigen::Index>(i)).data()))
+      leave(walking, i);
+  }
+  walking = lanes_.verified(walking, found);
+  for (std::size_t i = 0; i < walkers.size(); ++i) {
+    if (!is_in(walking, i))
+      continue;
+    if (!filters_.keep(found.col(static_cast<Eigen::Index>(i)))) {
+      leave(walking, i);
+      continue;
+    }
+    Walker& walker = walkers[i];
+    walker.q = next[i];
+    walker.pose += walker.direction;
+    Try& attempt = tries[walker.index];
+    attempt.along.col(walker.pose) = found.col(static_cast<Eigen::Index>(i));
+    (walker.direction > 0 ? attempt.last : attempt.first) = walker.pose;
+  }
+  return walking;
 }
 
 double ShapeTracker::normal() {  // Box and Muller (1958); 1 - u lies in (0, 1]

@@ -7,8 +7,10 @@
 
 #include "proto/types/profile.hpp"
 #include "robots/inverse/counter_generator.hpp"
+#include "robots/inverse/joint_space.hpp"
 #include "server/transfer/filters.hpp"
 #include "server/transfer/path_poses.hpp"
+#include "server/transfer/shape_lanes.hpp"
 
 namespace kinship::transfer {
 
@@ -31,6 +33,8 @@ class ShapeTracker {
   static constexpr double kMostMotion = 3;
   static constexpr double kSpareMotion = 0.3;
   static constexpr int kTriesPerTrack = 6;
+  /// Tries that go on side by side: each takes two lanes, one to each end of the path.
+  static constexpr int kTriesAtOnce = ShapeLanes::kCount / 2;
 
   /// \param pair, poses, parameters, filters  outlive it.
   ShapeTracker(const ArmPair& pair, const PathPoses& poses, const TransferParameters& parameters,
@@ -41,17 +45,34 @@ class ShapeTracker {
   std::vector<Track> find_tracks();
 
   std::uint64_t tried() const noexcept { return tried_; }
+  /// Tries whose track came through the whole path.
+  std::uint64_t came_through() const noexcept { return came_through_; }
 
  private:
-  std::optional<Track> try_track();
+  /// Where a try begins, and how far it has come to both ends.
+  struct Try {
+    Eigen::Index first = 0, last = 0;  // poses
+    Eigen::MatrixXd along;             // dof x poses; columns first to last
+  };
+  /// One end of a try.
+  struct Walker {
+    std::size_t index = 0;  // of the try
+    Eigen::Index direction = 1;
+    Eigen::Index pose = 0;  // where it is
+    inverse::JointVector q;
+  };
+
+  /// `count` tries one after the other would give the same. \return those that had a start.
+  std::vector<Try> make_tries(int count);
   const Eigen::MatrixXd& candidates(Eigen::Index pose);
   /// \return a column of the candidates of a pose; -1: there are none.
   Eigen::Index choose_start(Eigen::Index pose);
-  /// The candidate, pulled towards the source's shape if filters allow where it gets to.
-  Eigen::VectorXd pulled_start(Eigen::Index pose, const Eigen::VectorXd& candidate);
-  /// Moves `q` from one pose to its neighbour. \return whether it got there.
-  bool follow(Eigen::Index from, Eigen::Index to, inverse::JointVector& q,
-              Eigen::Ref<Eigen::VectorXd> found);
+  /// The candidates, pulled towards the source's shape where filters allow where they get to.
+  void pull_starts(std::vector<Try>& tries);
+  void follow_to_both_ends(std::vector<Try>& tries);
+  /// Moves the walkers to the next pose of each. \return those that got there, as lanes.
+  unsigned walk(std::vector<Walker>& walkers, unsigned walking, std::vector<Try>& tries);
+  void aim(int lane, Eigen::Index pose);
   double normal();
 
   const ArmPair& pair_;
@@ -61,7 +82,9 @@ class ShapeTracker {
   CountedFilters& filters_;
   inverse::CounterGenerator generator_;
   std::vector<std::optional<Eigen::MatrixXd>> candidates_;  // of each pose; missing: not asked yet
-  std::uint64_t tried_ = 0;
+  ShapeLanes lanes_;
+  inverse::JointSpace space_;
+  std::uint64_t tried_ = 0, came_through_ = 0;
 };
 
 }  // namespace kinship::transfer

@@ -98,13 +98,14 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
     ++summary.tracks_kept;
   }
   summary.tracks_tried = tracker.tried();
+  summary.tracks_through = tracker.came_through();
   for (std::size_t pose = 0; pose < poses.T_base_transfer.size(); ++pose) {
     if (solutions[pose].cols() > 0) {
       summary.count(solutions[pose].cols(), inverse::NoSolution::None);
       continue;
     }
-    RandomSolutions random =
-        random_solutions(pair.target(), poses.T_base_transfer[pose], parameters, seed, counted);
+    RandomSolutions random = random_solutions(pair.target_solver(), poses.T_base_transfer[pose],
+                                              parameters, seed, counted);
     summary.count(random);
     solutions[pose] = std::move(random.configurations);
   }

@@ -41,6 +41,7 @@ void TransferSummary::add(const TransferSummary& other) {
   random_configurations += other.random_configurations;
   tracks_tried += other.tracks_tried;
   tracks_kept += other.tracks_kept;
+  tracks_through += other.tracks_through;
   filter_checks += other.filter_checks;
   self_collisions += other.self_collisions;
   scene_collisions += other.scene_collisions;

@@ -21,6 +21,9 @@ struct TransferSummary {
   std::uint64_t configurations = 0;
   std::uint64_t random_configurations = 0;  ///< of them, found for one pose alone
   std::uint64_t tracks_tried = 0, tracks_kept = 0;
+  /// Of those tried, how many came through the whole path: divided by tracks_tried, the share of
+  /// the target's solutions that continue through it.
+  std::uint64_t tracks_through = 0;
   std::uint64_t filter_checks = 0;  ///< configurations that the filters were asked about
   std::uint64_t self_collisions = 0, scene_collisions = 0;  ///< of them left out
 

@@ -181,6 +181,18 @@ TEST(RobotsCheck, TellsChainSolverAndYield) {
   EXPECT_NE(answer.out.find("Levenberg-Marquardt"), std::string::npos) << answer.out;
 }
 
+TEST(RobotsCheck, TellsTheStructureOfTheAxes) {
+  const Answer ur10e = run_command({"robots", "check", kModels + "ur10e", "--poses", "1"});
+  EXPECT_NE(ur10e.out.find("structure   parallel axes 2-3-4; closed form, 8 branches\n"),
+            std::string::npos)
+      << ur10e.out;
+  const Answer iiwa = run_command({"robots", "check", kModels + "iiwa7", "--poses", "1", "--json"});
+  EXPECT_NE(iiwa.out.find("\"structure\":\"spherical "), std::string::npos) << iiwa.out;
+  EXPECT_NE(iiwa.out.find("closed form, 8 branches per lock\""), std::string::npos) << iiwa.out;
+  const Answer sawyer = run_command({"robots", "check", kModels + "sawyer", "--poses", "1"});
+  EXPECT_NE(sawyer.out.find("structure   no closed form"), std::string::npos) << sawyer.out;
+}
+
 TEST(RobotsCheck, TellsWhatDecidesTheTransferAndWhatCollides) {
   const Answer planar = run_command({"robots", "check", kModels + "planar_5r_a", "--poses", "1"});
   EXPECT_NE(planar.out.find("axes        x y yaw\n"), std::string::npos) << planar.out;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "robots/inverse/choice.hpp"
+
 #include "tests/support/planar_arm.hpp"
 
 namespace kinship::inverse {
@@ -57,6 +59,34 @@ TEST(Distance, IsEuclideanAndWrappedForContinuousJointsOnly) {
   const auto continuous =
       PlanarArm{.lengths_m = {1, 1}, .limit = kPi, .type = JointType::Continuous}.chain();
   EXPECT_NEAR(distance(continuous, a, b), std::hypot(2 * kPi - 6, 2 * kPi - 4), 1e-12);
+}
+
+TEST(RoundedInward, FloatsStayWithinTheLimitsAndNearTheirValues) {
+  const auto chain = PlanarArm{.lengths_m = {1, 1, 1}, .limit = 2.9}.chain();
+  const Eigen::VectorXd q = Eigen::Vector3d(2.9, -2.9, 0.1);
+  ASSERT_FALSE(chain.within_limits(q.cast<float>().cast<double>()));
+  const Eigen::VectorXd rounded = rounded_inward(chain, q).cast<double>();
+  EXPECT_TRUE(chain.within_limits(rounded));
+  EXPECT_LT((rounded - q).norm(), 1e-6);
+}
+
+TEST(Chosen, IsUniformAndApart) {
+  const auto chain = PlanarArm{.lengths_m = {1}, .limit = 5}.chain();
+  const JointSpace space(chain);
+  Configurations all(1);
+  for (const double value : {0.0, 1.0, 1.05, 3.0})
+    all.add(&value);
+  constexpr int kDraws = 4000;
+  Eigen::Vector4d first = Eigen::Vector4d::Zero();
+  for (int i = 0; i < kDraws; ++i) {
+    const CounterGenerator generator =
+        CounterGenerator(7).of_attempt(static_cast<std::uint64_t>(i));
+    const Eigen::MatrixXd taken = chosen(space, all, 8, 0.2, generator).matrix();
+    EXPECT_EQ(taken.cols(), 3);  // not both 1 and 1.05
+    for (int k = 0; k < 4; ++k)
+      first[k] += taken(0, 0) == *all[static_cast<std::size_t>(k)] ? 1 : 0;
+  }
+  EXPECT_LT((first / kDraws - Eigen::Vector4d::Constant(0.25)).cwiseAbs().maxCoeff(), 0.03);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST_F(AdministrationTest, ListedRobotsNameTheirSolver) {
   const AdminPage page = ask(AdminVerb::ListRobots);
   ASSERT_EQ(page.rows.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i)
-    EXPECT_EQ(row<RobotSummary>(page, i).solver, "multi-start Levenberg-Marquardt");
+    EXPECT_TRUE(row<RobotSummary>(page, i).solver.ends_with("Levenberg-Marquardt"));
 }
 
 TEST_F(AdministrationTest, ARobotIsShownByLabelOrByDigestPrefix) {
@@ -193,7 +193,7 @@ TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
   ASSERT_EQ(page.rows.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& summary = row<RobotSummary>(page, i);
-    EXPECT_EQ(summary.solver == "multi-start Levenberg-Marquardt", summary.label == "teacher")
+    EXPECT_EQ(summary.solver.ends_with("Levenberg-Marquardt"), summary.label == "teacher")
         << summary.solver;
   }
 }

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 #include "proto/types/profile.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "server/transfer/shape_lanes.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/robots.hpp"
 
@@ -87,6 +91,62 @@ TEST(PullToShape, AnArmWithoutSelfMotionStaysWhereItIs) {
   wanted.row(2).array() += 0.1;
   pull_to_shape(pair, T_base_transfer, wanted, 5, q);
   EXPECT_LT((q - start).norm(), 1e-3);
+}
+
+/// Eight postures at once give what each would give alone by the other way.
+TEST(ShapeLanes, EveryLaneIsPulledAsOneAloneIs) {
+  for (const char* model : {"panda", "iiwa14", "planar_7r_c"}) {
+    const kinematics::Chain arm = test::model_chain(model);
+    const ArmPair pair(arm, arm);
+    ASSERT_TRUE(pair.target_marks());
+    std::mt19937_64 generator(9);
+    ShapeLanes lanes(pair);
+    std::vector<double> alone_m;
+    for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
+      inverse::JointVector q = test::random_configuration(arm, generator);
+      const ArmShape wanted = arm_shape(arm, test::random_configuration(arm, generator));
+      const Eigen::Isometry3d T = kinematics::T_base_transfer(arm, q);
+      lanes.aim(lane, T, wanted);
+      lanes.put(lane, q);
+      alone_m.push_back(pull_alone(pair, T, wanted, 3, q));
+    }
+    lanes.pull(0xff, 3);
+    for (int lane = 0; lane < ShapeLanes::kCount; ++lane)
+      EXPECT_NEAR(lanes.distance_m(lane), alone_m[static_cast<std::size_t>(lane)],
+                  0.02 * alone_m[static_cast<std::size_t>(lane)])
+          << model;
+  }
+}
+
+TEST(ShapeLanes, LanesThatAreNotAskedForStay) {
+  Pull pull;
+  ShapeLanes lanes(pull.pair);
+  for (const int lane : {2, 5}) {
+    lanes.aim(lane, pull.T_base_transfer, pull.wanted);
+    lanes.put(lane, pull.q);
+  }
+  lanes.pull(1U << 5U, 5);
+  EXPECT_EQ(lanes.at(2), pull.q);
+  EXPECT_GT((lanes.at(5) - pull.q).norm(), 0.01);
+}
+
+TEST(PullToShape, AnArmWithASlidingJointIsPulledToo) {
+  const kinematics::Chain turning = kRedundant.chain();
+  kinematics::ChainParts parts{turning.base_link(),  turning.tip_link(),       turning.joints(),
+                               turning.T_last_tip(), turning.T_tip_transfer(), turning.task_axes(),
+                               turning.links()};
+  parts.joints[2].type = kinematics::JointType::Prismatic;
+  const kinematics::Chain arm(parts);
+  const ArmPair pair(arm, arm);
+  EXPECT_FALSE(pair.target_marks());
+  inverse::JointVector q = inverse::JointVector::Constant(7, 0.3);
+  const Eigen::Isometry3d T = kinematics::T_base_transfer(arm, q);
+  Eigen::VectorXd other = q;
+  other[0] += 0.2;
+  const ArmShape wanted = arm_shape(arm, other);
+  const double before = shape_distance(arm_shape(arm, q), wanted);
+  EXPECT_LT(pull_to_shape(pair, T, wanted, 5, q), before);
+  EXPECT_TRUE(inverse::reaches(arm, T, q));
 }
 
 /// Central differences of shape and pose against the derivative.

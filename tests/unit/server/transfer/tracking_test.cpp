@@ -169,6 +169,11 @@ TEST(TransferWithTracks, ConfigurationsOfAPoseStandInTheOrderOfTheTracks) {
       transfer_path(source_path(), run.pair, Eigen::Isometry3d::Identity(), {}, kSeed);
   EXPECT_EQ(moved.summary.tracks_kept, 3U);
   EXPECT_EQ(moved.summary.tracks_tried, run.tracker.tried());
+  std::uint64_t through = 0;
+  for (const Track& track : run.tracks)
+    through += track.configurations.cols() == run.poses.size() ? 1U : 0U;
+  EXPECT_GT(through, 0U);
+  EXPECT_EQ(moved.summary.tracks_through, through);
   const Track& first = run.tracks.front();
   for (Eigen::Index i = 0; i < moved.configurations.cols(); ++i)
     if (moved.solution_index[i] == 0 && moved.pose_index[i] == first.first_pose) {
@@ -193,6 +198,7 @@ TEST(TransferWithTracks, RandomSolutionsFillWhereTracksAreMissing) {
       transfer_path(source_path(), {source, target}, planar_pose(0.1, 0, 0), {}, kSeed);
   EXPECT_LT(moved.summary.poses_solved, moved.summary.poses);
   EXPECT_EQ(moved.summary.tracks_kept, 0U);
+  EXPECT_EQ(moved.summary.tracks_through, 0U);
   EXPECT_GT(moved.summary.tracks_tried, 0U);
   EXPECT_GT(moved.summary.random_configurations, 0U);
 }

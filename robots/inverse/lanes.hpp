@@ -1,0 +1,100 @@
+#pragma once
+
+// Included by the units that are compiled for one instruction set: nothing here may bring inline
+// functions or templates of other libraries along.
+
+namespace kinship::inverse {
+
+inline constexpr int kLanes = 8;
+inline constexpr int kLaneJoints = 32;
+
+/// What becomes of joints outside their limits; see Descent::Limits for the meanings.
+enum class LaneLimits { Steer, Ignore, Hold };
+
+/// A joint, seen from frames that lie with z along the joints and were turned about z until a
+/// turn about x is all that is left between neighbours. Lengths (and the values of a sliding joint)
+/// are in units of the chain's length_m.
+struct LaneJoint {
+  double p[3];                    ///< in the frame of the joint before
+  double tilt_cosine, tilt_sine;  ///< of the turn about x from there
+  double twist;                   ///< of a sliding joint: constant turn about z, rad
+  double scale, offset;           ///< lane's value = scale * joint's value + offset
+  double middle, half;            ///< of the limits, lane's values
+  bool slides;
+  bool bounded;  ///< has less than a turn of room
+};
+
+/// A chain as the descent sees it: plain numbers, without its own units of length.
+struct LaneChain {
+  int dof;
+  int rows;                       ///< number of task axes that matter
+  int row_of[6];                  ///< the rows that matter, then 6, which stands for a row of zeros
+  double length_m;                ///< what 1 stands for
+  double R_first[9], p_first[3];  ///< frame of the first joint in the base link, row-major
+  LaneJoint joints[kLaneJoints];  ///< p and tilt of the first are not used
+  double R_last[9], p_last[3];    ///< transfer frame in the last frame
+};
+
+/// Eight descents side by side, each towards a pose of its own. Index of lanes last.
+struct alignas(64) LaneBatch {
+  double target[12][kLanes];      ///< R row-major, then p, in the base link
+  double q[kLaneJoints][kLanes];  ///< lane's values; in: where to start; out: one step on
+  double squared[kLanes];         ///< out: squared task error before the step
+  double moved[kLanes];           ///< out: squared length of the step
+  double outside[kLanes];         ///< out: not 0 if a joint was steered
+};
+
+/// A chain as its URDF has it, for the check of what the descent found: joint axes as they are,
+/// lengths in m.
+struct LaneArm {
+  struct Joint {
+    double R[9], p[3], axis[3];
+    bool slides;
+  };
+  int dof;
+  Joint joints[kLaneJoints];
+  double R_last[9], p_last[3];
+  double matters[6];  ///< 1 or 0 for each task axis
+};
+
+/// How far eight configurations are from their poses, in the task axes that matter.
+struct alignas(64) LaneCheck {
+  double target[12][kLanes];
+  double q[kLaneJoints][kLanes];  ///< joint units
+  double distance_m[kLanes];      ///< out
+  double angle_rad[kLanes];       ///< out: 2 sin(angle / 2)
+};
+
+inline constexpr int kLaneMarks = 4;
+
+/// Points of a chain whose joints all turn, each on the line from a joint to the next one (from the
+/// last: to the transfer frame), so far from the joint as `share` of that line.
+struct LaneMarks {
+  int joint[kLaneMarks];
+  double share[kLaneMarks];
+};
+
+/// Postures that are moved until their marks are where others want them.
+struct alignas(64) LanePull {
+  double wanted[3 * kLaneMarks][kLanes];  ///< x, y, z of one mark after the other, in the base, m
+  double q[kLaneJoints][kLanes];          ///< lane's values; in: where to start; out: one step on
+  double distance_m[kLanes];              ///< out: of the marks before the step, root of squares
+};
+
+/// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
+struct LaneKernels {
+  /// One iteration of damped Levenberg-Marquardt in every lane.
+  /// Source: Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
+  /// method, IEEE T-RO 27 (2011), eq. 14, 23.
+  void (*step)(const LaneChain& chain, LaneLimits limits, LaneBatch& batch);
+
+  /// Forward kinematics of every lane, compared with its pose.
+  void (*check)(const LaneArm& arm, LaneCheck& check);
+
+  /// One step of damped least squares on the distance of the marks in every lane, with the pose of
+  /// the transfer frame as a heavily weighted part that stays. For chains without sliding joints.
+  /// Source: Levenberg, Quarterly of Applied Mathematics 2 (1944).
+  void (*pull)(const LaneChain& chain, const LaneMarks& marks, LanePull& pull);
+};
+
+}  // namespace kinship::inverse

@@ -1,0 +1,325 @@
+#include "robots/inverse/search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "robots/inverse/descent.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
+constexpr std::size_t kMostSolutions = 1000;
+constexpr std::size_t kMostFound = 64;  // of an arm that is not redundant, before the choice
+constexpr int kIterations = 10;         // measured: a new start is worth more than an eleventh,
+constexpr int kMoreIterations = 5;      // unless the error is below the first of these; then,
+constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
+constexpr int kPatientIterations = 40;         // for poses that no ordinary start has solved
+constexpr int kPatientStarts = 16;
+constexpr int kHoldingStarts = 32;
+constexpr int kFewestStarts = 32;
+constexpr int kStartsPerSolution = 4;
+constexpr int kMostStarts = 4000;
+constexpr int kFirstStarts = 16;
+constexpr int kDiagnosticStarts = 8;
+constexpr int kSaturated = 96;        // ended descents in a row without a new solution
+constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
+constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
+constexpr int kFewestLocks = 8;       // random values of the locked joints
+constexpr int kIdleLocks = 24;        // in a row without a new solution
+constexpr int kPolishSteps = 8;
+constexpr double kPolished = 1e-9;    // m and rad: what singular poses exceed takes a polish
+constexpr double kKnown = 0.1;        // joint units: a descent that near to a branch will end there
+constexpr double kNear = 0.1;         // task error worth more patience
+constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
+constexpr double kStationary = 1e-4;  // squared step by squared error
+constexpr std::uint64_t kChoice = ~std::uint64_t{0};  // the attempt that shuffles
+
+}  // namespace
+
+Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
+               const InverseOptions& options)
+    : solver_(solver),
+      T_base_transfer_(T_base_tip * solver.T_tip_transfer()),
+      most_(options.max_solutions == 0
+                ? kMostSolutions
+                : std::min(static_cast<std::size_t>(options.max_solutions), kMostSolutions)),
+      min_distance_(std::max(options.min_distance, kSamePoint)),
+      wanted_(solver.redundant() || options.max_solutions == 0 ? most_
+                                                               : std::max(most_, kMostFound)),
+      apart_(solver.redundant() ? min_distance_ : kSamePoint),
+      all_(options.max_solutions == 0),
+      generator_(options.seed, T_base_tip),
+      found_(solver.space().dof()) {
+  const double length_m = solver.lanes().length_m;
+  for (int i = 0; i < 12; ++i) {
+    const double value = i < 9 ? T_base_transfer_(i / 3, i % 3) : T_base_transfer_(i - 9, 3);
+    std::fill_n(batch_.target[i], kLanes, i < 9 ? value : value / length_m);
+    std::fill_n(check_.target[i], kLanes, value);
+  }
+  for (int j = 0; j < solver.lanes().dof; ++j) {
+    std::fill_n(batch_.q[j], kLanes, 0);
+    std::fill_n(check_.q[j], kLanes, 0);
+  }
+}
+
+InverseSolutions Search::run() {
+  if (!solver_.beyond_reach(T_base_transfer_))
+    find();
+  return solutions();
+}
+
+void Search::find() {
+  if (const ClosedForm* form = solver_.closed_form()) {
+    append_branches(*form);
+    if (enough() || knows_all(*form))
+      return;
+  }
+  const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
+  const int starts =
+      all_ ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
+  const int patience = all_ ? kSaturated : solver_.redundant() ? starts : kBranchPatience;
+  descend({kFirstStarts, kIterations, steer, kFirstStarts});
+  if (enough())
+    return;
+  if (found_.empty() && !outside_limits_) {  // what stands in the way?
+    descend({kDiagnosticStarts, kIterations, LaneLimits::Ignore, kDiagnosticStarts, true});
+    if (found_.empty() && least_squared_error_ > kNear * kNear)
+      return;
+  }
+  descend({starts - kFirstStarts, kIterations, steer, patience});
+  if (found_.empty()) {
+    stationary_ = 0;
+    descend({kPatientStarts, kPatientIterations, steer, kPatientStarts});
+    if (found_.empty() && (outside_limits_ || stationary_ < kPatientStarts))  // at the limits?
+      descend({kHoldingStarts, kPatientIterations, LaneLimits::Hold, kHoldingStarts});
+  }
+}
+
+/// The branches of an exact structure are all there are, and so are those of one that is nearly
+/// there if each of them led to a solution. Where limits leave none of an exact one, a singular
+/// pose may have others than the representatives that were tried.
+bool Search::knows_all(const ClosedForm& form) const {
+  if (solver_.redundant())
+    return false;
+  if (form.exact())
+    return !found_.empty() || !outside_limits_;
+  return !found_.empty() && lost_ == 0;
+}
+
+void Search::append_branches(const ClosedForm& form) {
+  const auto locks = form.locks();
+  const int attempts = locks.empty() ? 1 : std::max(kFewestLocks, 2 * static_cast<int>(wanted_));
+  checking_ = form.exact();
+  std::array<double, kLaneJoints> locked;
+  Branches branches;
+  std::size_t known = 0;
+  for (int attempt = 0, idle = 0; attempt < attempts && idle < kIdleLocks && !enough(); ++attempt) {
+    idle = found_.size() == known ? idle + 1 : 0;
+    known = found_.size();
+    CounterGenerator generator = generator_.of_attempt(next_start_++);
+    for (std::size_t i = 0; i < locks.size(); ++i)
+      locked[i] = solver_.space().value_at(locks[i], generator.uniform());
+    branches.clear();
+    form.append(T_base_transfer_, {locked.data(), locks.size()}, branches);
+    outside_limits_ = outside_limits_ || branches.outside_limits();
+    for (int i = 0; i < branches.size(); ++i)
+      propose(branches[i]);
+  }
+  verify();
+  polish();
+  checking_ = false;
+}
+
+void Search::propose(const double* q) {
+  std::array<double, kLaneJoints> candidate;
+  std::copy_n(q, solver_.lanes().dof, candidate.data());
+  if (checking_) {
+    offer(candidate);
+    return;
+  }
+  if (!solver_.space().normalize(candidate.data(), ClosedForm::kNearMargin_rad))
+    return;
+  put(candidate.data(), proposed_);
+  if (++proposed_ == kLanes)
+    polish();
+}
+
+void Search::put(const double* q, int lane) {
+  const LaneChain& chain = solver_.lanes();
+  for (int j = 0; j < chain.dof; ++j)
+    batch_.q[j][lane] = q[j] * chain.joints[j].scale + chain.joints[j].offset;
+}
+
+void Search::polish() {
+  if (proposed_ == 0)
+    return;
+  unsigned busy = (1U << static_cast<unsigned>(proposed_)) - 1;
+  for (int i = 0; i < kPolishSteps && busy != 0; ++i) {
+    solver_.kernels().step(solver_.lanes(), LaneLimits::Ignore, batch_);
+    for (int lane = 0; lane < proposed_; ++lane) {
+      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0 || !(batch_.squared[lane] < kConverged))
+        continue;
+      hand_over(lane);
+      busy &= ~(1U << static_cast<unsigned>(lane));
+    }
+  }
+  lost_ += std::popcount(busy);
+  proposed_ = 0;
+  verify();
+}
+
+void Search::descend(const Effort& effort) {
+  int waiting = effort.starts;  // not yet in a lane
+  unsigned busy = 0;            // lanes, as bits
+  idle_ = 0;
+  for (int lane = 0; lane < kLanes && waiting > 0; ++lane, --waiting) {
+    start(effort, lane);
+    busy |= 1U << static_cast<unsigned>(lane);
+  }
+  while (busy != 0 && !enough() && idle_ < effort.patience) {
+    solver_.kernels().step(solver_.lanes(), effort.limits, batch_);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0)
+        continue;
+      const Ended ended = progress(effort, lane);
+      if (ended == Ended::No)
+        continue;
+      ++idle_;
+      if (ended == Ended::Converged)
+        hand_over(lane);
+      if (waiting > 0) {
+        --waiting;
+        start(effort, lane);
+      } else {
+        busy &= ~(1U << static_cast<unsigned>(lane));
+      }
+    }
+    if (found_.size() + static_cast<std::size_t>(handed_over_) >= wanted_ || busy == 0)
+      verify();
+  }
+  verify();
+}
+
+void Search::start(const Effort& effort, int lane) {
+  CounterGenerator generator = generator_.of_attempt(next_start_++);
+  const LaneChain& chain = solver_.lanes();
+  for (int j = 0; j < chain.dof; ++j) {
+    const double share = generator.uniform();
+    const double value = effort.anywhere ? solver_.space().value_anywhere(j, share)
+                                         : solver_.space().value_at(j, share);
+    batch_.q[j][lane] = value * chain.joints[j].scale + chain.joints[j].offset;
+  }
+  iterations_[static_cast<std::size_t>(lane)] = 0;
+  near_[lane] = false;
+}
+
+Search::Ended Search::progress(const Effort& effort, int lane) {
+  const double squared = batch_.squared[lane];
+  if (squared < kConverged && batch_.outside[lane] == 0) {
+    least_squared_error_ = 0;
+    return Ended::Converged;
+  }
+  int& iterations = iterations_[static_cast<std::size_t>(lane)];
+  if (squared < kPromising[0] && !near_[lane]) {
+    near_[lane] = true;
+    if (is_known(lane))
+      return Ended::Known;
+  }
+  const bool stationary = squared >= kConverged && batch_.moved[lane] < kStationary * squared;
+  int most = effort.iterations;
+  for (const double promising : kPromising)
+    most += squared < promising ? kMoreIterations : 0;
+  if (!stationary && ++iterations < most)
+    return Ended::No;
+  stationary_ += stationary ? 1 : 0;
+  least_squared_error_ = std::min(least_squared_error_, squared);
+  return Ended::Failed;
+}
+
+std::array<double, kLaneJoints> Search::configuration(int lane) const {
+  const LaneChain& chain = solver_.lanes();
+  std::array<double, kLaneJoints> q;
+  for (int j = 0; j < chain.dof; ++j)
+    q[static_cast<std::size_t>(j)] =
+        (batch_.q[j][lane] - chain.joints[j].offset) / chain.joints[j].scale;
+  return q;
+}
+
+bool Search::is_known(int lane) const {
+  if (solver_.redundant() || found_.empty())
+    return false;
+  std::array<double, kLaneJoints> q = configuration(lane);
+  solver_.space().normalize(q.data());
+  return !is_apart(solver_.space(), found_, q.data(), kKnown);
+}
+
+void Search::hand_over(int lane) {
+  std::array<double, kLaneJoints> q = configuration(lane);
+  offer(q);
+}
+
+void Search::offer(std::array<double, kLaneJoints>& q) {
+  if (!solver_.space().normalize(q.data())) {
+    outside_limits_ = true;
+    return;
+  }
+  if (!is_apart(solver_.space(), found_, q.data(), apart_))
+    return;
+  for (int j = 0; j < solver_.lanes().dof; ++j)
+    check_.q[j][handed_over_] = q[static_cast<std::size_t>(j)];
+  if (++handed_over_ == kLanes)
+    verify();
+}
+
+void Search::verify() {
+  if (handed_over_ == 0)
+    return;
+  solver_.kernels().check(solver_.arm(), check_);
+  std::array<double, kLaneJoints> q;
+  for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
+    for (int j = 0; j < solver_.lanes().dof; ++j)
+      q[static_cast<std::size_t>(j)] = check_.q[j][lane];
+    const auto within = [&](double tolerance) {
+      return check_.distance_m[lane] <= tolerance && check_.angle_rad[lane] <= tolerance;
+    };
+    if (checking_ && !within(kPolished)) {
+      put(q.data(), proposed_++);
+      continue;
+    }
+    if (!within(kPoseTolerance))
+      continue;
+    if (!is_apart(solver_.space(), found_, q.data(), apart_))
+      continue;
+    found_.add(q.data());
+    idle_ = 0;
+  }
+  handed_over_ = 0;
+  if (checking_) {
+    checking_ = false;  // what comes from the polish is as good as it gets
+    polish();
+    checking_ = true;
+  }
+}
+
+InverseSolutions Search::solutions() {
+  InverseSolutions result;
+  if (!found_.empty()) {
+    if (!solver_.redundant())
+      found_ = chosen(solver_.space(), std::move(found_), most_, min_distance_,
+                      generator_.of_attempt(kChoice));
+    result.configurations = found_.matrix();
+    return result;
+  }
+  result.configurations.resize(solver_.space().dof(), 0);
+  if (outside_limits_)
+    result.reason = NoSolution::Limits;
+  else if (least_squared_error_ > kFar * kFar || stationary_ >= kPatientStarts)
+    result.reason = NoSolution::OutOfReach;
+  else
+    result.reason = NoSolution::NotConverged;
+  return result;
+}
+
+}  // namespace kinship::inverse

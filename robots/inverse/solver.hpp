@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "robots/inverse/closed_form.hpp"
+#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/joint_space.hpp"
+#include "robots/inverse/lane_chain.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::inverse {
+
+/// What inverse kinematics computes once per chain, for callers that ask for many poses of it.
+/// Immutable, may be shared by threads. `inverse` is the same for one pose.
+class Solver {
+ public:
+  /// What candidates come from. Best: the closed form where there is one that is faster, and the
+  /// descents where it leaves gaps.
+  enum class Engines { Best, ClosedForm, Descents };
+
+  /// With the fastest instruction set of this machine. The chain is not needed afterwards.
+  explicit Solver(const kinematics::Chain& chain);
+
+  /// With the kernels given; solutions differ between instruction sets by rounding only, and in a
+  /// pose of thousands by a start that rounding sent another way.
+  Solver(const kinematics::Chain& chain, const LaneKernels& kernels,
+         Engines engines = Engines::Best);
+
+  /// Distinct configurations that put the tip link at a pose; see `inverse`.
+  /// \throws std::invalid_argument as `inverse` does.
+  InverseSolutions solve(const Eigen::Isometry3d& T_base_tip,
+                         const InverseOptions& options = {}) const;
+
+  /// In words, e.g. "multi-start Levenberg-Marquardt".
+  std::string name() const;
+
+  const LaneKernels& kernels() const noexcept { return kernels_; }
+  const LaneChain& lanes() const noexcept { return lanes_; }
+  const LaneArm& arm() const noexcept { return arm_; }
+  const JointSpace& space() const noexcept { return space_; }
+  const ClosedForm* closed_form() const noexcept { return closed_ ? &*closed_ : nullptr; }
+  const Eigen::Isometry3d& T_tip_transfer() const noexcept { return T_tip_transfer_; }
+  /// Whether the chain has more joints than task axes that matter.
+  bool redundant() const noexcept { return lanes_.dof > lanes_.rows; }
+  /// Whether the origin of the transfer frame is too far away for a chain of this length.
+  bool beyond_reach(const Eigen::Isometry3d& T_base_transfer) const;
+
+ private:
+  LaneKernels kernels_;
+  LaneChain lanes_;
+  LaneArm arm_;
+  JointSpace space_;
+  std::optional<ClosedForm> closed_;
+  Eigen::Isometry3d T_tip_transfer_;
+  double reach_m_;
+  Eigen::Vector3d p_base_first_joint_;
+};
+
+}  // namespace kinship::inverse

@@ -1,0 +1,90 @@
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "robots/inverse/closed_form.hpp"
+#include "robots/inverse/counter_generator.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/jacobian.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+constexpr int kRankTrials = 8;
+constexpr double kRankTolerance = 1e-6;  // singular value over the largest
+
+std::string lock_text(std::span<const int> locks) {
+  std::string text;
+  for (const int joint : locks)
+    text += (text.empty() ? "lock q" : ", q") + std::to_string(joint + 1);
+  return text.empty() ? text : text + "; ";
+}
+
+std::string deviation_text(const ClosedForm& form) {
+  if (form.exact())
+    return "";
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), " (off by %.0e)", form.deviation());
+  return text.data();
+}
+
+std::string form_text(const ClosedForm& form) {
+  return form.structure_name() + deviation_text(form) + "; " + lock_text(form.locks()) +
+         (form.exact() ? "closed form, " : "closed form of the nominal chain and polish, ") +
+         std::to_string(form.branches()) + " branches" + (form.locks().empty() ? "" : " per lock");
+}
+
+/// In how many independent directions of the task axes that matter the joints move the transfer
+/// frame, at the best of a few configurations.
+Eigen::Index task_rank(const kinematics::Chain& chain) {
+  CounterGenerator generator(1);
+  Eigen::Index rank = 0;
+  for (int trial = 0; trial < kRankTrials; ++trial) {
+    Eigen::VectorXd q(chain.dof());
+    for (Eigen::Index j = 0; j < q.size(); ++j)
+      q[j] = chain.lower()[j] + generator.uniform() * (chain.upper()[j] - chain.lower()[j]);
+    Eigen::MatrixXd J = kinematics::J_base_tip(chain, q);
+    // The transfer frame is fixed to the tip: its velocity is the tip's and the turn's share.
+    const Eigen::Vector3d arm =
+        kinematics::T_base_tip(chain, q).linear() * chain.T_tip_transfer().translation();
+    for (Eigen::Index j = 0; j < J.cols(); ++j)
+      J.col(j).head<3>() += J.col(j).tail<3>().eval().head<3>().cross(arm);
+    for (Eigen::Index row = 0; row < 6; ++row)
+      if (!chain.task_axes().matters[static_cast<std::size_t>(row)])
+        J.row(row).setZero();
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+    rank = std::max<Eigen::Index>(
+        rank, (values.array() > kRankTolerance * std::max(values[0], kRankTolerance)).count());
+  }
+  return rank;
+}
+
+std::string missing_text(const kinematics::Chain& chain) {
+  const auto wanted = std::ranges::count(chain.task_axes().matters, true);
+  const Eigen::Index rank = task_rank(chain);
+  if (rank >= wanted)
+    return "";
+  return "; " + std::to_string(chain.dof()) +
+         (chain.dof() == 1 ? " joint moves " : " joints move ") + "the transfer frame in " +
+         std::to_string(rank) + " of " + std::to_string(wanted) +
+         " task axes: poses off that set have no solution";
+}
+
+}  // namespace
+
+std::string describe_structure(const kinematics::Chain& chain) {
+  const ClosedFormFinding finding = find_closed_form(chain);
+  std::string text;
+  if (finding.form)
+    text = form_text(*finding.form);
+  else if (finding.left_out)
+    text = finding.left_out->structure_name() + deviation_text(*finding.left_out) + "; " +
+           lock_text(finding.left_out->locks()) +
+           "closed form left out, random locks seldom lead within limits; numeric";
+  else
+    text = "no closed form; numeric";
+  return text + missing_text(chain);
+}
+
+}  // namespace kinship::inverse

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <iomanip>
+#include <iostream>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "robots/inverse/closed_form.hpp"
+#include "robots/inverse/joint_space.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/robots.hpp"
+#include "tests/support/screw_arm.hpp"
+
+// Closed forms of inverse kinematics alone, before verification and choice: time per call,
+// branches, and how well they reach the pose. Poses: forward kinematics of random configurations
+// within the limits; locked joints at their true values. One thread, CPU time, best of several
+// rounds.
+//
+//   closed_form_bench [poses]
+namespace kinship {
+namespace {
+
+using inverse::Branches;
+using inverse::ClosedForm;
+
+constexpr int kRounds = 15;
+constexpr double kRecovered = 1e-4;  // joint units
+
+double cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Pose {
+  Eigen::VectorXd q;
+  Eigen::Isometry3d T_base_transfer;
+  std::vector<double> locked;
+};
+
+std::vector<Pose> poses_of(const kinematics::Chain& chain, const ClosedForm& form, int count) {
+  std::mt19937_64 generator(3);
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    Pose pose;
+    pose.q = test::random_configuration(chain, generator);
+    pose.T_base_transfer = kinematics::T_base_transfer(chain, pose.q);
+    for (const int joint : form.locks())
+      pose.locked.push_back(pose.q[joint]);
+    poses.push_back(std::move(pose));
+  }
+  return poses;
+}
+
+double best_us_per_call(const ClosedForm& form, const std::vector<Pose>& poses) {
+  double best_s = 1e9;
+  Branches branches;
+  for (int round = 0; round < kRounds; ++round) {
+    const double start_s = cpu_s();
+    for (const Pose& pose : poses) {
+      branches.clear();
+      form.append(pose.T_base_transfer, pose.locked, branches);
+    }
+    best_s = std::min(best_s, cpu_s() - start_s);
+  }
+  return 1e6 * best_s / static_cast<double>(poses.size());
+}
+
+struct Quality {
+  double branches = 0, recovered = 0;  ///< per pose
+  std::vector<double> errors;          ///< of every branch, m and rad together
+};
+
+Quality quality(const kinematics::Chain& chain, const ClosedForm& form,
+                const std::vector<Pose>& poses) {
+  Quality result;
+  for (const Pose& pose : poses) {
+    Branches branches;
+    form.append(pose.T_base_transfer, pose.locked, branches);
+    bool recovered = false;
+    for (int b = 0; b < branches.size(); ++b) {
+      const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(branches[b], chain.dof());
+      result.errors.push_back(
+          (kinematics::T_base_transfer(chain, q).matrix() - pose.T_base_transfer.matrix()).norm());
+      double largest = 0;
+      for (Eigen::Index j = 0; j < q.size(); ++j)
+        largest =
+            std::max(largest, std::abs(std::remainder(q[j] - pose.q[j], 2 * std::numbers::pi)));
+      recovered = recovered || largest < kRecovered;
+    }
+    result.branches += branches.size() / static_cast<double>(poses.size());
+    result.recovered += (recovered ? 1.0 : 0.0) / static_cast<double>(poses.size());
+  }
+  std::ranges::sort(result.errors);
+  return result;
+}
+
+void print(const std::string& name, const kinematics::Chain& chain, int count) {
+  const double start_s = cpu_s();
+  const auto form = ClosedForm::of(chain);
+  const double built_us = 1e6 * (cpu_s() - start_s);
+  std::cout << "| " << name << " | " << inverse::describe_structure(chain) << " | ";
+  if (!form) {
+    std::cout << "| | | | | |\n";
+    return;
+  }
+  const std::vector<Pose> poses = poses_of(chain, *form, count);
+  const Quality found = quality(chain, *form, poses);
+  std::cout << std::fixed << std::setprecision(2) << best_us_per_call(*form, poses) << " | "
+            << found.branches << " | " << form->mean_within_limits() << " | "
+            << 100 * found.recovered << " % | " << std::scientific << std::setprecision(1)
+            << found.errors[found.errors.size() * 99 / 100] << ", " << found.errors.back() << " | "
+            << std::fixed << std::setprecision(0) << built_us << " |\n";
+}
+
+}  // namespace
+}  // namespace kinship
+
+int main(int argc, char** argv) {
+  using namespace kinship;
+  const int count = argc > 1 ? std::stoi(argv[1]) : 2000;
+  std::cout
+      << "| Robot | Found | us/call | branches within limits | the same, random locks | "
+         "recovered | error: 99 %, worst | us to build |\n|---|---|---|---|---|---|---|---|\n";
+  for (const char* model :
+       {"ur10e", "iiwa14", "iiwa7", "sara_like", "panda", "sawyer", "planar_5r_a", "planar_7r_c"})
+    print(model, test::model_chain(model), count);
+  print("industrial", test::arms::industrial(), count);
+  print("hollow wrist", test::arms::hollow_wrist(), count);
+  print("spherical shoulder", test::arms::spherical_shoulder(), count);
+  print("on a track", test::arms::on_track(), count);
+  std::mt19937_64 generator(5);
+  for (const double sigma : {1e-4, 1e-3, 5e-3}) {
+    const std::string name = "ur10e, origins off by " + std::to_string(sigma);
+    print(name, test::perturbed(test::model_chain("ur10e"), sigma, generator), count);
+  }
+}

@@ -1,0 +1,172 @@
+#include "robots/inverse/lane_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "robots/inverse/descent.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/random_chain.hpp"
+
+namespace kinship::inverse {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+/// Chains of one to ten joints, turning and sliding, of a millimetre to ten metres.
+std::vector<kinematics::Chain> many_chains() {
+  std::mt19937_64 generator(kSeed);
+  std::vector<kinematics::Chain> chains;
+  for (int joints = 1; joints <= 10; ++joints)
+    for (const double length_m : {1e-3, 0.3, 10.0})
+      chains.push_back(test::random_chain(
+          {.joints = joints, .length_m = length_m, .sliding_share = 0.3}, generator));
+  return chains;
+}
+
+Eigen::VectorXd draw(const kinematics::Chain& chain, std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  return Eigen::VectorXd::NullaryExpr(chain.dof(), [&](Eigen::Index j) {
+    return chain.lower()[j] + uniform(generator) * (chain.upper()[j] - chain.lower()[j]);
+  });
+}
+
+double pose_value(const Eigen::Isometry3d& T, int i) {
+  return i < 9 ? T(i / 3, i % 3) : T(i - 9, 3);
+}
+
+TEST(Lanes, EveryMachineKnowsAnInstructionSet) {
+  ASSERT_FALSE(instruction_sets().empty());
+  EXPECT_EQ(instruction_sets().front().name, "sse2");
+}
+
+TEST(Lanes, TheCheckMeasuresWhatForwardKinematicsSay) {
+  std::mt19937_64 generator(kSeed);
+  for (const kinematics::Chain& chain : many_chains())
+    for (const InstructionSet& set : instruction_sets()) {
+      const LaneArm arm = lane_arm(chain);
+      LaneCheck check;
+      Eigen::Matrix<double, 2, kLanes> expected;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Eigen::VectorXd q = draw(chain, generator);
+        const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, draw(chain, generator));
+        const TaskError error =
+            task_error(T, kinematics::T_base_transfer(chain, q), chain.task_axes());
+        expected.col(lane) << error.head<3>().norm(), error.tail<3>().norm();
+        for (int i = 0; i < 12; ++i)
+          check.target[i][lane] = pose_value(T, i);
+        for (Eigen::Index j = 0; j < q.size(); ++j)
+          check.q[j][lane] = q[j];
+      }
+      set.kernels.check(arm, check);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        EXPECT_NEAR(check.distance_m[lane], expected(0, lane), 1e-12 * (1 + expected(0, lane)));
+        EXPECT_NEAR(check.angle_rad[lane], expected(1, lane), 1e-6) << set.name;
+      }
+    }
+}
+
+/// Eight lanes that start near the configurations of their poses.
+struct Descents {
+  explicit Descents(const kinematics::Chain& of, double off, std::mt19937_64& generator)
+      : chain(of), lanes(lane_chain(of)) {
+    std::uniform_real_distribution<double> uniform(-off, off);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Eigen::VectorXd q = draw(chain, generator);
+      const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, q);
+      for (int i = 0; i < 12; ++i)
+        batch.target[i][lane] = pose_value(T, i) / (i < 9 ? 1 : lanes.length_m);
+      for (int j = 0; j < lanes.dof; ++j) {
+        const LaneJoint& joint = lanes.joints[j];
+        const double room = joint.slides ? joint.half : 1;
+        batch.q[j][lane] = q[j] * joint.scale + joint.offset + uniform(generator) * room;
+      }
+    }
+  }
+
+  const kinematics::Chain& chain;
+  LaneChain lanes;
+  LaneBatch batch;
+};
+
+TEST(Lanes, DescentsFromNearbyReachTheirPoses) {
+  std::mt19937_64 generator(kSeed);
+  int reached = 0, all = 0;
+  for (const kinematics::Chain& chain : many_chains())
+    for (const InstructionSet& set : instruction_sets()) {
+      Descents descents(chain, 0.05, generator);
+      for (int i = 0; i < 20; ++i)
+        set.kernels.step(descents.lanes, LaneLimits::Ignore, descents.batch);
+      for (const double squared : descents.batch.squared)
+        reached += squared < 1e-16 ? 1 : 0;
+      all += kLanes;
+    }
+  EXPECT_GE(reached, 0.97 * all);
+}
+
+TEST(Lanes, EveryInstructionSetMakesTheSameStep) {
+  std::mt19937_64 generator(kSeed);
+  for (const kinematics::Chain& chain : many_chains())
+    for (const LaneLimits limits : {LaneLimits::Steer, LaneLimits::Ignore, LaneLimits::Hold}) {
+      const Descents descents(chain, 2, generator);
+      LaneBatch first = descents.batch;
+      instruction_sets().front().kernels.step(descents.lanes, limits, first);
+      for (const InstructionSet& set : instruction_sets()) {
+        LaneBatch batch = descents.batch;
+        set.kernels.step(descents.lanes, limits, batch);
+        for (int lane = 0; lane < kLanes; ++lane) {
+          EXPECT_NEAR(batch.squared[lane], first.squared[lane], 1e-9 * (1 + first.squared[lane]));
+          EXPECT_EQ(batch.outside[lane], first.outside[lane]);
+          for (int j = 0; j < descents.lanes.dof; ++j)
+            EXPECT_NEAR(batch.q[j][lane], first.q[j][lane], 1e-6) << set.name;
+        }
+      }
+    }
+}
+
+TEST(Lanes, HeldJointsStayWithinTheirLimits) {
+  std::mt19937_64 generator(kSeed);
+  const kinematics::Chain chain =
+      test::random_chain({.joints = 7, .limit = 1, .sliding_share = 0.3}, generator);
+  Descents descents(chain, 0, generator);
+  Descents others(chain, 0, generator);
+  std::copy(&others.batch.target[0][0], &others.batch.target[0][0] + 12 * kLanes,
+            &descents.batch.target[0][0]);
+  for (int i = 0; i < 20; ++i) {
+    instruction_sets().back().kernels.step(descents.lanes, LaneLimits::Hold, descents.batch);
+    for (int j = 0; j < 7; ++j)
+      for (const double value : descents.batch.q[j])
+        ASSERT_LE(std::abs(value - descents.lanes.joints[j].middle),
+                  descents.lanes.joints[j].half + 1e-12);
+  }
+}
+
+/// A planar joint against a pose that is half a turn away, where the axis of the rotation error
+/// cannot be told.
+TEST(Lanes, HalfATurnIsLeftAndIsNoSolution) {
+  kinematics::ChainParts parts;
+  parts.base_link = "base";
+  parts.tip_link = "tip";
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0)})
+    parts.joints.push_back({.name = "joint", .axis = axis, .lower = -4, .upper = 4});
+  const kinematics::Chain chain(parts);
+  const LaneChain lanes = lane_chain(chain);
+  LaneBatch batch;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int i = 0; i < 12; ++i)
+      batch.target[i][lane] = i == 0 || i == 4 ? -1 : i == 8 ? 1 : 0;
+    for (int j = 0; j < 3; ++j)
+      batch.q[j][lane] = lanes.joints[j].offset;
+  }
+  instruction_sets().back().kernels.step(lanes, LaneLimits::Ignore, batch);
+  EXPECT_GT(batch.squared[0], 1);
+  for (int i = 0; i < 40; ++i)
+    instruction_sets().back().kernels.step(lanes, LaneLimits::Ignore, batch);
+  EXPECT_LT(batch.squared[0], 1e-16);
+}
+
+}  // namespace
+}  // namespace kinship::inverse
