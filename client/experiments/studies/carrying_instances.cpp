@@ -12,7 +12,7 @@
 #include "client/planning/region_constraint.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -27,7 +27,8 @@ class CarryingInstances {
       : layout_(std::move(layout)),
         robot_(robot),
         T_task_base_(placed.T_task_base),
-        starts_(robot_.chain, find_nominal_start()) {}
+        solver_(robot_.chain),
+        starts_(robot_.chain, placed.start.size() > 0 ? placed.start : find_nominal_start()) {}
 
   Problem draw(std::uint64_t seed, std::uint32_t index) const {
     return first_possible({seed, index, 0}, kMaxCarryingDraws,
@@ -69,7 +70,7 @@ class CarryingInstances {
     const Eigen::Isometry3d T_base_tip =
         T_task_base_.inverse() * nominal.T_task_pick * robot_.chain.T_tip_transfer().inverse();
     std::optional<Eigen::VectorXd> best;
-    const inverse::InverseSolutions found = inverse::inverse(robot_.chain, T_base_tip, options);
+    const inverse::InverseSolutions found = solver_.solve(T_base_tip, options);
     for (const auto& q : found.configurations.colwise())
       if ((!best || off_middle(q) < off_middle(*best)) && !world.collides(q))
         best = q;
@@ -128,6 +129,7 @@ class CarryingInstances {
   const CarryingLayout layout_;
   const models::LoadedRobot robot_;
   const Eigen::Isometry3d T_task_base_;
+  const inverse::Solver solver_;
   const StartDraws starts_;
 };
 

@@ -10,7 +10,7 @@
 #include "client/experiments/studies/instance_random.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -55,7 +55,8 @@ class PlanarInstances {
       : layout_(std::move(layout)),
         robot_(robot),
         T_task_base_(placed.T_task_base),
-        starts_(robot_.chain, find_nominal_start()) {}
+        solver_(robot_.chain),
+        starts_(robot_.chain, placed.start.size() > 0 ? placed.start : find_nominal_start()) {}
 
   Problem draw(std::uint64_t seed, std::uint32_t index) const {
     return first_possible({seed, index, 0}, kMaxPlanarDraws,
@@ -95,7 +96,7 @@ class PlanarInstances {
     options.seed = seed;
     const Eigen::Isometry3d T_base_tip =
         T_task_base_.inverse() * in_space(pose) * robot_.chain.T_tip_transfer().inverse();
-    return inverse::inverse(robot_.chain, T_base_tip, options).configurations;
+    return solver_.solve(T_base_tip, options).configurations;
   }
 
   /// The free configuration nearest to the stretched arm.
@@ -146,6 +147,7 @@ class PlanarInstances {
   const PlanarLayout layout_;
   const models::LoadedRobot robot_;
   const Eigen::Isometry3d T_task_base_;
+  const inverse::Solver solver_;
   const StartDraws starts_;
 };
 

@@ -22,11 +22,15 @@ std::vector<StudyRobot> planar_arms() {
           {.model = "planar_7r_c", .paper_checks = 20354}};
 }
 
-/// The same, each where the slot is as hard for it as the paper says, or nearly.
+/// The same, each where the slot is as hard for it as the paper says, or nearly; starting in the
+/// free posture that is nearest to the stretched arm.
 std::vector<StudyRobot> placed_arms() {
   std::vector<StudyRobot> arms = planar_arms();
   arms[1].T_task_base = at(-0.05, 0);
   arms[2].T_task_base = at(0.03, 0.06);
+  arms[0].start = Eigen::VectorXd{{0.1398, 1.3506, 0.7718, -0.2780, -0.6841}};
+  arms[1].start = Eigen::VectorXd{{-0.1597, 1.1254, 1.1073, -0.0281, -0.7450}};
+  arms[2].start = Eigen::VectorXd{{-0.0384, 0.7116, 1.7609, -0.4463, -0.3425, 0.4753, -0.8206}};
   return arms;
 }
 

@@ -22,6 +22,9 @@ std::string_view name_of(InstanceSet set);
 struct StudyRobot {
   std::string model;  ///< its folder below robots/models, and its label
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  /// Where its instances start, but for noise, joint units. A constant of a frozen study, so that
+  /// it does not depend on the inverse kinematics of the day; empty: searched.
+  Eigen::VectorXd start;
   double paper_checks = 0;  ///< mean collision checks of uniform planning in the paper; 0: none
 };
 
