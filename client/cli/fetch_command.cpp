@@ -120,7 +120,8 @@ void print_curve(const Distribution& distribution, std::ostream& out) {
     return a.score < b.score;
   };
   const std::vector<ComponentScore>& scores = distribution.component_scores;
-  const auto [least, best] = std::minmax_element(scores.begin(), scores.end(), by_score);
+  const auto least = std::min_element(scores.begin(), scores.end(), by_score);
+  const auto best = std::max_element(scores.begin(), scores.end(), by_score);  // the first of them
   Table table({"COMPONENTS", "HELD-OUT SCORE", ""});
   for (const ComponentScore& score : scores) {
     const double part = best->score > least->score

@@ -34,7 +34,7 @@ struct PlanSummary {
 /// constraints. Every goal configuration is a root of the goal tree. First the straight lines from
 /// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then each
 /// iteration extends one tree towards a sample (overshot) until something is in the way, then the
-/// other tree towards where that came; then they swap. From the 300th sample on at most nine of
+/// other tree towards where that came; then they swap. After 300 samples at most nine of
 /// ten are guided, so that a mixture which does not cover the way out delays a path and never
 /// prevents it.
 /// Every waypoint was checked, start and goal included. A start that is a free goal is answered

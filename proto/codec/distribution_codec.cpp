@@ -239,7 +239,11 @@ std::vector<std::optional<double>> read_cuts(const kinship_wire_Distribution& wi
                                              std::size_t joints, Reader& reader) {
   const auto entries = elements(wire.cuts);
   std::vector<std::optional<double>> cuts(entries.empty() ? 0 : joints);
+  std::int64_t previous = -1;
   for (const kinship_wire_JointCut& entry : entries) {
+    reader.rules.that(entry.joint > previous, "cuts: joint " + std::to_string(entry.joint) +
+                                                  " after joint " + std::to_string(previous));
+    previous = entry.joint;
     reader.rules.that(entry.joint < joints, "cuts: joint " + std::to_string(entry.joint) + " of " +
                                                 std::to_string(joints));
     if (entry.joint < joints)

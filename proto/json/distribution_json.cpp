@@ -231,6 +231,8 @@ std::vector<ComponentScore> read_curve(const Reader& reader) {
     const std::uint64_t components = entry.at("K").count();
     if (components < 1 || components > kMaxComponents)
       entry.refuse("K is not between 1 and " + std::to_string(kMaxComponents));
+    if (!scores.empty() && static_cast<int>(components) >= scores.back().components)
+      entry.refuse("K does not fall");
     scores.push_back({static_cast<int>(components), entry.at("score").number()});
   }
   return scores;

@@ -13,7 +13,7 @@ constexpr int kLanes = 4;
 
 namespace kinship::density {
 extern const BlockKernels kAvx2Kernels;
-const BlockKernels kAvx2Kernels = kernels("avx2");
+constinit const BlockKernels kAvx2Kernels = kernels("avx2");
 }  // namespace kinship::density
 
 #endif

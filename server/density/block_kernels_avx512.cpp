@@ -13,7 +13,7 @@ constexpr int kLanes = 8;
 
 namespace kinship::density {
 extern const BlockKernels kAvx512Kernels;
-const BlockKernels kAvx512Kernels = kernels("avx512");
+constinit const BlockKernels kAvx512Kernels = kernels("avx512");
 }  // namespace kinship::density
 
 #endif

@@ -10,5 +10,5 @@ constexpr int kLanes = 2;
 
 namespace kinship::density {
 extern const BlockKernels kBaselineKernels;
-const BlockKernels kBaselineKernels = kernels("baseline");
+constinit const BlockKernels kBaselineKernels = kernels("baseline");
 }  // namespace kinship::density

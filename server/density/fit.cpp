@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -196,9 +197,11 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
   try {
     return Fit(configurations, weights, options).run(std::move(distinct));
   } catch (const Failure& failure) {
-    return Error{ErrorCode::InvalidInput,
-                 std::string("fit: ") + failure.what() + "; covariance_floor " +
-                     std::to_string(options.covariance_floor) + " is too small for this data"};
+    std::ostringstream text;
+    text << "fit: " << failure.what() << "; covariance floor "
+         << em_options(configurations.rows(), options).floors.minCoeff()
+         << " is too small for this data";
+    return Error{ErrorCode::InvalidInput, text.str()};
   }
 }
 

@@ -24,8 +24,9 @@ using std::chrono::seconds;
 
 constexpr int kProblems = 5;
 
-/// A Panda that turns over a table and below a ceiling: room for its elbow, not for a UR10e's.
-Problem turn_below_the_ceiling(int number) {
+/// A Panda that turns in front of a wall, over a table and below a ceiling: room for its elbow, but
+/// not for that of a UR10e that reaches over its shoulder.
+Problem turn_before_the_wall(int number) {
   Problem problem;
   problem.name = "turn_" + std::to_string(number);
   problem.T_task_base = Eigen::Isometry3d::Identity();
@@ -36,7 +37,8 @@ Problem turn_below_the_ceiling(int number) {
     return Eigen::Isometry3d(Eigen::Translation3d(x, 0, z));
   };
   problem.scene.objects = {{"table", BoxShape{{2, 2, 0.1}}, at(0, -0.25)},
-                           {"ceiling", BoxShape{{3, 3, 0.1}}, at(0, 1.0)}};
+                           {"ceiling", BoxShape{{3, 3, 0.1}}, at(0, 1.0)},
+                           {"wall", BoxShape{{0.05, 3, 3}}, at(-0.3, 0)}};
   problem.attached = {
       {"can", "palm", SphereShape{0.02}, at(0, 0.05), {"finger_left", "finger_right"}}};
   problem.allowed_collisions = {{"can", "table"}};
@@ -51,7 +53,7 @@ class RecordedScenes : public testing::Test {
             {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)}) {
     std::ofstream file(directory_ / "problems.jsonl");
     for (int i = 0; i < kProblems; ++i)
-      file << json::to_json(turn_below_the_ceiling(i)) << '\n';
+      file << json::to_json(turn_before_the_wall(i)) << '\n';
   }
 
   void plan_and_report(const std::vector<std::string>& more) {
@@ -126,7 +128,7 @@ TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
     ASSERT_TRUE(attempt.scene);
     EXPECT_EQ(content_digest(*attempt.scene), content_digest(*attempts[0].scene));
   }
-  ASSERT_EQ(attempts[0].scene->objects.size(), 2U);
+  ASSERT_EQ(attempts[0].scene->objects.size(), 3U);
   ASSERT_EQ(attempts[0].scene->held.size(), 1U);
   EXPECT_EQ(attempts[0].scene->held[0].name, "can");
   EXPECT_EQ(attempts[0].scene->allowed_collisions.size(), 1U);

@@ -1,5 +1,6 @@
 #include "server/store/sqlite/distribution_blob.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -109,22 +110,29 @@ void add_choice(ByteWriter& out, const Distribution& distribution) {
   }
 }
 
+double finite(double value) {
+  if (!std::isfinite(value))
+    throw std::out_of_range("distribution: a number is not finite");
+  return value;
+}
+
 void read_choice(ByteReader& in, Distribution& distribution) {
   const std::uint64_t scores = in.integer();
   if (scores > kMaxComponentScores)
     throw std::out_of_range("distribution: too many scores of components");
   for (std::uint64_t i = 0; i < scores; ++i) {
     const std::uint64_t components = in.integer();
-    if (components > kMaxComponents)
-      throw std::out_of_range("distribution: a score of too many components");
+    if (components < 1 || components > kMaxComponents)
+      throw std::out_of_range("distribution: a score of no or too many components");
     distribution.component_scores.push_back(
-        {.components = static_cast<int>(components), .score = in.real()});
+        {.components = static_cast<int>(components), .score = finite(in.real())});
   }
   const std::uint64_t cuts = in.integer();
-  if (cuts > kMaxDof)
-    throw std::out_of_range("distribution: too many cuts");
+  if (cuts != 0 && cuts != static_cast<std::uint64_t>(distribution.limits.cols()))
+    throw std::out_of_range("distribution: cuts of other joints than it has");
   for (std::uint64_t i = 0; i < cuts; ++i)
-    distribution.cuts.push_back(in.integer() != 0 ? std::optional(in.real()) : std::nullopt);
+    distribution.cuts.push_back(in.integer() != 0 ? std::optional(finite(in.real()))
+                                                  : std::nullopt);
 }
 
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
