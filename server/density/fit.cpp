@@ -198,7 +198,7 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
     return Fit(configurations, weights, options).run(std::move(distinct));
   } catch (const Failure& failure) {
     std::ostringstream text;
-    text << "fit: " << failure.what() << "; covariance floor "
+    text << "fit: " << failure.what() << "; covariance_floor "
          << em_options(configurations.rows(), options).floors.minCoeff()
          << " is too small for this data";
     return Error{ErrorCode::InvalidInput, text.str()};
