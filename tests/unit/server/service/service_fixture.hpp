@@ -90,11 +90,16 @@ class GatedFit {
 class ServiceFixture : public testing::Test {
  public:
   ServiceFixture() { start(); }
-  ~ServiceFixture() override { gate_.open(); }
   ServiceFixture(const ServiceFixture&) = delete;
   ServiceFixture& operator=(const ServiceFixture&) = delete;
 
  protected:
+  /// Ends the service while all that its threads call is still there, also what derived fixtures
+  /// have.
+  void TearDown() override {
+    gate_.open();
+    service_.reset();
+  }
   /// Starts the service, again if it runs already.
   void start() {
     service_.reset();
