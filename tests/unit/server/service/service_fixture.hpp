@@ -125,6 +125,7 @@ class ServiceFixture : public testing::Test {
       const std::lock_guard lock(log_mutex_);
       events_ += std::string(to_text(event.kind)) + '|' + event.task + '|' + event.robot + '|' +
                  event.text + '\n';
+      event_told_.notify_all();
     };
     if (adjust_)
       adjust_(options);
@@ -173,6 +174,13 @@ class ServiceFixture : public testing::Test {
     return all;
   }
 
+  /// Whether an event with this text is told: after the reply that it is about, perhaps.
+  bool is_told(const std::string& text) {
+    std::unique_lock lock(log_mutex_);
+    return event_told_.wait_for(lock, std::chrono::seconds(60),
+                                [&] { return events_.find(text) != std::string::npos; });
+  }
+
   /// Lines of kind|task|robot|text.
   std::string events() {
     const std::lock_guard lock(log_mutex_);
@@ -193,6 +201,7 @@ class ServiceFixture : public testing::Test {
   std::mutex log_mutex_;
   std::vector<std::string> log_;  // guarded by log_mutex_
   std::string events_;            // guarded by log_mutex_
+  std::condition_variable event_told_;
   std::unique_ptr<RobotRegistry> registry_;
   std::unique_ptr<FitContext> context_;
   const Robot teacher_ = fleet::robot_of(fleet::teacher());
