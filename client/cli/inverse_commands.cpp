@@ -16,7 +16,7 @@
 #include "proto/types/pose.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/closed_form.hpp"
-#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
 
@@ -89,12 +89,12 @@ const char* type_text(kinematics::JointType type) {
   }
 }
 
-InverseAnswer solve(const kinematics::Chain& chain, const Eigen::Isometry3d& T_base_tip,
+InverseAnswer solve(const inverse::Solver& solver, const Eigen::Isometry3d& T_base_tip,
                     const inverse::InverseOptions& options) {
   InverseAnswer answer;
-  answer.solver = inverse::solver_name(chain);
+  answer.solver = solver.name();
   const double start_s = cpu_time_s();
-  const inverse::InverseSolutions solutions = inverse::inverse(chain, T_base_tip, options);
+  const inverse::InverseSolutions solutions = solver.solve(T_base_tip, options);
   answer.time_us = 1e6 * (cpu_time_s() - start_s);
   answer.solutions = solutions.configurations;
   answer.reason = reason_text(solutions.reason);
@@ -120,7 +120,8 @@ void print_answer(const InverseAnswer& answer, bool json, std::ostream& out) {
 }
 
 /// Solves poses that random configurations reach.
-void measure(const CheckOptions& options, const kinematics::Chain& chain, RobotCheck& check) {
+void measure(const CheckOptions& options, const kinematics::Chain& chain,
+             const inverse::Solver& solver, RobotCheck& check) {
   std::mt19937_64 generator(options.seed);
   std::uniform_real_distribution<double> unit(0, 1);
   double time_us = 0;
@@ -129,7 +130,7 @@ void measure(const CheckOptions& options, const kinematics::Chain& chain, RobotC
     for (Eigen::Index joint = 0; joint < chain.dof(); ++joint)
       q(joint) =
           chain.lower()(joint) + unit(generator) * (chain.upper()(joint) - chain.lower()(joint));
-    const InverseAnswer answer = solve(chain, kinematics::T_base_tip(chain, q),
+    const InverseAnswer answer = solve(solver, kinematics::T_base_tip(chain, q),
                                        {.max_solutions = options.max_solutions,
                                         .min_distance = options.min_distance,
                                         .seed = options.seed + static_cast<std::uint64_t>(i)});
@@ -187,10 +188,11 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   check.base_link = chain.base_link();
   check.tip_link = chain.tip_link();
   check.structure = inverse::describe_structure(chain);
-  check.solver = inverse::solver_name(chain);
+  const inverse::Solver solver(chain);
+  check.solver = solver.name();
   for (const kinematics::Joint& joint : chain.joints())
     check.joints.push_back({joint.name, type_text(joint.type), joint.lower, joint.upper});
-  measure(options, chain, check);
+  measure(options, chain, solver, check);
   if (options.json)
     out << json::to_json(check) << '\n';
   else
@@ -204,7 +206,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
   const auto robot = read_robot(kCommand, options.robot, err, code);
   if (!robot)
     return code;
-  const kinematics::Chain& chain = robot->chain;
+  const inverse::Solver solver(robot->chain);
   const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
                                                    .min_distance = options.min_distance,
                                                    .seed = options.seed};
@@ -212,7 +214,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     const auto T_base_tip = models::parse_pose(options.pose);
     if (!T_base_tip)
       return refuse(kCommand, T_base_tip.error(), err);
-    print_answer(solve(chain, *T_base_tip, inverse_options), options.json, out);
+    print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
     return kDone;
   }
   std::ifstream stream = files::open_input(options.poses);
@@ -220,7 +222,7 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     const Result<Eigen::Isometry3d> T_base_tip =
         line.text ? json::pose_from_json(*line.text) : line.text.error();
     if (T_base_tip)
-      print_answer(solve(chain, *T_base_tip, inverse_options), options.json, out);
+      print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
     else
       code = refuse(kCommand, in_line(options.poses, line.number, T_base_tip.error()), err);
     return T_base_tip.has_value();
