@@ -144,6 +144,12 @@ TEST(FetchCodec, ScoresFallInComponentsAndCutsNameJoints) {
   EXPECT_EQ(read.cuts, distribution.cuts);
   message.wire.distribution._buffer[0].cuts._buffer[0].joint = 32;
   EXPECT_NE(decode(message.wire).error().message.find("cuts: joint 32 of "), std::string::npos);
+
+  distribution.cuts.front() = -1.5;
+  message = encode({}, reply).value_or_throw();
+  message.wire.distribution._buffer[0].cuts._buffer[1].joint = 0;
+  EXPECT_NE(decode(message.wire).error().message.find("cuts: joint 0 after joint 0"),
+            std::string::npos);
   message = encode({}, reply).value_or_throw();
   message.wire.distribution._buffer[0].component_scores._buffer[0].components = 1025;
   EXPECT_EQ(decode(message.wire).error().code, ErrorCode::TooLarge);

@@ -185,6 +185,9 @@ TEST(DistributionJson, StatesAndSharesOutsideTheirRangeAreRefused) {
   EXPECT_EQ(message_of(changed("\"cuts\":null", "\"cuts\":[0]")), "cuts: 1 entries for 2 joints");
   EXPECT_EQ(message_of(changed("\"k_curve\":null", R"("k_curve":[{"K":0,"score":1}])")),
             "k_curve[0]: K is not between 1 and 1024");
+  EXPECT_EQ(message_of(changed("\"k_curve\":null",
+                               R"("k_curve":[{"K":20,"score":1},{"K":20,"score":0}])")),
+            "k_curve[1]: K does not fall");
 }
 
 TEST(DistributionJson, CurveAndCutsComeBack) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/support/store_values.hpp"
 
 namespace kinship::store {
@@ -48,6 +50,20 @@ TEST(DistributionBlob, KeepsAFailureWithoutAMixture) {
   EXPECT_EQ(after->state, DistributionState::Failed);
   EXPECT_EQ(after->reason, failed.reason);
   EXPECT_FALSE(after->mixture || after->T_task_base || after->held_out_score);
+}
+
+TEST(DistributionBlob, RefusesCutsAndScoresThatNoFitWrites) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Distribution more_cuts_than_joints = example();
+  more_cuts_than_joints.cuts.emplace_back(0.5);
+  Distribution endless_cut = example();
+  endless_cut.cuts[1] = kNan;
+  Distribution no_score = example();
+  no_score.component_scores[0].score = kNan;
+  Distribution no_components = example();
+  no_components.component_scores[1].components = 0;
+  for (const Distribution& wrong : {more_cuts_than_joints, endless_cut, no_score, no_components})
+    EXPECT_FALSE(decode_distribution(encode_distribution(wrong)));
 }
 
 TEST(DistributionBlob, RefusesEveryTruncationAndAnyByteMore) {
