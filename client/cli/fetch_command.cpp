@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <ostream>
 #include <random>
@@ -13,7 +12,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "proto/mixture/sampler.hpp"
+#include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::cli {
@@ -21,39 +20,19 @@ namespace {
 
 constexpr const char* kCommand = "distributions fetch";
 
-/// The limits, but none for continuous joints, whose samples are turned back instead.
-Eigen::Matrix2Xd limits_of_draws(const Distribution& distribution) {
-  Eigen::Matrix2Xd limits = distribution.limits;
-  for (std::size_t joint = 0; joint < distribution.cuts.size(); ++joint)
-    if (distribution.cuts[joint])
-      limits.col(static_cast<Eigen::Index>(joint)) << -std::numeric_limits<double>::infinity(),
-          std::numeric_limits<double>::infinity();
-  return limits;
-}
-
-/// Continuous joints in [-pi, pi].
-void turn_back(const Distribution& distribution, Eigen::VectorXd& q) {
-  for (std::size_t joint = 0; joint < distribution.cuts.size(); ++joint)
-    if (distribution.cuts[joint]) {
-      double& angle = q[static_cast<Eigen::Index>(joint)];
-      angle = std::remainder(angle, 2 * std::numbers::pi);
-    }
-}
-
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {
-  const mixture::Sampler sampler(*distribution.mixture, limits_of_draws(distribution));
+  const mixture::DistributionSampler sampler(distribution);
   std::mt19937_64 generator(options.seed);
   for (Eigen::Index joint = 0; joint < sampler.dimension(); ++joint)
     out << (joint == 0 ? "q_" : ",q_") << joint + 1;
   out << '\n' << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (std::uint64_t i = 0; i < options.samples; ++i) {
-    auto q = sampler.sample(generator);
+    const auto q = sampler.sample(generator);
     if (!q) {
       err << kCommand << ": the mixture lies outside the joint limits\n";
       return kFailed;
     }
-    turn_back(distribution, *q);
     for (Eigen::Index joint = 0; joint < q->size(); ++joint)
       out << (joint == 0 ? "" : ",") << (*q)(joint);
     out << '\n';

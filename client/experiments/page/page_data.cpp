@@ -13,7 +13,7 @@
 #include "client/planning/path_vertices.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
-#include "proto/mixture/sampler.hpp"
+#include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -100,7 +100,7 @@ FleetMember read_member(const RunFolder& run, const std::string& name) {
 
 /// Draws `kSamples` configurations, one per column; fewer if the mixture lies outside the limits.
 Eigen::MatrixXd draw(const Distribution& distribution, std::mt19937_64& generator) {
-  const mixture::Sampler sampler(*distribution.mixture, distribution.limits);
+  const mixture::DistributionSampler sampler(distribution);
   Eigen::MatrixXd samples(sampler.dimension(), kSamples);
   Eigen::Index count = 0;
   for (std::size_t i = 0; i < kSamples; ++i)

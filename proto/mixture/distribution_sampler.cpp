@@ -1,0 +1,42 @@
+#include "proto/mixture/distribution_sampler.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+namespace kinship::mixture {
+namespace {
+
+std::vector<Eigen::Index> continuous_joints(const Distribution& distribution) {
+  std::vector<Eigen::Index> joints;
+  for (std::size_t joint = 0; joint < distribution.cuts.size(); ++joint)
+    if (distribution.cuts[joint])
+      joints.push_back(static_cast<Eigen::Index>(joint));
+  return joints;
+}
+
+Eigen::Matrix2Xd limits_of_draws(const Distribution& distribution,
+                                 const std::vector<Eigen::Index>& continuous) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  Eigen::Matrix2Xd limits = distribution.limits;
+  for (const Eigen::Index joint : continuous)
+    limits.col(joint) << -kNone, kNone;
+  return limits;
+}
+
+}  // namespace
+
+DistributionSampler::DistributionSampler(const Distribution& distribution)
+    : continuous_(continuous_joints(distribution)),
+      sampler_(distribution.mixture.value(), limits_of_draws(distribution, continuous_)) {}
+
+std::optional<Eigen::VectorXd> DistributionSampler::sample(std::mt19937_64& generator) const {
+  std::optional<Eigen::VectorXd> q = sampler_.sample(generator);
+  if (q)
+    for (const Eigen::Index joint : continuous_)
+      (*q)[joint] = std::remainder((*q)[joint], 2 * std::numbers::pi);
+  return q;
+}
+
+}  // namespace kinship::mixture

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "proto/mixture/sampler.hpp"
+#include "proto/types/distribution.hpp"
+
+namespace kinship::mixture {
+
+/// Draws configurations of a distribution: its mixture truncated to the limits, but not for
+/// continuous joints, whose samples are turned into [-pi, pi] instead.
+/// Immutable after construction: may be shared between threads with a generator each.
+class DistributionSampler {
+ public:
+  /// \param distribution  with a mixture.
+  /// \throws as `Sampler`.
+  explicit DistributionSampler(const Distribution& distribution);
+
+  Eigen::Index dimension() const noexcept { return sampler_.dimension(); }
+
+  /// As `Sampler::sample`.
+  std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator) const;
+
+ private:
+  std::vector<Eigen::Index> continuous_;  // joints
+  Sampler sampler_;
+};
+
+}  // namespace kinship::mixture
