@@ -12,6 +12,7 @@
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/twins.hpp"
@@ -27,11 +28,6 @@ constexpr std::uint64_t kSeed = 23;
 constexpr double kPi = std::numbers::pi;
 const std::vector<std::string> kModels = {"panda",  "iiwa14",    "iiwa7",       "ur10e",
                                           "sawyer", "sara_like", "planar_5r_a", "planar_7r_c"};
-
-ChainParts parts_of(const Chain& chain) {
-  return {chain.base_link(),      chain.tip_link(),  chain.joints(), chain.T_last_tip(),
-          chain.T_tip_transfer(), chain.task_axes(), chain.links()};
-}
 
 /// Asks for the pose of a configuration, and checks everything that comes back.
 struct Asked {
@@ -95,7 +91,7 @@ TEST(InverseOfAnyChain, WithASlidingJointAnywhere) {
   for (const std::string model : {"iiwa14", "ur10e", "planar_5r_a"})
     for (const std::size_t at : {std::size_t{0}, std::size_t{2}, std::size_t{4}}) {
       std::mt19937_64 generator(kSeed);
-      ChainParts parts = parts_of(test::model_chain(model));
+      ChainParts parts = test::parts_of(test::model_chain(model));
       parts.joints[at].type = JointType::Prismatic;
       parts.joints[at].lower = -0.3;
       parts.joints[at].upper = 0.5;
@@ -106,7 +102,7 @@ TEST(InverseOfAnyChain, WithASlidingJointAnywhere) {
 TEST(InverseOfAnyChain, WithFreeTaskAxes) {
   std::mt19937_64 generator(kSeed);
   for (int mask = 1; mask < 63; mask += 4) {
-    ChainParts parts = parts_of(test::random_chain({}, generator));
+    ChainParts parts = test::parts_of(test::random_chain({}, generator));
     for (std::size_t axis = 0; axis < 6; ++axis)
       parts.task_axes.matters[axis] = (mask >> axis & 1) != 0;
     EXPECT_GE(solved_share(Chain(parts), 10, generator), 0.95) << mask;
@@ -116,7 +112,7 @@ TEST(InverseOfAnyChain, WithFreeTaskAxes) {
 TEST(InverseOfAnyChain, WithTwoJointsOnTheSameAxis) {
   std::mt19937_64 generator(kSeed);
   for (const std::size_t at : {std::size_t{1}, std::size_t{3}, std::size_t{5}}) {
-    ChainParts parts = parts_of(test::random_chain({}, generator));
+    ChainParts parts = test::parts_of(test::random_chain({}, generator));
     parts.joints[at].T_previous_joint = Eigen::Isometry3d::Identity();
     parts.joints[at].T_previous_joint.translation() = 0.2 * parts.joints[at - 1].axis;
     parts.joints[at].axis = parts.joints[at - 1].axis;
@@ -186,7 +182,7 @@ TEST_P(InverseOf, LimitsThatLeaveOneBranch) {
   constexpr int kPoses = 30;
   for (int i = 0; i < kPoses; ++i) {
     const Eigen::VectorXd q = draw(chain_, generator_);
-    ChainParts parts = parts_of(chain_);
+    ChainParts parts = test::parts_of(chain_);
     for (Eigen::Index joint = 0; joint < q.size(); ++joint) {
       parts.joints[static_cast<std::size_t>(joint)].lower = q[joint] - 0.2;
       parts.joints[static_cast<std::size_t>(joint)].upper = q[joint] + 0.25;
@@ -198,7 +194,7 @@ TEST_P(InverseOf, LimitsThatLeaveOneBranch) {
 }
 
 TEST_P(InverseOf, LimitsWiderThanATurnAndContinuousJoints) {
-  ChainParts parts = parts_of(chain_);
+  ChainParts parts = test::parts_of(chain_);
   for (std::size_t joint = 0; joint < parts.joints.size(); ++joint) {
     parts.joints[joint].lower = -7;
     parts.joints[joint].upper = 7;
@@ -215,7 +211,7 @@ TEST_P(InverseOf, LimitsWiderThanATurnAndContinuousJoints) {
 }
 
 TEST_P(InverseOf, AToolWithALongOffset) {
-  ChainParts parts = parts_of(chain_);
+  ChainParts parts = test::parts_of(chain_);
   if (GetParam().starts_with("planar"))
     parts.T_tip_transfer.translation() << 2, 1, 0;
   else
@@ -297,7 +293,7 @@ TEST(InverseReasons, LimitsAreTheReasonWhereTheArmWouldReach) {
   std::mt19937_64 generator(kSeed);
   for (const std::string& model : kModels) {
     const Chain chain = test::model_chain(model);
-    ChainParts parts = parts_of(chain);
+    ChainParts parts = test::parts_of(chain);
     for (kinematics::Joint& joint : parts.joints) {
       joint.lower = 0.01;
       joint.upper = 0.02;

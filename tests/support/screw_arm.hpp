@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robots/kinematics/chain.hpp"
+#include "tests/support/chain_parts.hpp"
 
 namespace kinship::test {
 
@@ -47,13 +48,7 @@ inline kinematics::Chain screw_arm(const std::vector<Line>& lines,
 inline kinematics::Chain perturbed(const kinematics::Chain& chain, double sigma,
                                    std::mt19937_64& generator) {
   std::normal_distribution<double> off(0, sigma);
-  kinematics::ChainParts parts;
-  parts.base_link = chain.base_link();
-  parts.tip_link = chain.tip_link();
-  parts.joints = chain.joints();
-  parts.T_last_tip = chain.T_last_tip();
-  parts.T_tip_transfer = chain.T_tip_transfer();
-  parts.task_axes = chain.task_axes();
+  kinematics::ChainParts parts = parts_of(chain);
   for (kinematics::Joint& joint : parts.joints) {
     const Eigen::Vector3d shift(off(generator), off(generator), off(generator));
     const Eigen::Vector3d turn(off(generator), off(generator), off(generator));

@@ -11,6 +11,7 @@
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
@@ -90,13 +91,7 @@ TEST_P(ClosedFormOf, GivesBackTheConfigurationAndReachesThePoseInEveryBranch) {
 
 /// The chain with a whole turn for every turning joint: every branch counts.
 kinematics::Chain without_limits(const kinematics::Chain& chain) {
-  kinematics::ChainParts parts;
-  parts.base_link = chain.base_link();
-  parts.tip_link = chain.tip_link();
-  parts.joints = chain.joints();
-  parts.T_last_tip = chain.T_last_tip();
-  parts.T_tip_transfer = chain.T_tip_transfer();
-  parts.task_axes = chain.task_axes();
+  kinematics::ChainParts parts = test::parts_of(chain);
   for (kinematics::Joint& joint : parts.joints)
     if (joint.type == kinematics::JointType::Revolute)
       joint.type = kinematics::JointType::Continuous;
@@ -200,13 +195,7 @@ TEST(ClosedForm, IsTheSameWhereverJointsHaveTheirOriginsOnTheirLines) {
 
 TEST(ClosedForm, IsTheSameForArmsOfEverySize) {
   for (const double size : {1e-3, 1.0, 50.0}) {
-    kinematics::ChainParts parts;
-    const kinematics::Chain chain = test::model_chain("ur10e");
-    parts.base_link = chain.base_link();
-    parts.tip_link = chain.tip_link();
-    parts.joints = chain.joints();
-    parts.T_last_tip = chain.T_last_tip();
-    parts.T_tip_transfer = chain.T_tip_transfer();
+    kinematics::ChainParts parts = test::parts_of(test::model_chain("ur10e"));
     for (kinematics::Joint& joint : parts.joints)
       joint.T_previous_joint.translation() *= size;
     parts.T_last_tip.translation() *= size;

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/robots.hpp"
 
 // The UR10e against twins as fleets have them: calibrated, remounted, turned, renamed.
@@ -18,24 +19,12 @@ using kinematics::ChainParts;
 using kinematics::compare_arms;
 using kinematics::Joint;
 
-ChainParts parts_of(const Chain& chain) {
-  ChainParts parts;
-  parts.base_link = chain.base_link();
-  parts.tip_link = chain.tip_link();
-  parts.joints = chain.joints();
-  parts.T_last_tip = chain.T_last_tip();
-  parts.T_tip_transfer = chain.T_tip_transfer();
-  parts.task_axes = chain.task_axes();
-  parts.links = chain.links();
-  return parts;
-}
-
 class Ur10eTwin : public testing::Test {
  protected:
   ArmLikeness likeness() const { return compare_arms(ur10e_, Chain(twin_)); }
 
   Chain ur10e_ = test::model_chain("ur10e");
-  ChainParts twin_ = parts_of(ur10e_);
+  ChainParts twin_ = test::parts_of(ur10e_);
 };
 
 TEST_F(Ur10eTwin, OffsetsOfAMillimetreAreNear) {
@@ -46,7 +35,7 @@ TEST_F(Ur10eTwin, OffsetsOfAMillimetreAreNear) {
 
 TEST_F(Ur10eTwin, AnOffsetOfTwentyMillimetresIsAnotherArm) {
   for (std::size_t i = 0; i < twin_.joints.size(); ++i) {
-    twin_ = parts_of(ur10e_);
+    twin_ = test::parts_of(ur10e_);
     twin_.joints[i].T_previous_joint.translation().y() += 20e-3;
     EXPECT_EQ(likeness(), ArmLikeness::Different) << i;
   }
@@ -56,7 +45,7 @@ TEST_F(Ur10eTwin, CalibratedUnitsAreNear) {
   std::mt19937_64 generator(3);
   std::normal_distribution<double> noise(0, 3e-4);
   for (int unit = 0; unit < 50; ++unit) {
-    twin_ = parts_of(ur10e_);
+    twin_ = test::parts_of(ur10e_);
     for (Joint& joint : twin_.joints) {
       joint.T_previous_joint.translation() +=
           Eigen::Vector3d(noise(generator), noise(generator), noise(generator));
@@ -77,7 +66,7 @@ TEST_F(Ur10eTwin, OtherLimitsAreTheSameArm) {
 
 TEST_F(Ur10eTwin, ATurnedAxisIsAnotherArm) {
   for (std::size_t i = 0; i < twin_.joints.size(); ++i) {
-    twin_ = parts_of(ur10e_);
+    twin_ = test::parts_of(ur10e_);
     twin_.joints[i].axis = -twin_.joints[i].axis;
     EXPECT_EQ(likeness(), ArmLikeness::Different) << i;
   }
