@@ -260,6 +260,46 @@ void check_cuts(const std::vector<std::optional<double>>& cuts, std::size_t join
     rules.finite("cuts", cut.value_or(0));
 }
 
+void write_fit(const std::optional<FitOrigin>& fit, Arena& arena, kinship_wire_Distribution& wire) {
+  if (!fit)
+    return;
+  arena.resize(wire.fit, 1);
+  kinship_wire_FitOrigin& origin = wire.fit._buffer[0];
+  origin.from_revision = fit->from_revision;
+  origin.full_revision = fit->full_revision;
+  origin.paths = fit->paths;
+  origin.new_paths = fit->new_paths;
+  origin.transferred = fit->transferred;
+  origin.reason = arena.text(fit->reason);
+}
+
+std::optional<FitOrigin> read_fit(const kinship_wire_Distribution& wire, Reader& reader) {
+  const auto entries = elements(wire.fit);
+  if (entries.empty())
+    return std::nullopt;
+  return FitOrigin{
+      .from_revision = entries[0].from_revision,
+      .full_revision = entries[0].full_revision,
+      .paths = entries[0].paths,
+      .new_paths = entries[0].new_paths,
+      .transferred = entries[0].transferred,
+      .reason = reader.text("reason of a full fit", entries[0].reason, kMaxMessageBytes)};
+}
+
+void check_fit(const std::optional<FitOrigin>& fit, Rules& rules) {
+  if (!fit)
+    return;
+  const auto at_most = [&rules](const char* part, std::uint64_t count, const char* whole,
+                                std::uint64_t limit) {
+    rules.that(count <= limit, std::string("fit: ") + part + " " + std::to_string(count) +
+                                   " exceeds " + whole + " " + std::to_string(limit));
+  };
+  at_most("full_revision", fit->full_revision, "from_revision", fit->from_revision);
+  at_most("new_paths", fit->new_paths, "paths", fit->paths);
+  at_most("transferred", fit->transferred, "paths", fit->paths);
+  rules.text("reason of a full fit", fit->reason, kMaxMessageBytes);
+}
+
 void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
   rules.at_most("limits", static_cast<std::size_t>(limits.cols()), kMaxDof)
       .that(limits.allFinite(), "limits: not all finite");
@@ -297,6 +337,7 @@ std::optional<Error> check(const Distribution& distribution) {
   check_limits(distribution.limits, rules);
   check_scores(distribution.component_scores, rules);
   check_cuts(distribution.cuts, static_cast<std::size_t>(distribution.limits.cols()), rules);
+  check_fit(distribution.fit, rules);
   const auto& mixture = distribution.mixture;
   rules.that(mixture.has_value() == has_mixture(distribution.state),
              mixture ? "mixture: given although failed" : "mixture: missing although not failed");
@@ -343,6 +384,7 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   write_recent(distribution.advice.recent, arena, wire);
   write_scores(distribution.component_scores, arena, wire);
   write_cuts(distribution.cuts, arena, wire);
+  write_fit(distribution.fit, arena, wire);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -386,6 +428,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.advice.recent = read_recent(wire, reader);
   distribution.component_scores = read_scores(wire, reader);
   distribution.cuts = read_cuts(wire, limits.size() / 2, reader);
+  distribution.fit = read_fit(wire, reader);
   return distribution;
 }
 

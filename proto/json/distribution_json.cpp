@@ -260,6 +260,28 @@ std::vector<std::optional<double>> read_cuts(const Reader& reader, Eigen::Index 
   return cuts;
 }
 
+OrderedJson fit_or_null(const std::optional<FitOrigin>& fit) {
+  if (!fit)
+    return nullptr;
+  return {{"from_revision", fit->from_revision},
+          {"full_revision", fit->full_revision},
+          {"paths", fit->paths},
+          {"new_paths", fit->new_paths},
+          {"transferred", fit->transferred},
+          {"reason", fit->reason}};
+}
+
+FitOrigin read_fit(const Reader& reader) {
+  FitOrigin fit;
+  fit.from_revision = reader.at("from_revision").count();
+  fit.full_revision = reader.at("full_revision").count(fit.from_revision);
+  fit.paths = reader.at("paths").count();
+  fit.new_paths = reader.at("new_paths").count(fit.paths);
+  fit.transferred = reader.at("transferred").count(fit.paths);
+  fit.reason = reader.at("reason").text(kMaxMessageBytes);
+  return fit;
+}
+
 void read_optional_members(const Reader& reader, Distribution& distribution) {
   if (const auto reason = reader.find("reason"))
     distribution.reason = reason->text(kMaxMessageBytes);
@@ -283,6 +305,8 @@ void read_optional_members(const Reader& reader, Distribution& distribution) {
     distribution.transfer_time_s = time->number(0);
   if (const auto time = reader.find("fit_time_s"))
     distribution.fit_time_s = time->number(0);
+  if (const auto fit = reader.find("fit"))
+    distribution.fit = read_fit(*fit);
 }
 
 /// Of a distribution with state and limits: a ready one has a mixture of as many joints.
@@ -356,6 +380,7 @@ OrderedJson distribution_object(const Distribution& distribution) {
   object["fitted_ms"] = distribution.fitted_ms;
   object["transfer_time_s"] = distribution.transfer_time_s;
   object["fit_time_s"] = distribution.fit_time_s;
+  object["fit"] = fit_or_null(distribution.fit);
   return object;
 }
 

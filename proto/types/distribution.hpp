@@ -8,6 +8,7 @@
 
 #include "proto/types/advice.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/fit_origin.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
@@ -82,7 +83,8 @@ struct Distribution {
   std::uint64_t configurations = 0;  ///< number the mixture was fitted to
   std::optional<Mixture> mixture;    ///< present exactly unless Failed
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
-  /// Where the number of components was chosen: the highest score of `component_scores`.
+  /// Where the number of components was chosen: the highest score of `component_scores`. Both are
+  /// those of the last full fit.
   std::optional<double> held_out_score;
   /// Of the moment it was sent, not of the fit.
   Advice advice;
@@ -93,6 +95,7 @@ struct Distribution {
   /// Per joint, where the circle of a continuous one is cut: means and limits lie in
   /// [cut, cut + 2 pi]. Empty if no joint is continuous.
   std::vector<std::optional<double>> cuts;
+  std::optional<FitOrigin> fit;  ///< of its mixture; missing in what older servers stored
 };
 
 }  // namespace kinship

@@ -19,7 +19,8 @@ std::optional<Profile> find_profile(std::string_view name) {
     paper.density = {.components = 50,
                      .covariance_floor = 1e-4,
                      .equal_path_weights = false,
-                     .weighting = Weighting::Paths};
+                     .weighting = Weighting::Paths,
+                     .warm_refits = false};
     paper.recommended_share = 1;
     paper.thin_share = 1;
     return paper;

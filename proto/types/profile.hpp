@@ -41,6 +41,9 @@ struct DensityParameters {
   double covariance_floor_m2 = 1e-4;         ///< of a prismatic joint, m^2
   bool equal_path_weights = true;            ///< every path weighs the same, however long
   Weighting weighting = Weighting::Sources;  ///< of source robots against each other
+  /// Whether a refit may start from the mixture before it; otherwise every fit is a full one, and
+  /// depends on the paths alone.
+  bool warm_refits = true;
 
   bool operator==(const DensityParameters&) const = default;
 };

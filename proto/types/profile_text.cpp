@@ -56,6 +56,8 @@ const std::vector<Option>& options() {
        [](Profile& profile, double value) { profile.density.covariance_floor_m2 = value; }},
       {"equal_path_weights", 0, 1, true,
        [](Profile& profile, double value) { profile.density.equal_path_weights = value != 0; }},
+      {"warm_refits", 0, 1, true,
+       [](Profile& profile, double value) { profile.density.warm_refits = value != 0; }},
   };
   return kOptions;
 }

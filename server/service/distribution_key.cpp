@@ -80,6 +80,7 @@ Digest identify(const DistributionKey& key) {
   sha.add(density.covariance_floor_m2);
   sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
   sha.add(static_cast<std::uint64_t>(density.weighting));
+  sha.add(std::uint64_t{density.warm_refits ? 1U : 0U});
   sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);
   sha.add(std::uint64_t{key.sources.size()});
   for (const Digest& source : key.sources)

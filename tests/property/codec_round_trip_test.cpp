@@ -275,7 +275,9 @@ class Vandal {
   void spoil(kinship_wire_Announcement& wire) { spoil(wire.task); }
 
   void spoil(kinship_wire_Distribution& wire) {
-    switch (values_.below(19)) {
+    switch (values_.below(20)) {
+      case 19:
+        return wire.fit._length > 0 ? spoil(wire.fit._buffer[0].reason) : void();
       case 0:
         return spoil(wire.task);
       case 1:

@@ -233,6 +233,10 @@ class RandomValues {
       distribution.cuts.resize(static_cast<std::size_t>(dof));
     if (!distribution.cuts.empty())
       distribution.cuts[static_cast<std::size_t>(below(static_cast<int>(dof)))] = number();
+    if (coin())
+      distribution.fit = FitOrigin{5, static_cast<std::uint64_t>(below(6)),
+                                   9, static_cast<std::uint64_t>(below(10)),
+                                   9, name(100)};
     distribution.advice.recommended_share = share();
     distribution.advice.evidence = name(100);
     if (coin())

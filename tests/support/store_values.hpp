@@ -105,6 +105,7 @@ inline Distribution make_distribution(const Digest& robot, const std::string& ta
   distribution.component_scores = {{20, -2.5}, {2, -1.5}};
   distribution.cuts.resize(kDof);
   distribution.cuts[1] = 0.5;
+  distribution.fit = FitOrigin{4, 2, 525, 25, 26, "of a test"};
   distribution.advice.recommended_share = 0.9;
   distribution.advice.evidence = "none yet";
   distribution.fitted_ms = 1'700'000'000'123;

@@ -13,8 +13,8 @@ namespace {
 
 // Written first. 1 knew neither the selection nor the details of a source, 2 neither how its tracks
 // and filters fared nor thin distributions, 3 neither how the number of components was chosen nor
-// cuts; all are still read.
-constexpr std::uint64_t kFormat = 4;
+// cuts, 4 not what a fit began with; all are still read.
+constexpr std::uint64_t kFormat = 5;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
 
 template <typename Enum>
@@ -135,6 +135,30 @@ void read_choice(ByteReader& in, Distribution& distribution) {
                                                   : std::nullopt);
 }
 
+void add_fit(ByteWriter& out, const std::optional<FitOrigin>& fit) {
+  out.add(std::uint64_t{fit ? 1U : 0U});
+  if (fit)
+    out.add(fit->from_revision)
+        .add(fit->full_revision)
+        .add(fit->paths)
+        .add(fit->new_paths)
+        .add(fit->transferred)
+        .add(fit->reason);
+}
+
+std::optional<FitOrigin> read_fit(ByteReader& in) {
+  if (in.integer() == 0)
+    return std::nullopt;
+  FitOrigin fit;
+  fit.from_revision = in.integer();
+  fit.full_revision = in.integer();
+  fit.paths = in.integer();
+  fit.new_paths = in.integer();
+  fit.transferred = in.integer();
+  fit.reason = in.text(kMaxTextBytes);
+  return fit;
+}
+
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
   out.add(mixture.weights()).add(mixture.means());
   for (const Eigen::MatrixXd& covariance : mixture.covariances())
@@ -183,6 +207,8 @@ Distribution read_distribution(ByteReader& in) {
     distribution.selection = read_selection(in);
   if (format > 3)
     read_choice(in, distribution);
+  if (format > 4)
+    distribution.fit = read_fit(in);
   if (!in.at_end())
     throw std::out_of_range("distribution: bytes left over");
   return distribution;
@@ -212,6 +238,7 @@ std::vector<std::uint8_t> encode_distribution(const Distribution& distribution) 
     add_mixture(out, *distribution.mixture);
   add_selection(out, distribution.selection);
   add_choice(out, distribution);
+  add_fit(out, distribution.fit);
   return out.bytes();
 }
 

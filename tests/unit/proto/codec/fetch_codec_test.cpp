@@ -164,6 +164,24 @@ TEST(FetchCodec, ScoresFallInComponentsAndCutsNameJoints) {
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::InvalidInput);
 }
 
+TEST(FetchCodec, WhatAFitBeganWithComesBackAndAddsUp) {
+  FetchReply reply = ready_reply();
+  std::optional<FitOrigin>& fit = reply.distribution->fit;
+  EXPECT_FALSE(decode(encode({}, reply).value_or_throw().wire).value_or_throw().distribution->fit);
+  fit = FitOrigin{4, 2, 525, 25, 30, ""};
+  auto message = encode({}, reply).value_or_throw();
+  EXPECT_EQ(decode(message.wire).value_or_throw().distribution->fit, fit);
+
+  message.wire.distribution._buffer[0].fit._buffer[0].full_revision = 5;
+  EXPECT_EQ(decode(message.wire).error().message, "fit: full_revision 5 exceeds from_revision 4");
+  fit->new_paths = 526;
+  EXPECT_EQ(encode({}, reply).error().message, "fit: new_paths 526 exceeds paths 525");
+  fit = FitOrigin{0, 0, 5, 5, 6, "the first"};
+  EXPECT_EQ(encode({}, reply).error().message, "fit: transferred 6 exceeds paths 5");
+  fit = FitOrigin{0, 0, 5, 5, 5, std::string(kMaxMessageBytes + 1, 'x')};
+  EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
+}
+
 TEST(FetchCodec, StatusOutOfRangeIsRefused) {
   FetchReply reply;
   reply.status = FetchStatus::Pending;

@@ -204,6 +204,18 @@ TEST(DistributionJson, CurveAndCutsComeBack) {
   EXPECT_EQ(read.cuts, written.cuts);
 }
 
+TEST(DistributionJson, WhatAFitBeganWithComesBack) {
+  Distribution written = two_components();
+  EXPECT_NE(to_json(written).find(R"("fit":null)"), std::string::npos);
+  written.fit = FitOrigin{4, 2, 525, 25, 30, "of a test"};
+  const std::string text = to_json(written);
+  EXPECT_EQ(distribution_from_json(text).value_or_throw().fit, written.fit) << text;
+  EXPECT_EQ(
+      message_of(changed("\"fit\":null", R"("fit":{"from_revision":1,"full_revision":1,"paths":5,)"
+                                         R"("new_paths":6,"transferred":0,"reason":""})")),
+      "fit: new_paths 6 exceeds 5");
+}
+
 TEST(DistributionJson, ComponentsAreLimited) {
   std::string weights = "[0";
   for (int i = 0; i < 1024; ++i)

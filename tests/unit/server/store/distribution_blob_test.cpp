@@ -30,6 +30,7 @@ TEST(DistributionBlob, ComesBackAsItWas) {
   EXPECT_EQ(after->held_out_score, before.held_out_score);
   EXPECT_EQ(after->component_scores, before.component_scores);
   EXPECT_EQ(after->cuts, before.cuts);
+  EXPECT_EQ(after->fit, before.fit);
   EXPECT_EQ(after->fitted_ms, before.fitted_ms);
   // and everything else, because it is written in the same bytes again
   Distribution exact_pose = *after;
