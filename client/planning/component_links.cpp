@@ -40,7 +40,7 @@ ComponentShapes::ComponentShapes(const ConfigurationSampler& sampler)
 
 double ComponentShapes::doubt(Eigen::Index k, const Eigen::VectorXd& q) const {
   Eigen::VectorXd offset = q - means_.col(k);
-  widened_factors_[static_cast<std::size_t>(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
+  widened_factors_[index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
   return offset.squaredNorm() / static_cast<double>(offset.size());
 }
 
@@ -53,7 +53,7 @@ double ComponentShapes::least_doubt(const Eigen::VectorXd& q) const {
 
 // Kailath, The Divergence and Bhattacharyya Distance Measures in Signal Selection (1967).
 double ComponentShapes::bhattacharyya_distance(Eigen::Index i, Eigen::Index j) const {
-  const auto first = static_cast<std::size_t>(i), second = static_cast<std::size_t>(j);
+  const std::size_t first = index(i), second = index(j);
   const Eigen::MatrixXd factor = ((covariances_[first] + covariances_[second]) / 2).llt().matrixL();
   Eigen::VectorXd offset = means_.col(i) - means_.col(j);
   factor.triangularView<Eigen::Lower>().solveInPlace(offset);

@@ -16,9 +16,7 @@ class ComponentShapes {
 
   Eigen::Index size() const noexcept { return means_.cols(); }
   Eigen::VectorXd mean(Eigen::Index k) const { return means_.col(k); }
-  const Eigen::MatrixXd& factor(Eigen::Index k) const {
-    return factors_[static_cast<std::size_t>(k)];
-  }
+  const Eigen::MatrixXd& factor(Eigen::Index k) const { return factors_[index(k)]; }
 
   /// Squared Mahalanobis distance per joint, the component's variances widened by kGateVariance.
   double doubt(Eigen::Index k, const Eigen::VectorXd& q) const;
@@ -28,6 +26,10 @@ class ComponentShapes {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> links(int neighbours) const;
 
  private:
+  /// Of component k among covariances and their factors.
+  std::size_t index(Eigen::Index k) const noexcept {
+    return factors_.size() == 1 ? 0 : static_cast<std::size_t>(k);
+  }
   double bhattacharyya_distance(Eigen::Index i, Eigen::Index j) const;
 
   Eigen::MatrixXd means_;

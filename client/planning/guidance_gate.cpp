@@ -38,7 +38,7 @@ class Ruler {
       for (Eigen::Index i = 0; i < offset.size(); ++i)
         if (turning_[static_cast<std::size_t>(i)])
           offset[i] = std::remainder(offset[i], kTurn);
-      factors_[static_cast<std::size_t>(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
+      factors_[mixture_.covariance_index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
       nearest = std::min(nearest, offset.squaredNorm());
     }
     return nearest;
@@ -46,7 +46,7 @@ class Ruler {
 
  private:
   const Mixture& mixture_;
-  const std::vector<Eigen::MatrixXd> factors_;  // lower Cholesky factors, d x d
+  const std::vector<Eigen::MatrixXd> factors_;  // lower Cholesky factors, d x d, of covariances()
   const std::vector<bool> turning_;
 };
 

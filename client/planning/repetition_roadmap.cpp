@@ -36,7 +36,7 @@ struct RoadmapQuery {
   PlanSummary plan(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals, const Way& way,
                    const Project& project) {
     BidirectionalSearch trees(sampler, options.tree, steering, budget, generator);
-    if (!sampler.mixture())
+    if (!sampler.mixture() || sampler.mixture()->size() > kMaxRoadmapComponents)
       return trees.run(start, goals);
     Eigen::MatrixXd free_goals;
     if (auto answer = trees.answer_at_once(start, goals, free_goals))

@@ -20,6 +20,10 @@ struct RoadmapOptions {
   std::uint64_t max_roadmap_checks = 2000;
 };
 
+/// A roadmap over more components would cost more than the search it is to spare (each is compared
+/// with each other); kernels are also too narrow to be places of their own.
+inline constexpr Eigen::Index kMaxRoadmapComponents = 1024;
+
 /// Repetition Roadmap: a roadmap over the components of the sampler's mixture, searched lazily.
 ///
 /// Vertices are the mean of each component and draws of it, within the bounds, moved to the turn
@@ -35,7 +39,8 @@ struct RoadmapOptions {
 /// takes over with what is left of the budget, beginning with what the roadmap found reachable.
 ///
 /// Arguments, promises, counts and reasons as plan_birrt. `iterations` are those of the trees: 0 if
-/// the roadmap had the path. Without a mixture the trees plan alone.
+/// the roadmap had the path. Without a mixture, or with more than
+/// kMaxRoadmapComponents components, the trees plan alone, guided all the same.
 /// \throws std::invalid_argument as plan_birrt, or if draws, neighbours or connections are
 /// negative. \throws Failure(Internal) if a covariance is not positive definite. Source: the idea
 /// of Lehner and Albu-Schaeffer, The Repetition Roadmap for Repetitive Constrained Motion Planning

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/mixture_codec.hpp"
 #include "proto/codec/selection_codec.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/limits.hpp"
@@ -16,57 +16,6 @@ namespace kinship::codec {
 namespace {
 
 constexpr std::size_t kMaxEnginesBytes = 128;
-
-/// Numbers in the lower triangle of a d x d matrix.
-std::size_t triangle_size(std::size_t dimension) { return dimension * (dimension + 1) / 2; }
-
-void write_mixture(const Mixture& mixture, Arena& arena, kinship_wire_Mixture& wire) {
-  const auto dimension = static_cast<std::size_t>(mixture.dimension());
-  const auto components = static_cast<std::size_t>(mixture.size());
-  write_numbers(arena, mixture.weights().data(), components, wire.weights);
-  write_numbers(arena, mixture.means().data(), dimension * components, wire.means);
-  arena.resize(wire.covariances, components * triangle_size(dimension));
-  double* next = wire.covariances._buffer;
-  for (const Eigen::MatrixXd& covariance : mixture.covariances())
-    for (Eigen::Index row = 0; row < covariance.rows(); ++row)
-      for (Eigen::Index column = 0; column <= row; ++column)
-        *next++ = covariance(row, column);
-}
-
-std::optional<Mixture> read_mixture(const kinship_wire_Mixture& wire, std::size_t dimension,
-                                    Reader& reader) {
-  const auto weights = elements(wire.weights);
-  const auto means = elements(wire.means);
-  const auto covariances = elements(wire.covariances);
-  reader.rules.that(dimension > 0 && !weights.empty(), "mixture: no joint or no component")
-      .at_most("mixture: components", weights.size(), kMaxComponents);
-  if (reader.rules.broken())
-    return std::nullopt;  // the products below cannot overflow
-  reader.rules
-      .that(means.size() == weights.size() * dimension,
-            "mixture: " + std::to_string(means.size()) + " numbers of means, must be " +
-                std::to_string(weights.size() * dimension))
-      .that(covariances.size() == weights.size() * triangle_size(dimension),
-            "mixture: " + std::to_string(covariances.size()) + " numbers of covariances, must be " +
-                std::to_string(weights.size() * triangle_size(dimension)));
-  if (reader.rules.broken())
-    return std::nullopt;
-  const auto d = static_cast<Eigen::Index>(dimension);
-  const auto k = static_cast<Eigen::Index>(weights.size());
-  std::vector<Eigen::MatrixXd> matrices(weights.size(), Eigen::MatrixXd(d, d));
-  const double* next = covariances.data();
-  for (Eigen::MatrixXd& matrix : matrices)
-    for (Eigen::Index row = 0; row < d; ++row)
-      for (Eigen::Index column = 0; column <= row; ++column)
-        matrix(row, column) = matrix(column, row) = *next++;
-  try {
-    return Mixture(Eigen::Map<const Eigen::VectorXd>(weights.data(), k),
-                   Eigen::Map<const Eigen::MatrixXd>(means.data(), d, k), std::move(matrices));
-  } catch (const std::invalid_argument& error) {  // the class knows its own invariant
-    reader.rules.that(false, error.what());
-    return std::nullopt;
-  }
-}
 
 void write_sources(const std::vector<Source>& sources, Arena& arena,
                    kinship_wire_Distribution& wire) {
@@ -342,11 +291,12 @@ std::optional<Error> check(const Distribution& distribution) {
   rules.that(mixture.has_value() == has_mixture(distribution.state),
              mixture ? "mixture: given although failed" : "mixture: missing although not failed");
   if (mixture)
-    rules.at_most("mixture: components", static_cast<std::size_t>(mixture->size()), kMaxComponents)
-        .that(mixture->dimension() == distribution.limits.cols(),
-              "mixture: dimension " + std::to_string(mixture->dimension()) +
-                  " differs from that of the limits, " +
-                  std::to_string(distribution.limits.cols()));
+    check_mixture(*mixture, rules);
+  if (mixture)
+    rules.that(mixture->dimension() == distribution.limits.cols(),
+               "mixture: dimension " + std::to_string(mixture->dimension()) +
+                   " differs from that of the limits, " +
+                   std::to_string(distribution.limits.cols()));
   return rules.broken();
 }
 
@@ -364,10 +314,8 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   wire.reason = arena.text(distribution.reason);
   write_sources(distribution.sources, arena, wire);
   wire.configurations = distribution.configurations;
-  if (distribution.mixture) {
-    arena.resize(wire.mixture, 1);
-    write_mixture(*distribution.mixture, arena, wire.mixture._buffer[0]);
-  }
+  if (distribution.mixture)
+    write_mixture(*distribution.mixture, arena, wire);
   write_numbers(arena, distribution.limits.data(),
                 static_cast<std::size_t>(distribution.limits.size()), wire.limits);
   if (distribution.held_out_score)
@@ -412,8 +360,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.sources = read_sources(wire, reader);
   distribution.limits = Eigen::Map<const Eigen::Matrix2Xd>(
       limits.data(), 2, static_cast<Eigen::Index>(limits.size() / 2));
-  if (const auto mixture = elements(wire.mixture); !mixture.empty())
-    distribution.mixture = read_mixture(mixture[0], limits.size() / 2, reader);
+  distribution.mixture = read_mixture(wire, limits.size() / 2, reader);
   distribution.held_out_score =
       reader.optional_number("held_out_score", elements(wire.held_out_score));
   distribution.advice.recommended_share = wire.recommended_share;

@@ -173,11 +173,12 @@ void add_mixture(const std::optional<Mixture>& mixture, OrderedJson& object) {
 }
 
 Mixture read_mixture(const Reader& reader) {
-  Eigen::VectorXd weights = reader.at("weights").vector(kMaxComponents);
-  Eigen::MatrixXd means = reader.at("means").columns(kMaxDof, kMaxComponents);
   std::vector<Eigen::MatrixXd> covariances;
   for (const Reader& covariance : reader.at("covariances").elements(kMaxComponents))
     covariances.push_back(covariance.columns(kMaxDof, kMaxDof));
+  const std::size_t most = covariances.size() == 1 ? kMaxKernels : kMaxComponents;
+  Eigen::VectorXd weights = reader.at("weights").vector(most);
+  Eigen::MatrixXd means = reader.at("means").columns(kMaxDof, most);
   try {
     return {std::move(weights), std::move(means), std::move(covariances)};
   } catch (const std::invalid_argument& error) {

@@ -7,7 +7,8 @@
 
 namespace kinship::mixture {
 
-/// The lower Cholesky factor of each covariance, d x d with zeros above the diagonal.
+/// The lower Cholesky factor of each of covariances(), d x d with zeros above the diagonal; that of
+/// component k is at covariance_index(k).
 /// \throws Failure(Internal) that names the first component whose covariance is not positive
 ///         definite.
 std::vector<Eigen::MatrixXd> cholesky_factors(const Mixture& mixture);

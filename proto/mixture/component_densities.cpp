@@ -15,10 +15,11 @@ ComponentDensities::ComponentDensities(const Mixture& mixture)
   const double log_two_pi = std::log(2 * std::numbers::pi);
   const std::vector<Eigen::MatrixXd> factors = cholesky_factors(mixture);
   whitenings_.reserve(factors.size());
-  for (Eigen::Index k = 0; k < mixture.size(); ++k) {
-    const Eigen::MatrixXd& factor = factors[static_cast<std::size_t>(k)];
+  for (const Eigen::MatrixXd& factor : factors)
     whitenings_.emplace_back(factor.triangularView<Eigen::Lower>().solve(
         Eigen::MatrixXd::Identity(dimension, dimension)));
+  for (Eigen::Index k = 0; k < mixture.size(); ++k) {
+    const Eigen::MatrixXd& factor = factors[mixture.covariance_index(k)];
     log_scales_[k] = std::log(mixture.weights()[k]) - factor.diagonal().array().log().sum() -
                      0.5 * static_cast<double>(dimension) * log_two_pi;
   }
@@ -34,7 +35,8 @@ Eigen::MatrixXd ComponentDensities::weighted_log_densities(
   Eigen::ArrayXd whitened(points.rows());
   Eigen::ArrayXd distance(points.rows());
   for (Eigen::Index k = 0; k < size(); ++k) {
-    const Eigen::MatrixXd& whitening = whitenings_[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXd& whitening =
+        whitenings_[whitenings_.size() == 1 ? 0 : static_cast<std::size_t>(k)];
     const Eigen::VectorXd offset = whitening.triangularView<Eigen::Lower>() * means_.col(k);
     distance.setZero();
     for (Eigen::Index row = 0; row < dimension(); ++row) {

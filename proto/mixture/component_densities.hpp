@@ -27,9 +27,10 @@ class ComponentDensities {
       const Eigen::Ref<const Eigen::MatrixXd>& configurations) const;
 
  private:
-  Eigen::MatrixXd means_;                    // d x K
-  std::vector<Eigen::MatrixXd> whitenings_;  // inverses of the lower Cholesky factors, d x d
-  Eigen::VectorXd log_scales_;               // log weight - log sqrt((2 pi)^d det covariance)
+  Eigen::MatrixXd means_;  // d x K
+  std::vector<Eigen::MatrixXd>
+      whitenings_;              // inverses of the lower Cholesky factors, d x d; K or one
+  Eigen::VectorXd log_scales_;  // log weight - log sqrt((2 pi)^d det covariance)
 };
 
 /// log of the sum of exp over each row, computed so that it neither over- nor underflows.

@@ -12,7 +12,8 @@ namespace kinship::mixture {
 Sampler::Sampler(const Mixture& mixture, Eigen::Matrix2Xd limits)
     : cumulative_weights_(static_cast<std::size_t>(mixture.size())),
       means_(mixture.means()),
-      factors_(mixture.dimension(), mixture.dimension() * mixture.size()),
+      factors_(mixture.dimension(),
+               mixture.dimension() * static_cast<Eigen::Index>(mixture.covariances().size())),
       limits_(std::move(limits)) {
   if (limits_.cols() != mixture.dimension())
     throw std::invalid_argument("Sampler: limits do not fit the mixture");
@@ -37,13 +38,15 @@ std::optional<Eigen::VectorXd> Sampler::sample(std::mt19937_64& generator) const
   std::normal_distribution<double> normal;
   Eigen::VectorXd noise(dimension());
   Eigen::VectorXd configuration(dimension());
+  const bool one_factor = factors_.cols() == dimension();
   for (int draw = 0; draw < kMaxDraws; ++draw) {
     const Eigen::Index component = draw_component(generator);
     for (double& value : noise)
       value = normal(generator);
+    const Eigen::Index first_row = one_factor ? 0 : component * dimension();
     bool inside = true;
     for (Eigen::Index joint = 0; joint < dimension() && inside; ++joint) {
-      const auto factor_row = factors_.col(component * dimension() + joint);
+      const auto factor_row = factors_.col(first_row + joint);
       configuration[joint] =
           means_(joint, component) + factor_row.head(joint + 1).dot(noise.head(joint + 1));
       inside =

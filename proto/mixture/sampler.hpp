@@ -33,7 +33,7 @@ class Sampler {
 
   std::vector<double> cumulative_weights_;
   Eigen::MatrixXd means_;    // d x K
-  Eigen::MatrixXd factors_;  // d x d K: column k d + i is row i of the Cholesky factor of k
+  Eigen::MatrixXd factors_;  // d x d K, or d x d if shared: column k d + i is row i of k's
   Eigen::Matrix2Xd limits_;
 };
 

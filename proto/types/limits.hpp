@@ -24,6 +24,7 @@ inline constexpr std::size_t kMaxSceneObjects = 2048;
 inline constexpr std::size_t kMaxHeldObjects = 64;
 inline constexpr std::size_t kMaxAllowedPairs = 1024;  ///< of a recorded scene
 inline constexpr std::size_t kMaxComponents = 1024;
+inline constexpr std::size_t kMaxKernels = 4000;  ///< components that share one covariance
 inline constexpr std::size_t kMaxComponentScores = 64;
 inline constexpr std::size_t kMaxSources = 1024;
 inline constexpr std::size_t kMaxJudgedAttempts = 256;  ///< in an advice

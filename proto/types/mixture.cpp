@@ -12,8 +12,8 @@ Mixture::Mixture(Eigen::VectorXd weights, Eigen::MatrixXd means,
   const Eigen::Index components = weights_.size();
   const Eigen::Index dimension = means_.rows();
   if (components < 1 || dimension < 1 || means_.cols() != components ||
-      static_cast<Eigen::Index>(covariances_.size()) != components)
-    throw std::invalid_argument("Mixture: need K >= 1 weights, d x K means, K covariances");
+      (covariances_.size() != 1 && static_cast<Eigen::Index>(covariances_.size()) != components))
+    throw std::invalid_argument("Mixture: need K >= 1 weights, d x K means, K covariances or one");
   constexpr double kSumTolerance = 1e-6;
   if (!weights_.allFinite() || !means_.allFinite() || weights_.minCoeff() < 0 ||
       std::abs(weights_.sum() - 1) > kSumTolerance)

@@ -32,6 +32,12 @@ struct TransferParameters {
   bool operator==(const TransferParameters&) const = default;
 };
 
+/// What is made of configurations.
+enum class Estimator : std::uint8_t {
+  Mixture,  ///< K Gaussians, each with its own covariance
+  Kernels,  ///< one Gaussian at each configuration, all with one covariance
+};
+
 /// How configurations become a mixture.
 struct DensityParameters {
   /// K, lowered if there are too few configurations. 0: chosen by how well held-out paths are
@@ -44,6 +50,7 @@ struct DensityParameters {
   /// Whether a refit may start from the mixture before it; otherwise every fit is a full one, and
   /// depends on the paths alone.
   bool warm_refits = true;
+  Estimator estimator = Estimator::Mixture;  ///< Kernels need no `components`
 
   bool operator==(const DensityParameters&) const = default;
 };

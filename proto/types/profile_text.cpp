@@ -1,5 +1,6 @@
 #include "proto/types/profile_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -17,6 +18,8 @@ struct Option {
   double least = 0, most = 0;
   bool is_whole = false;
   std::function<void(Profile&, double)> set;
+  /// Instead of a number, where an option has them: for 0, for 1, and so on.
+  std::vector<std::string_view> words = {};
 };
 
 int whole(double value) { return static_cast<int>(std::lround(value)); }
@@ -58,6 +61,14 @@ const std::vector<Option>& options() {
        [](Profile& profile, double value) { profile.density.equal_path_weights = value != 0; }},
       {"warm_refits", 0, 1, true,
        [](Profile& profile, double value) { profile.density.warm_refits = value != 0; }},
+      {"estimator",
+       0,
+       1,
+       true,
+       [](Profile& profile, double value) {
+         profile.density.estimator = value == 0 ? Estimator::Mixture : Estimator::Kernels;
+       },
+       {"gmm", "kde"}},
   };
   return kOptions;
 }
@@ -70,11 +81,24 @@ Error refusal(std::string_view text, const std::string& why) {
 std::optional<double> number_of(const Option& option, std::string_view text) {
   if (text == "auto" && option.name == "components")
     return 0;
+  if (!option.words.empty()) {
+    const auto word = std::find(option.words.begin(), option.words.end(), text);
+    return word == option.words.end() ? std::nullopt
+                                      : std::optional<double>(word - option.words.begin());
+  }
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     return std::nullopt;
   return value;
+}
+
+/// "gmm or kde".
+std::string listed(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view word : words)
+    text += (text.empty() ? "" : " or ") + std::string(word);
+  return text;
 }
 
 /// Changes what "name=value" says.
@@ -89,6 +113,8 @@ std::optional<std::string> change(Profile& profile, std::string_view word) {
         sign == std::string_view::npos ? std::nullopt : number_of(option, word.substr(sign + 1));
     const bool fits = value && *value >= option.least && *value <= option.most &&
                       (!option.is_whole || *value == std::round(*value));
+    if (!fits && !option.words.empty())
+      return "'" + std::string(word) + "' is not " + listed(option.words);
     if (!fits)
       return "'" + std::string(word) + "' is not a" + (option.is_whole ? " whole" : "") +
              " number from " + number_text(option.least) + " to " + number_text(option.most);

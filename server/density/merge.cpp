@@ -49,7 +49,7 @@ class Merging {
  public:
   explicit Merging(const Mixture& mixture) {
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
-      const Eigen::MatrixXd& covariance = mixture.covariances()[static_cast<std::size_t>(k)];
+      const Eigen::MatrixXd& covariance = mixture.covariance(k);
       components_.push_back(
           {mixture.weights()[k], mixture.means().col(k), covariance, log_determinant(covariance)});
     }

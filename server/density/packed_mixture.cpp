@@ -41,7 +41,7 @@ PackedMixture::PackedMixture(const Mixture& mixture, const Eigen::VectorXd& offs
   interleaved_.resize(static_cast<std::size_t>(stride_ * stride_of_component_));
   const std::vector<Eigen::MatrixXd> factors = mixture::cholesky_factors(mixture);
   for (int k = 0; k < size_; ++k)
-    pack(mixture.weights()[k], factors[static_cast<std::size_t>(k)],
+    pack(mixture.weights()[k], factors[mixture.covariance_index(k)],
          mixture.means().col(k) - offset, one_by_one_.data() + k * stride_of_component_);
   for (int k = 0; k < stride_; ++k)
     for (std::ptrdiff_t entry = 0; entry < stride_of_component_; ++entry)

@@ -13,7 +13,7 @@ std::size_t size_of(const FetchReply& reply) {
   const Mixture& mixture = *reply.distribution->mixture;
   const auto k = static_cast<std::size_t>(mixture.size());
   const auto d = static_cast<std::size_t>(mixture.dimension());
-  return kRest + sizeof(double) * k * (1 + d + d * d);
+  return kRest + sizeof(double) * (k * (1 + d) + mixture.covariances().size() * d * d);
 }
 
 }  // namespace

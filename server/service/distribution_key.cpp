@@ -81,6 +81,8 @@ Digest identify(const DistributionKey& key) {
   sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
   sha.add(static_cast<std::uint64_t>(density.weighting));
   sha.add(std::uint64_t{density.warm_refits ? 1U : 0U});
+  if (density.estimator == Estimator::Kernels)  // ids of mixtures need no new number
+    sha.add(std::string_view("kernels"));
   sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);
   sha.add(std::uint64_t{key.sources.size()});
   for (const Digest& source : key.sources)

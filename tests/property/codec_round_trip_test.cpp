@@ -308,10 +308,14 @@ class Vandal {
       case 6:
         return spoil(wire.evidence);
       case 7:
-        wire.mixture._length = 0;
+        wire.mixture._length = wire.kernels._length = 0;
         return;
       default:
         break;
+    }
+    if (wire.kernels._length != 0) {
+      kinship_wire_Kernels& kernels = wire.kernels._buffer[0];
+      spoil(values_.coin() ? kernels.weights : kernels.covariance);
     }
     if (wire.mixture._length == 0)
       return;

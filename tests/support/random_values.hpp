@@ -134,6 +134,18 @@ class RandomValues {
     return {weights, matrix(dof, components), covariances};
   }
 
+  /// A mixture whose components share a covariance, with means that f32 can hold.
+  Mixture kernels(Eigen::Index dof) {
+    const Eigen::Index components = 2 + below(200);
+    Eigen::VectorXd weights =
+        Eigen::VectorXd::NullaryExpr(components, [this] { return 0.01 + share(); });
+    weights /= weights.sum();
+    const Eigen::MatrixXd factor = matrix(dof, dof);
+    return {weights,
+            matrix(dof, components).cast<float>().cast<double>(),
+            {factor * factor.transpose()}};
+  }
+
   Selection selection() {
     Selection selection;
     for (int i = below(5); i > 0; --i)
@@ -224,7 +236,7 @@ class RandomValues {
     distribution.limits.row(0) = matrix(1, dof);
     distribution.limits.row(1) = distribution.limits.row(0).array() + 1;
     if (has_mixture(distribution.state))
-      distribution.mixture = mixture(dof);
+      distribution.mixture = coin() ? mixture(dof) : kernels(dof);
     if (coin())
       distribution.held_out_score = number();
     for (int components = below(40); components > 0; components -= 7)

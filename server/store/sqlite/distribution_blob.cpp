@@ -13,8 +13,8 @@ namespace {
 
 // Written first. 1 knew neither the selection nor the details of a source, 2 neither how its tracks
 // and filters fared nor thin distributions, 3 neither how the number of components was chosen nor
-// cuts, 4 not what a fit began with; all are still read.
-constexpr std::uint64_t kFormat = 5;
+// cuts, 4 not what a fit began with, 5 no covariance that all components share; all are still read.
+constexpr std::uint64_t kFormat = 6;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
 
 template <typename Enum>
@@ -161,15 +161,19 @@ std::optional<FitOrigin> read_fit(ByteReader& in) {
 
 void add_mixture(ByteWriter& out, const Mixture& mixture) {
   out.add(mixture.weights()).add(mixture.means());
+  out.add(std::uint64_t{mixture.covariances().size()});
   for (const Eigen::MatrixXd& covariance : mixture.covariances())
     out.add(covariance);
 }
 
-Mixture read_mixture(ByteReader& in) {
-  const Eigen::MatrixXd weights = in.matrix(kMaxComponents, 1);
-  Eigen::MatrixXd means = in.matrix(kMaxDof, kMaxComponents);
+Mixture read_mixture(ByteReader& in, std::uint64_t format) {
+  const Eigen::MatrixXd weights = in.matrix(kMaxKernels, 1);
+  Eigen::MatrixXd means = in.matrix(kMaxDof, kMaxKernels);
+  const std::uint64_t count = format > 5 ? in.integer() : std::uint64_t(weights.rows());
+  if (count > kMaxComponents || (count > 1 && std::uint64_t(weights.rows()) != count))
+    throw std::out_of_range("distribution: too many covariances, or other than components");
   std::vector<Eigen::MatrixXd> covariances;
-  for (Eigen::Index i = 0; i < weights.rows(); ++i)
+  for (std::uint64_t i = 0; i < count; ++i)
     covariances.push_back(in.matrix(kMaxDof, kMaxDof));
   return {Eigen::VectorXd(weights.reshaped()), std::move(means), std::move(covariances)};
 }
@@ -202,7 +206,7 @@ Distribution read_distribution(ByteReader& in) {
   for (std::uint64_t i = 0; i < sources; ++i)
     distribution.sources.push_back(read_source(in, format));
   if (in.integer() != 0)
-    distribution.mixture = read_mixture(in);
+    distribution.mixture = read_mixture(in, format);
   if (format > 1)
     distribution.selection = read_selection(in);
   if (format > 3)

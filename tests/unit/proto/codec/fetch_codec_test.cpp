@@ -95,6 +95,65 @@ TEST(FetchCodec, MixtureThatDoesNotFitIntoASampleIsTooLarge) {
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);
 }
 
+/// A reply with `count` kernels of seven joints.
+FetchReply reply_of_kernels(Eigen::Index count) {
+  FetchReply reply = ready_reply();
+  reply.distribution->limits = Eigen::Matrix2Xd::Zero(2, 7);
+  reply.distribution->limits.row(1).setOnes();
+  reply.distribution->cuts.clear();
+  reply.distribution->mixture = Mixture(
+      Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count)),
+      Eigen::MatrixXd::NullaryExpr(7, count,
+                                   [](Eigen::Index row, Eigen::Index column) {
+                                     return static_cast<double>((column % 997) * 8 + row) / 8192;
+                                   }),
+      {Eigen::MatrixXd::Identity(7, 7) / 512});
+  return reply;
+}
+
+TEST(FetchCodec, KernelsComeBackInFewBytes) {
+  const FetchReply written = reply_of_kernels(4000);
+  auto message = encode({}, written).value_or_throw();
+  const kinship_wire_Distribution& wire = message.wire.distribution._buffer[0];
+  EXPECT_EQ(wire.mixture._length, 0U);
+  EXPECT_EQ(wire.kernels._buffer[0].centres._length, 7U * 4000);
+  EXPECT_EQ(wire.kernels._buffer[0].covariance._length, 28U);
+  const FetchReply read = decode(message.wire).value_or_throw();
+  const Mixture& mixture = *read.distribution->mixture;
+  EXPECT_TRUE(mixture.shares_covariance());
+  EXPECT_EQ(mixture.means(), written.distribution->mixture->means());
+  EXPECT_EQ(mixture.weights(), written.distribution->mixture->weights());
+  EXPECT_EQ(mixture.covariances(), written.distribution->mixture->covariances());
+}
+
+TEST(FetchCodec, KernelsThatDoNotFitAreRefused) {
+  EXPECT_EQ(encode({}, reply_of_kernels(4001)).error().code, ErrorCode::TooLarge);
+  FetchReply far = reply_of_kernels(3);
+  far.distribution->mixture =
+      Mixture(Eigen::Vector2d(0.5, 0.5), Eigen::MatrixXd::Constant(7, 2, 1e300),
+              {Eigen::MatrixXd::Identity(7, 7)});
+  EXPECT_EQ(encode({}, far).error().message, "kernels: a centre is no finite f32");
+
+  auto both = encode({}, reply_of_kernels(3)).value_or_throw();
+  kinship_wire_Distribution& wire = both.wire.distribution._buffer[0];
+  kinship_wire_Mixture none = {};
+  wire.mixture._buffer = &none;
+  wire.mixture._length = 1;
+  EXPECT_EQ(decode(both.wire).error().message, "mixture: given, and kernels too");
+  wire.mixture._length = 0;
+  wire.kernels._buffer[0].centres._length = 20;
+  EXPECT_EQ(decode(both.wire).error().message, "kernels: 20 numbers of centres, must be 21");
+  wire.kernels._buffer[0].centres._length = 21;
+  wire.kernels._buffer[0].covariance._length = 84;
+  EXPECT_EQ(decode(both.wire).error().message, "kernels: 84 numbers of covariances, must be 28");
+  wire.kernels._buffer[0].covariance._length = 28;
+  EXPECT_TRUE(decode(both.wire));
+  wire.kernels._buffer[0].centres._buffer[5] = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(decode(both.wire));
+  wire.kernels._length = 0;  // as a client that does not know the member sees it
+  EXPECT_EQ(decode(both.wire).error().message, "mixture: missing although not failed");
+}
+
 TEST(FetchCodec, EvidenceAndSourcesMustBePossible) {
   FetchReply reply = ready_reply();
   reply.distribution->advice.guided = ArmEvidence{.attempts = 5, .solved = 6};

@@ -37,6 +37,15 @@ TEST(ProfileText, ComponentsAreChosenByAuto) {
   EXPECT_FALSE(profile_from_text("default,tracks=auto"));
 }
 
+TEST(ProfileText, EstimatorIsAWord) {
+  EXPECT_EQ(profile_from_text("default,estimator=kde")->density.estimator, Estimator::Kernels);
+  EXPECT_EQ(profile_from_text("default,estimator=kde,estimator=gmm")->density.estimator,
+            Estimator::Mixture);
+  EXPECT_EQ(profile_from_text("default,estimator=1").error().message,
+            "profile 'default,estimator=1': 'estimator=1' is not gmm or kde");
+  EXPECT_FALSE(profile_from_text("default,estimator"));
+}
+
 TEST(ProfileText, RefusesWithOptionValueAndLimits) {
   const auto message = [](const char* text) { return profile_from_text(text).error().message; };
   EXPECT_EQ(message("best"), "profile 'best': it does not begin with default or paper");

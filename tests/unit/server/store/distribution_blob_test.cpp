@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
 
 #include "tests/support/store_values.hpp"
@@ -36,6 +39,55 @@ TEST(DistributionBlob, ComesBackAsItWas) {
   Distribution exact_pose = *after;
   exact_pose.T_task_base = before.T_task_base;
   EXPECT_EQ(encode_distribution(exact_pose), encode_distribution(before));
+}
+
+/// With `count` components of three joints that share a covariance.
+Distribution example_of_kernels(Eigen::Index count) {
+  Distribution kernels = example();
+  const Eigen::Index dof = kernels.mixture->dimension();
+  kernels.mixture = Mixture(Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count)),
+                            Eigen::MatrixXd::NullaryExpr(dof, count,
+                                                         [](Eigen::Index row, Eigen::Index column) {
+                                                           return static_cast<double>(column + row);
+                                                         }),
+                            {Eigen::MatrixXd::Identity(dof, dof)});
+  return kernels;
+}
+
+TEST(DistributionBlob, KernelsShareTheirCovariance) {
+  const Distribution before = example_of_kernels(4000);
+  const std::vector<std::uint8_t> blob = encode_distribution(before);
+  const std::optional<Distribution> after = decode_distribution(blob);
+  ASSERT_TRUE(after);
+  EXPECT_TRUE(after->mixture->shares_covariance());
+  EXPECT_EQ(after->mixture->weights(), before.mixture->weights());
+  EXPECT_EQ(after->mixture->means(), before.mixture->means());
+  EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
+  EXPECT_FALSE(decode_distribution(encode_distribution(example_of_kernels(4001))));
+}
+
+/// The blob as it was written before there were kernels: no number of covariances after the means.
+std::vector<std::uint8_t> in_format_5(const Distribution& distribution) {
+  std::vector<std::uint8_t> blob = encode_distribution(distribution);
+  const Mixture& mixture = *distribution.mixture;
+  const double last = mixture.means()(mixture.means().rows() - 1, mixture.means().cols() - 1);
+  std::array<std::uint8_t, 16> wanted = {};  // the last mean, then that number
+  std::memcpy(wanted.data(), &last, 8);
+  wanted[8] = static_cast<std::uint8_t>(mixture.covariances().size());
+  const auto found = std::search(blob.begin(), blob.end(), wanted.begin(), wanted.end());
+  EXPECT_NE(found, blob.end());
+  blob.erase(found + 8, found + 16);
+  blob[0] = 5;
+  return blob;
+}
+
+TEST(DistributionBlob, ReadsTheFormatWithoutKernels) {
+  const Distribution before = example();
+  const std::optional<Distribution> after = decode_distribution(in_format_5(before));
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->mixture->means(), before.mixture->means());
+  EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
+  EXPECT_EQ(after->cuts, before.cuts);
 }
 
 TEST(DistributionBlob, KeepsAFailureWithoutAMixture) {
