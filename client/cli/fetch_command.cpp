@@ -77,13 +77,14 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 
 /// How the poses of each source became configurations.
 void print_transfer(const Distribution& distribution, std::ostream& out) {
-  Table table({"SOURCE", "POSES SOLVED", "TRACKS KEPT", "RANDOM", "SELF-COLLIDING",
+  Table table({"SOURCE", "POSES SOLVED", "TRACKS KEPT", "THROUGH", "RANDOM", "SELF-COLLIDING",
                "IN RECORDED SCENE", "PATHS WITH SCENE"});
   for (const Source& source : distribution.sources)
     table.add_row({source.label, share_text(source.poses_solved, source.poses),
                    source.tracks_tried == 0 ? "-"
                                             : std::to_string(source.tracks_kept) + " of " +
                                                   std::to_string(source.tracks_tried),
+                   share_text(source.tracks_through, source.tracks_tried),
                    share_text(source.random_configurations, source.configurations),
                    share_text(source.self_collisions, source.filter_checks),
                    share_text(source.scene_collisions, source.filter_checks),

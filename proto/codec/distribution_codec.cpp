@@ -43,6 +43,7 @@ void write_sources(const std::vector<Source>& sources, Arena& arena,
     entry.self_collisions = sources[i].self_collisions;
     entry.scene_collisions = sources[i].scene_collisions;
     entry.paths_with_scene = sources[i].paths_with_scene;
+    entry.tracks_through = sources[i].tracks_through;
   }
 }
 
@@ -70,7 +71,8 @@ std::vector<Source> read_sources(const kinship_wire_Distribution& wire, Reader& 
          .filter_checks = entry.filter_checks,
          .self_collisions = entry.self_collisions,
          .scene_collisions = entry.scene_collisions,
-         .paths_with_scene = entry.paths_with_scene});
+         .paths_with_scene = entry.paths_with_scene,
+         .tracks_through = entry.tracks_through});
   return sources;
 }
 

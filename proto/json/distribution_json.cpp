@@ -41,6 +41,7 @@ OrderedJson source_object(const Source& source) {
   object["self_collisions"] = source.self_collisions;
   object["scene_collisions"] = source.scene_collisions;
   object["paths_with_scene"] = source.paths_with_scene;
+  object["tracks_through"] = source.tracks_through;
   return object;
 }
 
@@ -74,6 +75,7 @@ Source read_source(const Reader& reader) {
   read_count("self_collisions", source.self_collisions);
   read_count("scene_collisions", source.scene_collisions);
   read_count("paths_with_scene", source.paths_with_scene);
+  read_count("tracks_through", source.tracks_through);
   return source;
 }
 

@@ -46,6 +46,9 @@ struct Source {
   std::uint64_t self_collisions = 0;   ///< of them left out: the target touches itself
   std::uint64_t scene_collisions = 0;  ///< of them left out: it touches the recorded scene
   std::uint64_t paths_with_scene = 0;  ///< of `paths_used`: filtered by their recorded scene
+  /// Of `tracks_tried`: came through the whole path. The share of the target's solutions that
+  /// continue through the paths.
+  std::uint64_t tracks_through = 0;
 };
 
 /// How well a number of components does at configurations of paths that were held out.

@@ -54,6 +54,7 @@ void write(const transfer::TransferSummary& total, Source& source) {
   source.colliding = total.colliding;
   source.tracks_tried = total.tracks_tried;
   source.tracks_kept = total.tracks_kept;
+  source.tracks_through = total.tracks_through;
   source.random_configurations = total.random_configurations;
   source.filter_checks = total.filter_checks;
   source.self_collisions = total.self_collisions;

@@ -179,7 +179,8 @@ class RandomValues {
             .filter_checks = count(),
             .self_collisions = count(),
             .scene_collisions = count(),
-            .paths_with_scene = count()};
+            .paths_with_scene = count(),
+            .tracks_through = count()};
   }
 
   ArmEvidence evidence() {

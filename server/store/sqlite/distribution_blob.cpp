@@ -13,8 +13,9 @@ namespace {
 
 // Written first. 1 knew neither the selection nor the details of a source, 2 neither how its tracks
 // and filters fared nor thin distributions, 3 neither how the number of components was chosen nor
-// cuts, 4 not what a fit began with, 5 no covariance that all components share; all are still read.
-constexpr std::uint64_t kFormat = 6;
+// cuts, 4 not what a fit began with, 5 no covariance that all components share, 6 not how many
+// tracks came through; all are still read.
+constexpr std::uint64_t kFormat = 7;
 constexpr std::size_t kMaxTextBytes = 1'000'000;
 
 template <typename Enum>
@@ -33,7 +34,7 @@ void add_source(ByteWriter& out, const Source& source) {
   out.add(source.configurations).add(source.mass);
   out.add(source.colliding).add(source.tracks_tried).add(source.tracks_kept);
   out.add(source.random_configurations).add(source.filter_checks).add(source.self_collisions);
-  out.add(source.scene_collisions).add(source.paths_with_scene);
+  out.add(source.scene_collisions).add(source.paths_with_scene).add(source.tracks_through);
 }
 
 void read_details(ByteReader& in, Source& source) {
@@ -71,6 +72,8 @@ Source read_source(ByteReader& in, std::uint64_t format) {
     source.paths_used = source.paths;  // fits left none out then
   if (format > 2)
     read_tracks_and_filters(in, source);
+  if (format > 6)
+    source.tracks_through = in.integer();
   return source;
 }
 

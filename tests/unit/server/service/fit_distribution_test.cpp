@@ -367,6 +367,8 @@ TEST_F(FitDistribution, SaysHowTracksFared) {
   const Source tracked = fitted(key).sources.at(0);
   EXPECT_GT(tracked.tracks_kept, 0U);
   EXPECT_LE(tracked.tracks_kept, tracked.tracks_tried);
+  EXPECT_GT(tracked.tracks_through, 0U);
+  EXPECT_LE(tracked.tracks_through, tracked.tracks_tried);
   EXPECT_LT(tracked.random_configurations, tracked.configurations);
   key.profile = *find_profile("paper");
   key.profile.density.components = 2;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "tests/support/store_values.hpp"
 
@@ -103,6 +105,24 @@ TEST(DistributionBlob, KeepsAFailureWithoutAMixture) {
   EXPECT_EQ(after->state, DistributionState::Failed);
   EXPECT_EQ(after->reason, failed.reason);
   EXPECT_FALSE(after->mixture || after->T_task_base || after->held_out_score);
+}
+
+TEST(DistributionBlob, ReadsTheFormatThatKnewNoTracksThatCameThrough) {
+  Distribution before = example();
+  constexpr std::uint64_t kMark = 0x1122334455667788;
+  before.sources[0].tracks_through = kMark;
+  std::vector<std::uint8_t> blob = encode_distribution(before);
+  ASSERT_EQ(decode_distribution(blob)->sources[0].tracks_through, kMark);
+  const std::array<std::uint8_t, 8> mark = {0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11};
+  const auto at = std::search(blob.begin(), blob.end(), mark.begin(), mark.end());
+  ASSERT_NE(at, blob.end());
+  blob.erase(at, at + mark.size());
+  blob[0] = 6;  // the format
+  const std::optional<Distribution> after = decode_distribution(blob);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->sources[0].tracks_through, 0U);
+  EXPECT_EQ(after->sources[0].paths_with_scene, before.sources[0].paths_with_scene);
+  EXPECT_EQ(after->mixture->means(), before.mixture->means());
 }
 
 TEST(DistributionBlob, RefusesCutsAndScoresThatNoFitWrites) {
