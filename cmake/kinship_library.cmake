@@ -54,6 +54,18 @@ function(kinship_program name)
   kinship_use_precompiled(${name} kinship_headers)
 endfunction()
 
+# Defines KINSHIP_SOURCE_DIR and KINSHIP_BIN_DIR for those of the sources that name them. The others compile to the same
+# bytes in every folder, so that a compiler cache serves other clones too. Who names them anew runs CMake again.
+function(kinship_tell_places)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS ${source} mentions REGEX "KINSHIP_(SOURCE|BIN)_DIR" LIMIT_COUNT 1)
+    if(mentions)
+      set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS
+        KINSHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KINSHIP_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+    endif()
+  endforeach()
+endfunction()
+
 # kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60] [NOT_SANITIZED])
 #
 # One GoogleTest program; every TEST of it is a test of CTest. LABEL: unit, threads (unit tests that
@@ -70,8 +82,7 @@ function(kinship_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS} GTest::gtest GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE
-    KINSHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KINSHIP_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  kinship_tell_places(${arg_SOURCES})
   # What is tested is fully optimized, the tests themselves need not be: a third of their build time.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   kinship_use_precompiled(${name} kinship_test_headers)

@@ -1,21 +1,25 @@
 # Headers that most sources read, compiled once: a build takes about half the time. Sources still include what they
-# use; .ci/tidy reads them without these (KINSHIP_PRECOMPILE=OFF) and finds what is missing.
+# use; .ci/tidy reads them without these and finds what is missing.
 #
-# Not in a release: behind precompiled headers GCC 12 takes the standard library for code of ours, and warns of it when
-# it optimizes.
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
-  set(precompile_by_default OFF)
-else()
-  set(precompile_by_default ON)
-endif()
-option(KINSHIP_PRECOMPILE "Compile the headers that most sources read once" ${precompile_by_default})
+# In a release the tests have them, libraries and programs do not: behind precompiled headers GCC 12 takes the standard
+# library for code of ours, and warns of it when it optimizes fully.
+option(KINSHIP_PRECOMPILE "Compile the headers that most sources read once" ON)
+
+function(kinship_is_precompiled name result)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT name STREQUAL "kinship_test_headers")
+    set(${result} OFF PARENT_SCOPE)
+  else()
+    set(${result} ${KINSHIP_PRECOMPILE} PARENT_SCOPE)
+  endif()
+endfunction()
 
 # kinship_precompile(NAME HEADERS <vector> ... LINKS GTest::gtest ...)
 #
 # A target whose precompiled headers others take over with kinship_use_precompiled(TARGET NAME).
 function(kinship_precompile name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LINKS")
-  if(NOT KINSHIP_PRECOMPILE)
+  kinship_is_precompiled(${name} wanted)
+  if(NOT wanted)
     return()
   endif()
   set(source ${CMAKE_BINARY_DIR}/${name}.cpp)
@@ -26,7 +30,8 @@ function(kinship_precompile name)
 endfunction()
 
 function(kinship_use_precompiled target name)
-  if(NOT KINSHIP_PRECOMPILE)
+  kinship_is_precompiled(${name} wanted)
+  if(NOT wanted)
     return()
   endif()
   target_precompile_headers(${target} REUSE_FROM ${name})

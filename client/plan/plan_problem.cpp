@@ -130,7 +130,7 @@ class Planning {
         problem_(problem),
         settings_(settings),
         T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
-        world_(robot.chain, robot.shapes,
+        world_(robot.solids,
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
         is_free_([this, &stop](const Eigen::VectorXd& q) {
           if (stop())

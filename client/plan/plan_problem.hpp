@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "client/plan/plan_settings.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/problem.hpp"
+#include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
 
@@ -17,8 +19,12 @@ namespace kinship::plan {
 
 /// What planning knows about the robot.
 struct PlannedRobot {
+  /// \throws Failure(InvalidInput) as collision::RobotSolids says.
+  PlannedRobot(kinematics::Chain its_chain, const geometry::RobotShapes& shapes)
+      : chain(std::move(its_chain)), solids(chain, shapes) {}
+
   kinematics::Chain chain;
-  geometry::RobotShapes shapes;
+  collision::RobotSolids solids;  ///< shared by the worlds of all problems
 };
 
 /// A distribution to draw samples from.

@@ -16,6 +16,7 @@
 #include "client/plan/server_line.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "robots/models/scene_meshes.hpp"
 
 namespace kinship::plan {
 namespace {
@@ -53,7 +54,8 @@ class SceneRecorder {
       : wanted_(options.record_scenes), chain_(chain), messages_(messages) {}
 
   void add(const Problem& problem, Attempt& attempt) {
-    if (!wanted_ || (problem.scene.objects.empty() && problem.attached.empty()))
+    const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty();
+    if (!wanted_ || (is_open && problem.attached.empty()))
       return;
     Result<RecordedScene> scene = record_scene(chain_, problem);
     if (scene)
@@ -69,6 +71,15 @@ class SceneRecorder {
   std::ostream& messages_;
   bool told_ = false;
 };
+
+/// The answer to a problem whose meshes cannot be had.
+PlannedProblem unread(const Problem& problem, const Error& error) {
+  PlannedProblem planned;
+  planned.result.name = problem.name;
+  planned.result.time_limit_s = problem.time_limit_s;
+  planned.result.reason = error.message;
+  return planned;
+}
 
 GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain) {
   GuidanceWish wish;
@@ -88,11 +99,13 @@ class Run {
   Run(const PlanOptions& options, const models::LoadedRobot& robot, ServerLine& server,
       const RunStreams& streams)
       : options_(options),
-        robot_{robot.chain, robot.shapes},
+        robot_(robot.chain, robot.shapes),
         server_(server),
         streams_(streams),
         reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
                   options.task},
+        meshes_(options.problems.parent_path(),
+                models::parse_packages(options.robot.packages).value_or_throw()),
         scenes_(options, robot_.chain, streams.messages) {}
 
   /// \return whether every line has its result; false if `stop` ended it.
@@ -117,6 +130,8 @@ class Run {
  private:
   PlannedProblem plan(Problem problem, const std::function<bool()>& stop) {
     problem.seed += options_.seed_offset;
+    if (const auto error = meshes_.read(problem.scene, problem.attached))
+      return unread(problem, *error);
     PlannedProblem planned =
         plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop);
     if (planned.interrupted || !planned.attempted)
@@ -136,6 +151,7 @@ class Run {
   ServerLine& server_;
   const RunStreams& streams_;
   const Reporter reporter_;
+  models::SceneMeshes meshes_;
   SceneRecorder scenes_;
 };
 

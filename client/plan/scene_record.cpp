@@ -1,5 +1,6 @@
 #include "client/plan/scene_record.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -25,6 +26,13 @@ std::optional<Eigen::Isometry3d> T_transfer_link(const kinematics::Chain& chain,
 }  // namespace
 
 Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem) {
+  const auto held_mesh = std::find_if(problem.attached.begin(), problem.attached.end(),
+                                      [](const AttachedObject& each) { return each.mesh; });
+  if (!problem.scene.meshes.empty() || held_mesh != problem.attached.end())
+    return Error{
+        ErrorCode::InvalidInput,
+        "'" + (problem.scene.meshes.empty() ? held_mesh->name : problem.scene.meshes.front().name) +
+            "' is a mesh, and the server keeps scenes of shapes only"};
   RecordedScene scene;
   scene.objects = problem.scene.objects;
   for (const AttachedObject& attached : problem.attached)

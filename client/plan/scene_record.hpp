@@ -10,7 +10,7 @@ namespace kinship::plan {
 /// A problem's scene without its robot, as the server is told of it. What is attached to the tip,
 /// or to a link that is fixed to it, is said in the transfer frame; what another link carries, and
 /// allowed pairs that name a link, are left out: another robot has no such link.
-/// \return Error that names the rule which the scene breaks: too large, a name that is empty.
+/// \return Error that names the mesh, or the rule which the scene breaks: too large, an empty name.
 Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem);
 
 }  // namespace kinship::plan

@@ -36,6 +36,9 @@ RecordedScene read_recorded_scene(const Reader& reader) {
   reader.allow_only(
       {"boxes", "cylinders", "spheres", "capsules", "meshes", "held", "allowed_collisions"});
   RecordedScene scene;
+  if (const auto meshes = reader.find("meshes");
+      meshes && !meshes->elements(kMaxHeldObjects).empty())
+    meshes->refuse("only shapes are kept here");
   scene.objects = read_solids(reader).objects;
   if (const auto held = reader.find("held"))
     for (const Reader& each : held->elements(kMaxHeldObjects))

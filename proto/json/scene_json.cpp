@@ -8,6 +8,8 @@ namespace kinship::json {
 namespace {
 
 constexpr std::size_t kMaxObjects = 4096;
+constexpr std::size_t kMaxFileNameBytes = 4096;
+constexpr double kMaxScale = 1e6;
 
 template <typename... Visitors>
 struct Overloaded : Visitors... {
@@ -44,6 +46,26 @@ Eigen::Isometry3d read_center(const Reader& reader) {
   return T;
 }
 
+/// A mesh without its triangles: reading files is not for this library.
+Mesh read_mesh(const Reader& file, const std::optional<Reader>& scale) {
+  Mesh mesh;
+  mesh.file = file.text(kMaxFileNameBytes);
+  if (mesh.file.empty())
+    file.refuse("is empty");
+  if (scale) {
+    const auto factors = scale->elements(3);
+    if (factors.size() != 3)
+      scale->refuse(std::to_string(factors.size()) + " factors, must be 3");
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Reader& factor = factors[static_cast<std::size_t>(i)];
+      mesh.scale[i] = factor.number(-kMaxScale, kMaxScale);  // below 0: mirrored
+      if (mesh.scale[i] == 0)
+        factor.refuse("is 0, which makes the mesh flat");
+    }
+  }
+  return mesh;
+}
+
 /// Calls read(element) for each element of an optional list and collects what it returns.
 template <typename Read>
 void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read read) {
@@ -68,7 +90,7 @@ std::string read_name(const Reader& reader) {
 
 Shape read_shape(const Reader& reader) {
   if (reader.find("mesh"))
-    reader.refuse("meshes are not supported yet");
+    reader.refuse("is a mesh: only shapes are kept here");
   if (const auto box = reader.find("box"))
     return BoxShape{read_size(*box)};
   if (const auto sphere = reader.find("sphere"))
@@ -129,12 +151,28 @@ OrderedJson scene_object(const Scene& scene) {
                           }},
                object.shape);
   }
+  for (const SceneMesh& object : scene.meshes) {
+    OrderedJson entry;
+    entry["name"] = object.name;
+    entry["file"] = object.mesh.file;
+    entry["pose"] = pose_list(object.T_task_mesh);
+    entry["scale"] = list(object.mesh.scale);
+    document["meshes"].push_back(std::move(entry));
+  }
   return document;
 }
 
 Scene read_scene(const Reader& reader) {
   reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes"});
-  return read_solids(reader);
+  Scene scene = read_solids(reader);
+  if (const auto meshes = reader.find("meshes"))
+    for (const Reader& mesh : meshes->elements(kMaxObjects)) {
+      mesh.allow_only({"name", "file", "pose", "scale"});
+      scene.meshes.push_back({read_name(mesh.at("name")),
+                              read_mesh(mesh.at("file"), mesh.find("scale")),
+                              mesh.at("pose").pose()});
+    }
+  return scene;
 }
 
 Scene read_solids(const Reader& reader) {
@@ -155,8 +193,6 @@ Scene read_solids(const Reader& reader) {
     const CapsuleShape shape{read_extent(capsule.at("radius")), read_extent(capsule.at("length"))};
     return SceneObject{"", shape, capsule.at("pose").pose()};
   });
-  if (const auto meshes = reader.find("meshes"); meshes && !meshes->elements(kMaxObjects).empty())
-    meshes->refuse("meshes are not supported yet");
   return scene;
 }
 
@@ -164,7 +200,9 @@ OrderedJson attached_object(const AttachedObject& attached) {
   OrderedJson object;
   object["name"] = attached.name;
   object["link"] = attached.link;
-  object["shape"] = shape_object(attached.shape);
+  object["shape"] = attached.mesh ? OrderedJson{{"mesh", attached.mesh->file},
+                                                {"scale", list(attached.mesh->scale)}}
+                                  : shape_object(attached.shape);
   object["T_link_object"] = pose_list(attached.T_link_object);
   object["touch_links"] = attached.touch_links;
   return object;
@@ -174,7 +212,11 @@ AttachedObject read_attached(const Reader& reader) {
   AttachedObject attached;
   attached.name = read_name(reader.at("name"));
   attached.link = read_name(reader.at("link"));
-  attached.shape = read_shape(reader.at("shape"));
+  const Reader shape = reader.at("shape");
+  if (const auto file = shape.find("mesh"))
+    attached.mesh = read_mesh(*file, shape.find("scale"));
+  else
+    attached.shape = read_shape(shape);
   attached.T_link_object = reader.at("T_link_object").pose();
   if (const auto links = reader.find("touch_links"))
     for (const Reader& link : links->elements(kMaxCollisionPairs))

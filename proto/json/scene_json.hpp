@@ -12,11 +12,12 @@ OrderedJson attached_object(const AttachedObject& attached);
 
 OrderedJson shape_object(const Shape& shape);
 
-/// Absent lists are empty ones. Meshes are refused.
+/// Absent lists are empty ones. Meshes come as their files' names.
 Scene read_scene(const Reader& reader);
-/// The same from an object that has other members too.
+/// What is no mesh of an object that may have other members too.
 Scene read_solids(const Reader& reader);
 AttachedObject read_attached(const Reader& reader);
+/// Refuses a mesh.
 Shape read_shape(const Reader& reader);
 
 /// A name of 1 to kMaxLinkNameBytes bytes.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -33,18 +35,36 @@ struct SceneObject {
   Eigen::Isometry3d T_task_object = Eigen::Isometry3d::Identity();
 };
 
+/// A surface of triangles in a file, as a problem names it.
+struct Mesh {
+  std::string file;  ///< a name relative to the problem file, package://NAME/FILE or file:///FILE
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  /// The corners in the mesh's own frame, scaled: 3 x 3 n, m, three columns a triangle. Null until
+  /// models::SceneMeshes has read the file. Shared by copies, and never changed.
+  std::shared_ptr<const Eigen::Matrix3Xd> triangles = nullptr;
+};
+
+/// An obstacle of a scene that is a mesh.
+struct SceneMesh {
+  std::string name;
+  Mesh mesh;
+  Eigen::Isometry3d T_task_mesh = Eigen::Isometry3d::Identity();
+};
+
 /// Something held by the robot.
 struct AttachedObject {
   std::string name;
   std::string link;
   Shape shape;
   Eigen::Isometry3d T_link_object = Eigen::Isometry3d::Identity();
-  std::vector<std::string> touch_links;  ///< may touch it
+  std::vector<std::string> touch_links;     ///< may touch it
+  std::optional<Mesh> mesh = std::nullopt;  ///< instead of the shape
 };
 
 /// The obstacles around a robot, in the task frame.
 struct Scene {
   std::vector<SceneObject> objects;
+  std::vector<SceneMesh> meshes = {};
 };
 
 }  // namespace kinship

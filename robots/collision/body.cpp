@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "proto/types/failure.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 
 namespace kinship::collision {
 namespace {
@@ -25,6 +26,24 @@ Solid make_solid(const Shape& shape, const std::string& what,
   }
 }
 
+/// A solid and its pose in the frame that its object is given in.
+struct PlacedSolid {
+  Solid solid;
+  Eigen::Isometry3d T_frame_solid;
+};
+
+PlacedSolid place_mesh(const Mesh& mesh, const Eigen::Isometry3d& T_frame_mesh,
+                       const std::string& what) {
+  const std::string named = what + ": mesh '" + mesh.file + "'";
+  if (!mesh.triangles)
+    refuse(named + " has not been read");
+  const auto fitted = geometry::fit_mesh(*mesh.triangles);
+  if (!fitted)
+    refuse(named + ": " + fitted.error().message);
+  return {make_solid(fitted->fitted.shape, named, fitted->triangles.get()),
+          T_frame_mesh * fitted->fitted.T_points_shape};
+}
+
 const kinematics::ChainLink& link_at(const kinematics::Chain& chain, int link) {
   if (link < 0 || link >= static_cast<int>(chain.links().size()))
     refuse("link " + std::to_string(link) + " of a shape is not a link of the chain");
@@ -45,12 +64,15 @@ Body make_attached(const kinematics::Chain& chain, const AttachedObject& object)
   require_finite(object.T_link_object, what);
   const int index = chain.find_link(object.link);
   const kinematics::ChainLink& link = link_at(chain, index);
+  const PlacedSolid placed =
+      object.mesh ? place_mesh(*object.mesh, object.T_link_object, what)
+                  : PlacedSolid{make_solid(object.shape, what), object.T_link_object};
   return {BodyKind::Attached,
           object.name,
           index,
           link.joint,
-          link.T_joint_link * object.T_link_object,
-          make_solid(object.shape, what),
+          link.T_joint_link * placed.T_frame_solid,
+          placed.solid,
           object.touch_links};
 }
 
@@ -75,8 +97,7 @@ void require_known_names(const std::vector<Body>& bodies, const kinematics::Chai
 
 }  // namespace
 
-std::vector<Body> make_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
-                              const Surroundings& surroundings) {
+std::vector<Body> link_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes) {
   std::vector<Body> bodies;
   for (const geometry::LinkShape& shape : shapes.shapes) {
     const kinematics::ChainLink& link = link_at(chain, shape.link);
@@ -90,24 +111,32 @@ std::vector<Body> make_bodies(const kinematics::Chain& chain, const geometry::Ro
                       make_solid(shape.shape, what, shape.triangles.get()),
                       {}});
   }
+  return bodies;
+}
+
+void add_surroundings(const kinematics::Chain& chain, const Surroundings& surroundings,
+                      std::vector<Body>& bodies) {
   for (const AttachedObject& object : surroundings.attached)
     bodies.push_back(make_attached(chain, object));
 
   require_finite(surroundings.T_task_base, "placement of the base in the task frame");
   const Eigen::Isometry3d T_base_task = surroundings.T_task_base.inverse(Eigen::Isometry);
+  const auto add_obstacle = [&](const std::string& name, const Eigen::Isometry3d& T_task_solid,
+                                const Solid& solid) {
+    bodies.push_back({BodyKind::Obstacle, name, -1, -1, T_base_task * T_task_solid, solid, {}});
+  };
   for (const SceneObject& object : surroundings.scene.objects) {
     const std::string what = "scene object '" + object.name + "'";
     require_finite(object.T_task_object, what);
-    bodies.push_back({BodyKind::Obstacle,
-                      object.name,
-                      -1,
-                      -1,
-                      T_base_task * object.T_task_object,
-                      make_solid(object.shape, what),
-                      {}});
+    add_obstacle(object.name, object.T_task_object, make_solid(object.shape, what));
+  }
+  for (const SceneMesh& object : surroundings.scene.meshes) {
+    const std::string what = "scene object '" + object.name + "'";
+    require_finite(object.T_task_mesh, what);
+    const PlacedSolid placed = place_mesh(object.mesh, object.T_task_mesh, what);
+    add_obstacle(object.name, placed.T_frame_solid, placed.solid);
   }
   require_known_names(bodies, chain, surroundings);
-  return bodies;
 }
 
 }  // namespace kinship::collision

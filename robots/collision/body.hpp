@@ -22,10 +22,13 @@ struct Body {
   std::vector<std::string> touch_links;  ///< of attachments
 };
 
-/// Every solid of a robot and its surroundings: links, then attachments, then obstacles, the
-/// latter moved from the task frame into the base frame.
+/// Every solid of a robot's links.
+/// \throws Failure(InvalidInput) as RobotSolids' constructor says.
+std::vector<Body> link_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
+
+/// Adds attachments, then obstacles, the latter moved from the task frame into the base frame.
 /// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
-std::vector<Body> make_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
-                              const Surroundings& surroundings);
+void add_surroundings(const kinematics::Chain& chain, const Surroundings& surroundings,
+                      std::vector<Body>& bodies);
 
 }  // namespace kinship::collision

@@ -30,27 +30,23 @@ class Permissions {
   std::set<std::pair<std::string, std::string>> allowed_;  // first <= second
 };
 
-/// Neighbouring and never-colliding links, first < second.
-std::set<std::pair<int, int>> skipped_links(const std::vector<Body>& bodies,
-                                            const kinematics::Chain& chain,
-                                            const geometry::RobotShapes& shapes) {
+}  // namespace
+
+LinkPairs unchecked_links(const std::vector<Body>& bodies, const kinematics::Chain& chain,
+                          const geometry::RobotShapes& shapes) {
   std::vector<bool> has_shape(chain.links().size(), false);
   for (const Body& body : bodies)
     if (body.kind == BodyKind::Link)
       has_shape[static_cast<std::size_t>(body.link)] = true;
   const auto neighbours = neighbouring_links(chain, has_shape);
-  std::set<std::pair<int, int>> skipped(neighbours.begin(), neighbours.end());
-  skipped.insert(shapes.never_colliding.begin(), shapes.never_colliding.end());
-  return skipped;
+  LinkPairs pairs(neighbours.begin(), neighbours.end());
+  pairs.insert(shapes.never_colliding.begin(), shapes.never_colliding.end());
+  return pairs;
 }
 
-}  // namespace
-
-std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const kinematics::Chain& chain,
-                                   const geometry::RobotShapes& shapes,
+std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const LinkPairs& unchecked,
                                    const Surroundings& surroundings) {
   const Permissions permissions(surroundings);
-  const auto skipped = skipped_links(bodies, chain, shapes);
   std::vector<BodyPair> pairs;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
@@ -58,7 +54,7 @@ std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const kinema
       if (a.joint == b.joint || permissions.may_touch(a, b))
         continue;
       const bool links = a.kind == BodyKind::Link && b.kind == BodyKind::Link;
-      if (links && skipped.count(std::minmax(a.link, b.link)) > 0)
+      if (links && unchecked.count(std::minmax(a.link, b.link)) > 0)
         continue;
       pairs.emplace_back(i, j);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -9,11 +10,16 @@ namespace kinship::collision {
 
 using BodyPair = std::pair<std::size_t, std::size_t>;  ///< indices into the bodies
 
-/// The pairs of bodies that a configuration can bring together or apart and that may not touch,
-/// before links that always touch are left out. Those of the last joints come first: they move
-/// most and collide most.
-std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const kinematics::Chain& chain,
-                                   const geometry::RobotShapes& shapes,
+using LinkPairs = std::set<std::pair<int, int>>;  ///< of link indices, first < second
+
+/// Neighbouring links with shapes, and the shapes' never-colliding ones.
+LinkPairs unchecked_links(const std::vector<Body>& bodies, const kinematics::Chain& chain,
+                          const geometry::RobotShapes& shapes);
+
+/// The pairs of bodies that a configuration can bring together or apart and that may not touch.
+/// Those of the last joints come first: they move most and collide most.
+/// \param unchecked  of links.
+std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const LinkPairs& unchecked,
                                    const Surroundings& surroundings);
 
 /// The pairs of a standing part of the robot and an obstacle that may not touch.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proto/types/scene.hpp"
+#include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
 
@@ -26,11 +27,11 @@ struct Surroundings {
 /// it was asked. Not shared between threads.
 class CollisionWorld {
  public:
-  /// Never checked: what is fixed to each other, neighbouring links, the shapes' never-colliding
-  /// pairs and, if there are none of these, links that touch in at least 95 % of 200 random
-  /// configurations (seeded: equal input, equal answers).
   /// \throws Failure(InvalidInput) if an attached object or an allowed pair names what is not
-  ///         there, a shape is not finite and positive, or a pose not finite.
+  ///         there, a shape is not finite and positive, a pose not finite, or a mesh not read.
+  CollisionWorld(const RobotSolids& robot, const Surroundings& surroundings);
+  /// The same for a robot that has no other world.
+  /// \throws Failure(InvalidInput) as above, and as RobotSolids says.
   CollisionWorld(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
                  const Surroundings& surroundings);
   CollisionWorld(CollisionWorld&&) noexcept;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
+
+#include "robots/geometry/shape_rules.hpp"
 
 namespace kinship::geometry {
 namespace {
@@ -84,6 +87,19 @@ FittedShape fit_shape(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
              candidates.begin(), candidates.end(),
              [](const Candidate& a, const Candidate& b) { return a.volume_m3 < b.volume_m3; })
       ->fitted;
+}
+
+Result<FittedMesh> fit_mesh(const Eigen::Matrix3Xd& corners) {
+  if (corners.cols() == 0 || corners.cols() % 3 != 0)
+    return Error{ErrorCode::InvalidInput,
+                 std::to_string(corners.cols()) + " corners, which are no triangles"};
+  if (!corners.allFinite())
+    return Error{ErrorCode::InvalidInput, "a corner is not finite"};
+  const FittedShape fitted = fit_shape(corners);
+  if (const auto why = broken_rule(fitted.shape))
+    return Error{ErrorCode::InvalidInput, *why};
+  const Eigen::Isometry3d T_shape_points = fitted.T_points_shape.inverse(Eigen::Isometry);
+  return FittedMesh{fitted, std::make_shared<const Eigen::Matrix3Xd>(T_shape_points * corners)};
 }
 
 }  // namespace kinship::geometry

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 
+#include "proto/types/result.hpp"
 #include "proto/types/scene.hpp"
 
 namespace kinship::geometry {
@@ -20,5 +22,17 @@ struct FittedShape {
 /// volume. Conservative; not the smallest there is.
 /// \param points  3 x n, n >= 1, finite, m.
 FittedShape fit_shape(const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// A mesh in the solid around it.
+struct FittedMesh {
+  FittedShape fitted;
+  /// In the frame of the solid: 3 x 3 n, m, three columns a triangle; never null.
+  std::shared_ptr<const Eigen::Matrix3Xd> triangles;
+};
+
+/// \param corners  3 x 3 n, m, three columns a triangle.
+/// \return         InvalidInput without triangles, for numbers that are not finite, and for a mesh
+///                 that is larger than a shape may be.
+Result<FittedMesh> fit_mesh(const Eigen::Matrix3Xd& corners);
 
 }  // namespace kinship::geometry

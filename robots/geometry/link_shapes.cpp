@@ -25,27 +25,18 @@ std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   return std::nullopt;
 }
 
-/// A mesh in the solid around it.
-struct FittedMesh {
-  FittedShape fitted;
-  std::shared_ptr<const Eigen::Matrix3Xd> triangles;  // in the frame of the solid
-};
-
 /// A scaled mesh; nothing if it is to be left out.
-Result<std::optional<FittedMesh>> fit_mesh(const urdf::Mesh& mesh, const MeshSource& meshes) {
+Result<std::optional<FittedMesh>> read_fitted(const urdf::Mesh& mesh, const MeshSource& meshes) {
   const auto corners = meshes(mesh.filename);
   if (!corners)
     return corners.error();
   if (!*corners)
     return std::optional<FittedMesh>();
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
-  const Eigen::Matrix3Xd scaled = scale.asDiagonal() * **corners;
-  if (!scaled.allFinite() || scaled.cols() == 0 || scaled.cols() % 3 != 0)
-    return invalid("mesh '" + mesh.filename + "': no triangles, or not finite once scaled");
-  const FittedShape fitted = fit_shape(scaled);
-  const Eigen::Isometry3d T_shape_points = fitted.T_points_shape.inverse();
-  return std::optional<FittedMesh>(
-      {fitted, std::make_shared<const Eigen::Matrix3Xd>(T_shape_points * scaled)});
+  auto fitted = fit_mesh(scale.asDiagonal() * **corners);
+  if (!fitted)
+    return invalid("mesh '" + mesh.filename + "': " + fitted.error().message);
+  return std::optional<FittedMesh>(*std::move(fitted));
 }
 
 Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
@@ -66,7 +57,7 @@ Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision
   result.link = link;
   result.T_link_shape = to_isometry(collision.origin);
   if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(collision.geometry.get())) {
-    const auto fitted = fit_mesh(*mesh, meshes);
+    const auto fitted = read_fitted(*mesh, meshes);
     if (!fitted)
       return fitted.error();
     if (!*fitted)

@@ -196,6 +196,35 @@ TEST_F(BroughtRobot, TheSrdfSaysWhichLinksMayTouch) {
   EXPECT_TRUE(results_.at(0).solved) << results_.at(0).reason;
 }
 
+TEST_F(BroughtRobot, GoesAroundMeshesThatStandBesideTheProblemFile) {
+  write("post.stl", test::BoxMesh({40, 40, 200}).binary_stl());
+  Problem shapes = past_the_post(1), meshes = shapes, missing = shapes;
+  for (Problem* problem : {&meshes, &missing}) {
+    problem->scene.objects.clear();
+    problem->scene.meshes = {{"post",
+                              {.file = "post.stl", .scale = Eigen::Vector3d::Constant(0.001)},
+                              Eigen::Isometry3d(Eigen::Translation3d(0.33, 0.33, 0))}};
+  }
+  missing.scene.meshes[0].mesh.file = "lost.stl";
+  missing.name = "lost";
+  // Where the goal touches it: what is said shows that the mesh is where the shape was.
+  Problem blocked = meshes;
+  blocked.name = "blocked";
+  blocked.goal_configurations.col(0) << 0, M_PI / 4, 0, 0;
+  write("problems.jsonl", json::to_json(shapes) + "\n" + json::to_json(meshes) + "\n" +
+                              json::to_json(missing) + "\n" + json::to_json(blocked) + "\n");
+  EXPECT_EQ(plan({"--base", "base"}), 0) << messages_;
+  ASSERT_EQ(results_.size(), 4U);
+  EXPECT_TRUE(results_[0].solved) << results_[0].reason;
+  EXPECT_TRUE(results_[1].solved) << results_[1].reason;
+  EXPECT_EQ(results_[1].collision_checks, results_[0].collision_checks) << "the same solid";
+  EXPECT_FALSE(results_[2].solved);
+  EXPECT_NE(results_[2].reason.find("scene object 'post': mesh 'lost.stl'"), std::string::npos)
+      << results_[2].reason;
+  EXPECT_FALSE(results_[3].solved);
+  EXPECT_NE(results_[3].reason.find("touches 'post'"), std::string::npos) << results_[3].reason;
+}
+
 TEST_F(BroughtRobot, AMimicJointOnTheChainIsRefusedByName) {
   tip_ = "right";
   EXPECT_EQ(plan({"--base", "base"}), 2);

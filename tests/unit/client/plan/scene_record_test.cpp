@@ -51,5 +51,17 @@ TEST(SceneRecord, TooLargeASceneIsAnError) {
   EXPECT_EQ(record_scene(chain(), problem).error().message, "scene: 3000 objects exceed 2048");
 }
 
+TEST(SceneRecord, AMeshIsNotSent) {
+  Problem problem = test::wall_problem();
+  problem.scene.meshes = {{"rock", {.file = "rock.stl"}}};
+  EXPECT_EQ(record_scene(chain(), problem).error().message,
+            "'rock' is a mesh, and the server keeps scenes of shapes only");
+  problem.scene.meshes.clear();
+  problem.attached = {can_on("l4")};
+  problem.attached[0].mesh = Mesh{.file = "can.stl"};
+  EXPECT_EQ(record_scene(chain(), problem).error().message,
+            "'can' is a mesh, and the server keeps scenes of shapes only");
+}
+
 }  // namespace
 }  // namespace kinship::plan

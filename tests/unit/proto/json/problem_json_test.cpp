@@ -65,11 +65,40 @@ TEST(ProblemJson, AMissingPlacementIsWrittenAsMissing) {
   EXPECT_TRUE(problem_from_json(to_json(problem))->T_task_base);
 }
 
-TEST(ProblemJson, WhatIsNotSupportedYetIsRefused) {
-  EXPECT_EQ(message_of(changed("\"meshes\": []", R"("meshes": [{"name": "m"}])")),
-            "scene.meshes: meshes are not supported yet");
-  EXPECT_EQ(message_of(changed(R"({"box": [0.1, 0.2, 0.3]})", R"({"mesh": "a.stl"})")),
-            "attached[0].shape: meshes are not supported yet");
+constexpr const char* kMeshes =
+    R"("meshes": [{"name": "m", "file": "m.stl", "pose": [0,0,1,0,0,0,1], "scale": [1, -2, 1]}])";
+
+TEST(ProblemJson, MeshesAreReadAndWrittenAsNamesOfFiles) {
+  std::string text = changed("\"meshes\": []", kMeshes);
+  const std::string box = R"({"box": [0.1, 0.2, 0.3]})";
+  text.replace(text.find(box), box.size(), R"({"mesh": "package://tools/crate.obj"})");
+  const auto first = problem_from_json(text);
+  ASSERT_TRUE(first) << first.error().message;
+  const auto again = problem_from_json(to_json(*first));
+  ASSERT_TRUE(again) << again.error().message;
+  for (const Problem& problem : {*first, *again}) {
+    ASSERT_EQ(problem.scene.meshes.size(), 1U);
+    EXPECT_EQ(problem.scene.meshes[0].name, "m");
+    EXPECT_EQ(problem.scene.meshes[0].mesh.file, "m.stl");
+    EXPECT_EQ(problem.scene.meshes[0].mesh.scale, Eigen::Vector3d(1, -2, 1));
+    EXPECT_EQ(problem.scene.meshes[0].T_task_mesh.translation(), Eigen::Vector3d(0, 0, 1));
+    EXPECT_EQ(problem.scene.meshes[0].mesh.triangles, nullptr);
+    ASSERT_TRUE(problem.attached.at(0).mesh);
+    EXPECT_EQ(problem.attached[0].mesh->file, "package://tools/crate.obj");
+    EXPECT_EQ(problem.attached[0].mesh->scale, Eigen::Vector3d(1, 1, 1));
+  }
+}
+
+TEST(ProblemJson, AMeshThatCannotBeIsRefusedByName) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string meshes = kMeshes;
+    meshes.replace(meshes.find(from), from.size(), to);
+    return message_of(changed("\"meshes\": []", meshes));
+  };
+  EXPECT_EQ(with(R"("file": "m.stl", )", ""), "scene.meshes[0].file: is missing");
+  EXPECT_EQ(with("m.stl", ""), "scene.meshes[0].file: is empty");
+  EXPECT_EQ(with("-2", "0"), "scene.meshes[0].scale[1]: is 0, which makes the mesh flat");
+  EXPECT_EQ(with("[1, -2, 1]", "[1]"), "scene.meshes[0].scale: 1 factors, must be 3");
 }
 
 std::string constrained(const std::string& bounds, const std::string& T_region_end) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proto/types/failure.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
 namespace kinship::collision {
@@ -42,6 +43,60 @@ TEST(CollisionWorld, AnArmTouchesWhatLiesInItsWay) {
   EXPECT_FALSE(world.collides(kTurned));
   EXPECT_EQ(world.find_contact(kStraight), (Names{"link3", "post"}));
   EXPECT_EQ(world.find_contact(kTurned), std::nullopt);
+}
+
+Mesh read_box(const Eigen::Vector3d& size) {
+  return {"box.stl", Eigen::Vector3d::Ones(),
+          std::make_shared<const Eigen::Matrix3Xd>(test::BoxMesh(size).triangles())};
+}
+
+TEST(CollisionWorld, AMeshOfASceneIsTouchedWhereItsTrianglesAre) {
+  // A plate from (1.2, 0, -0.5) to (1.3, 0.6, 0.5): beside the straight arm, in the turning one's
+  // way.
+  Surroundings surroundings;
+  surroundings.scene.meshes = {{"plate", read_box({0.1, 0.6, 1}), shift(1.2, -0.05)}};
+  surroundings.scene.meshes[0].T_task_mesh.translation().z() = -0.5;
+  CollisionWorld world = make_world(surroundings);
+  EXPECT_TRUE(world.collides(kStraight));
+  EXPECT_FALSE(world.collides(kTurned));
+  EXPECT_EQ(world.find_contact(kStraight), (Names{"link3", "plate"}));
+
+  surroundings.scene.meshes[0].T_task_mesh.translation().y() = 0.2;
+  EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+}
+
+TEST(CollisionWorld, AHeldMeshMovesWithItsLink) {
+  Surroundings surroundings = with_object(box_at("post", 0, 1.9));
+  AttachedObject rod = held_box("link3", 0, 1);
+  rod.mesh = read_box({0.6, 0.02, 0.02});  // from the link's origin along it
+  rod.touch_links = {"link3", "link2"};
+  EXPECT_FALSE(make_world(surroundings).collides(kTurned));
+  surroundings.attached.push_back(rod);
+  surroundings.attached[0].T_link_object = shift(0.5);
+  CollisionWorld world = make_world(surroundings);
+  EXPECT_TRUE(world.collides(kTurned));
+  EXPECT_FALSE(world.collides(kStraight));
+}
+
+TEST(CollisionWorld, AMeshThatWasNotReadIsRefusedByName) {
+  Surroundings surroundings;
+  surroundings.scene.meshes = {{"plate", {.file = "plate.stl"}}};
+  try {
+    make_world(surroundings);
+    FAIL() << "an obstacle was left out";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.error().message, "scene object 'plate': mesh 'plate.stl' has not been read");
+  }
+}
+
+TEST(CollisionWorld, WorldsOfTheSameSolidsAnswerLikeWorldsOfTheirOwn) {
+  const RobotSolids robot(toy_chain(kJoints), toy_shapes(kJoints));
+  for (const double x : {0.7, 1.2, 1.9}) {
+    const Surroundings surroundings = with_object(box_at("post", x, 0));
+    CollisionWorld shared(robot, surroundings), own = make_world(surroundings);
+    for (const Eigen::VectorXd& q : {kStraight, kTurned, angles({0.5, -1, 0.4})})
+      EXPECT_EQ(shared.collides(q), own.collides(q)) << x;
+  }
 }
 
 TEST(CollisionWorld, ObstaclesStandInTheTaskFrame) {
