@@ -1,4 +1,5 @@
 #include "client/arguments/number_range.hpp"
+#include "client/arguments/profile_options.hpp"
 #include "client/cli/explain_command.hpp"
 #include "client/cli/export_commands.hpp"
 #include "client/cli/fetch_command.hpp"
@@ -16,7 +17,7 @@ std::vector<CLI::Option*> add_wish(CLI::App& command, DistributionWish& wish) {
       command.add_option("--robot", wish.robot, "Label, or beginning of its digest");
   command.add_option("--placement", wish.placement,
                      "Robot's base in the task frame, \"x y z qx qy qz qw\"");
-  command.add_option("--profile", wish.profile, "default or paper");
+  arguments::add_profile_options(command, wish.profile);
   arguments::add_selection_options(command, wish.selection);
   command
       .add_option_function<double>(

@@ -92,6 +92,20 @@ void print_transfer(const Distribution& distribution, std::ostream& out) {
   table.print(out);
 }
 
+void print_size(const Mixture& mixture, std::uint64_t configurations, std::ostream& out) {
+  const bool are_kernels = mixture.shares_covariance();
+  out << (are_kernels ? "kernels       " : "mixture       ") << mixture.size()
+      << (are_kernels ? " in " : " components in ") << mixture.dimension()
+      << " dimensions, fitted to " << configurations << " configurations\n";
+  if (!are_kernels)
+    return;
+  constexpr int kDigits = 3;
+  out << "bandwidth    ";
+  for (const double variance : mixture.covariance(0).diagonal())
+    out << ' ' << number_text(std::sqrt(variance), kDigits);
+  out << ", deviations of a kernel\n";
+}
+
 /// The score of each number of components that was tried, drawn as bars.
 void print_curve(const Distribution& distribution, std::ostream& out) {
   constexpr double kWidth = 40;
@@ -125,9 +139,7 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
       << (distribution.T_task_base ? pose_text(*distribution.T_task_base) : "not given") << '\n'
       << "profile       " << distribution.profile << " (" << distribution.engines << ")\n";
   if (distribution.mixture)
-    out << "mixture       " << distribution.mixture->size() << " components in "
-        << distribution.mixture->dimension() << " dimensions, fitted to "
-        << distribution.configurations << " configurations\n";
+    print_size(*distribution.mixture, distribution.configurations, out);
   out << "made          " << time_text(distribution.fitted_ms) << ", transfer "
       << number_text(distribution.transfer_time_s, 2) << " s, fit "
       << number_text(distribution.fit_time_s, 2) << " s\n";

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/arguments/profile_options.hpp"
+
 namespace kinship::experiments {
 namespace {
 
@@ -32,7 +34,8 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
   const auto add = [&](const std::string& name, auto& value, const std::string& text) {
     return command.add_option(name, value, text)->needs(tunes);
   };
-  add("--profile", tuning.profile, "profile of the distributions");
+  for (CLI::Option* option : arguments::add_profile_options(command, tuning.profile))
+    option->needs(tunes);
   add("--overshoot", tuning.overshoot, "of uniform and guided queries")
       ->check(CLI::Range(1.0, 10.0));
   add("--share", tuning.share, "of guided samples")->check(CLI::Range(0.0, 1.0));

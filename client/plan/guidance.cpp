@@ -33,10 +33,11 @@ std::string describe(const planning::ArmChooser& arms, double share) {
 
 std::string describe(const Distribution& distribution, const planning::ArmChooser& arms,
                      double share) {
-  std::string text = "distribution " + distribution.id.short_hex() + " revision " +
-                     std::to_string(distribution.revision) + ", " +
-                     std::to_string(distribution.mixture->size()) + " components fitted to " +
-                     std::to_string(distribution.configurations) + " configurations from ";
+  std::string text =
+      "distribution " + distribution.id.short_hex() + " revision " +
+      std::to_string(distribution.revision) + ", " + std::to_string(distribution.mixture->size()) +
+      (distribution.mixture->shares_covariance() ? " kernels of " : " components fitted to ") +
+      std::to_string(distribution.configurations) + " configurations from ";
   for (std::size_t i = 0; i < distribution.sources.size(); ++i) {
     const Source& source = distribution.sources[i];
     text += (i == 0 ? "" : ", ") +

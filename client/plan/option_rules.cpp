@@ -13,7 +13,8 @@ namespace {
 
 /// Options that say which distribution is wanted and how it is used.
 constexpr std::initializer_list<const char*> kOfGuidance = {
-    "--profile", "--sources", "--weighting", "--since", "--share", "--control-share", "--wait"};
+    "--profile", "--estimator", "--sources",       "--weighting",
+    "--since",   "--share",     "--control-share", "--wait"};
 constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
                                                            "--outbox"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/arguments/number_range.hpp"
+#include "client/arguments/profile_options.hpp"
 #include "client/arguments/robot_options.hpp"
 #include "client/plan/option_rules.hpp"
 #include "proto/types/exit_code.hpp"
@@ -93,8 +94,7 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
          "ways cost so far; always: every query for which there is a distribution; require: "
          "as auto, fails without one (default: auto with --task, otherwise uniform)")
       ->check(CLI::IsMember({"uniform", "none", "auto", "always", "require"}));
-  app.add_option("--profile", options.profile, "profile of the distribution")
-      ->capture_default_str();
+  arguments::add_profile_options(app, options.profile);
   arguments::add_selection_options(app, raw.selection);
   app.add_option(
          "--share", raw.share,

@@ -10,12 +10,12 @@
 #include "server/density/block_points.hpp"
 #include "server/density/distinct_points.hpp"
 #include "server/density/em_run.hpp"
+#include "server/density/fit_input.hpp"
 
 namespace kinship::density {
 namespace {
 
 constexpr Eigen::Index kMostComponents = 128;  // where K is chosen
-constexpr double kLargestValue = 1e6;  // joint units; squares of it still leave room for the floor
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
@@ -35,24 +35,10 @@ void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
   if (options.components == 0 &&
       options.path_of_configuration.size() != static_cast<std::size_t>(configurations.cols()))
     throw std::invalid_argument("fit_mixture: to choose K, the path of each configuration");
-}
-
-std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                                 const Eigen::Ref<const Eigen::VectorXd>& weights) {
-  for (Eigen::Index i = 0; i < configurations.cols(); ++i) {
-    if (!(configurations.col(i).cwiseAbs().array() <= kLargestValue).all())
-      return Error{ErrorCode::InvalidInput, "fit: configuration " + std::to_string(i) +
-                                                " is not finite or exceeds " +
-                                                std::to_string(kLargestValue)};
-    if (!(weights[i] >= 0) || !std::isfinite(weights[i]))
-      return Error{ErrorCode::InvalidInput, "fit: weight " + std::to_string(i) + " is " +
-                                                std::to_string(weights[i]) +
-                                                ", must be finite and at least 0"};
-  }
-  if (!(weights.sum() > 0) || !std::isfinite(weights.sum()))
-    return Error{ErrorCode::InvalidInput, "fit: weights have sum " + std::to_string(weights.sum()) +
-                                              ", must be positive and finite"};
-  return std::nullopt;
+  if (options.components == 0 &&
+      std::any_of(options.path_of_configuration.begin(), options.path_of_configuration.end(),
+                  [&](std::uint32_t path) { return path >= configurations.cols(); }))
+    throw std::invalid_argument("fit_mixture: paths are not counted from 0 without gaps");
 }
 
 EmOptions em_options(Eigen::Index dimension, const FitOptions& options) {
@@ -150,21 +136,8 @@ class Fit {
       return std::nullopt;
     const Eigen::Index most = components_for(training, configurations_.rows(), kMostComponents);
     return climb_down(sample_of(blocks_of(std::move(training)), most),
-                      sample_of(blocks_of(std::move(scored)), most), most, log_uniform(),
-                      options_.seed, em_);
-  }
-
-  /// Logarithm of the density of the uniform distribution within the limits.
-  double log_uniform() const {
-    constexpr double kLeastWidth = 1e-6;  // of a joint that does not move
-    Eigen::Matrix2Xd box = options_.limits;
-    if (box.size() == 0) {
-      box.resize(2, configurations_.rows());
-      box.row(0) = configurations_.rowwise().minCoeff().transpose();
-      box.row(1) = configurations_.rowwise().maxCoeff().transpose();
-    }
-    const Eigen::ArrayXd widths = (box.row(1) - box.row(0)).transpose().array();
-    return -widths.max(kLeastWidth).log().sum();
+                      sample_of(blocks_of(std::move(scored)), most), most,
+                      log_uniform(configurations_, options_.limits), options_.seed, em_);
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;

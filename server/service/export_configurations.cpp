@@ -72,9 +72,9 @@ void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights
                 const Distribution& distribution, std::uint64_t seed, JobRows& rows) {
   rows.add(header(distribution.limits.cols()));
   const auto count = static_cast<std::uint32_t>(pool.paths().size());
-  const std::vector<std::uint8_t> held_out = distribution.component_scores.empty()
-                                                 ? std::vector<std::uint8_t>(count, 0)
-                                                 : density::held_out_paths(count, seed);
+  const std::vector<std::uint8_t> held_out = distribution.held_out_score
+                                                 ? density::held_out_paths(count, seed)
+                                                 : std::vector<std::uint8_t>(count, 0);
   Eigen::MatrixXd configurations = pool.configurations();
   wrap(distribution.cuts, configurations);
   Eigen::Index row = 0;

@@ -9,6 +9,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "server/density/fit.hpp"
+#include "server/density/kernel_estimate.hpp"
 #include "server/service/pooled_configurations.hpp"
 #include "server/service/profile_advice.hpp"
 #include "server/service/selected_experience.hpp"
@@ -55,6 +56,18 @@ Eigen::VectorXd covariance_floors(const kinematics::Chain& chain,
             ? parameters.covariance_floor_m2
             : parameters.covariance_floor;
   return floors;
+}
+
+/// The same summary of the other estimator.
+Result<density::FitSummary> fit_kernels(const Eigen::MatrixXd& configurations,
+                                        const Eigen::VectorXd& weights,
+                                        const density::KernelOptions& options) {
+  Result<density::KernelEstimate> estimate =
+      density::estimate_kernels(configurations, weights, options);
+  if (!estimate)
+    return estimate.error();
+  density::KernelEstimate made = std::move(estimate).value();
+  return density::FitSummary{std::move(made.mixture), {}, {}, made.held_out_score};
 }
 
 /// One fit on its way.
@@ -114,6 +127,13 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
   distribution.cuts = find_cuts(target_->chain, configurations);
   distribution.limits = limits_with(distribution.cuts, target_->chain);
   wrap(distribution.cuts, configurations);
+  if (parameters.estimator == Estimator::Kernels)
+    return fit_kernels(configurations, weights,
+                       {.floors_of_joints = covariance_floors(target_->chain, parameters),
+                        .seed = key_.profile.seed,
+                        .computation = {.threads = context_.fit_threads},
+                        .path_of_configuration = pool.path_of_configuration(),
+                        .limits = distribution.limits});
   density::FitOptions options;
   options.components = parameters.components;
   options.floors_of_joints = covariance_floors(target_->chain, parameters);

@@ -228,6 +228,42 @@ TEST_F(AdminCommands, ADistributionIsMadeOfChosenSourcesAndForgotten) {
   EXPECT_EQ(server_.kinship({"distributions", "show", id}).code, 3);
 }
 
+TEST_F(AdminCommands, KernelsAreFetchedSampledExplainedAndKept) {
+  teach(server_);
+  const auto fetch = [&](const std::vector<std::string>& also) {
+    std::vector<std::string> words = {"distributions", "fetch",  "--task", "sweep",       "--robot",
+                                      "ur10e",         "--wait", "100",    "--estimator", "kde"};
+    words.insert(words.end(), also.begin(), also.end());
+    return server_.kinship(words);
+  };
+  const Answer fetched = fetch({"--json"});
+  ASSERT_EQ(fetched.code, 0) << fetched.err;
+  const Distribution kernels = json::distribution_from_json(fetched.out).value_or_throw();
+  EXPECT_EQ(kernels.profile, "default,estimator=kde");
+  ASSERT_TRUE(kernels.mixture && kernels.mixture->shares_covariance());
+  const Eigen::MatrixXd& centres = kernels.mixture->means();
+  EXPECT_GT(centres.cols(), 100);
+  EXPECT_EQ(centres.cast<float>().cast<double>(), centres);
+  EXPECT_TRUE((centres.array().colwise() >= kernels.limits.row(0).transpose().array()).all());
+  EXPECT_TRUE((centres.array().colwise() <= kernels.limits.row(1).transpose().array()).all());
+  EXPECT_NE(fetch({}).out.find("\nbandwidth "), std::string::npos);
+  const Answer samples = fetch({"--samples", "500"});
+  EXPECT_EQ(count_lines(samples.out), 501U) << samples.err;
+  const Answer explained =
+      server_.kinship({"distributions", "explain", "--task", "sweep", "--robot", "ur10e",
+                       "--profile", "default", "--estimator", "kde"});
+  EXPECT_EQ(explained.code, 0) << explained.err;
+
+  server_.process().terminate();
+  server_.start();
+  const Answer kept = fetch({"--json"});
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  const Distribution again = json::distribution_from_json(kept.out).value_or_throw();
+  EXPECT_EQ(again.id, kernels.id);
+  EXPECT_EQ(again.revision, kernels.revision);
+  EXPECT_EQ(again.mixture->means(), centres);
+}
+
 TEST_F(AdminCommands, TheConfigurationsOfADistributionAreThoseOfItsFit) {
   teach(server_);
   const std::vector<std::string> wish = {"--task", "sweep", "--robot", "ur10e", "--wait", "100"};

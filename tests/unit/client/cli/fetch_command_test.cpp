@@ -24,6 +24,18 @@ TEST(PrintDistribution, DrawsTheScoresOfNumbersOfComponents) {
   EXPECT_NE(text.find("10          -0.250  #\n"), std::string::npos) << text;
 }
 
+TEST(PrintDistribution, TellsTheBandwidthOfKernels) {
+  Distribution distribution;
+  distribution.configurations = 5000;
+  distribution.mixture = Mixture(Eigen::Vector2d(0.5, 0.5), Eigen::MatrixXd::Zero(2, 2),
+                                 {Eigen::Vector2d(0.04, 0.25).asDiagonal().toDenseMatrix()});
+  const std::string text = printed(distribution);
+  EXPECT_NE(text.find("kernels       2 in 2 dimensions, fitted to 5000 configurations\n"
+                      "bandwidth     0.200 0.500, deviations of a kernel\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(PrintDistribution, DrawsNothingIfTheNumberWasGiven) {
   EXPECT_EQ(printed({}).find("HELD-OUT"), std::string::npos);
 }

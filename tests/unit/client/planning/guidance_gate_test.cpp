@@ -64,6 +64,17 @@ TEST_F(GuidanceGate, CorrelatedJointsAreWhitened) {
               1e-9);
 }
 
+TEST_F(GuidanceGate, KernelsShareTheirMetric) {
+  Eigen::VectorXd near = start_;
+  near[0] += 0.6;
+  const Mixture kernels(mixture_.weights(), mixture_.means(), {mixture_.covariance(0)});
+  EXPECT_EQ(query_distance(chain_, kernels, near, goal_).start,
+            query_distance(chain_, mixture_, near, goal_).start);
+  near = goal_;
+  near[3] += 0.2;
+  EXPECT_NEAR(query_distance(chain_, kernels, near, goal_).start, 1, 1e-9);
+}
+
 TEST_F(GuidanceGate, AFullTurnIsNoDistance) {
   Eigen::VectorXd turned = start_;
   turned[0] -= kTurn;

@@ -167,6 +167,32 @@ TEST(RepetitionRoadmap, WithoutAMixtureItIsTheTrees) {
   EXPECT_EQ(*summary.waypoints, *trees.waypoints);
 }
 
+/// Kernels at points between start and goal.
+Mixture kernels(Eigen::Index count) {
+  Eigen::MatrixXd means(2, count);
+  means.row(0).setLinSpaced(-0.8, 0.8);
+  means.row(1).setConstant(0.7);
+  return {Eigen::VectorXd::Constant(count, 1 / static_cast<double>(count)),
+          means,
+          {0.0025 * Eigen::Matrix2d::Identity()}};
+}
+
+TEST(RepetitionRoadmap, KernelsAreComponents) {
+  WallWorld world;
+  expect_law(world, plan(world, kGoal, square_sampler(kernels(12))));
+}
+
+TEST(RepetitionRoadmap, WithTooManyComponentsItIsTheGuidedTrees) {
+  WallWorld world;
+  const ConfigurationSampler guided = square_sampler(kernels(kMaxRoadmapComponents + 1));
+  const PlanSummary summary = plan(world, kGoal, guided);
+  std::mt19937_64 generator(1);
+  const PlanSummary trees =
+      plan_birrt(kStart, kGoal, world.is_free(), guided, options().tree, generator);
+  ASSERT_TRUE(summary.waypoints && trees.waypoints);
+  EXPECT_EQ(*summary.waypoints, *trees.waypoints);
+}
+
 TEST(RepetitionRoadmap, GoalsWithinReach) {
   WallWorld world;
   Eigen::MatrixXd goals(2, 3);

@@ -50,6 +50,14 @@ TEST(LogDensity, IntegratesToOneInOneDimension) {
   EXPECT_NEAR(log_density(mixture, grid).array().exp().sum() * step, 1, 1e-9);
 }
 
+TEST(LogDensity, SharedCovarianceIsOneForEach) {
+  const Mixture apart = two_components_2d();
+  const Eigen::MatrixXd covariance = apart.covariance(0);
+  const Eigen::MatrixXd points = random_mixture(50, 2).means();
+  EXPECT_EQ(log_density({apart.weights(), apart.means(), {covariance}}, points),
+            log_density({apart.weights(), apart.means(), {covariance, covariance}}, points));
+}
+
 TEST(LogDensity, IntegratesToOneInTwoDimensions) {
   constexpr Eigen::Index kCells = 400;
   const double step = 12.0 / static_cast<double>(kCells);

@@ -44,6 +44,17 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& samples) {
   return centred * centred.transpose() / static_cast<double>(samples.cols());
 }
 
+/// One covariance for all is the same as one each.
+TEST(Sampler, SharedCovarianceDrawsTheSame) {
+  const Mixture apart = tilted_2d();
+  const Eigen::MatrixXd covariance = apart.covariance(1);
+  const Mixture shared(apart.weights(), apart.means(), {covariance});
+  const Mixture repeated(apart.weights(), apart.means(), {covariance, covariance});
+  ASSERT_TRUE(shared.shares_covariance());
+  EXPECT_EQ(draw(Sampler(shared, limits_of(-2, 2, 2)), 1000),
+            draw(Sampler(repeated, limits_of(-2, 2, 2)), 1000));
+}
+
 TEST(Sampler, MeanAndCovarianceMatchIfLimitsAreWide) {
   const Mixture mixture = tilted_2d();
   const Eigen::MatrixXd samples = draw(Sampler(mixture, limits_of(-100, 100, 2)), 200'000);

@@ -26,6 +26,18 @@ TEST(Mixture, RefusesWeightsThatDoNotSumToOne) {
   EXPECT_EQ(Mixture(Eigen::Vector2d(0.4, 0.6), means, covariances).size(), 2);
 }
 
+TEST(Mixture, ComponentsMayShareACovariance) {
+  const Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, 3);
+  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(2, 2);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(3, 1.0 / 3);
+  const Mixture kernels(weights, means, {covariance});
+  EXPECT_TRUE(kernels.shares_covariance());
+  EXPECT_EQ(&kernels.covariance(2), kernels.covariances().data());
+  EXPECT_FALSE(Mixture(weights, means, {covariance, covariance, covariance}).shares_covariance());
+  EXPECT_THROW(Mixture(weights, means, {covariance, covariance}), std::invalid_argument);
+  EXPECT_FALSE(Mixture(Eigen::VectorXd::Ones(1), means.col(0), {covariance}).shares_covariance());
+}
+
 TEST(Mixture, RefusesAnAsymmetricCovariance) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(2, 2);
   covariance(0, 1) = 0.5;

@@ -45,6 +45,7 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.density.equal_path_weights = false; },
       [](DistributionKey& k) { k.profile.density.weighting = Weighting::Paths; },
       [](DistributionKey& k) { k.profile.density.warm_refits = false; },
+      [](DistributionKey& k) { k.profile.density.estimator = Estimator::Kernels; },
       [](DistributionKey& k) { k.profile.recommended_share = 0.5; },
       [](DistributionKey& k) { k.sources = {Digest{}}; },
       [](DistributionKey& k) { k.sources = {k.robot}; },

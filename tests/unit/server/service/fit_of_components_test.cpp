@@ -43,6 +43,29 @@ TEST_F(FitOfComponents, BelowTenPathsComponentsAreNotScored) {
   EXPECT_TRUE(distribution.component_scores.empty());
 }
 
+TEST_F(FitOfComponents, KernelsStandAtTheConfigurations) {
+  report(fleet::solved(teacher_, "shelf", 20, 1));
+  DistributionKey key = quick_key_of(pupil_);
+  const Mixture mixture = fitted(key).mixture.value();
+  key.profile.density.estimator = Estimator::Kernels;
+  const Distribution kernels = fitted(key);
+  ASSERT_TRUE(kernels.mixture) << kernels.reason;
+  EXPECT_TRUE(kernels.mixture->shares_covariance());
+  EXPECT_GT(kernels.mixture->size(), mixture.size());
+  EXPECT_LE(kernels.mixture->size(), static_cast<Eigen::Index>(kernels.configurations));
+  EXPECT_TRUE(kernels.held_out_score);
+  EXPECT_TRUE(kernels.component_scores.empty());
+  const Eigen::MatrixXd& centres = kernels.mixture->means();
+  EXPECT_EQ(centres.cast<float>().cast<double>(), centres);
+  EXPECT_TRUE((centres.array().colwise() >= kernels.limits.row(0).transpose().array()).all());
+  EXPECT_TRUE((centres.array().colwise() <= kernels.limits.row(1).transpose().array()).all());
+  const Eigen::VectorXd mean = mixture.means() * mixture.weights();
+  EXPECT_LT((centres * kernels.mixture->weights() - mean).norm(), 1e-6);
+
+  context_.fit_threads = 3;
+  EXPECT_EQ(fitted(key).mixture->means(), centres);
+}
+
 TEST_F(FitOfComponents, AContinuousJointIsCutBesideItsAngles) {
   RobotDescription turner = fleet::teacher();
   turner.label = "turner";

@@ -1,0 +1,288 @@
+#include "server/density/kernel_estimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+#include "proto/types/limits.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/distinct_points.hpp"
+#include "server/density/em_run.hpp"
+#include "server/density/fit_input.hpp"
+#include "server/density/hold_out.hpp"
+#include "server/density/ladder.hpp"
+
+namespace kinship::density {
+namespace {
+
+constexpr std::array kClusters = {1, 4, 16, 64};
+/// Falling by the square root of 2.
+constexpr std::array kScales = {1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
+constexpr Eigen::Index kScoredPoints = 2000;
+constexpr double kLowScore_nats = 1;  // below the best of the clusters: narrower is no better
+
+void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                   const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options) {
+  const auto count = static_cast<std::size_t>(configurations.cols());
+  if (configurations.cols() != weights.size() || options.path_of_configuration.size() != count)
+    throw std::invalid_argument("estimate_kernels: one weight and one path per configuration");
+  if (std::any_of(options.path_of_configuration.begin(), options.path_of_configuration.end(),
+                  [&](std::uint32_t path) { return path >= count; }))
+    throw std::invalid_argument("estimate_kernels: paths are not counted from 0 without gaps");
+  const Eigen::VectorXd& floors = options.floors_of_joints;
+  if (floors.size() != configurations.rows() || !floors.allFinite() ||
+      (floors.size() > 0 && floors.minCoeff() < 0))
+    throw std::invalid_argument("estimate_kernels: need one finite floor >= 0 per joint");
+  if (options.limits.size() != 0 &&
+      (options.limits.cols() != configurations.rows() || !options.limits.allFinite()))
+    throw std::invalid_argument("estimate_kernels: need finite limits of each joint");
+}
+
+/// Centres of kernels and what each weighs.
+struct Kernels {
+  Eigen::MatrixXd centres;  // d x K
+  Eigen::VectorXd weights;  // K, sum 1
+};
+
+Kernels all_of(const BlockPoints& points) {
+  Kernels kernels{Eigen::MatrixXd(points.dimension(), points.size()),
+                  Eigen::VectorXd(points.size())};
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    kernels.centres.col(i) = points.point(i) + points.offset();
+    kernels.weights[i] = points.weight(i);
+  }
+  kernels.weights /= kernels.weights.sum();
+  return kernels;
+}
+
+/// `count` draws in proportion to weight at even steps along the order of the blocks, in which
+/// neighbours follow each other; a point drawn twice is one kernel of twice the weight.
+Kernels sample_of(const BlockPoints& points, Eigen::Index count, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  const double step = points.total_weight() / static_cast<double>(count);
+  double next = std::uniform_real_distribution<double>(0, step)(generator);
+  Kernels kernels{Eigen::MatrixXd(points.dimension(), count), Eigen::VectorXd(count)};
+  Eigen::Index size = 0;
+  Eigen::Index drawn = 0;
+  double passed = 0;
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    passed += points.weight(i);
+    const bool is_last = i + 1 == points.size();
+    int times = 0;
+    for (; drawn < count && (next < passed || is_last); ++drawn, next += step)
+      ++times;
+    if (times == 0)
+      continue;
+    kernels.centres.col(size) = points.point(i) + points.offset();
+    kernels.weights[size++] = static_cast<double>(times) / static_cast<double>(count);
+  }
+  kernels.centres.conservativeResize(Eigen::NoChange, size);
+  kernels.weights.conservativeResize(size);
+  return kernels;
+}
+
+Kernels kernels_of(const BlockPoints& points, std::uint64_t seed) {
+  constexpr auto kMost = static_cast<Eigen::Index>(kMaxKernels);
+  return points.size() > kMost ? sample_of(points, kMost, seed) : all_of(points);
+}
+
+/// The mean covariance of clusters of points.
+Eigen::MatrixXd pooled_covariance(const BlockPoints& points, int clusters, std::uint64_t seed,
+                                  const Computation& computation) {
+  const EmOptions no_floor{.floors = Eigen::VectorXd::Zero(points.dimension()),
+                           .computation = computation};
+  const Mixture mixture = start_mixture(points, clusters, seed, no_floor);
+  Eigen::MatrixXd pooled = Eigen::MatrixXd::Zero(points.dimension(), points.dimension());
+  for (Eigen::Index k = 0; k < mixture.size(); ++k)
+    pooled += mixture.weights()[k] * mixture.covariance(k);
+  return pooled;
+}
+
+Mixture mixture_of(const Kernels& kernels, const Eigen::MatrixXd& pooled, double scale,
+                   const Eigen::VectorXd& floors) {
+  Eigen::MatrixXd covariance = scale * scale * pooled;
+  covariance.diagonal() += floors;
+  return {kernels.weights, kernels.centres, {std::move(covariance)}};
+}
+
+/// Rounded to f32; what is within limits stays there.
+void round_inward(Eigen::MatrixXd& centres, const Eigen::Matrix2Xd& limits) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (Eigen::Index i = 0; i < centres.cols(); ++i)
+    for (Eigen::Index joint = 0; joint < centres.rows(); ++joint) {
+      const double exact = centres(joint, i);
+      float rounded = static_cast<float>(exact);
+      if (limits.size() > 0) {
+        if (exact <= limits(1, joint) && rounded > limits(1, joint))
+          rounded = std::nextafter(rounded, -kInfinity);
+        if (exact >= limits(0, joint) && rounded < limits(0, joint))
+          rounded = std::nextafter(rounded, kInfinity);
+      }
+      centres(joint, i) = rounded;
+    }
+}
+
+/// One estimate on its way. The arguments outlive it.
+class Estimate {
+ public:
+  Estimate(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+           const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options)
+      : configurations_(configurations),
+        weights_(weights),
+        options_(options),
+        log_uniform_(log_uniform(configurations, options.limits)) {}
+
+  KernelEstimate run(DistinctPoints all) const {
+    const std::vector<std::uint32_t>& path_of = options_.path_of_configuration;
+    const std::uint32_t paths = 1 + *std::max_element(path_of.begin(), path_of.end());
+    const Choice choice = choose(folds_of(paths));
+    const BlockPoints points = blocks_of(std::move(all));
+    const Eigen::MatrixXd pooled =
+        pooled_covariance(points, choice.bandwidth.clusters, options_.seed, options_.computation);
+    Kernels kernels = kernels_of(points, options_.seed);
+    round_inward(kernels.centres, options_.limits);
+    KernelEstimate estimate{
+        mixture_of(kernels, pooled, choice.bandwidth.scale, options_.floors_of_joints),
+        choice.bandwidth};
+    if (paths >= kLeastPathsToScore)
+      estimate.held_out_score = choice.score;
+    return estimate;
+  }
+
+ private:
+  /// Kernels of some paths, and points of others that score them.
+  struct Fold {
+    BlockPoints training;
+    Kernels kernels;
+    BlockPoints held_out;
+  };
+  struct Choice {
+    Bandwidth bandwidth;
+    std::optional<double> score = {};
+  };
+
+  BlockPoints blocks_of(DistinctPoints distinct) const {
+    const Eigen::VectorXd mean = mean_of(configurations_, distinct);
+    return {configurations_, std::move(distinct), mean};
+  }
+
+  std::vector<Fold> folds_of(std::uint32_t paths) const {
+    std::vector<Fold> folds;
+    if (paths >= kLeastPathsToScore) {
+      add_fold(held_out_paths(paths, options_.seed), folds);
+      return folds;
+    }
+    for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
+      std::vector<std::uint8_t> held_out(paths, 0);
+      held_out[path] = 1;
+      add_fold(held_out, folds);
+    }
+    return folds;
+  }
+
+  /// Unless there is too little on either side.
+  void add_fold(const std::vector<std::uint8_t>& held_out, std::vector<Fold>& folds) const {
+    DistinctPoints training = part(held_out, false);
+    DistinctPoints scored = part(held_out, true);
+    const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
+    if (training.columns.size() < least || scored.columns.empty())
+      return;
+    BlockPoints points = blocks_of(std::move(training));
+    Kernels kernels = kernels_of(points, options_.seed);
+    folds.push_back({std::move(points), std::move(kernels),
+                     thinned(blocks_of(std::move(scored)), kScoredPoints)});
+  }
+
+  DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const {
+    std::vector<std::uint8_t> wanted;
+    wanted.reserve(options_.path_of_configuration.size());
+    for (const std::uint32_t path : options_.path_of_configuration)
+      wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
+    return distinct_points(configurations_, weights_, wanted);
+  }
+
+  Choice choose(const std::vector<Fold>& folds) const {
+    Choice best{{1, scale_of_one_path(configurations_.rows())}};
+    for (const int clusters : kClusters) {
+      if (folds.empty() || !can_have(folds, clusters))
+        break;
+      std::vector<Eigen::MatrixXd> pooled;
+      for (const Fold& fold : folds)
+        pooled.push_back(
+            pooled_covariance(fold.training, clusters, options_.seed, options_.computation));
+      double best_of_clusters = -std::numeric_limits<double>::infinity();
+      for (const double scale : kScales) {
+        const double score = score_of(folds, pooled, scale);
+        if (!best.score || score > *best.score)
+          best = {{clusters, scale}, score};
+        best_of_clusters = std::max(best_of_clusters, score);
+        if (score < best_of_clusters - kLowScore_nats)
+          break;
+      }
+    }
+    return best;
+  }
+
+  /// Whether each cluster of each training part can have 2 (d + 1) points.
+  bool can_have(const std::vector<Fold>& folds, int clusters) const {
+    const Eigen::Index least = clusters == 1 ? 1 : 2 * (configurations_.rows() + 1) * clusters;
+    return std::all_of(folds.begin(), folds.end(),
+                       [&](const Fold& fold) { return fold.training.size() >= least; });
+  }
+
+  /// The mean over the folds.
+  double score_of(const std::vector<Fold>& folds, const std::vector<Eigen::MatrixXd>& pooled,
+                  double scale) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < folds.size(); ++i)
+      sum += mean_log_density(
+          mixture_of(folds[i].kernels, pooled[i], scale, options_.floors_of_joints),
+          folds[i].held_out, kBackgroundShare, log_uniform_, options_.computation);
+    return sum / static_cast<double>(folds.size());
+  }
+
+  const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
+  const Eigen::Ref<const Eigen::VectorXd>& weights_;
+  const KernelOptions& options_;
+  const double log_uniform_;
+};
+
+}  // namespace
+
+double scale_of_one_path(Eigen::Index dimension) {
+  const auto d = static_cast<double>(dimension);
+  return std::pow(4 / (d + 2), 1 / (d + 4));
+}
+
+Result<KernelEstimate> estimate_kernels(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                                        const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                        const KernelOptions& options) {
+  check_options(configurations, weights, options);
+  if (const auto error = check_input(configurations, weights))
+    return *error;
+  DistinctPoints distinct = distinct_points(configurations, weights);
+  const auto count = static_cast<Eigen::Index>(distinct.columns.size());
+  const Eigen::Index least = configurations.rows() + 1;
+  if (count < least)
+    return Error{ErrorCode::InvalidInput, "kernels: " + std::to_string(count) +
+                                              " distinct configurations, need at least " +
+                                              std::to_string(least) + " for " +
+                                              std::to_string(configurations.rows()) + " joints"};
+  try {
+    return Estimate(configurations, weights, options).run(std::move(distinct));
+  } catch (const Failure& failure) {
+    std::ostringstream text;
+    text << "kernels: " << failure.what() << "; covariance_floor "
+         << options.floors_of_joints.minCoeff() << " is too small for this data";
+    return Error{ErrorCode::InvalidInput, text.str()};
+  }
+}
+
+}  // namespace kinship::density

@@ -1,0 +1,231 @@
+#include "server/density/kernel_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "proto/mixture/density.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship::density {
+namespace {
+
+constexpr std::uint64_t kSeed = 41;
+
+Eigen::MatrixXd normal_points(Eigen::Index dimension, Eigen::Index count) {
+  std::mt19937_64 generator(kSeed);
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(dimension, count, [&] { return normal(generator); });
+}
+
+/// Paths of `length` configurations each, one after the other.
+KernelOptions options_for(const Eigen::MatrixXd& points, Eigen::Index length = 10) {
+  KernelOptions options;
+  options.floors_of_joints = Eigen::VectorXd::Constant(points.rows(), 1e-4);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    options.path_of_configuration.push_back(static_cast<std::uint32_t>(i / length));
+  return options;
+}
+
+KernelEstimate estimate(const Eigen::MatrixXd& points, const KernelOptions& options) {
+  return estimate_kernels(points, Eigen::VectorXd::Ones(points.cols()), options).value_or_throw();
+}
+
+Eigen::Index kernel_at(const Mixture& mixture, const Eigen::VectorXd& q) {
+  Eigen::Index nearest = 0;
+  (mixture.means().colwise() - q).colwise().norm().minCoeff(&nearest);
+  return nearest;
+}
+
+TEST(KernelEstimate, IntegratesToOne) {
+  const Eigen::MatrixXd points = normal_points(2, 60);
+  const Mixture mixture = estimate(points, options_for(points)).mixture;
+  EXPECT_EQ(mixture.size(), 60);
+  EXPECT_TRUE(mixture.shares_covariance());
+  constexpr Eigen::Index kCells = 600;
+  const double step = 16.0 / static_cast<double>(kCells);
+  Eigen::MatrixXd row(2, kCells);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < kCells; ++i) {
+    row.row(0).setConstant(-8 + static_cast<double>(i) * step);
+    row.row(1).setLinSpaced(-8, 8 - step);
+    sum += mixture::log_density(mixture, row).array().exp().sum() * step * step;
+  }
+  EXPECT_NEAR(sum, 1, 1e-6);
+}
+
+TEST(KernelEstimate, RecoversADensityBetterTheMorePathsThereAre) {
+  // Of independent points; the mean of log p over others can at best be minus the entropy.
+  const double entropy = 1 + std::log(2 * M_PI);
+  std::mt19937_64 generator(kSeed + 1);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd others =
+      Eigen::MatrixXd::NullaryExpr(2, 2000, [&] { return normal(generator); });
+  double loss_before = 1;
+  for (const Eigen::Index count : {20, 200, 2000}) {
+    const Eigen::MatrixXd points = normal_points(2, count);
+    const KernelEstimate made = estimate(points, options_for(points, 1));
+    const double loss = -entropy - mixture::log_density(made.mixture, others).mean();
+    EXPECT_LT(loss, 0.6 * loss_before) << count;
+    loss_before = loss;
+  }
+  EXPECT_LT(loss_before, 0.03);
+}
+
+TEST(KernelEstimate, WeighsItsKernelsAsTheConfigurations) {
+  const Eigen::MatrixXd points = normal_points(3, 40);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(40);
+  weights[7] = 5;
+  weights[8] = 0;
+  const Mixture mixture =
+      estimate_kernels(points, weights, options_for(points)).value_or_throw().mixture;
+  EXPECT_EQ(mixture.size(), 39);
+  const double one = mixture.weights()[kernel_at(mixture, points.col(3))];
+  EXPECT_NEAR(mixture.weights()[kernel_at(mixture, points.col(7))], 5 * one, 1e-12);
+  EXPECT_NEAR(mixture.weights().sum(), 1, 1e-12);
+}
+
+TEST(KernelEstimate, RepetitionIsWeightAndOrderIsNothing) {
+  const Eigen::MatrixXd points = normal_points(3, 60);
+  const KernelOptions options = options_for(points);
+  Eigen::VectorXd doubled = Eigen::VectorXd::Ones(60);
+  doubled[11] = 2;
+  const KernelEstimate weighted = estimate_kernels(points, doubled, options).value_or_throw();
+
+  Eigen::MatrixXd repeated(3, 61);
+  repeated << points.col(11), points;
+  KernelOptions of_repeated = options;
+  of_repeated.path_of_configuration.insert(of_repeated.path_of_configuration.begin(), 1);
+  const KernelEstimate again = estimate(repeated, of_repeated);
+  EXPECT_EQ(again.bandwidth, weighted.bandwidth);
+  EXPECT_EQ(again.mixture.means(), weighted.mixture.means());
+  EXPECT_TRUE(again.mixture.weights().isApprox(weighted.mixture.weights(), 1e-14));
+  EXPECT_TRUE(again.mixture.covariance(0).isApprox(weighted.mixture.covariance(0), 1e-12));
+}
+
+TEST(KernelEstimate, ManyConfigurationsAreSampledByWeight) {
+  const Eigen::MatrixXd points = normal_points(3, 9000);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(9000);
+  weights[4321] = 900;  // a tenth of all but itself
+  const KernelOptions options = options_for(points, 50);
+  const Mixture mixture = estimate_kernels(points, weights, options).value_or_throw().mixture;
+  EXPECT_LE(mixture.size(), static_cast<Eigen::Index>(kMaxKernels));
+  EXPECT_GT(mixture.size(), 3000);
+  EXPECT_NEAR(mixture.weights()[kernel_at(mixture, points.col(4321))], 900.0 / 9899, 1e-3);
+  const Eigen::Vector3d mean = points * weights / weights.sum();
+  EXPECT_LT((mixture.means() * mixture.weights() - mean).norm(), 0.02);
+
+  KernelOptions other_seed = options;
+  other_seed.seed = 1;
+  EXPECT_EQ(estimate_kernels(points, weights, options)->mixture.means(), mixture.means());
+  EXPECT_NE(estimate_kernels(points, weights, other_seed)->mixture.means(), mixture.means());
+}
+
+TEST(KernelEstimate, BytesDoNotDependOnThreads) {
+  const Eigen::MatrixXd points = normal_points(4, 3000);
+  KernelOptions options = options_for(points, 30);
+  const KernelEstimate one = estimate(points, options);
+  for (const int threads : {2, 3}) {
+    options.computation.threads = threads;
+    const KernelEstimate several = estimate(points, options);
+    EXPECT_EQ(several.held_out_score, one.held_out_score);
+    EXPECT_EQ(several.bandwidth, one.bandwidth);
+    EXPECT_EQ(several.mixture.means(), one.mixture.means());
+    EXPECT_EQ(several.mixture.covariances(), one.mixture.covariances());
+  }
+}
+
+TEST(KernelEstimate, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {
+  const Eigen::MatrixXd points = normal_points(2, 40);
+  const KernelEstimate one = estimate(points, options_for(points, 40));
+  EXPECT_EQ(one.bandwidth, (Bandwidth{1, scale_of_one_path(2)}));
+  EXPECT_FALSE(one.held_out_score);
+  // two paths that are one and the same: nothing is as good as narrow kernels
+  Eigen::MatrixXd twice(2, 80);
+  twice << points, points + 1e-3 * normal_points(2, 40);
+  const KernelEstimate two = estimate(twice, options_for(twice, 40));
+  EXPECT_LT(two.bandwidth.scale, 0.2);
+  EXPECT_FALSE(two.held_out_score);
+  // two paths far from each other: wide ones
+  twice << points, points.colwise() + Eigen::Vector2d(6, 0);
+  EXPECT_GT(estimate(twice, options_for(twice, 40)).bandwidth.scale, 0.4);
+}
+
+TEST(KernelEstimate, HasAScoreFromTenPathsOn) {
+  const Eigen::MatrixXd points = normal_points(2, 100);
+  EXPECT_TRUE(estimate(points, options_for(points, 10)).held_out_score);
+  EXPECT_FALSE(estimate(points, options_for(points, 12)).held_out_score);
+}
+
+TEST(KernelEstimate, CentresStayWithinLimitsAsF32) {
+  constexpr double kLower = -1.0000000001;  // between two f32, as is the upper one
+  constexpr double kUpper = 2.0943951023931953;
+  Eigen::MatrixXd points = normal_points(2, 50);
+  points = points.cwiseMax(kLower).cwiseMin(kUpper);
+  points(0, 0) = points(1, 1) = kUpper;
+  points(0, 2) = points(1, 3) = kLower;
+  ASSERT_GT(static_cast<double>(static_cast<float>(kUpper)), kUpper);
+  KernelOptions options = options_for(points);
+  options.limits.resize(2, 2);
+  options.limits << kLower, kLower, kUpper, kUpper;
+  const Eigen::MatrixXd centres = estimate(points, options).mixture.means();
+  EXPECT_EQ(centres.cast<float>().cast<double>(), centres);
+  EXPECT_GE(centres.minCoeff(), kLower);
+  EXPECT_LE(centres.maxCoeff(), kUpper);
+  EXPECT_GT(centres.maxCoeff(), kUpper - 1e-6);
+}
+
+TEST(KernelEstimate, ConstantJointGetsTheFloor) {
+  Eigen::MatrixXd points = normal_points(3, 50);
+  points.row(1).setConstant(0.75);
+  const Mixture mixture = estimate(points, options_for(points)).mixture;
+  EXPECT_NEAR(mixture.covariance(0)(1, 1), 1e-4, 1e-12);
+  EXPECT_TRUE((mixture.means().row(1).array() == 0.75).all());
+}
+
+TEST(KernelEstimate, OnePointFarAwayIsOneKernel) {
+  Eigen::MatrixXd points = normal_points(2, 400);
+  const Eigen::VectorXd near =
+      mixture::log_density(estimate(points, options_for(points)).mixture, points);
+  points.col(399).setConstant(1000);
+  const Mixture mixture = estimate(points, options_for(points)).mixture;
+  EXPECT_EQ(mixture.size(), 400);
+  EXPECT_NEAR(mixture.means().maxCoeff(), 1000, 1e-3);
+  const Eigen::VectorXd with = mixture::log_density(mixture, points);
+  EXPECT_TRUE(with.allFinite());
+  EXPECT_GT(with.head(300).mean(), near.head(300).mean() - 1);
+}
+
+TEST(KernelEstimate, RefusesWhatNoMixtureIsMadeOfEither) {
+  const auto refusal = [](const Eigen::MatrixXd& points, double floor) {
+    KernelOptions options = options_for(points);
+    options.floors_of_joints.setConstant(floor);
+    const auto made = estimate_kernels(points, Eigen::VectorXd::Ones(points.cols()), options);
+    return made ? "accepted" : made.error().message;
+  };
+  EXPECT_EQ(refusal(Eigen::MatrixXd::Constant(3, 1, 0.5), 1e-4),
+            "kernels: 1 distinct configurations, need at least 4 for 3 joints");
+  EXPECT_EQ(refusal(Eigen::MatrixXd::Constant(3, 500, 0.5), 1e-4),
+            "kernels: 1 distinct configurations, need at least 4 for 3 joints");
+  Eigen::MatrixXd points = normal_points(3, 20);
+  points.row(2).setZero();
+  EXPECT_EQ(refusal(points, 0),
+            "kernels: mixture: covariance of component 0 is not positive definite; "
+            "covariance_floor 0 is too small for this data");
+  points(1, 5) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal(points, 1e-4).find("configuration 5 is not finite"), std::string::npos);
+  EXPECT_THROW(static_cast<void>(estimate_kernels(normal_points(3, 20), Eigen::VectorXd::Ones(19),
+                                                  options_for(normal_points(3, 20)))),
+               std::invalid_argument);
+  KernelOptions gap = options_for(normal_points(3, 20));
+  gap.path_of_configuration.back() = 20;
+  EXPECT_THROW(
+      static_cast<void>(estimate_kernels(normal_points(3, 20), Eigen::VectorXd::Ones(20), gap)),
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kinship::density
