@@ -11,6 +11,7 @@
 #include "server/density/distinct_points.hpp"
 #include "server/density/em_run.hpp"
 #include "server/density/fit_input.hpp"
+#include "server/density/merge.hpp"
 
 namespace kinship::density {
 namespace {
@@ -32,7 +33,12 @@ void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
   if (options.limits.size() != 0 &&
       (options.limits.cols() != configurations.rows() || !options.limits.allFinite()))
     throw std::invalid_argument("fit_mixture: need finite limits of each joint");
-  if (options.components == 0 &&
+  const std::optional<WarmStart>& warm = options.warm_start;
+  if (warm && (warm->mixture.dimension() != configurations.rows() ||
+               warm->is_new.size() != static_cast<std::size_t>(configurations.cols())))
+    throw std::invalid_argument(
+        "fit_mixture: need a mixture before of as many joints, and a flag per configuration");
+  if (options.components == 0 && !warm &&
       options.path_of_configuration.size() != static_cast<std::size_t>(configurations.cols()))
     throw std::invalid_argument("fit_mixture: to choose K, the path of each configuration");
   if (options.components == 0 &&
@@ -87,6 +93,8 @@ class Fit {
         em_(em_options(configurations.rows(), options)) {}
 
   FitSummary run(DistinctPoints all) const {
+    if (options_.warm_start)
+      return run_warm(std::move(all), *options_.warm_start);
     if (options_.components > 0)
       return run_fixed(std::move(all), options_.components);
     const std::vector<std::uint32_t>& path_of = options_.path_of_configuration;
@@ -112,6 +120,23 @@ class Fit {
     Mixture start = start_mixture(points, components, options_.seed, em_);
     if (is_large(points, components))
       start = run_em(std::move(start), sample_of(points, components), em_).mixture;
+    return refined(std::move(start), points, em_);
+  }
+
+  /// With at most as many components as the configurations can carry.
+  FitSummary run_warm(DistinctPoints all, const WarmStart& warm) const {
+    const Eigen::Index wanted = options_.components > 0 ? options_.components : warm.mixture.size();
+    const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
+    Mixture start = with_components_for_new(configurations_, all, warm, options_.seed, em_);
+    const BlockPoints points = blocks_of(std::move(all));
+    if (start.size() > components) {
+      EmOptions few = em_;
+      few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
+      start = is_large(points, components)
+                  ? run_em(std::move(start), sample_of(points, components), few).mixture
+                  : run_em(std::move(start), points, few).mixture;
+      start = merged(start, components);
+    }
     return refined(std::move(start), points, em_);
   }
 

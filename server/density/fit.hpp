@@ -11,6 +11,7 @@
 #include "server/density/expectation_maximisation.hpp"
 #include "server/density/hold_out.hpp"
 #include "server/density/ladder.hpp"
+#include "server/density/warm_start.hpp"
 
 namespace kinship::density {
 
@@ -29,6 +30,10 @@ struct FitOptions {
   /// 2 x d, lower and upper, joint units: within them scores have their uniform background. Empty:
   /// the box of the configurations.
   Eigen::Matrix2Xd limits = {};
+  /// Where most of the configurations were fitted before: EM begins with that mixture and clusters
+  /// of what it does not know, which are merged down again. With components = 0, K stays what it
+  /// was. Empty: a full fit.
+  std::optional<WarmStart> warm_start = {};
 };
 
 struct FitSummary {
@@ -46,6 +51,10 @@ struct FitSummary {
 /// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
 /// climb_down) when the others are fitted; the mixture of that K is then refitted to all. Below
 /// kLeastPathsToScore paths it is components_of_few_paths, without a curve.
+///
+/// A warm start adds at most kMostNewComponents, runs EM (kIterationsBeforeMerging), merges down to
+/// K and runs EM again: cheaper than a full fit, and what comes out depends on the mixture it
+/// began with. It leaves curve and held_out_score empty.
 ///
 /// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
 /// that lose their data on the way are left out. With more than four times kSamplePoints or

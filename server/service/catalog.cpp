@@ -249,6 +249,7 @@ void Catalog::look_again(std::string_view task, Afterwards& after) {
 }
 
 void Catalog::evict(const Digest& id) {
+  maker_.forget(id);
   Afterwards after;
   {
     const std::lock_guard lock(mutex_);

@@ -124,7 +124,7 @@ void Catalog::run_fit(const Digest& id) {
       return end_flight(id, busy("the server is stopping"), std::nullopt);
     if (outcome.kind == FitOutcome::Kind::NoExperience)
       return end_flight(id, no_experience(key), marks);
-    land(id, key, maker_.keep(std::move(outcome.distribution).value()), marks);
+    land(id, key, maker_.keep(std::move(outcome)), marks);
   } catch (const std::exception& exception) {  // the store cannot be read
     end_flight(id, busy(exception.what()), std::nullopt);
   }

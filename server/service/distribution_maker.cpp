@@ -23,12 +23,13 @@ int fit_threads() {
 
 DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
     : parts_(parts),
-      fit_(fit ? std::move(fit) : [parts](const DistributionKey& key, const std::stop_token& stop) {
+      fit_(fit ? std::move(fit) : [this](const DistributionKey& key, const std::stop_token& stop) {
         return fit_distribution(key,
-                                {.store = parts.store,
-                                 .robots = parts.robots,
-                                 .clock = parts.clock,
-                                 .fit_threads = fit_threads()},
+                                {.store = parts_.store,
+                                 .robots = parts_.robots,
+                                 .clock = parts_.clock,
+                                 .fit_threads = fit_threads(),
+                                 .before = memory_.find(identify(key))},
                                 stop);
       }) {}
 
@@ -53,7 +54,8 @@ bool DistributionMaker::is_outdated(const Distribution& distribution) const {
   return is_retired(distribution, parts_.store.experience(distribution.task));
 }
 
-Distribution DistributionMaker::keep(Distribution distribution) const {
+Distribution DistributionMaker::keep(FitOutcome outcome) const {
+  Distribution distribution = std::move(outcome.distribution).value();
   try {
     distribution.revision = parts_.store.put_distribution(distribution);
   } catch (const Failure& failure) {
@@ -62,7 +64,19 @@ Distribution DistributionMaker::keep(Distribution distribution) const {
                            std::string(failure.what());
     distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   }
+  if (outcome.remains)
+    remember(distribution, std::move(outcome.remains));
   return distribution;
+}
+
+void DistributionMaker::remember(const Distribution& distribution,
+                                 std::shared_ptr<FitRemains> remains) const {
+  remains->revision = distribution.revision;
+  if (remains->revision == 0)
+    remains->mixture.reset();  // no revision could say what it began with
+  if (distribution.fit && distribution.fit->from_revision == 0)
+    remains->full.revision = distribution.revision;
+  memory_.put(distribution.id, std::move(remains));
 }
 
 }  // namespace kinship::service

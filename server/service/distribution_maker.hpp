@@ -22,6 +22,9 @@ class DistributionMaker {
   /// \param fit    empty: fit_distribution.
   DistributionMaker(const Parts& parts, Fit fit);
 
+  DistributionMaker(const DistributionMaker&) = delete;
+  DistributionMaker& operator=(const DistributionMaker&) = delete;
+
   /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
   /// \throws Failure(Storage or Unavailable), which may pass.
   FitOutcome make(const DistributionKey& key, const std::stop_token& stop) const;
@@ -29,12 +32,20 @@ class DistributionMaker {
   /// Whether its paths were retired while it was made. \throws Failure(Storage)
   bool is_outdated(const Distribution& distribution) const;
 
-  /// Stores it and gives it its revision. If the store cannot take it, it is of use all the same
-  /// while this server runs: with revision 0, and the reason says so.
-  Distribution keep(Distribution distribution) const;
+  /// Stores it, gives it its revision and remembers what it left for the next fit. If the store
+  /// cannot take it, it is of use all the same while this server runs: with revision 0, and the
+  /// reason says so; the next fit is a full one then.
+  /// \param outcome  with a distribution.
+  Distribution keep(FitOutcome outcome) const;
+
+  /// The next fit of this distribution begins anew.
+  void forget(const Digest& id) const { memory_.erase(id); }
 
  private:
+  void remember(const Distribution& distribution, std::shared_ptr<FitRemains> remains) const;
+
   const Parts parts_;
+  mutable FitMemory memory_;
   const Fit fit_;
 };
 

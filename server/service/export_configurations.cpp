@@ -72,7 +72,9 @@ void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights
                 const Distribution& distribution, std::uint64_t seed, JobRows& rows) {
   rows.add(header(distribution.limits.cols()));
   const auto count = static_cast<std::uint32_t>(pool.paths().size());
-  const std::vector<std::uint8_t> held_out = distribution.held_out_score
+  // An incremental fit keeps the score of the fit before it, which had fewer paths.
+  const bool is_incremental = distribution.fit && distribution.fit->from_revision > 0;
+  const std::vector<std::uint8_t> held_out = distribution.held_out_score && !is_incremental
                                                  ? density::held_out_paths(count, seed)
                                                  : std::vector<std::uint8_t>(count, 0);
   Eigen::MatrixXd configurations = pool.configurations();
@@ -82,7 +84,7 @@ void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights
   for (const PooledConfigurations::PooledPath& pooled : pool.paths()) {
     const std::string whose =
         pooled.report.text() + "," + distribution.sources[pooled.source].robot.hex() + ",";
-    const transfer::TransferredPath& path = pooled.path;
+    const transfer::TransferredPath& path = *pooled.path;
     const bool is_held_out = held_out[path_index++] != 0;
     for (Eigen::Index i = 0; i < path.configurations.cols(); ++i, ++row) {
       std::string line = whose + std::to_string(path.pose_index(i)) + "," +

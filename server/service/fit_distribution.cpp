@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "server/service/source_transfer.hpp"
 #include "server/service/source_words.hpp"
 #include "server/service/turn_cuts.hpp"
+#include "server/service/warm_refit.hpp"
 
 namespace kinship::service {
 namespace {
@@ -70,6 +72,24 @@ Result<density::FitSummary> fit_kernels(const Eigen::MatrixXd& configurations,
   return density::FitSummary{std::move(made.mixture), {}, {}, made.held_out_score};
 }
 
+const KnownPaths* known_of(const FitMemory::Remains& before) {
+  return before ? &before->paths : nullptr;
+}
+
+/// Which configurations come from paths that a fit did not use.
+std::vector<std::uint8_t> new_configurations(const PooledConfigurations& pool,
+                                             const KnownPaths& before) {
+  std::set<Uuid> known;
+  for (const auto& [id, path] : before)
+    known.insert(path.report);
+  std::vector<std::uint8_t> is_new;
+  is_new.reserve(static_cast<std::size_t>(pool.size()));
+  for (const PooledConfigurations::PooledPath& pooled : pool.paths())
+    is_new.insert(is_new.end(), static_cast<std::size_t>(pooled.path->configurations.cols()),
+                  known.count(pooled.report) > 0 ? 0 : 1);
+  return is_new;
+}
+
 /// One fit on its way.
 class Fit {
  public:
@@ -77,16 +97,21 @@ class Fit {
       : key_(key),
         context_(context),
         target_(context.robots.find(key.robot).value_or_throw()),
-        transfer_(context.store, context.robots, key, *target_) {}
+        transfer_(context.store, context.robots, key, *target_, known_of(context.before),
+                  context.fit_threads) {}
 
   FitOutcome run(const std::stop_token& stop);
 
  private:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  void fit(Distribution& distribution) const;
+  void fit(Distribution& distribution, FitRemains& remains) const;
   Result<density::FitSummary> fit_mixture(Distribution& distribution,
-                                          const Eigen::VectorXd& weights) const;
+                                          const Eigen::VectorXd& weights,
+                                          const std::vector<double>& masses) const;
+  FitOrigin origin(const std::string& why_full) const;
+  void leave(const Distribution& distribution, const std::vector<double>& masses,
+             FitRemains& remains) const;
   void fail(Distribution& distribution, const std::string& message) const;
   double seconds_since(TimePoint begin) const {
     return std::chrono::duration<double>(context_.clock.now() - begin).count();
@@ -114,17 +139,38 @@ FitOutcome Fit::run(const std::stop_token& stop) {
   for (const SourceSummary& summary : sources_)
     distribution.sources.push_back(summary.source);
   distribution.transfer_time_s = seconds_since(begin);
-  fit(distribution);
+  auto remains = std::make_shared<FitRemains>();
+  remains->paths = transfer_.used();
+  fit(distribution, *remains);
   distribution.fitted_ms = context_.clock.unix_ms();
-  return {FitOutcome::Kind::Fitted, std::move(distribution)};
+  return {FitOutcome::Kind::Fitted, std::move(distribution), std::move(remains)};
+}
+
+FitOrigin Fit::origin(const std::string& why_full) const {
+  const KnownPaths& used = transfer_.used();
+  FitOrigin origin;
+  origin.paths = origin.new_paths = used.size();
+  origin.transferred = transfer_.transferred();
+  origin.reason = why_full;
+  if (why_full.empty()) {
+    origin.from_revision = context_.before->revision;
+    origin.full_revision = context_.before->full.revision;
+    origin.new_paths -= context_.before->paths.size();  // each of them is used again
+  }
+  return origin;
 }
 
 Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
-                                             const Eigen::VectorXd& weights) const {
+                                             const Eigen::VectorXd& weights,
+                                             const std::vector<double>& masses) const {
   const PooledConfigurations& pool = transfer_.pool();
   const DensityParameters& parameters = key_.profile.density;
   Eigen::MatrixXd configurations = pool.configurations();
-  distribution.cuts = find_cuts(target_->chain, configurations);
+  const FitRemains* const before = context_.before.get();
+  const std::string why =
+      why_full({key_, transfer_.used(), sources_, masses, configurations, target_->chain}, before);
+  distribution.fit = origin(why);
+  distribution.cuts = why.empty() ? before->cuts : find_cuts(target_->chain, configurations);
   distribution.limits = limits_with(distribution.cuts, target_->chain);
   wrap(distribution.cuts, configurations);
   if (parameters.estimator == Estimator::Kernels)
@@ -140,12 +186,14 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
   options.seed = key_.profile.seed;
   options.limits = distribution.limits;
   options.computation.threads = context_.fit_threads;
-  if (options.components == 0)
+  if (why.empty())
+    options.warm_start = {*before->mixture, new_configurations(pool, before->paths)};
+  else if (options.components == 0)
     options.path_of_configuration = pool.path_of_configuration();
   return density::fit_mixture(configurations, weights, options);
 }
 
-void Fit::fit(Distribution& distribution) const {
+void Fit::fit(Distribution& distribution, FitRemains& remains) const {
   const PooledConfigurations& pool = transfer_.pool();
   distribution.configurations = static_cast<std::uint64_t>(pool.size());
   if (pool.size() == 0)
@@ -155,7 +203,7 @@ void Fit::fit(Distribution& distribution) const {
   const std::vector<double> masses = pool.masses(weights);
   for (std::size_t i = 0; i < masses.size(); ++i)
     distribution.sources[i].mass = masses[i];
-  Result<density::FitSummary> fitted = fit_mixture(distribution, weights);
+  Result<density::FitSummary> fitted = fit_mixture(distribution, weights, masses);
   distribution.fit_time_s = seconds_since(begin);
   if (!fitted)
     return fail(distribution, std::to_string(pool.size()) + " configurations for '" +
@@ -163,17 +211,37 @@ void Fit::fit(Distribution& distribution) const {
                                   "' could not be fitted: " + fitted.error().message);
   distribution.state = solved_share(distribution.sources) < kThinShare ? DistributionState::Thin
                                                                        : DistributionState::Ready;
-  distribution.held_out_score = fitted->held_out_score;
-  distribution.component_scores = fitted->curve;
+  const bool is_full = distribution.fit->from_revision == 0;  // else they were chosen before
+  distribution.held_out_score =
+      is_full ? fitted->held_out_score : context_.before->full.held_out_score;
+  distribution.component_scores = is_full ? fitted->curve : context_.before->full.component_scores;
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = warnings_in_words(sources_, key_.T_task_base.has_value());
   Profile profile = key_.profile;
   profile.recommended_share = first_share(profile, distribution.state);
   distribution.advice = advice_of_profile(profile);
+  leave(distribution, masses, remains);
+}
+
+/// For the next fit.
+void Fit::leave(const Distribution& distribution, const std::vector<double>& masses,
+                FitRemains& remains) const {
+  remains.sources = used_sources(sources_);
+  remains.mixture = distribution.mixture;
+  remains.cuts = distribution.cuts;
+  if (distribution.fit->from_revision > 0)
+    remains.full = context_.before->full;
+  else
+    remains.full = {.revision = 0,
+                    .paths = distribution.fit->paths,
+                    .masses = used_masses(sources_, masses),
+                    .held_out_score = distribution.held_out_score,
+                    .component_scores = distribution.component_scores};
 }
 
 void Fit::fail(Distribution& distribution, const std::string& message) const {
   distribution.state = DistributionState::Failed;
+  distribution.fit.reset();
   distribution.reason = message + ": " + sources_in_words(sources_);
   const std::string also = warnings_in_words(sources_, key_.T_task_base.has_value());
   if (!also.empty())

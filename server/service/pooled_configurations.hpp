@@ -2,12 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "proto/types/profile.hpp"
 #include "proto/types/uuid.hpp"
 #include "server/service/source_masses.hpp"
-#include "server/transfer/transfer.hpp"
+#include "server/transfer/transferred_path.hpp"
 
 namespace kinship::service {
 
@@ -25,14 +26,14 @@ class PooledConfigurations {
   /// \param report  that brought the path.
   /// \throws std::invalid_argument if the configurations have another number of joints, or as
   ///         many weights as configurations are not there; std::logic_error without a source.
-  void add(transfer::TransferredPath path, const Uuid& report = {});
+  void add(std::shared_ptr<const transfer::TransferredPath> path, const Uuid& report = {});
 
   Eigen::Index size() const noexcept { return size_; }  ///< number of configurations
 
   struct PooledPath {
     std::size_t source = 0;  ///< counts from 0 in the order of begin_source()
     Uuid report;
-    transfer::TransferredPath path;  ///< with at least one configuration
+    std::shared_ptr<const transfer::TransferredPath> path;  ///< with at least one configuration
   };
   /// In the order of addition; their configurations one after the other are configurations().
   const std::vector<PooledPath>& paths() const noexcept { return paths_; }

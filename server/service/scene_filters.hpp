@@ -12,6 +12,16 @@
 
 namespace kinship::service {
 
+/// What a recorded scene says about the configurations of a target.
+struct PathScene {
+  transfer::Keep keep;  ///< empty: nothing is left out
+  /// An object that a moving link of the target touches wherever it goes, and that is therefore not
+  /// looked at, in words; empty if there is none. (That a base touches the table it stands on is no
+  /// news.)
+  std::string ignored;
+  bool is_damaged = false;  ///< it could not be read; a report may bring it anew
+};
+
 /// The recorded scenes of one fit as filters for its target at its placement, one for each content.
 /// Used by one thread.
 class SceneFilters {
@@ -20,27 +30,22 @@ class SceneFilters {
   SceneFilters(const store::Store& store, const DistributionKey& key, const Robot& target)
       : store_(store), key_(key), target_(target) {}
 
-  /// The filter of a path's scene; empty if the profile wants none, the path came without a scene
-  /// or its scene is damaged, or the target has no shapes.
+  /// That of a path; without a filter if the profile wants none, the path came without a scene or
+  /// its scene is damaged, or the target has no shapes. Valid until the next call.
   /// \throws Failure(Storage)
-  const transfer::Keep& find(const store::StoredPath& path);
-
-  /// The first object found so far that a moving link of the target touches wherever it goes, and
-  /// that was therefore not looked at, in words; empty if there was none. (That a base touches the
-  /// table it stands on is no news.)
-  const std::string& ignored() const noexcept { return ignored_; }
+  const PathScene& find(const store::StoredPath& path);
 
  private:
   static constexpr std::size_t kMost = 64;  ///< filters in memory, about 0.1 MB each
-  void note_ignored(const transfer::SceneFilter& filter);
+  PathScene read(std::int64_t scene_id) const;
+  std::string ignored_of(const transfer::SceneFilter& filter) const;
 
-  const transfer::Keep none_;
+  const PathScene none_;
 
   const store::Store& store_;
   const DistributionKey& key_;
   const Robot& target_;
-  std::map<std::int64_t, transfer::Keep> filters_;  // by scene id
-  std::string ignored_;
+  std::map<std::int64_t, PathScene> scenes_;  // by scene id
 };
 
 }  // namespace kinship::service

@@ -223,13 +223,14 @@ void Service::log_fit(const Distribution& distribution) const {
   for (const Source& source : distribution.sources)
     paths += source.paths;
   const bool failed = distribution.state == DistributionState::Failed;
-  options_.log("fit " + distribution.id.short_hex() + " revision " +
-               std::to_string(distribution.revision) + " for robot " +
-               distribution.robot.short_hex() + ", task '" + distribution.task +
-               "': " + std::to_string(distribution.configurations) + " configurations from " +
-               std::to_string(paths) + " paths, transfer " + seconds(distribution.transfer_time_s) +
-               ", fit " + seconds(distribution.fit_time_s) + (failed ? ", failed" : "") +
-               (distribution.reason.empty() ? "" : ": " + distribution.reason));
+  options_.log(
+      "fit " + distribution.id.short_hex() + " revision " + std::to_string(distribution.revision) +
+      " for robot " + distribution.robot.short_hex() + ", task '" + distribution.task +
+      "': " + std::to_string(distribution.configurations) + " configurations from " +
+      std::to_string(paths) + " paths, transfer " + seconds(distribution.transfer_time_s) +
+      ", fit " + seconds(distribution.fit_time_s) +
+      (distribution.fit ? ", " + in_words(*distribution.fit) : "") + (failed ? ", failed" : "") +
+      (distribution.reason.empty() ? "" : ": " + distribution.reason));
 }
 
 void Service::shutdown() {

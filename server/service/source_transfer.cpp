@@ -1,14 +1,9 @@
 #include "server/service/source_transfer.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
-#include "proto/types/failure.hpp"
-#include "proto/types/pose.hpp"
 #include "server/service/selected_experience.hpp"
-#include "server/transfer/collision_filter.hpp"
-#include "server/transfer/transfer.hpp"
 
 namespace kinship::service {
 namespace {
@@ -18,18 +13,6 @@ constexpr std::size_t kPathsPerRead = 64;  // bounds what one read transaction h
 /// Whether item `index` of `count` is one of the `wanted` that are spread evenly over them.
 bool is_chosen(std::uint64_t index, std::uint64_t count, std::uint64_t wanted) {
   return wanted >= count || (index + 1) * wanted / count > index * wanted / count;
-}
-
-/// Pose of the source's base in the target's; exactly the identity if both stand at the same
-/// place up to snapping, so that paths of the same arm are taken over.
-Eigen::Isometry3d T_target_source(const std::optional<Eigen::Isometry3d>& T_task_target,
-                                  const std::optional<Eigen::Isometry3d>& T_task_source) {
-  const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3d target = T_task_target.value_or(identity);
-  const Eigen::Isometry3d source = T_task_source.value_or(identity);
-  if (snapped(source).matrix() == target.matrix())
-    return identity;
-  return target.inverse(Eigen::Isometry) * source;
 }
 
 Relation relation_of(const transfer::ArmPair& pair) {
@@ -61,19 +44,19 @@ void write(const transfer::TransferSummary& total, Source& source) {
   source.scene_collisions = total.scene_collisions;
 }
 
-/// Calls `visit` with the paths of a robot and task in the order of arrival, until it says false.
+/// Calls `visit` with the paths of a robot and task in the order of arrival, page by page, until it
+/// says false.
 template <typename Visit>
-void visit_paths(const store::Store& store, const Digest& robot, const DistributionKey& key,
+void visit_pages(const store::Store& store, const Digest& robot, const DistributionKey& key,
                  Visit visit) {
   store::PathRange range{.after_id = 0, .limit = kPathsPerRead, .since_ms = key.since_ms};
   for (;;) {
-    const std::vector<store::StoredPath> page = store.read_paths(robot, key.task, range);
-    for (const store::StoredPath& stored : page)
-      if (!visit(stored))
-        return;
+    std::vector<store::StoredPath> page = store.read_paths(robot, key.task, range);
     if (page.empty())
       return;
     range.after_id = page.back().id;
+    if (!visit(std::move(page)))
+      return;
   }
 }
 
@@ -89,23 +72,21 @@ Source source_of(const store::ExperienceSummary& experience) {
 }
 
 SourceTransfer::SourceTransfer(const store::Store& store, RobotRegistry& robots,
-                               const DistributionKey& key, const Robot& target)
+                               const DistributionKey& key, const Robot& target,
+                               const KnownPaths* known, int threads)
     : store_(store),
       robots_(robots),
       key_(key),
       target_(target),
-      scenes_(store, key, target),
-      pool_(target.chain.dof()) {
-  if (key.profile.transfer.avoid_self_collision)
-    filters_.self = transfer::collision_filter(target.chain, target.shapes);
-}
+      transfer_(store, key, target, known, threads),
+      pool_(target.chain.dof()) {}
 
 std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience) const {
   if (key_.since_ms == 0)
     return experience.paths;
   std::uint64_t count = 0;
-  visit_paths(store_, experience.robot, key_, [&count](const store::StoredPath&) {
-    ++count;
+  visit_pages(store_, experience.robot, key_, [&count](const std::vector<store::StoredPath>& page) {
+    count += page.size();
     return true;
   });
   return std::min(count, experience.paths);  // others may arrive meanwhile
@@ -136,47 +117,46 @@ void SourceTransfer::add_paths(const Robot& robot, std::uint64_t wanted,
   const std::uint64_t count = summary.paths_selected;
   std::uint64_t index = 0;
   if (count > 0)
-    visit_paths(store_, robot.digest, key_, [&](const store::StoredPath& stored) {
-      if (stop.stop_requested())
-        return false;
-      if (is_chosen(index++, count, wanted))
-        ++(add_path(stored, pair, summary, total) ? summary.source.paths_used
-                                                  : summary.paths_left_out);
-      return index < count;
+    visit_pages(store_, robot.digest, key_, [&](std::vector<store::StoredPath> page) {
+      std::erase_if(page, [&](const store::StoredPath&) {
+        const bool is_wanted = index < count && is_chosen(index, count, wanted);
+        ++index;
+        return !is_wanted;
+      });
+      const std::vector<PathOutcome> outcomes = transfer_.transfer(page, pair, stop);
+      for (std::size_t i = 0; i < page.size(); ++i)
+        add_path(page[i], outcomes[i], summary, total);
+      return index < count && !stop.stop_requested();
     });
   write(total, summary.source);
 }
 
-void SourceTransfer::count_scene(const transfer::TransferSummary& path,
-                                 SourceSummary& summary) const {
-  if (!filters_.scene || path.filter_checks == 0)
-    return;  // nothing was asked: waypoints that were taken over were free on their robot
-  ++summary.source.paths_with_scene;
-  if (path.configurations == 0 && path.scene_collisions > 0)
-    ++summary.paths_blocked;
-  summary.scene_problem = scenes_.ignored();
+void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome& outcome,
+                              SourceSummary& summary, transfer::TransferSummary& total) {
+  if (!outcome.path) {  // one bad path must not cost the others
+    ++summary.paths_left_out;
+    if (summary.problem.empty())
+      summary.problem = "path " + stored.report_uuid.text() + ": " + outcome.problem;
+    return;
+  }
+  ++summary.source.paths_used;
+  pool_.add(outcome.path->path, stored.report_uuid);
+  total.add(outcome.path->path->summary);
+  count_scene(*outcome.path, summary);
+  (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
+  transferred_ += outcome.was_known ? 0 : 1;
+  used_.emplace(stored.id, *outcome.path);
 }
 
-bool SourceTransfer::add_path(const store::StoredPath& stored, const transfer::ArmPair& pair,
-                              SourceSummary& summary, transfer::TransferSummary& total) {
-  try {
-    if (stored.path.dof() != pair.source().dof())
-      throw Failure(ErrorCode::InvalidInput,
-                    "a path of " + std::to_string(stored.path.dof()) + " joints");
-    filters_.scene = scenes_.find(stored);
-    transfer::TransferredPath moved = transfer::transfer_path(
-        stored.path, pair, T_target_source(key_.T_task_base, stored.T_task_base),
-        key_.profile.transfer, key_.profile.seed, filters_);
-    total.add(moved.summary);
-    count_scene(moved.summary, summary);
-    pool_.add(std::move(moved), stored.report_uuid);
-    (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
-    return true;
-  } catch (const std::exception& exception) {  // one bad path must not cost the others
-    if (summary.problem.empty())
-      summary.problem = "path " + stored.report_uuid.text() + ": " + exception.what();
-    return false;
-  }
+void SourceTransfer::count_scene(const KnownPath& path, SourceSummary& summary) {
+  const transfer::TransferSummary& transferred = path.path->summary;
+  if (!path.has_scene || transferred.filter_checks == 0)
+    return;  // nothing was asked: waypoints that were taken over were free on their robot
+  ++summary.source.paths_with_scene;
+  if (transferred.configurations == 0 && transferred.scene_collisions > 0)
+    ++summary.paths_blocked;
+  if (summary.scene_problem.empty())
+    summary.scene_problem = path.scene_problem;
 }
 
 std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,

@@ -1,19 +1,17 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "proto/types/distribution.hpp"
 #include "server/service/distribution_key.hpp"
+#include "server/service/known_paths.hpp"
+#include "server/service/path_transfer.hpp"
 #include "server/service/pooled_configurations.hpp"
 #include "server/service/robot_registry.hpp"
-#include "server/service/scene_filters.hpp"
 #include "server/store/store.hpp"
-#include "server/transfer/filters.hpp"
 #include "server/transfer/transferred_path.hpp"
 
 namespace kinship::service {
@@ -36,8 +34,11 @@ Source source_of(const store::ExperienceSummary& experience);
 class SourceTransfer {
  public:
   /// \param robots, store, key, target  outlive it.
+  /// \param known    of an earlier fit of the same key: taken over where the store still has them.
+  ///                 Outlives it, may be null.
+  /// \param threads  that transfer; what comes out does not depend on them.
   SourceTransfer(const store::Store& store, RobotRegistry& robots, const DistributionKey& key,
-                 const Robot& target);
+                 const Robot& target, const KnownPaths* known = nullptr, int threads = 1);
 
   /// How many paths of the source the key wants.
   std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
@@ -50,21 +51,25 @@ class SourceTransfer {
                     std::uint64_t wanted, const std::stop_token& stop);
 
   const PooledConfigurations& pool() const noexcept { return pool_; }
+  /// Those used, also if nothing came of them.
+  const KnownPaths& used() const noexcept { return used_; }
+  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of those used, anew
 
  private:
   void add_paths(const Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
                  SourceSummary& summary);
-  void count_scene(const transfer::TransferSummary& path, SourceSummary& summary) const;
-  bool add_path(const store::StoredPath& stored, const transfer::ArmPair& pair,
-                SourceSummary& summary, transfer::TransferSummary& total);
+  static void count_scene(const KnownPath& path, SourceSummary& summary);
+  void add_path(const store::StoredPath& stored, const PathOutcome& outcome, SourceSummary& summary,
+                transfer::TransferSummary& total);
 
   const store::Store& store_;
   RobotRegistry& robots_;
   const DistributionKey& key_;
   const Robot& target_;
-  SceneFilters scenes_;
-  transfer::Filters filters_;  // the scene is that of the path under way
+  PathTransfer transfer_;
   PooledConfigurations pool_;
+  KnownPaths used_;
+  std::uint64_t transferred_ = 0;
 };
 
 /// Adds every source's share of at most `max_paths` paths.

@@ -85,6 +85,8 @@ std::string in_words(const Distribution& distribution) {
   std::snprintf(seconds, sizeof seconds, "transfer %.2f s, fit %.2f s",
                 distribution.transfer_time_s, distribution.fit_time_s);
   words += seconds;
+  if (distribution.fit)
+    words += ", " + in_words(*distribution.fit);
   if (distribution.state == DistributionState::Failed)
     words += ", failed";
   return distribution.reason.empty() ? words : words + ": " + distribution.reason;

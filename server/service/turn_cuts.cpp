@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 namespace kinship::service {
 namespace {
@@ -16,18 +17,36 @@ double wrapped(double angle, double from) {
   return turned < from + kTurn ? std::max(turned, from) : from;
 }
 
-double middle_of_largest_gap(std::vector<double> angles) {
+/// Between neighbouring angles of a circle.
+struct Gap {
+  double begin = 0, width = 0;
+};
+
+Gap largest_gap(std::vector<double> angles) {
   for (double& angle : angles)
     angle = wrapped(angle, -std::numbers::pi);
   std::sort(angles.begin(), angles.end());
-  double widest = angles.front() + kTurn - angles.back();
-  double begin = angles.back();
+  Gap widest{angles.back(), angles.front() + kTurn - angles.back()};
   for (std::size_t i = 1; i < angles.size(); ++i)
-    if (angles[i] - angles[i - 1] > widest) {
-      widest = angles[i] - angles[i - 1];
-      begin = angles[i - 1];
-    }
-  return wrapped(begin + widest / 2, -std::numbers::pi);
+    if (angles[i] - angles[i - 1] > widest.width)
+      widest = {angles[i - 1], angles[i] - angles[i - 1]};
+  return widest;
+}
+
+double middle_of_largest_gap(std::vector<double> angles) {
+  const Gap widest = largest_gap(std::move(angles));
+  return wrapped(widest.begin + widest.width / 2, -std::numbers::pi);
+}
+
+/// Of the gap that an angle lies in.
+double width_of_gap_at(double cut, const std::vector<double>& angles) {
+  double least = kTurn, most = 0;  // behind the cut
+  for (const double angle : angles) {
+    const double behind = wrapped(angle, cut) - cut;
+    least = std::min(least, behind);
+    most = std::max(most, behind);
+  }
+  return least + kTurn - most;
 }
 
 }  // namespace
@@ -44,6 +63,22 @@ TurnCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& config
     has_cut = true;
   }
   return has_cut ? cuts : TurnCuts{};
+}
+
+bool still_cuts(const TurnCuts& cuts, const kinematics::Chain& chain,
+                const Eigen::MatrixXd& configurations) {
+  for (Eigen::Index joint = 0; joint < chain.dof(); ++joint) {
+    const auto index = static_cast<std::size_t>(joint);
+    if (chain.joints()[index].type != kinematics::JointType::Continuous)
+      continue;
+    if (index >= cuts.size() || !cuts[index])
+      return false;
+    const auto row = configurations.row(joint);
+    const std::vector<double> angles(row.begin(), row.end());
+    if (width_of_gap_at(*cuts[index], angles) < largest_gap(angles).width / 2)
+      return false;
+  }
+  return true;
 }
 
 void wrap(const TurnCuts& cuts, Eigen::MatrixXd& configurations) {

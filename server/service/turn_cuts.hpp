@@ -18,6 +18,11 @@ using TurnCuts = std::vector<std::optional<double>>;
 /// \return dof entries, or none if no joint of the chain is continuous.
 TurnCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& configurations);
 
+/// Whether earlier cuts are as good as new ones: each in a gap between the angles that is at least
+/// half as wide as the largest.
+bool still_cuts(const TurnCuts& cuts, const kinematics::Chain& chain,
+                const Eigen::MatrixXd& configurations);
+
 /// Moves continuous joints by full turns into [cut, cut + 2 pi).
 void wrap(const TurnCuts& cuts, Eigen::MatrixXd& configurations);
 

@@ -2,15 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <stdexcept>
 
 namespace kinship::service {
 namespace {
 
-transfer::TransferredPath transferred(Eigen::Index count, double value) {
-  transfer::TransferredPath path;
-  path.configurations = Eigen::MatrixXd::Constant(2, count, value);
-  path.weights = Eigen::VectorXd::Ones(count);
+std::shared_ptr<transfer::TransferredPath> transferred(Eigen::Index count, double value) {
+  auto path = std::make_shared<transfer::TransferredPath>();
+  path->configurations = Eigen::MatrixXd::Constant(2, count, value);
+  path->weights = Eigen::VectorXd::Ones(count);
   return path;
 }
 
@@ -55,10 +56,10 @@ TEST_F(Pooled, WeightsSumToTheNumberOfConfigurations) {
 }
 
 TEST_F(Pooled, RefusesOtherShapes) {
-  transfer::TransferredPath path = transferred(3, 1);
-  path.weights = Eigen::VectorXd::Ones(2);
+  const auto path = transferred(3, 1);
+  path->weights = Eigen::VectorXd::Ones(2);
   EXPECT_THROW(pool_.add(path), std::invalid_argument);
-  path.configurations = Eigen::MatrixXd::Ones(3, 2);
+  path->configurations = Eigen::MatrixXd::Ones(3, 2);
   EXPECT_THROW(pool_.add(path), std::invalid_argument);
 }
 

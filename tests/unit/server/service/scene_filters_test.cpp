@@ -38,7 +38,7 @@ class FitAmongScenes : public testing::Test {
   void report(const std::optional<RecordedScene>& scene) {
     std::vector<Attempt> attempts;
     for (std::uint64_t i = 0; i < kPaths; ++i) {
-      attempts.push_back(test::panda_attempt(panda_, "sweep", i));
+      attempts.push_back(test::panda_attempt(panda_, "sweep", first_seed_ + i));
       attempts.back().scene = scene;
     }
     std::promise<void> done;
@@ -56,9 +56,10 @@ class FitAmongScenes : public testing::Test {
     key.profile.density.components = 2;
     return key;
   }
-  Distribution fit(bool avoid = true) {
-    return fit_distribution(key_of(avoid), {.store = *store_, .robots = registry_, .clock = clock_},
-                            {})
+  Distribution fit(bool avoid = true, int threads = 1) {
+    return fit_distribution(
+               key_of(avoid),
+               {.store = *store_, .robots = registry_, .clock = clock_, .fit_threads = threads}, {})
         .distribution.value();
   }
   /// How many of the configurations that a fit is made of touch a scene.
@@ -76,6 +77,7 @@ class FitAmongScenes : public testing::Test {
     return touching;
   }
 
+  std::uint64_t first_seed_ = 0;
   const test::TemporaryDirectory directory_;
   const std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "s.db");
   RobotRegistry registry_{*store_};
@@ -128,6 +130,21 @@ TEST_F(FitAmongScenes, WhatAMovingLinkAlwaysTouchesIsToldAndNotLookedAt) {
   EXPECT_NE(distribution.reason.find("touches 'flood' of a recorded scene wherever it goes"),
             std::string::npos)
       << distribution.reason;
+}
+
+TEST_F(FitAmongScenes, ThreadsMakeNoDifference) {
+  report(RecordedScene{{kCeiling}, {}, {}});
+  first_seed_ = kPaths;
+  report(RecordedScene{{kFarAway, {"flood", BoxShape{{9, 9, 9}}}}, {}, {}});
+  const Distribution one = fit(), three = fit(true, 3);
+  ASSERT_TRUE(one.mixture && three.mixture);
+  EXPECT_EQ(one.mixture->means(), three.mixture->means());
+  EXPECT_EQ(one.mixture->covariances(), three.mixture->covariances());
+  EXPECT_EQ(one.reason, three.reason);
+  EXPECT_NE(one.reason.find("touches 'flood'"), std::string::npos) << one.reason;
+  EXPECT_EQ(one.sources.at(0).paths_with_scene, 2 * kPaths);
+  EXPECT_EQ(one.sources.at(0).scene_collisions, three.sources.at(0).scene_collisions);
+  EXPECT_EQ(one.sources.at(0).filter_checks, three.sources.at(0).filter_checks);
 }
 
 }  // namespace
