@@ -72,6 +72,20 @@ TEST(TurnCuts, OnePlaceIsCutOppositeOfIt) {
   }
 }
 
+TEST(TurnCuts, AnEarlierCutHoldsWhileItsGapIsWide) {
+  Eigen::MatrixXd angles = Eigen::MatrixXd::Zero(2, 3);
+  angles.row(0) << -0.5, 0, 0.5;
+  const TurnCuts cuts = find_cuts(turning_arm(), angles);  // opposite of 0
+  EXPECT_TRUE(still_cuts(cuts, turning_arm(), angles));
+  angles.row(0) << -0.5, 0, 2;  // the gap around pi is smaller now, and still the largest
+  EXPECT_TRUE(still_cuts(cuts, turning_arm(), angles));
+  angles.row(0) << -3.0, 0, 3.0;  // the cut is in a gap of 0.28, others are ten times as wide
+  EXPECT_FALSE(still_cuts(cuts, turning_arm(), angles));
+  angles.row(0).array() += kTurn;
+  EXPECT_FALSE(still_cuts(cuts, turning_arm(), angles));
+  EXPECT_FALSE(still_cuts({}, turning_arm(), angles));
+}
+
 TEST(TurnCuts, FullTurnsChangeNothing) {
   const Eigen::MatrixXd configurations = straddling(600);
   const Eigen::MatrixXd turned = configurations.array() + kTurn;
