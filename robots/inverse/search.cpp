@@ -25,6 +25,8 @@ constexpr int kFirstStarts = 16;
 constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;        // ended descents in a row without a new solution
 constexpr int kBranchPatience = 52;   // the same, for the branches of an arm that is not redundant
+constexpr int kEvenPatience = 20;     // the same where branches come in pairs: none alone is known,
+constexpr int kOddPatience = 100;     // and one is missing for certain
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
 constexpr int kFewestLocks = 8;       // random values of the locked joints
 constexpr int kIdleLocks = 24;        // in a row without a new solution
@@ -34,7 +36,15 @@ constexpr double kKnown = 0.1;        // joint units: a descent that near to a b
 constexpr double kNear = 0.1;         // task error worth more patience
 constexpr double kFar = 1e-2;         // task error of a pose that is not just hard
 constexpr double kStationary = 1e-4;  // squared step by squared error
+constexpr int kPairedJoints = 6;      // of a non-redundant arm whose branches come in pairs
 constexpr std::uint64_t kChoice = ~std::uint64_t{0};  // the attempt that shuffles
+
+/// Whether a pose is reached in an even number of ways, limits aside.
+bool come_in_pairs(const LaneChain& chain) {
+  return chain.dof == kPairedJoints && chain.rows == kPairedJoints &&
+         std::none_of(chain.joints, chain.joints + chain.dof,
+                      [](const LaneJoint& joint) { return joint.slides; });
+}
 
 }  // namespace
 
@@ -50,8 +60,10 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
                                                                : std::max(most_, kMostFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
+      pairs_(come_in_pairs(solver.lanes())),
       generator_(options.seed, T_base_tip),
-      found_(solver.space().dof()) {
+      found_(solver.space().dof()),
+      outside_(solver.space().dof()) {
   const double length_m = solver.lanes().length_m;
   for (int i = 0; i < 12; ++i) {
     const double value = i < 9 ? T_base_transfer_(i / 3, i % 3) : T_base_transfer_(i - 9, 3);
@@ -178,7 +190,7 @@ void Search::descend(const Effort& effort) {
     start(effort, lane);
     busy |= 1U << static_cast<unsigned>(lane);
   }
-  while (busy != 0 && !enough() && idle_ < effort.patience) {
+  while (busy != 0 && !enough() && !complete(effort)) {
     solver_.kernels().step(solver_.lanes(), effort.limits, batch_);
     for (int lane = 0; lane < kLanes; ++lane) {
       if ((busy >> static_cast<unsigned>(lane) & 1U) == 0)
@@ -196,10 +208,22 @@ void Search::descend(const Effort& effort) {
         busy &= ~(1U << static_cast<unsigned>(lane));
       }
     }
-    if (found_.size() + static_cast<std::size_t>(handed_over_) >= wanted_ || busy == 0)
+    if (!solver_.redundant() || busy == 0 ||
+        found_.size() + static_cast<std::size_t>(handed_over_) >= wanted_)
       verify();
   }
   verify();
+}
+
+/// Six turning joints reach a pose in an even number of ways, +-2 pi copies aside, as the roots of
+/// a polynomial of degree 16 come in pairs.
+/// Source: Raghavan and Roth, Inverse kinematics of the general 6R manipulator and related
+/// linkages, Journal of Mechanical Design 115 (1993).
+bool Search::complete(const Effort& effort) const noexcept {
+  if (!pairs_ || all_ || found_.empty())
+    return idle_ >= effort.patience;
+  const bool even = (found_.size() + outside_.size()) % 2 == 0;
+  return idle_ >= (even ? kEvenPatience : kOddPatience);
 }
 
 void Search::start(const Effort& effort, int lane) {
@@ -248,11 +272,12 @@ std::array<double, kLaneJoints> Search::configuration(int lane) const {
 }
 
 bool Search::is_known(int lane) const {
-  if (solver_.redundant() || found_.empty())
+  if (solver_.redundant() || (found_.empty() && outside_.empty()))
     return false;
   std::array<double, kLaneJoints> q = configuration(lane);
   solver_.space().normalize(q.data());
-  return !is_apart(solver_.space(), found_, q.data(), kKnown);
+  return !is_apart(solver_.space(), found_, q.data(), kKnown) ||
+         !is_apart(solver_.space(), outside_, q.data(), kKnown);
 }
 
 void Search::hand_over(int lane) {
@@ -263,6 +288,10 @@ void Search::hand_over(int lane) {
 void Search::offer(std::array<double, kLaneJoints>& q) {
   if (!solver_.space().normalize(q.data())) {
     outside_limits_ = true;
+    if (!solver_.redundant() && is_apart(solver_.space(), outside_, q.data(), kSamePoint)) {
+      outside_.add(q.data());
+      idle_ = 0;
+    }
     return;
   }
   if (!is_apart(solver_.space(), found_, q.data(), apart_))

@@ -53,6 +53,8 @@ class Search {
   /// Verifies what was handed over, and keeps what is right.
   void verify();
   bool enough() const noexcept { return found_.size() >= wanted_; }
+  /// Whether so many starts in a row brought no new branch that it is no longer worth looking.
+  bool complete(const Effort& effort) const noexcept;
   void find();
   InverseSolutions solutions();
 
@@ -63,6 +65,7 @@ class Search {
   const std::size_t wanted_;   // to be found before the choice
   const double apart_;         // between those found
   const bool all_;             // as many as there are
+  const bool pairs_;           // branches come in pairs
   const CounterGenerator generator_;
 
   LaneBatch batch_;
@@ -77,6 +80,7 @@ class Search {
   int idle_ = 0;           // ended descents since the last new solution
   int stationary_ = 0;     // descents that ended where the error has a minimum above 0
   Configurations found_;
+  Configurations outside_;  // branches outside the limits, of an arm that is not redundant
   bool outside_limits_ = false;
   double least_squared_error_ = std::numeric_limits<double>::infinity();
 };

@@ -1,6 +1,7 @@
 #include "server/transfer/shape_lanes.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "server/transfer/shape_pull.hpp"
 
@@ -9,7 +10,8 @@ namespace {
 
 constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
-constexpr double kArrived = 1e-8;  // squared error before a last step, which squares it again
+constexpr double kNearPose = 1e-2;  // squared error of what is worth a descent
+constexpr double kArrived = 1e-8;   // squared error before a last step, which squares it again
 
 bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
 unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
@@ -46,6 +48,7 @@ void ShapeLanes::aim(int lane, const Eigen::Isometry3d& T_base_transfer, const A
     const double value = i < 9 ? T_base_transfer(i / 3, i % 3) : T_base_transfer(i - 9, 3);
     check_.target[i][lane] = value;
     batch_.target[i][lane] = i < 9 ? value : value / solver_.lanes().length_m;
+    pull_.target[i][lane] = batch_.target[i][lane];
   }
   for (int i = 0; i < ArmShapeMotion::kRows; ++i)
     pull_.wanted[i][lane] = wanted.reshaped()[i];
@@ -89,26 +92,74 @@ void ShapeLanes::pull(unsigned lanes, int steps) {
   }
   for (int lane = 0; lane < kCount; ++lane)
     write(chain, at(lane), lane, pull_.q);
+  // An arm that is not redundant has no self-motion.
+  unsigned moved = slide(lanes, solver_.redundant() ? steps : 0);
+  if (moved == 0)
+    return;
+  moved = descend(moved);
+  std::copy_n(&batch_.q[0][0], chain.dof * kCount, &pull_.q[0][0]);
   solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
-  std::copy_n(pull_.distance_m, kCount, distance_m_.begin());
-  for (int i = 0; i < steps && lanes != 0; ++i) {
-    std::copy_n(&pull_.q[0][0], chain.dof * kCount, &batch_.q[0][0]);
-    lanes = descend(lanes);
-    std::copy_n(&batch_.q[0][0], chain.dof * kCount, &pull_.q[0][0]);
-    solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
+  for (int lane = 0; lane < kCount; ++lane) {
+    double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
+    if (!has(moved, lane) || !(pull_.distance_m[lane] < distance_m))
+      continue;
+    put(lane, read(chain, batch_.q, lane));
+    distance_m = pull_.distance_m[lane];
+  }
+}
+
+/// From what stands in the pull, near to the poses. The best of each lane is left in the batch.
+/// \return the lanes that got nearer to their shapes.
+unsigned ShapeLanes::slide(unsigned lanes, int steps) {
+  const inverse::LaneChain& chain = solver_.lanes();
+  std::array<double, kCount> least_m;
+  least_m.fill(std::numeric_limits<double>::infinity());
+  unsigned moved = 0;
+  for (int i = 0; i <= steps && lanes != 0; ++i) {
+    inverse::LanePull& now = pull_;
+    const inverse::LanePull before = now;
+    solver_.kernels().pull(chain, *pair_.target_marks(), now);
+    if (i == 0)
+      std::copy_n(now.distance_m, kCount, distance_m_.begin());
     for (int lane = 0; lane < kCount; ++lane) {
-      double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
-      const double reached_m = pull_.distance_m[lane];
-      if (!has(lanes, lane))
-        continue;
-      if (!(reached_m <= distance_m * (1 - kLeastGain)))
+      double& least = least_m[static_cast<std::size_t>(lane)];
+      const double reached_m = now.distance_m[lane];
+      const bool nearer = reached_m < least && now.squared[lane] < kNearPose;
+      if (i == 0 || (has(lanes, lane) && nearer))
+        for (int j = 0; j < chain.dof; ++j)
+          batch_.q[j][lane] = before.q[j][lane];
+      if (i > 0 && has(lanes, lane) && nearer)
+        moved |= bit(lane);
+      if (i > 0 && !(reached_m <= least * (1 - kLeastGain)))
         lanes &= ~bit(lane);
-      if (!(reached_m < distance_m))
-        continue;
-      put(lane, read(chain, batch_.q, lane));
-      distance_m = reached_m;
+      if (nearer)
+        least = reached_m;
     }
   }
+  return moved;
+}
+
+Eigen::VectorXd ShapeLanes::distances_m(const Eigen::MatrixXd& configurations,
+                                        const ArmShape& wanted) const {
+  const Eigen::Index count = configurations.cols();
+  Eigen::VectorXd distances(count);
+  if (!pair_.target_marks()) {
+    for (Eigen::Index i = 0; i < count; ++i)
+      distances[i] = shape_distance(arm_shape(pair_.target(), configurations.col(i)), wanted);
+    return distances;
+  }
+  inverse::LanePull measured = pull_;
+  for (int i = 0; i < ArmShapeMotion::kRows; ++i)
+    std::fill_n(measured.wanted[i], kCount, wanted.reshaped()[i]);
+  for (Eigen::Index first = 0; first < count; first += kCount) {
+    const Eigen::Index many = std::min<Eigen::Index>(kCount, count - first);
+    for (int lane = 0; lane < kCount; ++lane)
+      write(solver_.lanes(), configurations.col(first + std::min<Eigen::Index>(lane, many - 1)),
+            lane, measured.q);
+    solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), measured);
+    std::copy_n(measured.distance_m, many, distances.data() + first);
+  }
+  return distances;
 }
 
 void ShapeLanes::pull_one(int lane, int steps) {

@@ -36,12 +36,17 @@ class ShapeLanes {
   /// How far the shape of a lane was from the wanted one at the end of the last pull, m.
   double distance_m(int lane) const { return distance_m_[static_cast<std::size_t>(lane)]; }
 
+  /// How far the shapes of configurations (one per column) are from a wanted one, m. What stands in
+  /// the lanes stays.
+  Eigen::VectorXd distances_m(const Eigen::MatrixXd& configurations, const ArmShape& wanted) const;
+
   /// Those of the lanes at whose poses `configurations` (one column per lane) put the transfer
   /// frame, by forward kinematics of the target within kPoseTolerance.
   unsigned verified(unsigned lanes, const Eigen::MatrixXd& configurations);
 
  private:
   unsigned descend(unsigned lanes);
+  unsigned slide(unsigned lanes, int steps);
   void pull_one(int lane, int steps);
 
   const ArmPair& pair_;

@@ -69,37 +69,38 @@ std::vector<ShapeTracker::Try> ShapeTracker::make_tries(int count) {
       continue;
     tries.back().last = start;
     tries.back().along.resize(pair_.target().dof(), poses_.size());
-    tries.back().along.col(start) = candidates(start).col(chosen);
+    tries.back().along.col(start) = candidates(start).configurations.col(chosen);
   }
   pull_starts(tries);
   follow_to_both_ends(tries);
   return tries;
 }
 
-const Eigen::MatrixXd& ShapeTracker::candidates(Eigen::Index pose) {
-  std::optional<Eigen::MatrixXd>& known = candidates_[static_cast<std::size_t>(pose)];
+const ShapeTracker::Candidates& ShapeTracker::candidates(Eigen::Index pose) {
+  const auto at = static_cast<std::size_t>(pose);
+  std::optional<Candidates>& known = candidates_[at];
   if (!known) {
     const kinematics::Chain& target = pair_.target();
-    Eigen::MatrixXd found = pair_.target_solver()
-                                .solve(poses_.T_base_transfer[static_cast<std::size_t>(pose)] *
-                                           target.T_tip_transfer().inverse(),
-                                       {.max_solutions = parameters_.track_candidates,
-                                        .min_distance = kCandidateDistance,
-                                        .seed = seed_})
-                                .configurations;
-    known = passed(std::move(found), filters_);
+    Eigen::MatrixXd found =
+        pair_.target_solver()
+            .solve(poses_.T_base_transfer[at] * target.T_tip_transfer().inverse(),
+                   {.max_solutions = parameters_.track_candidates,
+                    .min_distance = kCandidateDistance,
+                    .seed = seed_})
+            .configurations;
+    known.emplace();
+    known->configurations = passed(std::move(found), filters_);
+    known->distances_m = lanes_.distances_m(known->configurations, poses_.source_shapes[at]);
   }
   return *known;
 }
 
 Eigen::Index ShapeTracker::choose_start(Eigen::Index pose) {
-  const Eigen::MatrixXd& configurations = candidates(pose);
+  const Eigen::VectorXd& distances_m = candidates(pose).distances_m;
   Eigen::Index best = -1;
   double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < configurations.cols(); ++i) {
-    const double distance = shape_distance(arm_shape(pair_.target(), configurations.col(i)),
-                                           poses_.source_shapes[static_cast<std::size_t>(pose)]) +
-                            parameters_.shape_noise * normal();
+  for (Eigen::Index i = 0; i < distances_m.size(); ++i) {
+    const double distance = distances_m[i] + parameters_.shape_noise * normal();
     if (distance < least) {
       least = distance;
       best = i;
@@ -132,9 +133,9 @@ void ShapeTracker::pull_starts(std::vector<Try>& tries) {
   }
   const unsigned right = lanes_.verified(started, pulled);
   for (std::size_t i = 0; i < tries.size(); ++i)
-    if (const auto column = pulled.col(static_cast<Eigen::Index>(i));
-        (right >> i & 1U) != 0 && filters_.keep(column))
-      tries[i].along.col(tries[i].first) = column;
+    if (const inverse::JointVector q = pulled.col(static_cast<Eigen::Index>(i));
+        (right >> i & 1U) != 0 && filters_.keep(q))
+      tries[i].along.col(tries[i].first) = q;
 }
 
 void ShapeTracker::follow_to_both_ends(std::vector<Try>& tries) {

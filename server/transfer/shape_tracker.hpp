@@ -64,7 +64,12 @@ class ShapeTracker {
 
   /// `count` tries one after the other would give the same. \return those that had a start.
   std::vector<Try> make_tries(int count);
-  const Eigen::MatrixXd& candidates(Eigen::Index pose);
+  /// Where a track may start at a pose.
+  struct Candidates {
+    Eigen::MatrixXd configurations;  // dof x n, n >= 0
+    Eigen::VectorXd distances_m;     // n: of their shapes from the source's
+  };
+  const Candidates& candidates(Eigen::Index pose);
   /// \return a column of the candidates of a pose; -1: there are none.
   Eigen::Index choose_start(Eigen::Index pose);
   /// The candidates, pulled towards the source's shape where filters allow where they get to.
@@ -81,7 +86,7 @@ class ShapeTracker {
   const std::uint64_t seed_;
   CountedFilters& filters_;
   inverse::CounterGenerator generator_;
-  std::vector<std::optional<Eigen::MatrixXd>> candidates_;  // of each pose; missing: not asked yet
+  std::vector<std::optional<Candidates>> candidates_;  // of each pose; missing: not asked yet
   ShapeLanes lanes_;
   inverse::JointSpace space_;
   std::uint64_t tried_ = 0, came_through_ = 0;

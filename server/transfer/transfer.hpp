@@ -33,6 +33,6 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Filters& filters = {});
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kTransferVersion = 7;
+inline constexpr int kTransferVersion = 8;
 
 }  // namespace kinship::transfer

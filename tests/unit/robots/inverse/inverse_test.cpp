@@ -4,10 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "robots/inverse/joint_space.hpp"
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/random_chain.hpp"
+#include "tests/support/robots.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -148,6 +152,25 @@ TEST(Inverse, RefusesWhatIsNoQuestion) {
   EXPECT_THROW(inverse(chain, T, {.min_distance = -0.1}), std::invalid_argument);
   T.translation().x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(inverse(chain, T), std::invalid_argument);
+}
+
+/// Branches of six turning joints come in pairs: an odd number of them means that one is missing.
+/// Limits of a whole turn leave none out.
+TEST(Inverse, SixJointsOfAnyKindReachAPoseInPairs) {
+  std::mt19937_64 generator(6);
+  int odd = 0;
+  for (int arm = 0; arm < 4; ++arm) {
+    const kinematics::Chain chain = test::random_chain({}, generator);
+    const Solver solver(chain);
+    for (int pose = 0; pose < 30; ++pose) {
+      const Eigen::VectorXd q = test::random_configuration(chain, generator);
+      const InverseSolutions found =
+          solver.solve(kinematics::T_base_tip(chain, q), {.max_solutions = 64, .min_distance = 0});
+      odd += found.configurations.cols() % 2 == 0 ? 0 : 1;
+      EXPECT_GT(found.configurations.cols(), 0);
+    }
+  }
+  EXPECT_LE(odd, 1);
 }
 
 }  // namespace

@@ -118,6 +118,52 @@ TEST(ShapeLanes, EveryLaneIsPulledAsOneAloneIs) {
   }
 }
 
+/// None, fewer configurations than lanes and more.
+TEST(ShapeLanes, MeasureShapesAsOneAfterTheOther) {
+  for (const char* model : {"panda", "ur10e", "planar_5r_a"}) {
+    const kinematics::Chain arm = test::model_chain(model);
+    const ArmPair pair(arm, arm);
+    std::mt19937_64 generator(11);
+    const ArmShape wanted = arm_shape(arm, test::random_configuration(arm, generator));
+    for (const Eigen::Index count : {0, 1, 8, 11}) {
+      Eigen::MatrixXd configurations(arm.dof(), count);
+      for (Eigen::Index i = 0; i < count; ++i)
+        configurations.col(i) = test::random_configuration(arm, generator);
+      const Eigen::VectorXd distances_m = ShapeLanes(pair).distances_m(configurations, wanted);
+      ASSERT_EQ(distances_m.size(), count);
+      for (Eigen::Index i = 0; i < count; ++i)
+        EXPECT_NEAR(distances_m[i], shape_distance(arm_shape(arm, configurations.col(i)), wanted),
+                    1e-12)
+            << model;
+    }
+  }
+}
+
+/// All the way to a pose and a shape that are somewhere else: the pull corrects the pose as it
+/// goes.
+TEST(ShapeLanes, EndAtTheirPosesWithinLimits) {
+  for (const char* model : {"panda", "iiwa14", "planar_7r_c"}) {
+    const kinematics::Chain arm = test::model_chain(model);
+    const ArmPair pair(arm, arm);
+    std::mt19937_64 generator(12);
+    ShapeLanes lanes(pair);
+    Eigen::MatrixXd q(arm.dof(), ShapeLanes::kCount);
+    for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
+      q.col(lane) = test::random_configuration(arm, generator);
+      lanes.aim(lane, kinematics::T_base_transfer(arm, q.col(lane)),
+                arm_shape(arm, test::random_configuration(arm, generator)));
+      lanes.put(lane, q.col(lane));
+    }
+    lanes.pull(0xff, 20);
+    for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
+      EXPECT_GT((lanes.at(lane) - q.col(lane)).norm(), 1e-3) << model;
+      EXPECT_TRUE(arm.within_limits(lanes.at(lane), 1e-9)) << model;
+      q.col(lane) = lanes.at(lane);
+    }
+    EXPECT_EQ(lanes.verified(0xff, q), 0xffU) << model;
+  }
+}
+
 TEST(ShapeLanes, LanesThatAreNotAskedForStay) {
   Pull pull;
   ShapeLanes lanes(pull.pair);
