@@ -137,7 +137,7 @@ TEST(AttemptJson, SceneIsAsInAProblemWithWhatWasHeld) {
 TEST(AttemptJson, BadSceneIsRefusedByName) {
   EXPECT_EQ(message_of(with_scene(R"({"boxs":[]})")), "scene: has an unknown member 'boxs'");
   EXPECT_EQ(message_of(with_scene(R"({"meshes":[{"name":"m"}]})")),
-            "scene.meshes: meshes are not supported yet");
+            "scene.meshes: only shapes are kept here");
   EXPECT_EQ(message_of(with_scene(R"({"allowed_collisions":[["can","panda_hand"]]})")),
             "scene: allowed_collisions names 'can', which is neither an object nor held");
   EXPECT_EQ(message_of(with_scene(R"({"spheres":[{"name":"ball","center":[0,0,1],"radius":0}]})"))

@@ -159,9 +159,9 @@ TEST(DistributionJson, ThinIsServedWithItsMixture) {
 TEST(DistributionJson, MixtureThatIsNoneIsRefused) {
   EXPECT_EQ(message_of(changed("[0.25,0.75]", "[0.25,0.85]")),
             "weights, means, covariances: Mixture: weights must be >= 0 with sum 1, means finite");
-  EXPECT_EQ(
-      message_of(changed("[0.25,0.75]", "[1.0]")),
-      "weights, means, covariances: Mixture: need K >= 1 weights, d x K means, K covariances");
+  EXPECT_EQ(message_of(changed("[0.25,0.75]", "[1.0]")),
+            "weights, means, covariances: Mixture: need K >= 1 weights, d x K means, K covariances "
+            "or one");
   EXPECT_EQ(message_of(changed("[2.0,0.5]", "[2.0,0.6]")),
             "weights, means, covariances: Mixture: covariances must be symmetric");
   EXPECT_EQ(message_of(changed("[0.25,0.75]", "null")), "weights: must be an array, is null");
@@ -214,7 +214,7 @@ TEST(DistributionJson, WhatAFitBeganWithComesBack) {
   EXPECT_EQ(
       message_of(changed("\"fit\":null", R"("fit":{"from_revision":1,"full_revision":1,"paths":5,)"
                                          R"("new_paths":6,"transferred":0,"reason":""})")),
-      "fit: new_paths 6 exceeds 5");
+      "fit.new_paths: 6 exceeds 5");
 }
 
 TEST(DistributionJson, ComponentsAreLimited) {

@@ -72,7 +72,7 @@ TEST(CollisionWorld, AHeldMeshMovesWithItsLink) {
   rod.touch_links = {"link3", "link2"};
   EXPECT_FALSE(make_world(surroundings).collides(kTurned));
   surroundings.attached.push_back(rod);
-  surroundings.attached[0].T_link_object = shift(0.5);
+  surroundings.attached[0].T_link_object = shift(0);
   CollisionWorld world = make_world(surroundings);
   EXPECT_TRUE(world.collides(kTurned));
   EXPECT_FALSE(world.collides(kStraight));
