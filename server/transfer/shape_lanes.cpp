@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
-constexpr double kNearPose = 1e-2;  // squared error of what is worth a descent
-constexpr double kArrived = 1e-8;   // squared error before a last step, which squares it again
+// Squared errors before a last step, which squares them again: between the steps of a pull, whose
+// next one corrects what is left, and at the end.
+constexpr double kNearPose = 1e-2;
+constexpr double kArrived = 1e-8;
 
 bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
 unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
@@ -63,7 +65,7 @@ inverse::JointVector ShapeLanes::at(int lane) const { return q_[static_cast<std:
 unsigned ShapeLanes::reach(unsigned lanes) {
   for (int lane = 0; lane < kCount; ++lane)
     write(solver_.lanes(), at(lane), lane, batch_.q);
-  const unsigned arrived = descend(lanes);
+  const unsigned arrived = descend(lanes, kArrived);
   for (int lane = 0; lane < kCount; ++lane)
     if (has(arrived, lane))
       put(lane, read(solver_.lanes(), batch_.q, lane));
@@ -71,12 +73,12 @@ unsigned ShapeLanes::reach(unsigned lanes) {
 }
 
 /// Of what stands in the batch; all lanes move, those that have arrived next to nothing.
-unsigned ShapeLanes::descend(unsigned lanes) {
+unsigned ShapeLanes::descend(unsigned lanes, double near) {
   unsigned arrived = 0;
   for (int i = 0; i <= kDescentIterations && arrived != lanes; ++i) {
     solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
     for (int lane = 0; lane < kCount; ++lane)
-      if (has(lanes, lane) && batch_.squared[lane] < kArrived)
+      if (has(lanes, lane) && batch_.squared[lane] < near)
         arrived |= bit(lane);
   }
   return arrived;
@@ -96,46 +98,43 @@ void ShapeLanes::pull(unsigned lanes, int steps) {
   unsigned moved = slide(lanes, solver_.redundant() ? steps : 0);
   if (moved == 0)
     return;
-  moved = descend(moved);
-  std::copy_n(&batch_.q[0][0], chain.dof * kCount, &pull_.q[0][0]);
-  solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
-  for (int lane = 0; lane < kCount; ++lane) {
-    double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
-    if (!has(moved, lane) || !(pull_.distance_m[lane] < distance_m))
-      continue;
-    put(lane, read(chain, batch_.q, lane));
-    distance_m = pull_.distance_m[lane];
-  }
+  moved = descend(moved, kArrived);
+  for (int lane = 0; lane < kCount; ++lane)
+    if (has(moved, lane))
+      put(lane, read(chain, batch_.q, lane));
 }
 
-/// From what stands in the pull, near to the poses. The best of each lane is left in the batch.
-/// \return the lanes that got nearer to their shapes.
+/// From what stands in the pull, staying near to the poses. The nearest to its shape of each lane
+/// is left in the batch. \return the lanes that got nearer.
 unsigned ShapeLanes::slide(unsigned lanes, int steps) {
   const inverse::LaneChain& chain = solver_.lanes();
-  std::array<double, kCount> least_m;
-  least_m.fill(std::numeric_limits<double>::infinity());
+  const std::size_t values = static_cast<std::size_t>(chain.dof) * kCount;
+  std::array<double, inverse::kLaneJoints * kCount> nearest;
+  std::copy_n(&pull_.q[0][0], values, nearest.data());
+  solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
+  std::copy_n(pull_.distance_m, kCount, distance_m_.begin());
   unsigned moved = 0;
-  for (int i = 0; i <= steps && lanes != 0; ++i) {
-    inverse::LanePull& now = pull_;
-    const inverse::LanePull before = now;
-    solver_.kernels().pull(chain, *pair_.target_marks(), now);
-    if (i == 0)
-      std::copy_n(now.distance_m, kCount, distance_m_.begin());
+  for (int i = 0; i < steps && lanes != 0; ++i) {
+    std::copy_n(&pull_.q[0][0], values, &batch_.q[0][0]);
+    lanes = descend(lanes, kNearPose);
+    std::copy_n(&batch_.q[0][0], values, &pull_.q[0][0]);
+    solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
     for (int lane = 0; lane < kCount; ++lane) {
-      double& least = least_m[static_cast<std::size_t>(lane)];
-      const double reached_m = now.distance_m[lane];
-      const bool nearer = reached_m < least && now.squared[lane] < kNearPose;
-      if (i == 0 || (has(lanes, lane) && nearer))
-        for (int j = 0; j < chain.dof; ++j)
-          batch_.q[j][lane] = before.q[j][lane];
-      if (i > 0 && has(lanes, lane) && nearer)
-        moved |= bit(lane);
-      if (i > 0 && !(reached_m <= least * (1 - kLeastGain)))
+      double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
+      const double reached_m = pull_.distance_m[lane];
+      if (!has(lanes, lane))
+        continue;
+      if (!(reached_m <= distance_m * (1 - kLeastGain)))
         lanes &= ~bit(lane);
-      if (nearer)
-        least = reached_m;
+      if (!(reached_m < distance_m))
+        continue;
+      for (std::size_t at = static_cast<std::size_t>(lane); at < values; at += kCount)
+        nearest[at] = (&batch_.q[0][0])[at];
+      distance_m = reached_m;
+      moved |= bit(lane);
     }
   }
+  std::copy_n(nearest.data(), values, &batch_.q[0][0]);
   return moved;
 }
 
