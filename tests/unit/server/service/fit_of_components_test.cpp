@@ -57,8 +57,10 @@ TEST_F(FitOfComponents, KernelsStandAtTheConfigurations) {
   EXPECT_TRUE(kernels.component_scores.empty());
   const Eigen::MatrixXd& centres = kernels.mixture->means();
   EXPECT_EQ(centres.cast<float>().cast<double>(), centres);
-  EXPECT_TRUE((centres.array().colwise() >= kernels.limits.row(0).transpose().array()).all());
-  EXPECT_TRUE((centres.array().colwise() <= kernels.limits.row(1).transpose().array()).all());
+  const Eigen::VectorXd lower = kernels.limits.row(0).transpose();
+  const Eigen::VectorXd upper = kernels.limits.row(1).transpose();
+  EXPECT_GE((centres.colwise() - lower).minCoeff(), 0);
+  EXPECT_LE((centres.colwise() - upper).maxCoeff(), 0);
   const Eigen::VectorXd mean = mixture.means() * mixture.weights();
   EXPECT_LT((centres * kernels.mixture->weights() - mean).norm(), 1e-6);
 
