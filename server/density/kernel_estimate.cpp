@@ -23,10 +23,10 @@ namespace kinship::density {
 namespace {
 
 constexpr std::array kClusters = {1, 4, 16, 64};
-/// Falling by the square root of 2.
-constexpr std::array kScales = {1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
-constexpr Eigen::Index kScoredPoints = 2000;
-constexpr double kLowScore_nats = 1;  // below the best of the clusters: narrower is no better
+/// Falling by about the square root of 2.
+constexpr std::array kScales = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
+constexpr Eigen::Index kScoredPoints = 1000;  // of all folds together
+constexpr double kLowScore_nats = 0.25;  // below the best of the clusters: narrower is no better
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options) {
@@ -176,19 +176,20 @@ class Estimate {
   std::vector<Fold> folds_of(std::uint32_t paths) const {
     std::vector<Fold> folds;
     if (paths >= kLeastPathsToScore) {
-      add_fold(held_out_paths(paths, options_.seed), folds);
+      add_fold(held_out_paths(paths, options_.seed), kScoredPoints, folds);
       return folds;
     }
     for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
       std::vector<std::uint8_t> held_out(paths, 0);
       held_out[path] = 1;
-      add_fold(held_out, folds);
+      add_fold(held_out, kScoredPoints / paths, folds);
     }
     return folds;
   }
 
   /// Unless there is too little on either side.
-  void add_fold(const std::vector<std::uint8_t>& held_out, std::vector<Fold>& folds) const {
+  void add_fold(const std::vector<std::uint8_t>& held_out, Eigen::Index most_scored,
+                std::vector<Fold>& folds) const {
     DistinctPoints training = part(held_out, false);
     DistinctPoints scored = part(held_out, true);
     const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
@@ -197,7 +198,7 @@ class Estimate {
     BlockPoints points = blocks_of(std::move(training));
     Kernels kernels = kernels_of(points, options_.seed);
     folds.push_back({std::move(points), std::move(kernels),
-                     thinned(blocks_of(std::move(scored)), kScoredPoints)});
+                     thinned(blocks_of(std::move(scored)), most_scored)});
   }
 
   DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const {

@@ -15,18 +15,30 @@ constexpr int kLaneMultiple = 8;
 /// Instead of the logarithm of 0: finite, so that differences are numbers.
 constexpr double kLeastLogWeight = -1e100;
 
-void pack(double weight, const Eigen::MatrixXd& factor, const Eigen::VectorXd& mean, double* out) {
-  const Eigen::Index dimension = factor.rows();
-  const Eigen::MatrixXd whitening =
-      factor.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(dimension, dimension)) *
-      std::numbers::sqrt2 / 2;
-  const Eigen::VectorXd offset = whitening.triangularView<Eigen::Lower>() * mean;
-  *out++ = std::max(std::log(weight), kLeastLogWeight) - factor.diagonal().array().log().sum() -
-           0.5 * static_cast<double>(dimension) * std::log(2 * std::numbers::pi);
+/// What components of one covariance have in common.
+struct Whitening {
+  explicit Whitening(const Eigen::MatrixXd& factor)
+      : matrix(factor.triangularView<Eigen::Lower>().solve(
+                   Eigen::MatrixXd::Identity(factor.rows(), factor.rows())) *
+               std::numbers::sqrt2 / 2),
+        log_scale(-factor.diagonal().array().log().sum() -
+                  0.5 * static_cast<double>(factor.rows()) * std::log(2 * std::numbers::pi)) {}
+
+  Eigen::MatrixXd matrix;  // d x d, lower
+  double log_scale;
+};
+
+void pack(double weight, const Whitening& whitening, const Eigen::VectorXd& mean, double* out) {
+  const double* const matrix = whitening.matrix.data();
+  const Eigen::Index dimension = mean.size();
+  *out++ = std::max(std::log(weight), kLeastLogWeight) + whitening.log_scale;
   for (Eigen::Index row = 0; row < dimension; ++row) {
-    *out++ = offset[row];
-    for (Eigen::Index column = 0; column <= row; ++column)
-      *out++ = whitening(row, column);
+    double& offset = *out++ = 0;
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const double entry = matrix[column * dimension + row];
+      offset += entry * mean.data()[column];
+      *out++ = entry;
+    }
   }
 }
 
@@ -39,9 +51,11 @@ PackedMixture::PackedMixture(const Mixture& mixture, const Eigen::VectorXd& offs
       stride_of_component_(packed_size(dimension_)) {
   one_by_one_.resize(static_cast<std::size_t>(size_ * stride_of_component_));
   interleaved_.resize(static_cast<std::size_t>(stride_ * stride_of_component_));
-  const std::vector<Eigen::MatrixXd> factors = mixture::cholesky_factors(mixture);
+  std::vector<Whitening> whitenings;
+  for (const Eigen::MatrixXd& factor : mixture::cholesky_factors(mixture))
+    whitenings.emplace_back(factor);
   for (int k = 0; k < size_; ++k)
-    pack(mixture.weights()[k], factors[mixture.covariance_index(k)],
+    pack(mixture.weights()[k], whitenings[mixture.covariance_index(k)],
          mixture.means().col(k) - offset, one_by_one_.data() + k * stride_of_component_);
   for (int k = 0; k < stride_; ++k)
     for (std::ptrdiff_t entry = 0; entry < stride_of_component_; ++entry)
