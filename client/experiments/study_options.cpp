@@ -55,7 +55,8 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
       ->excludes(tunes);
   command
       .add_option("--study", options.sides,
-                  "side studies on the test instances: pooled, components, paper, scenes, sizes")
+                  "side studies on the test instances: pooled, components, paper, scenes, sizes, "
+                  "inverse, overshoot, roadmap, peers")
       ->delimiter(',')
       ->excludes(tunes);
   command

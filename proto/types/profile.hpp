@@ -28,6 +28,9 @@ struct TransferParameters {
   bool avoid_self_collision =
       true;  ///< leaves out configurations in which the target touches itself
   bool avoid_recorded_scene = true;  ///< or the scene that came with the path
+  /// Waypoints of the same arm at the same place are configurations already; otherwise they go
+  /// through inverse kinematics like anybody else's.
+  bool take_over = true;
 
   bool operator==(const TransferParameters&) const = default;
 };

@@ -51,6 +51,8 @@ const std::vector<Option>& options() {
        [](Profile& profile, double value) { profile.transfer.avoid_self_collision = value != 0; }},
       {"avoid_recorded_scene", 0, 1, true,
        [](Profile& profile, double value) { profile.transfer.avoid_recorded_scene = value != 0; }},
+      {"take_over", 0, 1, true,
+       [](Profile& profile, double value) { profile.transfer.take_over = value != 0; }},
       {"components", 0, 1000, true,
        [](Profile& profile, double value) { profile.density.components = whole(value); }},
       {"covariance_floor", 1e-8, 1, false,

@@ -75,6 +75,8 @@ Digest identify(const DistributionKey& key) {
   sha.add(transfer.shape_noise).add(bits(transfer.shape_steps));
   sha.add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
   sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
+  if (!transfer.take_over)  // nobody's distribution had a mark for it before
+    sha.add(std::string_view("inverse kinematics for every arm"));
   const DensityParameters& density = key.profile.density;
   sha.add(bits(density.components)).add(density.covariance_floor);
   sha.add(density.covariance_floor_m2);

@@ -85,7 +85,7 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                                 " joints for a source robot of " +
                                 std::to_string(pair.source().dof()));
   const Eigen::MatrixXd waypoints = resample(path, parameters);
-  if (pair.takes_over(T_target_source))
+  if (parameters.take_over && pair.takes_over(T_target_source))
     return take_over(waypoints, pair);
 
   const PathPoses poses = path_poses(waypoints, pair, T_target_source);

@@ -13,8 +13,8 @@ namespace kinship::transfer {
 
 /// Moves one path of the source robot into the configuration space of the target robot: forward
 /// kinematics to the transfer frame, then up to L inverse solutions a pose at least d apart. The
-/// resampled waypoints of the same arm at the same place are taken over instead (take_over.hpp):
-/// at most one configuration a pose, with solution_index 0.
+/// resampled waypoints of the same arm at the same place are taken over instead (take_over.hpp),
+/// unless `parameters.take_over` is false: at most one configuration a pose, with solution_index 0.
 /// The task axes that matter are the target robot's.
 ///
 /// \param T_target_source  pose of the source robot's base in the target robot's base:

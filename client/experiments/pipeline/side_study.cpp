@@ -1,11 +1,14 @@
 #include "client/experiments/pipeline/side_study.hpp"
 
+#include "client/experiments/formatted.hpp"
+#include "client/experiments/pipeline/peer_study.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
 namespace {
 
 constexpr char kSeparator = '|';
+constexpr const char* kUniformly = "uniform";
 
 /// One cell per pair of robots, all with one profile.
 std::vector<WishedCell> cells_of_pairs(const Study& study, const std::string& variant,
@@ -43,8 +46,9 @@ SideStudy pooled(const Study& study) {
 }
 
 SideStudy components(const Study& study) {
-  SideStudy side{"components", "20, 50 and 100 components", {}, {}};
-  for (const char* const count : {"20", "50", "100"})
+  SideStudy side{
+      "components", "20, 50 and 100 components, and as many as held-out paths want", {}, {}};
+  for (const char* const count : {"20", "50", "100", "auto"})
     append(cells_of_pairs(study, std::string("K = ") + count,
                           std::string("default,components=") + count, study.name),
            side.cells);
@@ -82,6 +86,61 @@ SideStudy sizes(const Study& study) {
   return side;
 }
 
+/// Uniform sampling alone. The ratio is that of uniform sampling as the main tables have it.
+SideStudy overshoot(const Study& study) {
+  SideStudy side{
+      "overshoot", "uniform sampling with overshoot, against uniform sampling without", {}, {}};
+  for (const double factor : {1.5, 2.0})
+    for (std::size_t robot = 0; robot < study.robots.size(); ++robot)
+      side.cells.push_back({cell_name(kUniformly, formatted("uniform, overshoot %g", factor)),
+                            {study.name, robot, {}, ""},
+                            factor,
+                            0});
+  return side;
+}
+
+/// What following one's own path through one's own self-motions costs, and what inverse kinematics
+/// makes of it.
+SideStudy inverse(const Study& study) {
+  SideStudy side{
+      "inverse", "own paths through inverse kinematics, like those of other robots", {}, {}};
+  for (std::size_t robot = 0; robot < study.robots.size(); ++robot)
+    side.cells.push_back({cell_name(study.robots[robot].model, "own through inverse kinematics"),
+                          {study.name, robot, {robot}, "default,take_over=0"},
+                          study.settings.overshoot,
+                          study.guided_share});
+  return side;
+}
+
+/// The same distributions in the hands of another planner.
+SideStudy roadmap(const Study& study) {
+  SideStudy side{"roadmap", "Repetition Roadmap over the components, then the trees", {}, {}};
+  side.cells = cells_of_pairs(study, "Repetition Roadmap", "default", study.name);
+  for (WishedCell& cell : side.cells)
+    cell.planner = plan::PlannerKind::Roadmap;
+  return side;
+}
+
+/// The robot's own learning set in the hands of others.
+SideStudy ompl_peers(const Study& study) {
+  SideStudy side{
+      "peers",
+      "experience planners of OMPL 1.5 with the robot's own learning set. They plan from "
+      "scratch in a second thread: both threads ask by turns until one has a path, and "
+      "the checks of both count, or those of the thread that has it",
+      {},
+      {},
+      true};
+  for (const Peer& peer : peers())
+    for (const std::string& variant : variants_of(peer))
+      for (std::size_t robot = 0; robot < study.robots.size(); ++robot)
+        side.cells.push_back({cell_name(study.robots[robot].model, variant),
+                              {study.name, robot, {robot}, ""},
+                              1,
+                              0});
+  return side;
+}
+
 }  // namespace
 
 std::string cell_name(const std::string& sources, const std::string& variant) {
@@ -94,7 +153,12 @@ std::string variant_of(const std::string& cell_name) {
 }
 
 std::vector<SideStudy> side_studies(const Study& study) {
-  return {pooled(study), components(study), paper(study), scenes(study), sizes(study)};
+  std::vector<SideStudy> sides = {pooled(study),    components(study), paper(study),
+                                  scenes(study),    sizes(study),      inverse(study),
+                                  overshoot(study), roadmap(study)};
+  if (!study.is_constrained)
+    sides.push_back(ompl_peers(study));
+  return sides;
 }
 
 SideStudy find_side_study(const Study& study, std::string_view name) {
@@ -104,8 +168,8 @@ SideStudy find_side_study(const Study& study, std::string_view name) {
       return side;
     names += (names.empty() ? "" : ", ") + side.name;
   }
-  throw Failure(ErrorCode::NotFound,
-                "no side study '" + std::string(name) + "'; there are " + names);
+  throw Failure(ErrorCode::NotFound, "study '" + study.name + "' has no side study '" +
+                                         std::string(name) + "'; there are " + names);
 }
 
 }  // namespace kinship::experiments

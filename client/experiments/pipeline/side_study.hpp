@@ -11,12 +11,13 @@
 
 namespace kinship::experiments {
 
-/// A guided cell before its distribution was fetched.
+/// A guided cell before its distribution was fetched; a uniform one if it wishes for no profile.
 struct WishedCell {
   std::string name;  ///< of the cell: "<sources>|<variant>"
   DistributionWish wish;
   double overshoot = 1;
   double share = 1;  ///< of guided samples
+  plan::PlannerKind planner = plan::PlannerKind::ByProblem;
 };
 
 /// Further cells over the test instances: what the main tables do not tell.
@@ -30,9 +31,11 @@ struct SideStudy {
     std::size_t paths = 0;
   };
   std::vector<Shortened> shortened;
+  bool is_of_peers = false;  ///< planned by run_peers, not by our planner
 };
 
-/// Every side study there is for a study.
+/// Every side study there is for a study. Of a study along a constraint none is of peers: OMPL's
+/// databases of experience know the plain space only.
 std::vector<SideStudy> side_studies(const Study& study);
 
 /// \throws Failure(NotFound) that names the side studies there are.

@@ -1,5 +1,6 @@
 #include "client/experiments/pipeline/study_run.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -7,6 +8,7 @@
 
 #include "client/experiments/analysis/ratio_table.hpp"
 #include "client/experiments/pipeline/compressed_file.hpp"
+#include "client/experiments/pipeline/peer_study.hpp"
 #include "client/experiments/pipeline/run_record.hpp"
 #include "client/experiments/pipeline/side_study.hpp"
 #include "client/experiments/pipeline/study_session.hpp"
@@ -65,6 +67,29 @@ std::vector<Cell> main_cells(const Study& study, StudySession& session,
       if (auto cell = guided_cell(target, session.fleet()[source].label(), study.settings,
                                   distribution, study.guided_share))
         cells.push_back(*std::move(cell));
+    }
+  }
+  return cells;
+}
+
+/// The cells of a side study; a server is started only if there is something to fetch.
+std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySession& session) {
+  const auto is_uniform = [](const WishedCell& wished) { return wished.wish.profile.empty(); };
+  if (!std::ranges::all_of(side.cells, is_uniform))
+    session.learn();
+  for (const SideStudy::Shortened& shortened : side.shortened)
+    session.report_as(shortened.task, shortened.paths);
+  std::vector<Cell> cells;
+  for (const WishedCell& wished : side.cells) {
+    plan::PlanSettings settings = study.settings;
+    settings.overshoot = wished.overshoot;
+    settings.planner.kind = wished.planner;
+    if (is_uniform(wished)) {
+      cells.push_back(uniform_cell(wished.wish.target, settings, wished.overshoot));
+      cells.back().name = wished.name;
+    } else if (auto cell = guided_cell(wished.wish.target, wished.name, settings,
+                                       session.fetch(wished.wish), wished.share)) {
+      cells.push_back(*std::move(cell));
     }
   }
   return cells;
@@ -139,19 +164,16 @@ void run_side_study(const Study& study, const std::string& name, const RunOption
   RunOptions again = options;
   again.resume = true;
   StudySession session(study, again, messages);
-  session.learn();
-  for (const SideStudy::Shortened& shortened : side.shortened)
-    session.report_as(shortened.task, shortened.paths);
-  std::vector<Cell> cells;
-  for (const WishedCell& wished : side.cells) {
-    plan::PlanSettings settings = study.settings;
-    settings.overshoot = wished.overshoot;
-    if (auto cell = guided_cell(wished.wish.target, wished.name, settings,
-                                session.fetch(wished.wish), wished.share))
-      cells.push_back(*std::move(cell));
-  }
   QueryLog log(session.files().side(name));
-  session.run(name, cells, test_plan(study, options), log);
+  if (side.is_of_peers) {
+    session.record();
+    QueryPlan plan = test_plan(study, options);
+    plan.threads = options.threads;
+    run_peers(study, session.fleet(), session.learning_sets(), plan, log, messages);
+  } else {
+    const std::vector<Cell> cells = side_cells(study, side, session);
+    session.run(name, cells, test_plan(study, options), log);
+  }
   compress_file(session.files().side(name));
   report_study(study, again, messages);
 }

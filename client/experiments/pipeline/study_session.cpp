@@ -53,7 +53,7 @@ StudySession::StudySession(const Study& study, const RunOptions& options, std::o
   std::filesystem::create_directories(files_.store.parent_path());
 }
 
-void StudySession::learn() {
+void StudySession::record() {
   RecordingOptions recording;
   recording.folder = files_.learning;
   recording.instances = options_.quick ? std::min(kQuickLearning, study_.learning_instances)
@@ -67,6 +67,10 @@ void StudySession::learn() {
     compress_file(files_.learning / (fleet_[robot].label() + ".jsonl"));
   }
   progress.finish();
+}
+
+void StudySession::learn() {
+  record();
   const auto program = options_.kinshipd.empty() ? sibling_program("kinshipd") : options_.kinshipd;
   server_ = std::make_unique<ExperienceServer>(
       ServerProcess::Options{program, files_.store, options_.domain, options_.threads}, fleet_);

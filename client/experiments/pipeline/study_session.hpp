@@ -42,7 +42,13 @@ class StudySession {
   const std::vector<StudyMember>& fleet() const noexcept { return fleet_; }
   const StudyFiles& files() const noexcept { return files_; }
 
-  /// Records what is missing of the learning sets, starts the server and hands them over.
+  /// Records what is missing of the learning sets.
+  void record();
+
+  /// Of each robot; after record().
+  const std::vector<std::vector<Attempt>>& learning_sets() const noexcept { return learning_sets_; }
+
+  /// The same, then starts the server and hands them over.
   void learn();
 
   /// Also hands over the first `count` attempts of each learning set under another task.

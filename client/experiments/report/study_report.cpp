@@ -18,6 +18,12 @@
 namespace kinship::experiments {
 namespace {
 
+constexpr const char* kNoPeers =
+    "There is no line of OMPL's own experience planners, Lightning and Thunder, along a "
+    "constraint: "
+    "recalled paths are joined to start and goal by straight lines in joint space, which do not "
+    "keep to the tilt limit. A projected space in their hands was not tried.";
+
 std::string protocol_text(const Study& study, const ReportData& data) {
   std::uint32_t seeds = 0;
   for (const QueryResult& result : data.test)
@@ -76,7 +82,9 @@ std::string side_html(const Study& study, const StudyResults& results, const Sid
     const std::string& robot = study.robots.at(wished.wish.target).model;
     const std::string variant = variant_of(wished.name);
     CellResults cell = collect_cell(side.results, robot, wished.name, study.settings.max_checks);
-    const CellResults* const uniform = results.find(robot, uniform_name(wished.overshoot));
+    // Without a distribution it is not guidance that is looked at, but another way to plan.
+    const CellResults* const uniform = results.find(
+        robot, wished.wish.profile.empty() ? results.uniform() : uniform_name(wished.overshoot));
     if (cell.instances.empty() || uniform == nullptr)
       continue;
     if (!variants.contains(variant))
@@ -159,6 +167,7 @@ void write_study_report(const Study& study, const std::vector<StudyMember>& flee
       html::paragraph(protocol_text(study, data)) + runs_html(data.runs) +
       calibration_html(study, data.calibration) + html::heading(2, "What guidance was worth") +
       html::to_html(summary_table(results)) + html::to_html(pair_table(results)) +
+      html::to_html(worst_source_table(results, data.distributions, labels)) +
       html::heading(2, "Checks, time and paths");
   for (const html::Table& table : cell_tables(results, paper_table(study.name)))
     body += html::to_html(table);
@@ -172,6 +181,8 @@ void write_study_report(const Study& study, const std::vector<StudyMember>& flee
     body += html::heading(2, "Beyond the main tables");
   for (const SideResults& side : data.sides)
     body += side_html(study, results, side);
+  if (study.is_constrained)
+    body += html::paragraph(kNoPeers);
   body += html::heading(2, "Transfer and fit") +
           html::to_html(distribution_table(data.distributions, labels)) +
           html::heading(2, "What the distributions look like") +

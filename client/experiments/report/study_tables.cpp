@@ -87,6 +87,34 @@ std::string mean_text(const GeometricMean& mean) {
   return formatted("%.2f [%.2f, %.2f]", mean.value, mean.low, mean.high);
 }
 
+/// Of the distribution that a pair was guided by; null if it is not among them.
+const Source* find_source(const std::vector<Distribution>& distributions,
+                          const std::map<Digest, std::string>& labels, const PairRatio& pair) {
+  for (const Distribution& distribution : distributions) {
+    const auto target = labels.find(distribution.robot);
+    if (target != labels.end() && target->second == pair.robot &&
+        distribution.sources.size() == 1 && distribution.sources[0].label == pair.guidance)
+      return &distribution.sources[0];
+  }
+  return nullptr;
+}
+
+std::string percent_text(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0)
+    return kNothing;
+  return formatted("%.0f %%", 100 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+/// What a transfer left of a source: poses solved, tracks kept a path, configurations found at
+/// random, configurations that a filter left out.
+std::vector<std::string> remains_of(const Source& source) {
+  const double paths = static_cast<double>(std::max<std::uint64_t>(source.paths_used, 1));
+  return {percent_text(source.poses_solved, source.poses),
+          formatted("%.2f", static_cast<double>(source.tracks_kept) / paths),
+          percent_text(source.random_configurations, source.configurations),
+          percent_text(source.self_collisions + source.scene_collisions, source.filter_checks)};
+}
+
 double least_ratio(const StudyResults& results, bool own) {
   double least = INFINITY;
   for (const std::string& robot : results.robots())
@@ -152,23 +180,58 @@ html::Table summary_table(const StudyResults& results) {
 html::Table variant_table(const std::string& caption,
                           const std::vector<std::pair<std::string, VariantCells>>& variants) {
   html::Table table{"Side study: " + caption,
-                    {"variant", "robot", "experience of", "uniform", "guided", "ratio", "95 %"},
+                    {"variant", "robot", "experience of", "uniform", "variant", "median", "solved",
+                     "ratio", "95 %", "of times"},
                     {}};
   for (const auto& [variant, cells] : variants) {
     std::vector<std::pair<const CellResults*, const CellResults*>> own, others;
     for (const VariantCell& cell : cells) {
       const PairRatio pair = compare_cells(*cell.uniform, cell.guided);
-      table.rows.push_back({variant, pair.robot, pair.guidance.substr(0, pair.guidance.find('|')),
-                            formatted("%.0f", moments_of(flat(cell.uniform->checks)).mean),
-                            formatted("%.0f", moments_of(flat(cell.guided.checks)).mean),
-                            formatted("%.2f", pair.checks_ratio),
-                            formatted("[%.2f, %.2f]", pair.low, pair.high)});
+      const Moments checks = moments_of(flat(cell.guided.checks));
+      table.rows.push_back(
+          {variant, pair.robot, pair.guidance.substr(0, pair.guidance.find('|')),
+           formatted("%.0f", moments_of(flat(cell.uniform->checks)).mean),
+           formatted("%.0f", checks.mean), formatted("%.0f", checks.median),
+           formatted("%zu/%zu", cell.guided.solved_queries(), cell.guided.queries()),
+           formatted("%.2f", pair.checks_ratio), formatted("[%.2f, %.2f]", pair.low, pair.high),
+           formatted("%.2f", pair.cpu_ratio)});
       (cell.is_own ? own : others).emplace_back(cell.uniform, &cell.guided);
     }
     for (const auto& [what, pairs] : {std::pair("own", &own), std::pair("not only own", &others)})
       if (!pairs->empty())
-        table.rows.push_back({variant, "geometric mean", what, "", "", "",
-                              mean_text(geometric_mean_ratio(*pairs, Quantity::Checks))});
+        table.rows.push_back({variant, "geometric mean", what, "", "", "", "", "",
+                              mean_text(geometric_mean_ratio(*pairs, Quantity::Checks)),
+                              mean_text(geometric_mean_ratio(*pairs, Quantity::Cpu))});
+  }
+  return table;
+}
+
+html::Table worst_source_table(const StudyResults& results,
+                               const std::vector<Distribution>& distributions,
+                               const std::map<Digest, std::string>& labels) {
+  html::Table table{
+      "Where transfer lost: for each robot the source that helped least, and the best other one",
+      {"robot", "experience of", "ratio", "of medians", "poses solved", "tracks kept a path",
+       "at random", "filtered"},
+      {}};
+  for (const std::string& robot : results.robots()) {
+    std::vector<const PairRatio*> pairs;
+    for (const std::string& source : results.robots())
+      if (const PairRatio* const pair = results.find_pair(robot, source);
+          pair != nullptr && robot != source)
+        pairs.push_back(pair);
+    if (pairs.empty())
+      continue;
+    const auto [worst, best] = std::ranges::minmax_element(pairs, {}, &PairRatio::checks_ratio);
+    for (const auto& [what, pair] : {std::pair("least", *worst), std::pair("most", *best)}) {
+      std::vector<std::string> row = {robot, pair->guidance + " (" + what + ")",
+                                      formatted("%.2f", pair->checks_ratio),
+                                      formatted("%.2f", pair->median_checks_ratio)};
+      if (const Source* const source = find_source(distributions, labels, *pair))
+        for (std::string& cell : remains_of(*source))
+          row.push_back(std::move(cell));
+      table.rows.push_back(std::move(row));
+    }
   }
   return table;
 }

@@ -32,6 +32,12 @@ using VariantCells = std::vector<VariantCell>;
 html::Table variant_table(const std::string& caption,
                           const std::vector<std::pair<std::string, VariantCells>>& variants);
 
+/// For each robot the source that helped it least, beside its own experience and the best other
+/// source: what it was worth and what was left of its paths.
+html::Table worst_source_table(const StudyResults& results,
+                               const std::vector<Distribution>& distributions,
+                               const std::map<Digest, std::string>& labels);
+
 /// What the server made of each source for each target, and how long it took.
 /// \param labels  of the robots by digest.
 html::Table distribution_table(const std::vector<Distribution>& distributions,

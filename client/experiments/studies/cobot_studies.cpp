@@ -52,6 +52,7 @@ Study cobot_study(CarryingLayout layout, std::string purpose) {
   study.settings.overshoot = 1;
   study.settings.max_checks = kMaxChecks;
   study.settings.max_goals = layout.goal_branches;
+  study.is_constrained = true;
   study.learning_instances = 500;
   study.test_instances = 100;
   study.make_instances = [layout = std::move(layout)](const models::LoadedRobot& robot,

@@ -39,6 +39,7 @@ struct Study {
   std::vector<StudyRobot> robots;
   plan::PlanSettings settings;  ///< of every query; the overshoot may be chosen on tuning instances
   double guided_share = 1;      ///< of samples in guided queries; chosen on tuning instances
+  bool is_constrained = false;  ///< its problems keep to a task space region
   std::uint32_t learning_instances = 0;
   std::uint32_t test_instances = 0;
 

@@ -38,6 +38,7 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.transfer.shape_steps = 0; },
       [](DistributionKey& k) { k.profile.transfer.avoid_self_collision = false; },
       [](DistributionKey& k) { k.profile.transfer.avoid_recorded_scene = false; },
+      [](DistributionKey& k) { k.profile.transfer.take_over = false; },
       [](DistributionKey& k) { k.profile.thin_share = 0.6; },
       [](DistributionKey& k) { k.profile.density.components = 7; },
       [](DistributionKey& k) { k.profile.density.covariance_floor = 1e-3; },

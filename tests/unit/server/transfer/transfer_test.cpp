@@ -97,6 +97,16 @@ TEST(Transfer, TheSameRobotAtTheSamePlaceTakesItsWaypointsOver) {
   EXPECT_EQ(transferred.summary.configurations, transferred.summary.poses);
 }
 
+TEST(Transfer, TheSameRobotGoesThroughInverseKinematicsWhereThatIsWanted) {
+  const auto arm = source_arm();
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  const TransferParameters parameters{.take_over = false};
+  const auto transferred = transfer_path(source_path(), {arm, arm}, same, parameters, kSeed);
+  EXPECT_GT(transferred.summary.configurations, transferred.summary.poses);
+  EXPECT_GT(transferred.summary.tracks_kept, 0U);
+  EXPECT_LT(largest_error(transferred, arm, arm, same, resample(source_path(), parameters)), 2e-6);
+}
+
 TEST(Transfer, TheSameRobotElsewhereIsTransferred) {
   const auto arm = source_arm();
   const auto transferred =
