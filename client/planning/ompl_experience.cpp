@@ -188,7 +188,7 @@ class OmplExperience::Implementation {
     install_guided_sampler(*space_, std::make_shared<ConfigurationSampler>(bounds_), generator());
     PlanSummary summary;
     if (memory_->size() > 0 && budget.is_free(start)) {
-      // OMPL stops looking at the first goal that collides, and Thunder reads it though it is null.
+      // OMPL stops looking at the first goal that collides; Thunder then does not come back.
       const Eigen::MatrixXd targets = free_ones(goals, budget);
       const Eigen::Index at_once =
           memory_->knows_goals() ? std::max(targets.cols(), Eigen::Index{1}) : 1;

@@ -44,8 +44,8 @@ struct PeerHalves {
 std::vector<std::string> variants_of(const Peer& peer);
 
 /// Plans what is not in the log yet: each robot with each peer, which was given the robot's own
-/// learning set and learns nothing from queries. A peer and robot have a process of their own, as
-/// OMPL's databases may crash: the query under way then counts as unsolved, and the next process
+/// learning set and learns nothing from queries. A peer and robot have a process of their own, in
+/// case OMPL's databases crash: the query under way then counts as unsolved, and the next process
 /// goes on after it; a peer that crashes while learning has no results. All of it is told on
 /// `messages`.
 /// \param learning_sets  by robot: one attempt per learning instance, in order.
