@@ -11,13 +11,7 @@ constexpr double kLargestPullStep = 0.3;  // of one joint, joint units
 constexpr int kMarkRows = 3 * kLaneMarks;
 constexpr int kPullRows = kMarkRows + 6;
 
-/// How far the marks and the pose are off; m, and of the pose kPoseWeight times.
-struct WidePullError {
-  Wide rows[kPullRows];
-  Wide marks, pose;  // squared, without the weight
-};
-
-/// How they move with one joint.
+/// How the marks and the pose move with one joint; m, and of the pose kPoseWeight times.
 struct WidePullColumn {
   Wide rows[kPullRows];
 };
@@ -68,45 +62,6 @@ KINSHIP_LANE_INLINE WidePullColumn pull_column(const LaneChain& chain, const Lan
   return column;
 }
 
-KINSHIP_LANE_INLINE WidePullError pull_error(const LaneChain& chain, const LanePull& pull, int lane,
-                                             const Wide (&p)[kMarkRows], const WideFrame& frame) {
-  WidePullError error;
-  error.marks = error.pose = Wide{};
-  for (int i = 0; i < kMarkRows; ++i) {
-    error.rows[i] = load(pull.wanted[i] + lane) - chain.length_m * p[i];
-    error.marks += error.rows[i] * error.rows[i];
-  }
-  Wide target[12], pose[7];
-  for (int i = 0; i < 12; ++i)
-    target[i] = load(pull.target[i] + lane);
-  task_error(target, frame, reinterpret_cast<Wide(&)[6]>(pose));
-  pose[6] = Wide{};
-  for (int i = 0; i < 6; ++i) {
-    const Wide off = pose[chain.row_of[i]];
-    error.pose += off * off;
-    error.rows[kMarkRows + i] = kPoseWeight * (chain.row_of[i] < 3 ? chain.length_m : 1.0) * off;
-  }
-  return error;
-}
-
-/// What the error asks of a joint. One at a limit that it is asked to cross stays, and its column
-/// becomes zeros.
-KINSHIP_LANE_INLINE Wide pull_of(const LaneJoint& joint, Wide q, const WidePullError& error,
-                                 WidePullColumn& column) {
-  Wide push = Wide{};
-#pragma GCC unroll 18
-  for (int i = 0; i < kPullRows; ++i)
-    push += column.rows[i] * error.rows[i];
-  if (!joint.bounded)
-    return push;
-  const WideMask stopped = ((push < 0.0) & (q <= joint.middle - joint.half)) |
-                           ((push > 0.0) & (q >= joint.middle + joint.half));
-#pragma GCC unroll 18
-  for (int i = 0; i < kPullRows; ++i)
-    column.rows[i] = stopped ? Wide{} : column.rows[i];
-  return stopped ? Wide{} : push;
-}
-
 /// Solves a symmetric system of `size` rows, given by its lower half, by L D L^T in place.
 KINSHIP_LANE_INLINE void solve(int size, Wide* system, Wide* wanted) {
   for (int c = 0; c < size; ++c) {
@@ -127,7 +82,7 @@ KINSHIP_LANE_INLINE void solve(int size, Wide* system, Wide* wanted) {
 }
 
 void pull_from(const LaneChain& chain, const LaneMarks& marks, int lane, LanePull& pull) {
-  Wide q[kLaneJoints], p[kMarkRows];
+  Wide q[kLaneJoints], p[kMarkRows], off[kMarkRows];
   Wide system[kLaneJoints * (kLaneJoints + 1) / 2], step[kLaneJoints];
   WideColumn joints[kLaneJoints];
   WidePullColumn columns[kLaneJoints];
@@ -135,12 +90,17 @@ void pull_from(const LaneChain& chain, const LaneMarks& marks, int lane, LanePul
     q[j] = load(pull.q[j] + lane);
   const WideFrame frame = forward(chain, q, joints);
   place(chain, marks, joints, frame, p);
-  const WidePullError error = pull_error(chain, pull, lane, p, frame);
-  store(pull.distance_m + lane, root(error.marks));
-  store(pull.squared + lane, error.pose);
+  Wide squared = Wide{};
+  for (int i = 0; i < kMarkRows; ++i) {
+    off[i] = load(pull.wanted[i] + lane) - chain.length_m * p[i];
+    squared += off[i] * off[i];
+  }
+  store(pull.distance_m + lane, root(squared));
   for (int j = 0; j < chain.dof; ++j) {
     columns[j] = pull_column(chain, marks, j, joints[j], p, frame);
-    step[j] = pull_of(chain.joints[j], q[j], error, columns[j]);
+    step[j] = Wide{};
+    for (int i = 0; i < kMarkRows; ++i)
+      step[j] += columns[j].rows[i] * off[i];
     for (int k = 0; k <= j; ++k) {
       Wide sum = Wide{};
 #pragma GCC unroll 18
@@ -150,13 +110,8 @@ void pull_from(const LaneChain& chain, const LaneMarks& marks, int lane, LanePul
     }
   }
   solve(chain.dof, system, step);
-  for (int j = 0; j < chain.dof; ++j) {
-    const LaneJoint& joint = chain.joints[j];
-    Wide next = q[j] + clamped(step[j], all(-kLargestPullStep), all(kLargestPullStep));
-    if (joint.bounded)
-      next = clamped(next, all(joint.middle - joint.half), all(joint.middle + joint.half));
-    store(pull.q[j] + lane, next);
-  }
+  for (int j = 0; j < chain.dof; ++j)
+    store(pull.q[j] + lane, q[j] + clamped(step[j], all(-kLargestPullStep), all(kLargestPullStep)));
 }
 
 void pull(const LaneChain& chain, const LaneMarks& marks, LanePull& pull) {

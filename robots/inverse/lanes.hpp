@@ -74,13 +74,11 @@ struct LaneMarks {
   double share[kLaneMarks];
 };
 
-/// Postures that are moved until their marks are where others want them, each at a pose of its own.
+/// Postures that are moved until their marks are where others want them.
 struct alignas(64) LanePull {
-  double target[12][kLanes];              ///< as of LaneBatch
   double wanted[3 * kLaneMarks][kLanes];  ///< x, y, z of one mark after the other, in the base, m
   double q[kLaneJoints][kLanes];          ///< lane's values; in: where to start; out: one step on
   double distance_m[kLanes];              ///< out: of the marks before the step, root of squares
-  double squared[kLanes];                 ///< out: squared task error before the step
 };
 
 /// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
@@ -94,8 +92,7 @@ struct LaneKernels {
   void (*check)(const LaneArm& arm, LaneCheck& check);
 
   /// One step of damped least squares on the distance of the marks in every lane, with the pose of
-  /// the transfer frame as a heavily weighted part. No joint leaves its limits. For chains without
-  /// sliding joints.
+  /// the transfer frame as a heavily weighted part that stays. For chains without sliding joints.
   /// Source: Levenberg, Quarterly of Applied Mathematics 2 (1944).
   void (*pull)(const LaneChain& chain, const LaneMarks& marks, LanePull& pull);
 };

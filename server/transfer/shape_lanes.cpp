@@ -1,7 +1,6 @@
 #include "server/transfer/shape_lanes.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "server/transfer/shape_pull.hpp"
 
@@ -10,10 +9,7 @@ namespace {
 
 constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
-// Squared errors before a last step, which squares them again: between the steps of a pull, whose
-// next one corrects what is left, and at the end.
-constexpr double kNearPose = 1e-2;
-constexpr double kArrived = 1e-8;
+constexpr double kArrived = 1e-8;  // squared error before a last step, which squares it again
 
 bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
 unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
@@ -50,7 +46,6 @@ void ShapeLanes::aim(int lane, const Eigen::Isometry3d& T_base_transfer, const A
     const double value = i < 9 ? T_base_transfer(i / 3, i % 3) : T_base_transfer(i - 9, 3);
     check_.target[i][lane] = value;
     batch_.target[i][lane] = i < 9 ? value : value / solver_.lanes().length_m;
-    pull_.target[i][lane] = batch_.target[i][lane];
   }
   for (int i = 0; i < ArmShapeMotion::kRows; ++i)
     pull_.wanted[i][lane] = wanted.reshaped()[i];
@@ -65,7 +60,7 @@ inverse::JointVector ShapeLanes::at(int lane) const { return q_[static_cast<std:
 unsigned ShapeLanes::reach(unsigned lanes) {
   for (int lane = 0; lane < kCount; ++lane)
     write(solver_.lanes(), at(lane), lane, batch_.q);
-  const unsigned arrived = descend(lanes, kArrived);
+  const unsigned arrived = descend(lanes);
   for (int lane = 0; lane < kCount; ++lane)
     if (has(arrived, lane))
       put(lane, read(solver_.lanes(), batch_.q, lane));
@@ -73,12 +68,12 @@ unsigned ShapeLanes::reach(unsigned lanes) {
 }
 
 /// Of what stands in the batch; all lanes move, those that have arrived next to nothing.
-unsigned ShapeLanes::descend(unsigned lanes, double near) {
+unsigned ShapeLanes::descend(unsigned lanes) {
   unsigned arrived = 0;
   for (int i = 0; i <= kDescentIterations && arrived != lanes; ++i) {
     solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
     for (int lane = 0; lane < kCount; ++lane)
-      if (has(lanes, lane) && batch_.squared[lane] < near)
+      if (has(lanes, lane) && batch_.squared[lane] < kArrived)
         arrived |= bit(lane);
   }
   return arrived;
@@ -94,30 +89,14 @@ void ShapeLanes::pull(unsigned lanes, int steps) {
   }
   for (int lane = 0; lane < kCount; ++lane)
     write(chain, at(lane), lane, pull_.q);
-  // An arm that is not redundant has no self-motion.
-  unsigned moved = slide(lanes, solver_.redundant() ? steps : 0);
-  if (moved == 0)
-    return;
-  moved = descend(moved, kArrived);
-  for (int lane = 0; lane < kCount; ++lane)
-    if (has(moved, lane))
-      put(lane, read(chain, batch_.q, lane));
-}
-
-/// From what stands in the pull, staying near to the poses. The nearest to its shape of each lane
-/// is left in the batch. \return the lanes that got nearer.
-unsigned ShapeLanes::slide(unsigned lanes, int steps) {
-  const inverse::LaneChain& chain = solver_.lanes();
-  const std::size_t values = static_cast<std::size_t>(chain.dof) * kCount;
-  std::array<double, inverse::kLaneJoints * kCount> nearest;
-  std::copy_n(&pull_.q[0][0], values, nearest.data());
   solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
   std::copy_n(pull_.distance_m, kCount, distance_m_.begin());
-  unsigned moved = 0;
+  if (!solver_.redundant())  // no self-motion
+    return;
   for (int i = 0; i < steps && lanes != 0; ++i) {
-    std::copy_n(&pull_.q[0][0], values, &batch_.q[0][0]);
-    lanes = descend(lanes, kNearPose);
-    std::copy_n(&batch_.q[0][0], values, &pull_.q[0][0]);
+    std::copy_n(&pull_.q[0][0], chain.dof * kCount, &batch_.q[0][0]);
+    lanes = descend(lanes);
+    std::copy_n(&batch_.q[0][0], chain.dof * kCount, &pull_.q[0][0]);
     solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
     for (int lane = 0; lane < kCount; ++lane) {
       double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
@@ -128,14 +107,10 @@ unsigned ShapeLanes::slide(unsigned lanes, int steps) {
         lanes &= ~bit(lane);
       if (!(reached_m < distance_m))
         continue;
-      for (std::size_t at = static_cast<std::size_t>(lane); at < values; at += kCount)
-        nearest[at] = (&batch_.q[0][0])[at];
+      put(lane, read(chain, batch_.q, lane));
       distance_m = reached_m;
-      moved |= bit(lane);
     }
   }
-  std::copy_n(nearest.data(), values, &batch_.q[0][0]);
-  return moved;
 }
 
 Eigen::VectorXd ShapeLanes::distances_m(const Eigen::MatrixXd& configurations,

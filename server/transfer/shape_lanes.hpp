@@ -45,8 +45,7 @@ class ShapeLanes {
   unsigned verified(unsigned lanes, const Eigen::MatrixXd& configurations);
 
  private:
-  unsigned descend(unsigned lanes, double near);
-  unsigned slide(unsigned lanes, int steps);
+  unsigned descend(unsigned lanes);
   void pull_one(int lane, int steps);
 
   const ArmPair& pair_;
