@@ -31,8 +31,7 @@ Eigen::Isometry3d placement_of(const Problem& problem) {
 int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
   const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
   const PlannedRobot robot = planar_robot();
-  collision::CollisionWorld world(robot.chain, robot.shapes,
-                                  {placement_of(problem), problem.scene, {}, {}});
+  collision::CollisionWorld world(robot.solids, {placement_of(problem), problem.scene, {}, {}});
   int collisions = 0;
   for (Eigen::Index i = 0; i < path.cols(); ++i)
     if (world.collides(path.col(i)))
