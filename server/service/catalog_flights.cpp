@@ -156,7 +156,6 @@ FitOutcome Catalog::fit(const Digest& id, const DistributionKey& key, Marks& mar
 void Catalog::land(const Digest& id, const DistributionKey& key, Distribution distribution,
                    const Marks& marks) {
   ++fits_;
-  options_.on_fit(distribution);
   const Announcement announcement = announcement_of(distribution);
   const double fit_s = distribution.transfer_time_s + distribution.fit_time_s;
   const AdvisedReply reply = adviser_.advise(with_distribution(std::move(distribution)), key);
@@ -167,9 +166,9 @@ void Catalog::land(const Digest& id, const DistributionKey& key, Distribution di
     constexpr double kNewShare = 0.25;
     typical_fit_s_ = (1 - kNewShare) * typical_fit_s_ + kNewShare * fit_s;
     Flight* const flight = flights_.find(id);
-    if (flight == nullptr)
-      return;  // stopped
-    if (marks_.of(key.task).retirements != marks.retirements) {
+    if (flight == nullptr) {
+      // stopped
+    } else if (marks_.of(key.task).retirements != marks.retirements) {
       look_soon(id, *flight, after);
     } else {
       flight->answer_satisfied(reply.reply, after.answers);
@@ -180,6 +179,7 @@ void Catalog::land(const Digest& id, const DistributionKey& key, Distribution di
       rest(id, *flight, marks, after);
     }
   }
+  options_.on_fit(*reply.reply->distribution);  // whoever is told of it and asks gets it
   finish(after);
   if (is_followed)
     options_.announce(announcement);

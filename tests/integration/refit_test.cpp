@@ -18,15 +18,15 @@ using std::chrono::seconds;
 /// A Panda that reports its own sweeps and asks for what was made of them.
 class Refit : public testing::Test {
  protected:
-  Refit() { start(); }
+  Refit() {
+    start();
+    panda_ = client_.register_robot(test::model_description("panda")).value_or_throw().robot;
+  }
 
   void start() {
     server_.reset();
     server_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
         .store = folder_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  }
-  Digest register_panda() {
-    return client_.register_robot(test::model_description("panda")).value_or_throw().robot;
   }
   void report(int paths) {
     std::vector<Attempt> attempts;
@@ -48,8 +48,9 @@ class Refit : public testing::Test {
   Distribution next(const Distribution& before) { return fetch(before.sources[0].generation + 1); }
 
   std::string explained(const Digest& id) {
-    test::Program program("kinship", {"--domain", std::to_string(domain_.number()), "--timeout",
-                                      "60", "distributions", "explain", id.hex()});
+    test::Program program("kinship",
+                          {"--domain", std::to_string(domain_.number()), "--timeout", "60",
+                           "distributions", "explain", "--distribution", id.hex()});
     return program.read_all();
   }
 
@@ -58,7 +59,7 @@ class Refit : public testing::Test {
   std::unique_ptr<test::ServerProcess> server_;
   link::Client client_{
       {.domain = domain_.number(), .outbox = {}, .has_outbox = false, .timeout = seconds(60)}};
-  Digest panda_ = register_panda();
+  Digest panda_;
   std::uint64_t next_seed_ = 1;
 };
 
@@ -86,8 +87,10 @@ TEST_F(Refit, AServerThatWasKilledServesWhatItHadAndFitsFully) {
   EXPECT_EQ(third.revision, 3U);
   EXPECT_EQ(third.fit, (FitOrigin{0, 0, 16, 16, 16, "no earlier one in memory"}));
   ASSERT_TRUE(third.mixture);
-  EXPECT_NE(explained(third.id).find("fit           full (no earlier one in memory), 16 paths\n"),
-            std::string::npos);
+  const std::string last = explained(third.id);
+  EXPECT_NE(last.find("fit           full (no earlier one in memory), 16 paths\n"),
+            std::string::npos)
+      << last;
 }
 
 }  // namespace
