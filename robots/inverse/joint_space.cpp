@@ -12,6 +12,7 @@ using kinematics::JointType;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kRounder = 0x1.8p52;  // added and taken away it rounds to the nearest integer
+constexpr double kSeam = 1e-8;         // rad: nearer to half a turn from mid-range is half a turn
 
 /// An angle moved by whole turns into [-pi, pi]; std::remainder takes ten times as long.
 double wrapped(double angle) {
@@ -46,8 +47,10 @@ bool JointSpace::normalize(double* q, double margin) const noexcept {
     double value = q[j];
     if (range.turns)
       value = range.middle + wrapped(value - range.middle);
-    if (range.continuous && value <= -std::numbers::pi)
-      value = std::numbers::pi;
+    // Half a turn to either side is one place: rounding must not make two solutions of it.
+    if (range.turns && range.half_drawn >= std::numbers::pi - kLimitRounding &&
+        value <= range.middle - std::numbers::pi + kSeam)
+      value += kTurn;
     // Written so that NaN is outside.
     inside = inside && value >= range.lower - margin && value <= range.upper + margin;
     q[j] = inside ? std::clamp(value, range.lower, range.upper) : value;

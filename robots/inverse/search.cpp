@@ -28,6 +28,7 @@ constexpr int kBranchPatience = 52;   // the same, for the branches of an arm th
 constexpr int kEvenPatience = 20;     // the same where branches come in pairs: none alone is known,
 constexpr int kOddPatience = 100;     // and one is missing for certain
 constexpr double kConverged = 1e-12;  // squared error before the last step, which squares it again
+constexpr double kSettled = 1e-9;     // squared step of a lane that converges so fast
 constexpr int kFewestLocks = 8;       // random values of the locked joints
 constexpr int kIdleLocks = 24;        // in a row without a new solution
 constexpr int kPolishSteps = 8;
@@ -171,7 +172,8 @@ void Search::polish() {
   for (int i = 0; i < kPolishSteps && busy != 0; ++i) {
     solver_.kernels().step(solver_.lanes(), LaneLimits::Ignore, batch_);
     for (int lane = 0; lane < proposed_; ++lane) {
-      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0 || !(batch_.squared[lane] < kConverged))
+      const bool last = i + 1 == kPolishSteps && batch_.squared[lane] < kConverged;
+      if ((busy >> static_cast<unsigned>(lane) & 1U) == 0 || !(converged(lane) || last))
         continue;
       hand_over(lane);
       busy &= ~(1U << static_cast<unsigned>(lane));
@@ -239,9 +241,18 @@ void Search::start(const Effort& effort, int lane) {
   near_[lane] = false;
 }
 
+/// At a singular pose, a straight arm say, a step only quarters the error: an arm of many metres
+/// would be off by more than verification allows, whose limit does not grow with the arm.
+bool Search::converged(int lane) const noexcept {
+  const double squared = batch_.squared[lane];
+  const double length_m = std::max(solver_.lanes().length_m, 1.0);
+  return squared < kConverged &&
+         (batch_.moved[lane] < kSettled || squared * length_m * length_m < kConverged);
+}
+
 Search::Ended Search::progress(const Effort& effort, int lane) {
   const double squared = batch_.squared[lane];
-  if (squared < kConverged && batch_.outside[lane] == 0) {
+  if (converged(lane) && batch_.outside[lane] == 0) {
     least_squared_error_ = 0;
     return Ended::Converged;
   }
@@ -257,6 +268,10 @@ Search::Ended Search::progress(const Effort& effort, int lane) {
     most += squared < promising ? kMoreIterations : 0;
   if (!stationary && ++iterations < most)
     return Ended::No;
+  if (squared < kConverged && batch_.outside[lane] == 0) {
+    least_squared_error_ = 0;
+    return Ended::Converged;  // verification has the last word
+  }
   stationary_ += stationary ? 1 : 0;
   least_squared_error_ = std::min(least_squared_error_, squared);
   return Ended::Failed;

@@ -44,6 +44,8 @@ class Search {
   void descend(const Effort& effort);
   void start(const Effort& effort, int lane);
   Ended progress(const Effort& effort, int lane);
+  /// Whether the step that a lane has just made was its last: it is as near as verification asks.
+  bool converged(int lane) const noexcept;
   std::array<double, kLaneJoints> configuration(int lane) const;  // joint units
   /// Whether a lane is about to end at a branch that was found before.
   bool is_known(int lane) const;
