@@ -1,10 +1,15 @@
 #include "server/density/distinct_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace kinship::density {
 namespace {
+
+/// Of an average weight. No sum shows that a weight is so much and not less, and none that is
+/// divided by it overflows.
+constexpr double kLeastWeight = 1e-100;
 
 /// A column and its first joint: enough to order almost all of them without looking further away.
 struct Candidate {
@@ -33,6 +38,15 @@ DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configur
   std::sort(order.begin(), order.end(), less);
 
   DistinctPoints distinct;
+  if (order.empty())
+    return distinct;
+  double largest = 0;
+  for (const Candidate& candidate : order)
+    largest = std::max(largest, weights[candidate.column]);
+  const int exponent = std::ilogb(largest);  // a power of two costs no digit
+  const auto weight_of = [&](const Candidate& candidate) {
+    return std::scalbn(weights[candidate.column], -exponent);
+  };
   distinct.columns.reserve(order.size());
   distinct.weights.reserve(order.size());
   for (const Candidate& candidate : order) {
@@ -40,15 +54,16 @@ DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configur
         !distinct.columns.empty() &&
         configurations.col(distinct.columns.back()) == configurations.col(candidate.column);
     if (is_repeated) {
-      distinct.weights.back() += weights[candidate.column];
+      distinct.weights.back() += weight_of(candidate);
       continue;
     }
     distinct.columns.push_back(candidate.column);
-    distinct.weights.push_back(weights[candidate.column]);
+    distinct.weights.push_back(weight_of(candidate));
   }
   const double total = std::accumulate(distinct.weights.begin(), distinct.weights.end(), 0.0);
   for (double& weight : distinct.weights)
-    weight *= static_cast<double>(distinct.weights.size()) / total;
+    weight =
+        std::max(weight * (static_cast<double>(distinct.weights.size()) / total), kLeastWeight);
   return distinct;
 }
 

@@ -20,31 +20,28 @@ constexpr Eigen::Index kMostComponents = 128;  // where K is chosen
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
-  if (configurations.cols() != weights.size())
-    throw std::invalid_argument("fit_mixture: one weight per configuration");
+  check_sizes(configurations, weights, options.limits, "fit_mixture");
   if (options.components < 0 || !(options.covariance_floor >= 0) ||
       !std::isfinite(options.covariance_floor))
     throw std::invalid_argument(
         "fit_mixture: need components >= 0, a finite covariance_floor >= 0");
+  if (options.max_iterations < 0 || std::isnan(options.tolerance))
+    throw std::invalid_argument("fit_mixture: need max_iterations >= 0, a tolerance");
   const Eigen::VectorXd& floors = options.floors_of_joints;
   if (floors.size() != 0 &&
       (floors.size() != configurations.rows() || !floors.allFinite() || floors.minCoeff() < 0))
     throw std::invalid_argument("fit_mixture: need one finite floor >= 0 per joint");
-  if (options.limits.size() != 0 &&
-      (options.limits.cols() != configurations.rows() || !options.limits.allFinite()))
-    throw std::invalid_argument("fit_mixture: need finite limits of each joint");
   const std::optional<WarmStart>& warm = options.warm_start;
   if (warm && (warm->mixture.dimension() != configurations.rows() ||
                warm->is_new.size() != static_cast<std::size_t>(configurations.cols())))
     throw std::invalid_argument(
         "fit_mixture: need a mixture before of as many joints, and a flag per configuration");
+  if (warm && !(warm->mixture.means().cwiseAbs().maxCoeff() <= 2 * kLargestValue))
+    throw std::invalid_argument("fit_mixture: means of the mixture before exceed configurations");
   if (options.components == 0 && !warm &&
-      options.path_of_configuration.size() != static_cast<std::size_t>(configurations.cols()))
-    throw std::invalid_argument("fit_mixture: to choose K, the path of each configuration");
-  if (options.components == 0 &&
-      std::any_of(options.path_of_configuration.begin(), options.path_of_configuration.end(),
-                  [&](std::uint32_t path) { return path >= configurations.cols(); }))
-    throw std::invalid_argument("fit_mixture: paths are not counted from 0 without gaps");
+      !are_paths_of(options.path_of_configuration, configurations.cols()))
+    throw std::invalid_argument(
+        "fit_mixture: to choose K, the path of each configuration, counted from 0 without gaps");
 }
 
 EmOptions em_options(Eigen::Index dimension, const FitOptions& options) {

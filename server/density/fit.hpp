@@ -21,7 +21,7 @@ struct FitOptions {
   double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
   /// d, instead of covariance_floor, where joints have different units; empty: all the same.
   Eigen::VectorXd floors_of_joints = {};
-  int max_iterations = 50;
+  int max_iterations = 50;  ///< 0: the start as it is
   double tolerance = 1e-3;  ///< stop when the mean log-likelihood gains less, nats
   std::uint64_t seed = 0;
   Computation computation = {};

@@ -1,6 +1,8 @@
 #include "server/density/fit_input.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace kinship::density {
@@ -21,6 +23,36 @@ std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& config
     return Error{ErrorCode::InvalidInput, "fit: weights have sum " + std::to_string(weights.sum()) +
                                               ", must be positive and finite"};
   return std::nullopt;
+}
+
+void check_sizes(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                 const Eigen::Ref<const Eigen::VectorXd>& weights, const Eigen::Matrix2Xd& limits,
+                 std::string_view who) {
+  if (configurations.rows() < 1 || configurations.cols() != weights.size())
+    throw std::invalid_argument(std::string(who) +
+                                ": need a joint, and one weight per configuration");
+  if (limits.size() == 0)
+    return;
+  if (limits.cols() != configurations.rows() || !limits.allFinite() ||
+      (limits.row(0).array() > limits.row(1).array()).any())
+    throw std::invalid_argument(std::string(who) +
+                                ": need finite limits of each joint, the lower ones first");
+}
+
+bool are_paths_of(const std::vector<std::uint32_t>& path_of_configuration,
+                  Eigen::Index configurations) {
+  if (path_of_configuration.size() != static_cast<std::size_t>(configurations))
+    return false;
+  std::vector<bool> is_there(path_of_configuration.size(), false);
+  std::size_t paths = 0;
+  for (const std::uint32_t path : path_of_configuration) {
+    if (path >= is_there.size())
+      return false;
+    is_there[path] = true;
+    paths = std::max(paths, std::size_t{path} + 1);
+  }
+  return std::find(is_there.begin(), is_there.begin() + static_cast<std::ptrdiff_t>(paths),
+                   false) == is_there.begin() + static_cast<std::ptrdiff_t>(paths);
 }
 
 double log_uniform(const Eigen::Ref<const Eigen::MatrixXd>& configurations,

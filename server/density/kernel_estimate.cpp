@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "proto/mixture/cholesky.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/limits.hpp"
 #include "server/density/block_points.hpp"
@@ -30,19 +31,13 @@ constexpr double kLowScore_nats = 0.25;  // below the best of the clusters: narr
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options) {
-  const auto count = static_cast<std::size_t>(configurations.cols());
-  if (configurations.cols() != weights.size() || options.path_of_configuration.size() != count)
-    throw std::invalid_argument("estimate_kernels: one weight and one path per configuration");
-  if (std::any_of(options.path_of_configuration.begin(), options.path_of_configuration.end(),
-                  [&](std::uint32_t path) { return path >= count; }))
-    throw std::invalid_argument("estimate_kernels: paths are not counted from 0 without gaps");
+  check_sizes(configurations, weights, options.limits, "estimate_kernels");
+  if (!are_paths_of(options.path_of_configuration, configurations.cols()))
+    throw std::invalid_argument(
+        "estimate_kernels: need the path of each configuration, counted from 0 without gaps");
   const Eigen::VectorXd& floors = options.floors_of_joints;
-  if (floors.size() != configurations.rows() || !floors.allFinite() ||
-      (floors.size() > 0 && floors.minCoeff() < 0))
+  if (floors.size() != configurations.rows() || !floors.allFinite() || floors.minCoeff() < 0)
     throw std::invalid_argument("estimate_kernels: need one finite floor >= 0 per joint");
-  if (options.limits.size() != 0 &&
-      (options.limits.cols() != configurations.rows() || !options.limits.allFinite()))
-    throw std::invalid_argument("estimate_kernels: need finite limits of each joint");
 }
 
 /// Centres of kernels and what each weighs.
@@ -151,6 +146,7 @@ class Estimate {
     KernelEstimate estimate{
         mixture_of(kernels, pooled, choice.bandwidth.scale, options_.floors_of_joints),
         choice.bandwidth};
+    mixture::cholesky_factors(estimate.mixture);  // throws if there is none
     if (paths >= kLeastPathsToScore)
       estimate.held_out_score = choice.score;
     return estimate;

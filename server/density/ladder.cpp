@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "proto/types/failure.hpp"
 #include "server/density/merge.hpp"
 
 namespace kinship::density {
@@ -30,7 +31,11 @@ Ladder climb_down(const BlockPoints& training, const BlockPoints& held_out, Eige
   for (const int rung : kRungs) {
     if (rung >= current.size())
       continue;
-    current = run_em(merged(current, rung), training, rung_options).mixture;
+    try {
+      current = run_em(merged(current, rung), training, rung_options).mixture;
+    } catch (const Failure&) {
+      break;  // too wide beside its floor to be factored, as fewer would be
+    }
     const double score = score_of(current);
     ladder.curve.push_back({static_cast<int>(current.size()), score});
     low = score < ladder.best_score - kLowScore_nats ? low + 1 : 0;

@@ -21,7 +21,7 @@ struct Ladder {
 inline constexpr double kBackgroundShare = 0.01;
 
 /// Fits many components, then merges them down step by step, with EM in between, and scores each
-/// step on the held-out points. Ends early where scores are far below the best.
+/// step on the held-out points. Ends early where scores are low or merging fails.
 /// \param most  components to begin with, at least 1.
 /// \param log_uniform  u as above, logarithm.
 Ladder climb_down(const BlockPoints& training, const BlockPoints& held_out, Eigen::Index most,

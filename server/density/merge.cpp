@@ -19,10 +19,11 @@ struct Component {
   double log_determinant = 0;
 };
 
+/// Infinite if rounding leaves the covariance no factor: such a pair is never the cheapest.
 double log_determinant(const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success)
-    throw Failure(ErrorCode::Internal, "merge: a covariance is not positive definite");
+    return std::numeric_limits<double>::infinity();
   return 2 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
@@ -52,6 +53,8 @@ class Merging {
       const Eigen::MatrixXd& covariance = mixture.covariance(k);
       components_.push_back(
           {mixture.weights()[k], mixture.means().col(k), covariance, log_determinant(covariance)});
+      if (!std::isfinite(components_.back().log_determinant))
+        throw Failure(ErrorCode::Internal, "merge: a covariance is not positive definite");
     }
     partners_.resize(components_.size());
     for (std::size_t i = 0; i < components_.size(); ++i)
@@ -65,6 +68,8 @@ class Merging {
     for (std::size_t i = 1; i + 1 < partners_.size(); ++i)
       if (partners_[i].cost < partners_[first].cost)
         first = i;
+    if (!std::isfinite(partners_[first].cost))
+      throw Failure(ErrorCode::Internal, "merge: no pair has a positive definite covariance");
     const std::size_t second = partners_[first].index;
     components_[first] = pair_of(components_[first], components_[second]);
     components_.erase(components_.begin() + static_cast<std::ptrdiff_t>(second));

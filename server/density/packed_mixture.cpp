@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "proto/mixture/cholesky.hpp"
+#include "proto/types/failure.hpp"
 #include "server/density/block_kernels.hpp"
 
 namespace kinship::density {
@@ -14,6 +16,8 @@ namespace {
 constexpr int kLaneMultiple = 8;
 /// Instead of the logarithm of 0: finite, so that differences are numbers.
 constexpr double kLeastLogWeight = -1e100;
+/// Of what the kernels read: squares of sums of products with points, and sums of them, are finite.
+constexpr double kLargestNumber = 1e120;
 
 /// What components of one covariance have in common.
 struct Whitening {
@@ -54,9 +58,14 @@ PackedMixture::PackedMixture(const Mixture& mixture, const Eigen::VectorXd& offs
   std::vector<Whitening> whitenings;
   for (const Eigen::MatrixXd& factor : mixture::cholesky_factors(mixture))
     whitenings.emplace_back(factor);
-  for (int k = 0; k < size_; ++k)
+  for (int k = 0; k < size_; ++k) {
     pack(mixture.weights()[k], whitenings[mixture.covariance_index(k)],
          mixture.means().col(k) - offset, one_by_one_.data() + k * stride_of_component_);
+    if (!std::all_of(component(k), component(k) + stride_of_component_,
+                     [](double number) { return std::abs(number) <= kLargestNumber; }))
+      throw Failure(ErrorCode::Internal,
+                    "mixture: component " + std::to_string(k) + " is too narrow to compute with");
+  }
   for (int k = 0; k < stride_; ++k)
     for (std::ptrdiff_t entry = 0; entry < stride_of_component_; ++entry)
       interleaved_[static_cast<std::size_t>(entry * stride_ + k)] =

@@ -11,7 +11,7 @@ namespace kinship::density {
 class PackedMixture {
  public:
   /// \param offset  d: what the points are relative to.
-  /// \throws Failure(Internal) if a covariance is not positive definite.
+  /// \throws Failure(Internal) if a covariance is not positive definite or below about 1e-240.
   /// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 2.43.
   PackedMixture(const Mixture& mixture, const Eigen::VectorXd& offset);
 

@@ -1,7 +1,9 @@
 #include "server/density/warm_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -44,12 +46,15 @@ DistinctPoints sample_of(const DistinctPoints& points) {
   return sample;
 }
 
+/// Finite: where rounding leaves no density it is the least number.
 Eigen::VectorXd scores_of(const Mixture& mixture, const DistinctPoints& points,
                           const Eigen::Ref<const Eigen::MatrixXd>& configurations) {
   Eigen::MatrixXd columns(configurations.rows(), static_cast<Eigen::Index>(points.columns.size()));
   for (Eigen::Index i = 0; i < columns.cols(); ++i)
     columns.col(i) = configurations.col(points.columns[static_cast<std::size_t>(i)]);
-  return mixture::log_density(mixture, columns);
+  return mixture::log_density(mixture, columns).unaryExpr([](double score) {
+    return std::isfinite(score) ? score : std::numeric_limits<double>::lowest();
+  });
 }
 
 /// The score that so much of the weight lies below.
@@ -83,8 +88,10 @@ Mixture joined(const Mixture& first, const Mixture& second, double share) {
   weights << (1 - share) * first.weights(), share * second.weights();
   Eigen::MatrixXd means(first.dimension(), weights.size());
   means << first.means(), second.means();
-  std::vector<Eigen::MatrixXd> covariances = first.covariances();
-  covariances.insert(covariances.end(), second.covariances().begin(), second.covariances().end());
+  std::vector<Eigen::MatrixXd> covariances;
+  for (const Mixture* part : {&first, &second})  // kernels share one
+    for (Eigen::Index k = 0; k < part->size(); ++k)
+      covariances.push_back(part->covariance(k));
   return {weights / weights.sum(), std::move(means), std::move(covariances)};
 }
 

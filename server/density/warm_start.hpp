@@ -12,7 +12,7 @@ namespace kinship::density {
 
 /// What a fit of configurations knows that were, but for some, fitted before.
 struct WarmStart {
-  Mixture mixture;  ///< of the fit before, of as many joints
+  Mixture mixture;  ///< of the fit before: as many joints, means at most twice the largest value
   /// N: not 0 for a configuration that `mixture` was not fitted to.
   std::vector<std::uint8_t> is_new;
 };

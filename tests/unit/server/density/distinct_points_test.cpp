@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace kinship::density {
 namespace {
 
@@ -33,6 +35,20 @@ TEST(DistinctPoints, WithoutWeightOrUnwantedAreLeftOut) {
   const DistinctPoints points =
       distinct_points(configurations, Eigen::Vector4d(1, 0, 1, 1), {1, 1, 1, 0});
   EXPECT_EQ(points.columns, (std::vector<std::uint32_t>{0, 2}));
+}
+
+TEST(DistinctPoints, WeightsAreNumbersHoweverSmallOrFarApart) {
+  Eigen::MatrixXd configurations(1, 4);
+  configurations << 1, 2, 3, 3;
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  const DistinctPoints light =
+      distinct_points(configurations, Eigen::Vector4d(kLeast, 2 * kLeast, kLeast, 2 * kLeast));
+  EXPECT_EQ(light.weights, (std::vector<double>{3.0 / 6, 6.0 / 6, 9.0 / 6}));
+  const DistinctPoints apart =
+      distinct_points(configurations, Eigen::Vector4d(kLeast, 1, 1e308, 0.5e308));
+  EXPECT_GT(apart.weights[0], 0);
+  EXPECT_LT(apart.weights[1], 1e-99);
+  EXPECT_NEAR(apart.weights[2], 3, 1e-12);
 }
 
 TEST(DistinctPoints, OrderChangesNoBit) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "proto/mixture/density.hpp"
+#include "server/density/em_run.hpp"
 
 namespace kinship::density {
 namespace {
@@ -121,6 +122,29 @@ TEST(Expectation, InstructionSetsDifferByRoundingOnly) {
     const Expectation other = expectation(start, example.points, {.kernels = kernels});
     EXPECT_NEAR(other.mean_log_likelihood, baseline.mean_log_likelihood, 1e-11);
     EXPECT_LT((other.moments.sums - baseline.moments.sums).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+/// The log-likelihoods that scikit-learn 1.2.1 finds (GaussianMixture, reg_covar 1e-4, tol 0, the
+/// same start) after 1 and 7 iterations.
+TEST(ExpectationMaximisation, EqualsScikitLearns) {
+  Eigen::MatrixXd columns(3, 90);
+  for (int i = 0; i < 90; ++i)
+    columns.col(i) << std::sin(i) + 0.8 * (i % 4),
+        0.6 * std::cos(1.7 * i) - 0.2 * (i % 4) * (i % 4),
+        0.3 * std::sin(0.37 * i * i) + 0.5 * (i % 2);
+  const Example example = example_of(columns, Eigen::VectorXd::Ones(90));
+  const Mixture start(Eigen::VectorXd::Constant(4, 0.25), columns.leftCols(4),
+                      std::vector<Eigen::MatrixXd>(4, Eigen::MatrixXd::Identity(3, 3)));
+  for (const bool prune : {true, false}) {
+    const EmOptions options{.floors = Eigen::VectorXd::Constant(3, 1e-4),
+                            .max_iterations = 7,
+                            .tolerance = -1,
+                            .computation = {.prune = prune}};
+    const EmRun run = run_em(start, example.points, options);
+    ASSERT_EQ(run.log_likelihoods.size(), 7U);
+    EXPECT_NEAR(run.log_likelihoods.front(), -2.6229793707957976, 1e-9);
+    EXPECT_NEAR(run.log_likelihoods.back(), -2.4911138174512177, 1e-9);
   }
 }
 

@@ -57,22 +57,62 @@ TEST(KernelEstimate, IntegratesToOne) {
   EXPECT_NEAR(sum, 1, 1e-6);
 }
 
-TEST(KernelEstimate, RecoversADensityBetterTheMorePathsThereAre) {
-  // Of independent points; the mean of log p over others can at best be minus the entropy.
-  const double entropy = 1 + std::log(2 * M_PI);
-  std::mt19937_64 generator(kSeed + 1);
+/// Independent points of the normal distribution around either of two places.
+Eigen::MatrixXd draws_around(double distance, Eigen::Index count, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
-  const Eigen::MatrixXd others =
-      Eigen::MatrixXd::NullaryExpr(2, 500, [&] { return normal(generator); });
-  double loss_before = 1;
-  for (const Eigen::Index count : {20, 500}) {
-    const Eigen::MatrixXd points = normal_points(2, count);
-    const KernelEstimate made = estimate(points, options_for(points, 1));
-    const double loss = -entropy - mixture::log_density(made.mixture, others).mean();
-    EXPECT_LT(loss, 0.6 * loss_before) << count;
-    loss_before = loss;
+  Eigen::MatrixXd draws = Eigen::MatrixXd::NullaryExpr(2, count, [&] { return normal(generator); });
+  for (Eigen::Index i = 0; i < count; i += 2)
+    draws(0, i) += distance;
+  return draws;
+}
+
+/// How much less log density a mixture has than the true one, which stands at the two places, mean
+/// over others of its draws: the Kullback-Leibler divergence but for the choice of those.
+double loss_of(const Mixture& mixture, double distance) {
+  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, 2);
+  means(0, 1) = distance;
+  const Mixture truth(Eigen::Vector2d(0.5, 0.5), means, {Eigen::Matrix2d::Identity()});
+  const Eigen::MatrixXd others = draws_around(distance, 400, kSeed + 100);
+  return (mixture::log_density(truth, others) - mixture::log_density(mixture, others)).mean();
+}
+
+/// The least loss of kernels at these points whose covariance is a multiple of the points' own.
+double least_loss(const Eigen::MatrixXd& points) {
+  const auto count = static_cast<double>(points.cols());
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix2d covariance = centred * centred.transpose() / count;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double scale : {1.0, 0.7, 0.5, 0.35, 0.25})
+    least = std::min(least, loss_of({Eigen::VectorXd::Constant(points.cols(), 1 / count),
+                                     points,
+                                     {scale * scale * covariance}},
+                                    0));
+  return least;
+}
+
+TEST(KernelEstimate, RecoversADensityAboutAsWellAsKernelsCan) {
+  // In two dimensions the loss of the best bandwidth falls about as count^(-2/3).
+  constexpr int kDraws = 4;
+  double few = 0, many = 0, least_of_many = 0;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    const Eigen::MatrixXd points = draws_around(0, 500, kSeed + draw);
+    const Eigen::MatrixXd start = points.leftCols(50);
+    few += loss_of(estimate(start, options_for(start, 1)).mixture, 0) / kDraws;
+    many += loss_of(estimate(points, options_for(points, 1)).mixture, 0) / kDraws;
+    least_of_many += least_loss(points) / kDraws;
   }
-  EXPECT_LT(loss_before, 0.1);
+  EXPECT_LT(many, 0.4 * few);
+  EXPECT_LT(many, 1.5 * least_of_many + 0.005);
+  EXPECT_LT(many, 0.06);
+}
+
+TEST(KernelEstimate, PlacesFarFromEachOtherDoNotWidenTheKernels) {
+  constexpr double kDistance = 40;
+  const Eigen::MatrixXd points = draws_around(kDistance, 500, kSeed);
+  const KernelEstimate made = estimate(points, options_for(points, 1));
+  EXPECT_GT(made.bandwidth.clusters, 1);
+  EXPECT_LT(loss_of(made.mixture, kDistance), 0.12);
 }
 
 TEST(KernelEstimate, WeighsItsKernelsAsTheConfigurations) {
@@ -215,6 +255,11 @@ TEST(KernelEstimate, RefusesWhatNoMixtureIsMadeOfEither) {
   EXPECT_EQ(refusal(points, 0),
             "kernels: mixture: covariance of component 0 is not positive definite; "
             "covariance_floor 0 is too small for this data");
+  {
+    KernelOptions one_path = options_for(points, 20);  // no other path that would show it
+    one_path.floors_of_joints.setZero();
+    EXPECT_FALSE(estimate_kernels(points, Eigen::VectorXd::Ones(20), one_path));
+  }
   points(1, 5) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(refusal(points, 1e-4).find("configuration 5 is not finite"), std::string::npos);
   EXPECT_THROW(static_cast<void>(estimate_kernels(normal_points(3, 20), Eigen::VectorXd::Ones(19),

@@ -8,6 +8,8 @@
 #include <random>
 #include <utility>
 
+#include "proto/types/failure.hpp"
+
 namespace kinship::density {
 namespace {
 
@@ -51,6 +53,39 @@ TEST(Merged, KeepsTotalMeanAndCovariance) {
     EXPECT_LT((merged_covariance - covariance).norm(), 1e-11);
     EXPECT_NEAR(fewer.weights().sum(), 1, 1e-12);
   }
+}
+
+/// Components without weight, a billion times heavier than others, and far away.
+TEST(Merged, KeepsTotalMeanAndCovarianceOfNastyMixtures) {
+  const Mixture usual = random_mixture(3, 20);
+  Eigen::VectorXd weights = usual.weights();
+  weights[2] = weights[7] = 0;
+  weights[11] = 1e9;
+  weights /= weights.sum();
+  Eigen::MatrixXd means = usual.means();
+  means.col(5).setConstant(1e4);
+  means.col(7) = means.col(2);
+  const Mixture mixture(weights, means, usual.covariances());
+  const auto [mean, covariance] = mean_and_covariance(mixture);
+  for (const Eigen::Index components : {15, 4, 1}) {
+    const auto [merged_mean, merged_covariance] = mean_and_covariance(merged(mixture, components));
+    EXPECT_LT((merged_mean - mean).norm(), 1e-11);
+    EXPECT_LT((merged_covariance - covariance).norm(), 1e-9 * (1 + covariance.norm()));
+  }
+}
+
+/// Two groups so far apart that what unites them has no Cholesky factor: within groups it has.
+TEST(Merged, APairThatRoundingLeavesNoFactorIsMergedLast) {
+  constexpr double kApart = 1.0 / 1024;
+  Eigen::MatrixXd means(2, 4);
+  means << 0, 1e6, kApart, 1e6 + kApart,  //
+      0, 1e6, 0, 1e6;
+  const Mixture mixture(Eigen::Vector4d::Constant(0.25), means,
+                        {1e-6 * Eigen::Matrix2d::Identity()});
+  const Mixture two = merged(mixture, 2);
+  EXPECT_NEAR(two.means().row(1).minCoeff(), 0, 1e-9);
+  EXPECT_NEAR(two.means().row(1).maxCoeff(), 1e6, 1e-9);
+  EXPECT_THROW(static_cast<void>(merged(mixture, 1)), Failure);
 }
 
 TEST(Merged, EachStepTakesTheCheapestPairOfAll) {

@@ -114,6 +114,16 @@ TEST(WarmStart, NothingNewOrNothingOldIsFittedAllTheSame) {
   }
 }
 
+TEST(WarmStart, KernelsAreAMixtureToBeginWithToo) {
+  Grown grown(clouds({9}, 2));
+  const Mixture& before = grown.warm.mixture;
+  grown.warm.mixture = Mixture(before.weights(), before.means(), {before.covariance(0)});
+  const Mixture warm = grown.refit(grown.options());
+  EXPECT_EQ(warm.covariances().size(), static_cast<std::size_t>(warm.size()));
+  EXPECT_GT(mean_score(warm, clouds({9}, 4)),
+            mean_score(grown.refit(fixed()), clouds({9}, 4)) - 0.3);
+}
+
 TEST(WarmStart, OtherSizesAreRefused) {
   const Grown grown(clouds({1}, 2));
   FitOptions options = grown.options();
