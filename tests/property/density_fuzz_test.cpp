@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -21,7 +22,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr int kCalls = 1200;  // of each estimator
+constexpr int kCalls = 800;  // of each estimator
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeast = std::numeric_limits<double>::denorm_min();
@@ -199,7 +200,7 @@ struct Tally {
   int mixtures = 0, reasons = 0, bugs = 0;
 
   void expect_some_of_each() const {
-    EXPECT_GT(mixtures, kCalls / 3);
+    EXPECT_GT(mixtures, kCalls / 5);
     EXPECT_GT(reasons, kCalls / 20);
     EXPECT_GT(bugs, kCalls / 20);
   }
@@ -214,7 +215,11 @@ void expect_contract(const Eigen::MatrixXd& points, const Eigen::VectorXd& weigh
     ++tally.bugs;
     return;
   }
-  const auto made = call();
+  std::optional<decltype(call())> answer;
+  EXPECT_NO_THROW(answer = call());
+  if (!answer)
+    return;
+  const auto& made = *answer;
   if (!made) {
     ++tally.reasons;
     EXPECT_EQ(made.error().code, ErrorCode::InvalidInput);

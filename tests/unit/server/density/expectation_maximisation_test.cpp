@@ -5,8 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "proto/mixture/density.hpp"
+#include "proto/types/failure.hpp"
 #include "server/density/em_run.hpp"
 
 namespace kinship::density {
@@ -96,6 +99,21 @@ TEST(Expectation, PrunedEqualsDense) {
                 1e-12 * std::abs(dense.mean_log_likelihood));
     EXPECT_LT((pruned.moments.sums - dense.moments.sums).cwiseAbs().maxCoeff(),
               1e-12 * dense.moments.sums.cwiseAbs().maxCoeff());
+  }
+}
+
+/// Squares of its whitened points would be infinite.
+TEST(Expectation, AComponentTooNarrowToComputeWithIsNamed) {
+  const Example example = random_points(2, 200);
+  const Mixture start = start_of(2, 3);
+  std::vector<Eigen::MatrixXd> covariances = start.covariances();
+  covariances[1] *= 1e-310;
+  try {
+    static_cast<void>(
+        expectation({start.weights(), start.means(), covariances}, example.points, {}));
+    ADD_FAILURE() << "computed";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(std::string(failure.what()), "mixture: component 1 is too narrow to compute with");
   }
 }
 

@@ -73,7 +73,7 @@ double loss_of(const Mixture& mixture, double distance) {
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, 2);
   means(0, 1) = distance;
   const Mixture truth(Eigen::Vector2d(0.5, 0.5), means, {Eigen::Matrix2d::Identity()});
-  const Eigen::MatrixXd others = draws_around(distance, 400, kSeed + 100);
+  const Eigen::MatrixXd others = draws_around(distance, 300, kSeed + 100);
   return (mixture::log_density(truth, others) - mixture::log_density(mixture, others)).mean();
 }
 
