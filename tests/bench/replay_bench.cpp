@@ -85,8 +85,9 @@ std::vector<Distribution> read_distributions(const std::string& file) {
   std::ifstream stream(file);
   std::vector<Distribution> distributions;
   files::for_each_line(stream, file, [&](const files::Line& line) {
-    distributions.push_back(
-        json::distribution_from_json(line.text.value_or_throw()).value_or_throw());
+    if (!line.text)
+      throw Failure(line.text.error());
+    distributions.push_back(json::distribution_from_json(*line.text).value_or_throw());
     return true;
   });
   if (distributions.empty())
