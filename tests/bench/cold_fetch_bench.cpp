@@ -97,6 +97,7 @@ class Bench {
     for (const auto& [name, robot] : robots_)
       if (amount.all_sources ? name != target : name == (target == "panda" ? "iiwa14" : "panda"))
         request.selection.sources.push_back(robot);
+    std::sort(request.selection.sources.begin(), request.selection.sources.end());
     std::vector<Sample> samples;
     Distribution distribution;
     for (int i = 0; i < repeats_; ++i) {
