@@ -1,12 +1,15 @@
 #include "tests/support/server_process.hpp"
 
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <spawn.h>
 #include <sys/file.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -75,6 +78,19 @@ class SpawnSettings {
   posix_spawnattr_t attributes_{};
 };
 
+/// Whether no process holds the port of a domain's server: one that a run before left behind would.
+bool is_server_port_free(std::uint32_t domain) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
+  sockaddr generic{};
+  std::memcpy(&generic, &address, sizeof generic);
+  const bool is_free = bind(probe, &generic, sizeof generic) == 0;
+  close(probe);
+  return is_free;
+}
+
 std::vector<std::string> server_arguments(const ServerProcess::Options& options) {
   std::vector<std::string> arguments = {"--store", options.store.string(), "--domain",
                                         std::to_string(options.domain)};
@@ -89,7 +105,7 @@ ReservedDomain::ReservedDomain() {
   for (std::uint32_t i = 0; i < kDomains; ++i) {
     number_ = kFirstDomain + (first + i) % kDomains;
     lock_ = open_lock(number_);
-    if (flock(lock_, LOCK_EX | LOCK_NB) == 0)
+    if (flock(lock_, LOCK_EX | LOCK_NB) == 0 && is_server_port_free(number_))
       return;
     close(lock_);
   }
