@@ -42,7 +42,9 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
   add("--instances", tuning.instances, "tuning instances")->check(CLI::Range(1, 10'000));
   add("--seeds", tuning.seeds, "queries per instance")->check(CLI::Range(1, 100));
   add("--robots", tuning.targets, "robots that plan (default: all)")->delimiter(',');
-  add("--sources", tuning.sources, "robots whose experience is used (default: all)")
+  add("--sources", tuning.sources,
+      "robots whose experience is used (default: each by itself); others: that of all but the "
+      "planning robot together")
       ->delimiter(',');
   command
       .add_option("--calibration", options.calibration_instances,

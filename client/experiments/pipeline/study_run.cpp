@@ -127,6 +127,35 @@ std::vector<std::size_t> chosen_robots(const std::vector<StudyMember>& fleet,
   return robots;
 }
 
+/// Experience of one or several robots, by the name that the table of a tuning run gives it.
+struct NamedSources {
+  std::string name;
+  std::vector<std::size_t> robots;
+};
+
+/// \param labels  robots, or kOtherRobots for all but the target together; empty: each robot by
+/// itself.
+std::vector<NamedSources> chosen_sources(const std::vector<StudyMember>& fleet,
+                                         const std::vector<std::string>& labels,
+                                         std::size_t target) {
+  std::vector<NamedSources> chosen;
+  if (labels.empty())
+    for (std::size_t robot = 0; robot < fleet.size(); ++robot)
+      chosen.push_back({fleet[robot].label(), {robot}});
+  for (const std::string& label : labels) {
+    if (label != kOtherRobots) {
+      chosen.push_back({label, {find_member(fleet, label)}});
+      continue;
+    }
+    NamedSources others{label, {}};
+    for (std::size_t robot = 0; robot < fleet.size(); ++robot)
+      if (robot != target)
+        others.robots.push_back(robot);
+    chosen.push_back(std::move(others));
+  }
+  return chosen;
+}
+
 /// Where a tuning result belongs: a source and all that was varied. The distribution stands for
 /// profile, engines and experience.
 std::string tuning_name(const std::string& source, const TuningOptions& tuning, double overshoot,
@@ -221,14 +250,13 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
     const std::string& label = session.fleet()[target].label();
     for (Cell& cell : uniform_cells(target, settings))
       cells.push_back(std::move(cell));
-    for (const std::size_t source : chosen_robots(session.fleet(), tuning.sources)) {
+    for (const NamedSources& sources : chosen_sources(session.fleet(), tuning.sources, target)) {
       const Distribution distribution =
-          session.fetch({study.name, target, {source}, tuning.profile});
-      const std::string& source_label = session.fleet()[source].label();
-      const std::string name = tuning_name(source_label, tuning, settings.overshoot, distribution);
+          session.fetch({study.name, target, sources.robots, tuning.profile});
+      const std::string name = tuning_name(sources.name, tuning, settings.overshoot, distribution);
       if (auto cell = guided_cell(target, name, settings, distribution, tuning.share)) {
         cells.push_back(*std::move(cell));
-        table.pairs.push_back({label, source_label, name, source == target});
+        table.pairs.push_back({label, sources.name, name, sources.name == label});
       }
     }
   }

@@ -32,6 +32,9 @@ struct TuningOptions {
   std::vector<std::string> targets, sources;  ///< labels; empty: all
 };
 
+/// As a source of a tuning run: all robots but the one that plans, together.
+inline constexpr const char* kOtherRobots = "others";
+
 /// Runs the frozen study on its test instances: learning sets, distributions, queries, report.
 /// Results go into `<folder>/<study>/`, and on `messages` how far it is.
 void run_study(const Study& study, const RunOptions& options, std::ostream& messages);
