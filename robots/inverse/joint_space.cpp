@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace kinship::inverse {
@@ -74,19 +73,6 @@ bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q) {
 double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
                 const Eigen::Ref<const Eigen::VectorXd>& b) {
   return std::sqrt(JointSpace(chain).squared_distance(a.data(), b.data()));
-}
-
-Eigen::VectorXf rounded_inward(const kinematics::Chain& chain,
-                               const Eigen::Ref<const Eigen::VectorXd>& q) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Eigen::VectorXf rounded = q.cast<float>();
-  for (Eigen::Index j = 0; j < q.size(); ++j) {
-    if (static_cast<double>(rounded[j]) > chain.upper()[j])
-      rounded[j] = std::nextafter(rounded[j], -kInfinity);
-    else if (static_cast<double>(rounded[j]) < chain.lower()[j])
-      rounded[j] = std::nextafter(rounded[j], kInfinity);
-  }
-  return rounded;
 }
 
 }  // namespace kinship::inverse

@@ -63,10 +63,4 @@ bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q);
 double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
                 const Eigen::Ref<const Eigen::VectorXd>& b);
 
-/// A configuration to be kept with half the bytes, each value rounded to the nearest one that lies
-/// within the limits as they are written there, in double precision.
-/// \param q  dof, within the limits. Where no float lies within them the nearest float stands.
-Eigen::VectorXf rounded_inward(const kinematics::Chain& chain,
-                               const Eigen::Ref<const Eigen::VectorXd>& q);
-
 }  // namespace kinship::inverse

@@ -45,7 +45,7 @@ class NeighbourOrder {
     Eigen::VectorXd least = configurations_.col(columns_[ranks_[begin]]);
     Eigen::VectorXd most = least;
     for (std::size_t i = begin; i < end; i += step) {
-      const auto point = configurations_.col(columns_[ranks_[i]]);
+      const Eigen::Ref<const Eigen::VectorXd> point = configurations_.col(columns_[ranks_[i]]);
       least = least.cwiseMin(point);
       most = most.cwiseMax(point);
     }

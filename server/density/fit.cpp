@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "server/density/block_points.hpp"
@@ -178,26 +176,10 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
                                const FitOptions& options) {
   check_options(configurations, weights, options);
-  if (const auto error = check_input(configurations, weights))
-    return *error;
-
-  DistinctPoints distinct = distinct_points(configurations, weights);
-  const auto count = static_cast<Eigen::Index>(distinct.columns.size());
-  const Eigen::Index least = configurations.rows() + 1;
-  if (count < least)
-    return Error{ErrorCode::InvalidInput, "fit: " + std::to_string(count) +
-                                              " distinct configurations, need at least " +
-                                              std::to_string(least) + " for " +
-                                              std::to_string(configurations.rows()) + " joints"};
-  try {
-    return Fit(configurations, weights, options).run(std::move(distinct));
-  } catch (const Failure& failure) {
-    std::ostringstream text;
-    text << "fit: " << failure.what() << "; covariance_floor "
-         << em_options(configurations.rows(), options).floors.minCoeff()
-         << " is too small for this data";
-    return Error{ErrorCode::InvalidInput, text.str()};
-  }
+  return estimate_of(configurations, weights, em_options(configurations.rows(), options).floors,
+                     "fit", [&](DistinctPoints distinct) {
+                       return Fit(configurations, weights, options).run(std::move(distinct));
+                     });
 }
 
 }  // namespace kinship::density

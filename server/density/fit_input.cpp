@@ -2,27 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace kinship::density {
 
-std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                                 const Eigen::Ref<const Eigen::VectorXd>& weights) {
+Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                                     const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                     std::string_view who) {
+  const auto refusal = [who](const std::string& why) {
+    return Error{ErrorCode::InvalidInput, std::string(who) + ": " + why};
+  };
   for (Eigen::Index i = 0; i < configurations.cols(); ++i) {
     if (!(configurations.col(i).cwiseAbs().array() <= kLargestValue).all())
-      return Error{ErrorCode::InvalidInput, "fit: configuration " + std::to_string(i) +
-                                                " is not finite or exceeds " +
-                                                std::to_string(kLargestValue)};
+      return refusal("configuration " + std::to_string(i) + " is not finite or exceeds " +
+                     std::to_string(kLargestValue));
     if (!(weights[i] >= 0) || !std::isfinite(weights[i]))
-      return Error{ErrorCode::InvalidInput, "fit: weight " + std::to_string(i) + " is " +
-                                                std::to_string(weights[i]) +
-                                                ", must be finite and at least 0"};
+      return refusal("weight " + std::to_string(i) + " is " + std::to_string(weights[i]) +
+                     ", must be finite and at least 0");
   }
   if (!(weights.sum() > 0) || !std::isfinite(weights.sum()))
-    return Error{ErrorCode::InvalidInput, "fit: weights have sum " + std::to_string(weights.sum()) +
-                                              ", must be positive and finite"};
-  return std::nullopt;
+    return refusal("weights have sum " + std::to_string(weights.sum()) +
+                   ", must be positive and finite");
+  DistinctPoints points = distinct_points(configurations, weights);
+  const auto count = static_cast<Eigen::Index>(points.columns.size());
+  const Eigen::Index least = configurations.rows() + 1;
+  if (count < least)
+    return refusal(std::to_string(count) + " distinct configurations, need at least " +
+                   std::to_string(least) + " for " + std::to_string(configurations.rows()) +
+                   " joints");
+  return points;
+}
+
+Error too_flat(const Failure& failure, const Eigen::VectorXd& floors, std::string_view who) {
+  std::ostringstream text;
+  text << who << ": " << failure.what() << "; covariance_floor " << floors.minCoeff()
+       << " is too small for this data";
+  return {ErrorCode::InvalidInput, text.str()};
 }
 
 void check_sizes(const Eigen::Ref<const Eigen::MatrixXd>& configurations,

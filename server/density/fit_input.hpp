@@ -2,21 +2,48 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "proto/types/failure.hpp"
 #include "proto/types/result.hpp"
+#include "server/density/distinct_points.hpp"
 
 /// What every estimator asks of its input.
 namespace kinship::density {
 
 inline constexpr double kLargestValue = 1e6;  ///< joint units; squares still leave room for floors
 
-/// What is wrong with configurations (d x N) or their weights (N): a number that is not finite or
-/// too large, a weight below 0, or a sum of weights that is not positive and finite.
-std::optional<Error> check_input(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                                 const Eigen::Ref<const Eigen::VectorXd>& weights);
+/// The distinct configurations (d x N) of positive weight (N); or InvalidInput: a number that is
+/// not finite or too large, a weight below 0, a sum of weights that is not positive and finite, or
+/// fewer distinct configurations than the d + 1 that a covariance needs.
+/// \param who  named in the message.
+Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                                     const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                     std::string_view who);
+
+/// InvalidInput: a computation with covariances failed, so the floors are too small for the data.
+Error too_flat(const Failure& failure, const Eigen::VectorXd& floors, std::string_view who);
+
+/// What an estimator makes of usable points, or why it cannot.
+/// \param floors  d, added to each variance; named where a Failure says that they are too small.
+/// \param make    DistinctPoints -> the estimate.
+template <typename Make>
+Result<std::invoke_result_t<Make, DistinctPoints>> estimate_of(
+    const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+    const Eigen::Ref<const Eigen::VectorXd>& weights, const Eigen::VectorXd& floors,
+    std::string_view who, const Make& make) {
+  Result<DistinctPoints> points = usable_points(configurations, weights, who);
+  if (!points)
+    return points.error();
+  try {
+    return make(std::move(points).value());
+  } catch (const Failure& failure) {
+    return too_flat(failure, floors, who);
+  }
+}
 
 /// \throws std::invalid_argument unless there is a joint, one weight per configuration, and limits
 /// that are empty or, per joint, finite and not crossed.

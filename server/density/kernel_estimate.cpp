@@ -5,14 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "proto/mixture/cholesky.hpp"
-#include "proto/types/failure.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/rounded_inward.hpp"
 #include "server/density/block_points.hpp"
 #include "server/density/distinct_points.hpp"
 #include "server/density/em_run.hpp"
@@ -109,19 +108,14 @@ Mixture mixture_of(const Kernels& kernels, const Eigen::MatrixXd& pooled, double
 
 /// Rounded to f32; what is within limits stays there.
 void round_inward(Eigen::MatrixXd& centres, const Eigen::Matrix2Xd& limits) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (Eigen::Index i = 0; i < centres.cols(); ++i)
-    for (Eigen::Index joint = 0; joint < centres.rows(); ++joint) {
-      const double exact = centres(joint, i);
-      float rounded = static_cast<float>(exact);
-      if (limits.size() > 0) {
-        if (exact <= limits(1, joint) && rounded > limits(1, joint))
-          rounded = std::nextafter(rounded, -kInfinity);
-        if (exact >= limits(0, joint) && rounded < limits(0, joint))
-          rounded = std::nextafter(rounded, kInfinity);
-      }
-      centres(joint, i) = rounded;
-    }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool has_limits = limits.size() > 0;
+  for (Eigen::Index joint = 0; joint < centres.rows(); ++joint) {
+    const double lower = has_limits ? limits(0, joint) : -kInfinity;
+    const double upper = has_limits ? limits(1, joint) : kInfinity;
+    for (double& value : centres.row(joint))
+      value = rounded_inward(value, lower, upper);
+  }
 }
 
 /// One estimate on its way. The arguments outlive it.
@@ -262,24 +256,10 @@ Result<KernelEstimate> estimate_kernels(const Eigen::Ref<const Eigen::MatrixXd>&
                                         const Eigen::Ref<const Eigen::VectorXd>& weights,
                                         const KernelOptions& options) {
   check_options(configurations, weights, options);
-  if (const auto error = check_input(configurations, weights))
-    return *error;
-  DistinctPoints distinct = distinct_points(configurations, weights);
-  const auto count = static_cast<Eigen::Index>(distinct.columns.size());
-  const Eigen::Index least = configurations.rows() + 1;
-  if (count < least)
-    return Error{ErrorCode::InvalidInput, "kernels: " + std::to_string(count) +
-                                              " distinct configurations, need at least " +
-                                              std::to_string(least) + " for " +
-                                              std::to_string(configurations.rows()) + " joints"};
-  try {
-    return Estimate(configurations, weights, options).run(std::move(distinct));
-  } catch (const Failure& failure) {
-    std::ostringstream text;
-    text << "kernels: " << failure.what() << "; covariance_floor "
-         << options.floors_of_joints.minCoeff() << " is too small for this data";
-    return Error{ErrorCode::InvalidInput, text.str()};
-  }
+  return estimate_of(configurations, weights, options.floors_of_joints, "kernels",
+                     [&](DistinctPoints distinct) {
+                       return Estimate(configurations, weights, options).run(std::move(distinct));
+                     });
 }
 
 }  // namespace kinship::density

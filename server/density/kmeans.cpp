@@ -207,7 +207,8 @@ Moments moments_of_clusters(const BlockPoints& points, const std::vector<int>& c
   const int dimension = points.dimension();
   Moments moments{Eigen::MatrixXd::Zero(packed_size(dimension), components), dimension};
   for (Eigen::Index i = 0; i < points.size(); ++i) {
-    auto sums = moments.sums.col(component_of_point[static_cast<std::size_t>(i)]);
+    Eigen::Ref<Eigen::VectorXd> sums =
+        moments.sums.col(component_of_point[static_cast<std::size_t>(i)]);
     const Eigen::VectorXd point = points.point(i);
     const Eigen::VectorXd weighted = points.weight(i) * point;
     sums[0] += points.weight(i);

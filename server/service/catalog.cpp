@@ -45,7 +45,7 @@ void Catalog::fetch(const FetchRequest& request, const std::string& waiter, Fetc
   const Digest id = identify(*key);
   // Its own experience says nothing about a distribution that is not made of it.
   Waiter who{waiter, selects(*key, key->robot) ? request.minimum_generation : 0, std::nullopt,
-             std::move(done)};
+             in_words_of(request, std::move(done))};
   const TimePoint now = parts_.clock.now();
   if (request.deadline.count() > 0)
     who.deadline = now + request.deadline;

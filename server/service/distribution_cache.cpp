@@ -19,40 +19,17 @@ std::size_t size_of(const FetchReply& reply) {
 }  // namespace
 
 void DistributionCache::put(const Digest& id, Entry entry) {
-  if (const auto known = index_.find(id); known != index_.end())
-    drop(known->second);
   const std::size_t bytes = size_of(*entry.reply.reply);
-  nodes_.push_front({id, std::move(entry), bytes});
-  index_.emplace(id, nodes_.begin());
-  bytes_ += bytes;
-  while (nodes_.size() > 1 && (nodes_.size() > limits_.entries || bytes_ > limits_.bytes))
-    drop(std::prev(nodes_.end()));
-}
-
-DistributionCache::Entry* DistributionCache::find(const Digest& id) {
-  const auto known = index_.find(id);
-  if (known == index_.end())
-    return nullptr;
-  nodes_.splice(nodes_.begin(), nodes_, known->second);
-  return &known->second->entry;
-}
-
-void DistributionCache::erase(const Digest& id) {
-  if (const auto known = index_.find(id); known != index_.end())
-    drop(known->second);
+  replies_.put(id, std::move(entry), bytes);
+  while (size() > 1 && (size() > limits_.entries || this->bytes() > limits_.bytes))
+    replies_.drop_oldest();
 }
 
 void DistributionCache::replace(const Digest& id, const SharedReply& before,
                                 const AdvisedReply& after) {
-  const auto known = index_.find(id);
-  if (known != index_.end() && known->second->entry.reply.reply == before)
-    known->second->entry.reply = after;
-}
-
-void DistributionCache::drop(std::list<Node>::iterator node) {
-  bytes_ -= node->bytes;
-  index_.erase(node->id);
-  nodes_.erase(node);
+  Entry* const entry = replies_.find(id);
+  if (entry != nullptr && entry->reply.reply == before)
+    entry->reply = after;
 }
 
 }  // namespace kinship::service

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <list>
-#include <unordered_map>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
 #include "server/service/adviser.hpp"
 #include "server/service/flight.hpp"
+#include "server/service/last_used.hpp"
 #include "server/service/task_marks.hpp"
 
 namespace kinship::service {
@@ -36,28 +34,19 @@ class DistributionCache {
   void put(const Digest& id, Entry entry);
 
   /// The entry, now the last one used; null if there is none. Valid until the next put.
-  Entry* find(const Digest& id);
+  Entry* find(const Digest& id) { return replies_.find(id); }
 
-  void erase(const Digest& id);
+  void erase(const Digest& id) { replies_.erase(id); }
 
   /// The same distribution with other advice; nothing if the entry holds another reply by now.
   void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);
 
-  std::size_t size() const noexcept { return index_.size(); }
-  std::size_t bytes() const noexcept { return bytes_; }  ///< of the mixtures, about
+  std::size_t size() const noexcept { return replies_.size(); }
+  std::size_t bytes() const noexcept { return replies_.bytes(); }  ///< of the mixtures, about
 
  private:
-  struct Node {
-    Digest id;
-    Entry entry;
-    std::size_t bytes = 0;
-  };
-  void drop(std::list<Node>::iterator node);
-
   Limits limits_;
-  std::list<Node> nodes_;  // the one used last comes first
-  std::unordered_map<Digest, std::list<Node>::iterator> index_;
-  std::size_t bytes_ = 0;
+  LastUsed<Entry> replies_;
 };
 
 }  // namespace kinship::service

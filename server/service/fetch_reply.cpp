@@ -39,4 +39,14 @@ SharedReply with_distribution(Distribution distribution) {
   return shared(std::move(reply));
 }
 
+FetchDone in_words_of(const FetchRequest& request, FetchDone done) {
+  return [profile = request.profile, done = std::move(done)](const FetchReply& reply) {
+    if (!reply.distribution || reply.distribution->profile == profile)
+      return done(reply);
+    FetchReply own = reply;
+    own.distribution->profile = profile;
+    done(own);
+  };
+}
+
 }  // namespace kinship::service

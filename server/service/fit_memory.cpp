@@ -19,42 +19,28 @@ std::size_t size_of(const KnownPaths& paths) {
 
 FitMemory::Remains FitMemory::find(const Digest& id) {
   const std::lock_guard lock(mutex_);
-  const auto known = index_.find(id);
-  if (known == index_.end())
-    return nullptr;
-  nodes_.splice(nodes_.begin(), nodes_, known->second);
-  return known->second->remains;
+  const Remains* const known = remains_.find(id);
+  return known != nullptr ? *known : nullptr;
 }
 
 void FitMemory::put(const Digest& id, Remains remains) {
   const std::size_t bytes = size_of(remains->paths);
   const std::lock_guard lock(mutex_);
-  if (const auto known = index_.find(id); known != index_.end())
-    drop(known->second);
   if (bytes > max_bytes_)
-    return;
-  nodes_.push_front({id, std::move(remains), bytes});
-  index_.emplace(id, nodes_.begin());
-  bytes_ += bytes;
-  while (bytes_ > max_bytes_)
-    drop(std::prev(nodes_.end()));
+    return remains_.erase(id);
+  remains_.put(id, std::move(remains), bytes);
+  while (remains_.bytes() > max_bytes_)
+    remains_.drop_oldest();
 }
 
 void FitMemory::erase(const Digest& id) {
   const std::lock_guard lock(mutex_);
-  if (const auto known = index_.find(id); known != index_.end())
-    drop(known->second);
+  remains_.erase(id);
 }
 
 std::size_t FitMemory::bytes() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
-}
-
-void FitMemory::drop(std::list<Node>::iterator node) {
-  bytes_ -= node->bytes;
-  index_.erase(node->id);
-  nodes_.erase(node);
+  return remains_.bytes();
 }
 
 }  // namespace kinship::service

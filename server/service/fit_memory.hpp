@@ -2,17 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/mixture.hpp"
 #include "server/service/known_paths.hpp"
+#include "server/service/last_used.hpp"
 #include "server/service/turn_cuts.hpp"
 
 namespace kinship::service {
@@ -57,18 +56,9 @@ class FitMemory {
   std::size_t bytes() const;  ///< of the configurations, about
 
  private:
-  struct Node {
-    Digest id;
-    Remains remains;
-    std::size_t bytes = 0;
-  };
-  void drop(std::list<Node>::iterator node);
-
   const std::size_t max_bytes_;
   mutable std::mutex mutex_;  // guards what follows
-  std::list<Node> nodes_;     // the one used last comes first
-  std::unordered_map<Digest, std::list<Node>::iterator> index_;
-  std::size_t bytes_ = 0;
+  LastUsed<Remains> remains_;
 };
 
 }  // namespace kinship::service

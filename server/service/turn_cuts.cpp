@@ -17,6 +17,11 @@ double wrapped(double angle, double from) {
   return turned < from + kTurn ? std::max(turned, from) : from;
 }
 
+std::vector<double> angles_of(const Eigen::MatrixXd& configurations, Eigen::Index joint) {
+  const Eigen::VectorXd angles = configurations.row(joint).transpose();
+  return {angles.begin(), angles.end()};
+}
+
 /// Between neighbouring angles of a circle.
 struct Gap {
   double begin = 0, width = 0;
@@ -58,8 +63,7 @@ TurnCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& config
     const auto index = static_cast<std::size_t>(joint);
     if (chain.joints()[index].type != kinematics::JointType::Continuous)
       continue;
-    const auto angles = configurations.row(joint);
-    cuts[index] = middle_of_largest_gap({angles.begin(), angles.end()});
+    cuts[index] = middle_of_largest_gap(angles_of(configurations, joint));
     has_cut = true;
   }
   return has_cut ? cuts : TurnCuts{};
@@ -73,8 +77,7 @@ bool still_cuts(const TurnCuts& cuts, const kinematics::Chain& chain,
       continue;
     if (index >= cuts.size() || !cuts[index])
       return false;
-    const auto row = configurations.row(joint);
-    const std::vector<double> angles(row.begin(), row.end());
+    const std::vector<double> angles = angles_of(configurations, joint);
     if (width_of_gap_at(*cuts[index], angles) < largest_gap(angles).width / 2)
       return false;
   }

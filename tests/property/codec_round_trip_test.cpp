@@ -118,7 +118,7 @@ TEST(CodecRoundTrip, FetchRequestComesBack) {
     FetchRequest written;
     written.task = values.name(128);
     written.robot = values.digest();
-    written.profile = values.name(64);
+    written.profile = values.name(256);
     written.minimum_generation = values.count();
     written.deadline = std::chrono::milliseconds(values.below(3'600'001));
     written.selection = values.selection();

@@ -57,6 +57,28 @@ TEST(FetchCodec, NegativeDeadlineIsRefused) {
   EXPECT_EQ(encode({}, request).error().code, ErrorCode::InvalidInput);
 }
 
+TEST(FetchCodec, AProfileHas256BytesAtMostOnBothSides) {
+  EXPECT_EQ(kMaxProfileBytes, 256U) << "proto/README.md says so to other languages";
+  FetchRequest request;
+  request.task = "t";
+  request.profile = std::string(kMaxProfileBytes, 'p');
+  auto message = encode({}, request).value_or_throw();
+  EXPECT_EQ(decode(message.wire).value_or_throw().profile, request.profile);
+  request.profile += 'p';
+  message.wire.profile = message.arena->text(request.profile);
+  EXPECT_EQ(encode({}, request).error().message, "profile: 257 bytes exceed 256");
+  EXPECT_EQ(decode(message.wire).error().message, "profile (bytes): 257 exceeds 256");
+
+  FetchReply reply = ready_reply();
+  reply.distribution->profile = request.profile;
+  EXPECT_EQ(encode({}, reply).error().message, "profile: 257 bytes exceed 256");
+  reply.distribution->profile.pop_back();
+  auto sent = encode({}, reply).value_or_throw();
+  EXPECT_EQ(decode(sent.wire).value_or_throw().distribution->profile, reply.distribution->profile);
+  sent.wire.distribution._buffer[0].profile = sent.arena->text(request.profile);
+  EXPECT_EQ(decode(sent.wire).error().message, "profile (bytes): 257 exceeds 256");
+}
+
 TEST(FetchCodec, DistributionBelongsToReadyAndFailed) {
   FetchReply reply = ready_reply();
   reply.status = FetchStatus::Pending;

@@ -61,15 +61,6 @@ TEST(Distance, IsEuclideanAndWrappedForContinuousJointsOnly) {
   EXPECT_NEAR(distance(continuous, a, b), std::hypot(2 * kPi - 6, 2 * kPi - 4), 1e-12);
 }
 
-TEST(RoundedInward, FloatsStayWithinTheLimitsAndNearTheirValues) {
-  const auto chain = PlanarArm{.lengths_m = {1, 1, 1}, .limit = 2.9}.chain();
-  const Eigen::VectorXd q = Eigen::Vector3d(2.9, -2.9, 0.1);
-  ASSERT_FALSE(chain.within_limits(q.cast<float>().cast<double>()));
-  const Eigen::VectorXd rounded = rounded_inward(chain, q).cast<double>();
-  EXPECT_TRUE(chain.within_limits(rounded));
-  EXPECT_LT((rounded - q).norm(), 1e-6);
-}
-
 TEST(Chosen, IsUniformAndApart) {
   const auto chain = PlanarArm{.lengths_m = {1}, .limit = 5}.chain();
   const JointSpace space(chain);

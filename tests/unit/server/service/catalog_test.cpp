@@ -67,6 +67,30 @@ TEST_F(CatalogTest, TheSecondFetchIsAnsweredFromMemoryDuringTheCall) {
   EXPECT_EQ(status.fits, 1U);
 }
 
+TEST_F(CatalogTest, EqualValuesAreOneDistributionInTheWordsOfEachWhoAsks) {
+  teach(6);
+  FetchRequest wordy = request_for(pupil_);
+  while (wordy.profile.size() + 14 <= kMaxProfileBytes)
+    wordy.profile += ",components=3";
+  FetchRequest brief = request_for(pupil_);
+  brief.profile += ",components=3";
+  gate_.close();
+  std::future<FetchReply> first = begin_fetch(wordy, "one");
+  std::future<FetchReply> beside = begin_fetch(brief, "two");
+  gate_.open();
+  const FetchReply fitted = first.get();
+  ASSERT_EQ(fitted.status, FetchStatus::Ready) << fitted.message;
+  EXPECT_EQ(fitted.distribution->profile, wordy.profile);
+  const FetchReply waited = beside.get();
+  EXPECT_EQ(waited.distribution->profile, brief.profile);
+  EXPECT_EQ(waited.distribution->id, fitted.distribution->id);
+  EXPECT_EQ(fetch(at_once(brief)).distribution->profile, brief.profile);
+  start();
+  EXPECT_EQ(fetch(brief).distribution->profile, brief.profile);
+  EXPECT_EQ(fetch(wordy).distribution->profile, wordy.profile);
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
 TEST_F(CatalogTest, DistributionsSurviveARestartWithoutAFit) {
   teach(6);
   const FetchReply before = fetch(request_for(pupil_));
