@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <iomanip>
 #include <iostream>
 #include <numbers>
@@ -12,6 +11,8 @@
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/bench/closed_form_poses.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
@@ -30,42 +31,16 @@ using inverse::ClosedForm;
 constexpr int kRounds = 15;
 constexpr double kRecovered = 1e-4;  // joint units
 
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-struct Pose {
-  Eigen::VectorXd q;
-  Eigen::Isometry3d T_base_transfer;
-  std::vector<double> locked;
-};
-
-std::vector<Pose> poses_of(const kinematics::Chain& chain, const ClosedForm& form, int count) {
-  std::mt19937_64 generator(3);
-  std::vector<Pose> poses;
-  for (int i = 0; i < count; ++i) {
-    Pose pose;
-    pose.q = test::random_configuration(chain, generator);
-    pose.T_base_transfer = kinematics::T_base_transfer(chain, pose.q);
-    for (const int joint : form.locks())
-      pose.locked.push_back(pose.q[joint]);
-    poses.push_back(std::move(pose));
-  }
-  return poses;
-}
-
-double best_us_per_call(const ClosedForm& form, const std::vector<Pose>& poses) {
+double best_us_per_call(const ClosedForm& form, const std::vector<LockedPose>& poses) {
   double best_s = 1e9;
   Branches branches;
   for (int round = 0; round < kRounds; ++round) {
-    const double start_s = cpu_s();
-    for (const Pose& pose : poses) {
+    const double start_s = thread_cpu_s();
+    for (const LockedPose& pose : poses) {
       branches.clear();
       form.append(pose.T_base_transfer, pose.locked, branches);
     }
-    best_s = std::min(best_s, cpu_s() - start_s);
+    best_s = std::min(best_s, thread_cpu_s() - start_s);
   }
   return 1e6 * best_s / static_cast<double>(poses.size());
 }
@@ -76,9 +51,9 @@ struct Quality {
 };
 
 Quality quality(const kinematics::Chain& chain, const ClosedForm& form,
-                const std::vector<Pose>& poses) {
+                const std::vector<LockedPose>& poses) {
   Quality result;
-  for (const Pose& pose : poses) {
+  for (const LockedPose& pose : poses) {
     Branches branches;
     form.append(pose.T_base_transfer, pose.locked, branches);
     bool recovered = false;
@@ -100,15 +75,15 @@ Quality quality(const kinematics::Chain& chain, const ClosedForm& form,
 }
 
 void print(const std::string& name, const kinematics::Chain& chain, int count) {
-  const double start_s = cpu_s();
+  const double start_s = thread_cpu_s();
   const auto form = ClosedForm::of(chain);
-  const double built_us = 1e6 * (cpu_s() - start_s);
+  const double built_us = 1e6 * (thread_cpu_s() - start_s);
   std::cout << "| " << name << " | " << inverse::describe_structure(chain) << " | ";
   if (!form) {
     std::cout << "| | | | | |\n";
     return;
   }
-  const std::vector<Pose> poses = poses_of(chain, *form, count);
+  const std::vector<LockedPose> poses = locked_poses(chain, form->locks(), count);
   const Quality found = quality(chain, *form, poses);
   std::cout << std::fixed << std::setprecision(2) << best_us_per_call(*form, poses) << " | "
             << found.branches << " | " << form->mean_within_limits() << " | "

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -14,6 +13,8 @@
 
 #include "robots/inverse/closed_form.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/bench/closed_form_poses.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/support/robots.hpp"
 
 // Closed forms of ours and of EAIK (Ostermeier et al.) at the same poses, in one run: forward
@@ -29,32 +30,6 @@ namespace {
 constexpr int kRounds = 7;
 constexpr double kRecovered = 1e-4;  // joint units
 constexpr double kReached = 1e-6;    // m and rad together
-
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-struct Pose {
-  Eigen::VectorXd q;
-  Eigen::Isometry3d T_base_transfer;
-  std::vector<double> locked;
-};
-
-std::vector<Pose> poses_of(const kinematics::Chain& chain, std::span<const int> locks, int count) {
-  std::mt19937_64 generator(3);
-  std::vector<Pose> poses;
-  for (int i = 0; i < count; ++i) {
-    Pose pose;
-    pose.q = test::random_configuration(chain, generator);
-    pose.T_base_transfer = kinematics::T_base_transfer(chain, pose.q);
-    for (const int joint : locks)
-      pose.locked.push_back(pose.q[joint]);
-    poses.push_back(std::move(pose));
-  }
-  return poses;
-}
 
 /// A chain as EAIK wants it: axes, and the ways between points on them, with every joint at 0.
 struct EaikArm {
@@ -103,7 +78,7 @@ bool within_limits(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
 struct Found {
   double branches = 0, within = 0, recovered = 0, worst = 0;
 
-  void count(const kinematics::Chain& chain, const Pose& pose,
+  void count(const kinematics::Chain& chain, const LockedPose& pose,
              const std::vector<Eigen::VectorXd>& configurations) {
     bool again = false;
     for (const Eigen::VectorXd& q : configurations) {
@@ -127,9 +102,9 @@ struct Found {
 double best_us(std::size_t poses, const std::function<void()>& round) {
   double best_s = 1e9;
   for (int i = 0; i < kRounds; ++i) {
-    const double start_s = cpu_s();
+    const double start_s = thread_cpu_s();
     round();
-    best_s = std::min(best_s, cpu_s() - start_s);
+    best_s = std::min(best_s, thread_cpu_s() - start_s);
   }
   return 1e6 * best_s / static_cast<double>(poses);
 }
@@ -144,14 +119,14 @@ void print_row(const std::string& robot, const std::string& engine, double call_
 }
 
 void print_ours(const std::string& name, const kinematics::Chain& chain,
-                const inverse::ClosedForm& form, const std::vector<Pose>& poses) {
+                const inverse::ClosedForm& form, const std::vector<LockedPose>& poses) {
   inverse::Branches branches;
-  const auto call = [&](const Pose& pose) {
+  const auto call = [&](const LockedPose& pose) {
     branches.clear();
     form.append(pose.T_base_transfer, pose.locked, branches);
   };
   Found found;
-  for (const Pose& pose : poses) {
+  for (const LockedPose& pose : poses) {
     call(pose);
     std::vector<Eigen::VectorXd> configurations;
     for (int b = 0; b < branches.size(); ++b)
@@ -164,7 +139,7 @@ void print_ours(const std::string& name, const kinematics::Chain& chain,
 }
 
 void print_eaik(const std::string& name, const kinematics::Chain& chain, std::span<const int> locks,
-                const std::vector<Pose>& poses) {
+                const std::vector<LockedPose>& poses) {
   const EaikArm arm(chain);
   std::vector<EAIK::Robot> robots;  // one per value of the lock
   const std::size_t needed = locks.empty() ? 1 : poses.size();
@@ -207,7 +182,7 @@ int main(int argc, char** argv) {
     const auto form = inverse::ClosedForm::of(chain);
     if (!form)
       continue;
-    const std::vector<Pose> poses = poses_of(chain, form->locks(), count);
+    const std::vector<LockedPose> poses = locked_poses(chain, form->locks(), count);
     print_ours(model, chain, *form, poses);
     print_eaik(model, chain, form->locks(), poses);
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -13,6 +12,7 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 
@@ -27,12 +27,6 @@ constexpr int kPasses = 5;
 constexpr int kBranchPoses = 20;
 constexpr int kIndependentSeeds = 10000;
 constexpr double kSameBranch = 0.02;
-
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::vector<Eigen::Isometry3d> reachable_poses(const kinematics::Chain& chain, int count) {
   std::mt19937_64 generator(1);
@@ -76,13 +70,13 @@ void print_solver(const Subject& subject, const inverse::InstructionSet& set,
   double solutions = 0, none = 0, taken_s = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {  // the least: others may use the machine
     solutions = none = 0;
-    const double start_s = cpu_s();
+    const double start_s = thread_cpu_s();
     for (const Eigen::Isometry3d& T_base_tip : poses) {
       const auto found = solver.solve(T_base_tip, {.max_solutions = 8, .min_distance = 0.2});
       solutions += static_cast<double>(found.configurations.cols());
       none += found.configurations.cols() == 0 ? 1 : 0;
     }
-    taken_s = std::min(taken_s, cpu_s() - start_s);
+    taken_s = std::min(taken_s, thread_cpu_s() - start_s);
   }
   const std::string engine = solver.closed_form() ? "closed form" : "descents";
   print_row({subject.name, std::string(set.name), engine}, count, taken_s, solutions, none);
@@ -96,7 +90,7 @@ void print_scalar(const Subject& subject, int count) {
   std::mt19937_64 generator(2);
   double solutions = 0, none = 0;
   const std::vector<Eigen::Isometry3d> poses = reachable_poses(chain, count);
-  const double start_s = cpu_s();
+  const double start_s = thread_cpu_s();
   for (const Eigen::Isometry3d& T_base_tip : poses) {
     const Eigen::Isometry3d T_base_transfer = T_base_tip * chain.T_tip_transfer();
     std::vector<inverse::JointVector> found;
@@ -112,7 +106,7 @@ void print_scalar(const Subject& subject, int count) {
     solutions += static_cast<double>(found.size());
     none += found.empty() ? 1 : 0;
   }
-  print_row({subject.name, "scalar", "descents"}, count, cpu_s() - start_s, solutions, none);
+  print_row({subject.name, "scalar", "descents"}, count, thread_cpu_s() - start_s, solutions, none);
 }
 
 /// Solutions of one pose by another way than the solver's: one descent after the other.
@@ -142,10 +136,10 @@ void print_branches(const Subject& subject) {
   std::size_t expected = 0, recovered = 0, extra = 0;
   double taken_s = 0;
   for (const Eigen::Isometry3d& T_base_tip : reachable_poses(subject.chain, kBranchPoses)) {
-    const double start_s = cpu_s();
+    const double start_s = thread_cpu_s();
     const Eigen::MatrixXd all =
         solver.solve(T_base_tip, {.max_solutions = 64, .min_distance = kSameBranch}).configurations;
-    taken_s += cpu_s() - start_s;
+    taken_s += thread_cpu_s() - start_s;
     const auto branches = independent_branches(subject.chain, T_base_tip);
     std::size_t matched = 0;
     for (const Eigen::VectorXd& branch : branches)
@@ -184,9 +178,9 @@ int main(int argc, char** argv) {
   std::cout << "\n| Robot | Solver built in, us | Structure | within limits per lock |\n"
                "|---|---|---|---|\n";
   for (const Subject& subject : all) {
-    const double start_s = cpu_s();
+    const double start_s = thread_cpu_s();
     const inverse::Solver solver(subject.chain);
-    const double taken_s = cpu_s() - start_s;
+    const double taken_s = thread_cpu_s() - start_s;
     const inverse::ClosedForm* form = solver.closed_form();
     std::cout << "| " << subject.name << " | " << std::setprecision(0) << 1e6 * taken_s << " | "
               << (form != nullptr ? form->structure_name() : "descents") << " | "

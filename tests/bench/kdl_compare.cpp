@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -17,6 +16,7 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/support/robots.hpp"
 
 // Inverse kinematics of ours and of KDL (Debian: liborocos-kdl-dev) at the same reachable poses of
@@ -61,12 +61,6 @@ KDL::JntArray to_kdl(const Eigen::VectorXd& q) {
   return values;
 }
 
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// One start, one solution or none.
 using OneStart = std::function<bool(const KDL::JntArray&, const KDL::Frame&, KDL::JntArray&)>;
 
@@ -84,7 +78,7 @@ void print_peer(const std::string& robot, const std::string& engine, const kinem
   const inverse::JointSpace space(arm);
   std::mt19937_64 generator(2);
   double solved = 0;
-  const double start_s = cpu_s();
+  const double start_s = thread_cpu_s();
   for (const Eigen::Isometry3d& T_base_transfer : poses) {
     const KDL::Frame wanted = to_kdl(T_base_transfer);
     KDL::JntArray found(static_cast<unsigned>(arm.dof()));
@@ -99,14 +93,14 @@ void print_peer(const std::string& robot, const std::string& engine, const kinem
     }
   }
   print_row(robot, engine, poses.size(), solved, static_cast<double>(poses.size()) - solved,
-            cpu_s() - start_s);
+            thread_cpu_s() - start_s);
 }
 
 void print_ours(const std::string& robot, const kinematics::Chain& arm,
                 const std::vector<Eigen::Isometry3d>& poses, int most) {
   const inverse::Solver solver(arm);
   double solutions = 0, missed = 0;
-  const double start_s = cpu_s();
+  const double start_s = thread_cpu_s();
   for (const Eigen::Isometry3d& T_base_transfer : poses) {
     const auto found = solver.solve(T_base_transfer * arm.T_tip_transfer().inverse(),
                                     {.max_solutions = most, .min_distance = 0.2});
@@ -114,7 +108,7 @@ void print_ours(const std::string& robot, const kinematics::Chain& arm,
     missed += found.configurations.cols() == 0 ? 1 : 0;
   }
   print_row(robot, "ours, L = " + std::to_string(most), poses.size(), solutions, missed,
-            cpu_s() - start_s);
+            thread_cpu_s() - start_s);
 }
 
 void compare(const std::string& robot, int count) {
