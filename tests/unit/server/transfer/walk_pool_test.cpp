@@ -77,6 +77,7 @@ TEST_P(WalkPoolBetween, APathBecomesTheSameAloneAndInAnyGroup) {
     const std::vector<TransferredPath> together = group.in_groups_of(size);
     ASSERT_EQ(together.size(), alone.size());
     for (std::size_t i = 0; i < alone.size(); ++i) {
+      ASSERT_EQ(together[i].pose_index.size(), alone[i].pose_index.size()) << i << " of " << size;
       EXPECT_EQ(together[i].configurations, alone[i].configurations) << i << " of " << size;
       EXPECT_EQ(together[i].pose_index, alone[i].pose_index);
       EXPECT_EQ(together[i].solution_index, alone[i].solution_index);
