@@ -12,6 +12,9 @@ struct InverseOptions {
   int max_solutions = 8;      ///< L; 0: all that are found, at most 1000
   double min_distance = 0.2;  ///< d: Euclidean, 1 m = 1 rad; wrapped for continuous joints
   std::uint64_t seed = 0;     ///< equal seed and pose: equal solutions
+  /// Whether to go on where the first starts found nothing, which costs ten times as much and
+  /// seldom helps. What is found without patience is found with it.
+  bool patient = true;
 };
 
 /// Why a set of solutions is empty.

@@ -61,6 +61,7 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
                                                                : std::max(most_, kMostFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
+      patient_(options.patient),
       pairs_(come_in_pairs(solver.lanes())),
       generator_(options.seed, T_base_tip),
       found_(solver.space().dof()),
@@ -101,6 +102,8 @@ void Search::find() {
     if (found_.empty() && least_squared_error_ > kNear * kNear)
       return;
   }
+  if (found_.empty() && !patient_)
+    return;
   descend({starts - kFirstStarts, kIterations, steer, patience});
   if (found_.empty()) {
     stationary_ = 0;

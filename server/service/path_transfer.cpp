@@ -14,6 +14,8 @@
 namespace kinship::service {
 namespace {
 
+constexpr std::size_t kGroup = 16;  // paths that keep the kernels of inverse kinematics busy
+
 /// Pose of the source's base in the target's; exactly the identity if both stand at the same
 /// place up to snapping, so that paths of the same arm are taken over.
 Eigen::Isometry3d T_target_source(const std::optional<Eigen::Isometry3d>& T_task_target,
@@ -41,7 +43,7 @@ PathTransfer::Lane& PathTransfer::lane(std::size_t index) {
   if (!lane) {
     lane = std::make_unique<Lane>(Lane{{}, SceneFilters(store_, key_, target_)});
     if (key_.profile.transfer.avoid_self_collision)
-      lane->filters.self = transfer::collision_filter(target_.chain, target_.shapes);
+      lane->self = transfer::collision_filter(target_.chain, target_.shapes);
   }
   return *lane;
 }
@@ -56,11 +58,16 @@ std::vector<PathOutcome> PathTransfer::transfer(std::span<const store::StoredPat
       outcomes[i] = {*known, true, {}};
     else
       unknown.push_back(i);
+  const std::size_t groups = (unknown.size() + kGroup - 1) / kGroup;
+  const std::size_t lanes = std::min(lanes_.size(), groups);
   std::atomic<std::size_t> next = 0;
-  const std::size_t lanes = std::min(lanes_.size(), unknown.size());
   density::for_each_part(static_cast<int>(lanes), static_cast<int>(lanes), [&](int part) {
-    for (std::size_t i = next++; i < unknown.size() && !stop.stop_requested(); i = next++)
-      outcomes[unknown[i]] = outcome(paths[unknown[i]], pair, lane(static_cast<std::size_t>(part)));
+    Lane& own = lane(static_cast<std::size_t>(part));
+    for (std::size_t i = next++; i < groups && !stop.stop_requested(); i = next++) {
+      const std::size_t first = i * kGroup;
+      const std::size_t count = std::min(kGroup, unknown.size() - first);
+      transfer_group(paths, std::span(unknown).subspan(first, count), pair, own, outcomes);
+    }
   });
   return outcomes;
 }
@@ -74,31 +81,60 @@ const KnownPath* PathTransfer::find_known(const store::StoredPath& stored) const
   return holds ? &found->second : nullptr;
 }
 
-PathOutcome PathTransfer::outcome(const store::StoredPath& stored, const transfer::ArmPair& pair,
-                                  Lane& lane) {
+void PathTransfer::transfer_group(std::span<const store::StoredPath> paths,
+                                  std::span<const std::size_t> group, const transfer::ArmPair& pair,
+                                  Lane& lane, std::vector<PathOutcome>& outcomes) const {
+  std::vector<Prepared> prepared;
+  for (const std::size_t i : group) {
+    try {
+      prepared.push_back(prepare(paths[i], i, pair, lane));
+    } catch (const std::exception& exception) {
+      outcomes[i] = {std::nullopt, false, exception.what()};
+    }
+  }
   try {
-    return {transferred(stored, pair, lane), false, {}};
-  } catch (const std::exception& exception) {
-    return {std::nullopt, false, exception.what()};
+    transfer_all(paths, prepared, pair, outcomes);
+  } catch (const std::exception&) {  // one by one, the one that is to blame is found
+    for (const Prepared& one : prepared) {
+      try {
+        transfer_all(paths, {&one, 1}, pair, outcomes);
+      } catch (const std::exception& exception) {
+        outcomes[one.index] = {std::nullopt, false, exception.what()};
+      }
+    }
   }
 }
 
-KnownPath PathTransfer::transferred(const store::StoredPath& stored, const transfer::ArmPair& pair,
-                                    Lane& lane) const {
+PathTransfer::Prepared PathTransfer::prepare(const store::StoredPath& stored, std::size_t index,
+                                             const transfer::ArmPair& pair, Lane& lane) const {
   if (stored.path.dof() != pair.source().dof())
     throw Failure(ErrorCode::InvalidInput,
                   "a path of " + std::to_string(stored.path.dof()) + " joints");
   const PathScene& scene = lane.scenes.find(stored);
-  lane.filters.scene = scene.keep;
-  KnownPath known;
-  known.report = stored.report_uuid;
-  known.path = std::make_shared<const transfer::TransferredPath>(transfer::transfer_path(
-      stored.path, pair, T_target_source(key_.T_task_base, stored.T_task_base),
-      key_.profile.transfer, key_.profile.seed, lane.filters));
-  known.has_scene = static_cast<bool>(scene.keep);
-  known.lacks_scene = scene.is_damaged;
-  known.scene_problem = scene.ignored;
-  return known;
+  Prepared prepared{index, {lane.self, scene.keep}, {}};
+  prepared.known.report = stored.report_uuid;
+  prepared.known.has_scene = static_cast<bool>(scene.keep);
+  prepared.known.lacks_scene = scene.is_damaged;
+  prepared.known.scene_problem = scene.ignored;
+  return prepared;
+}
+
+void PathTransfer::transfer_all(std::span<const store::StoredPath> paths,
+                                std::span<const Prepared> prepared, const transfer::ArmPair& pair,
+                                std::vector<PathOutcome>& outcomes) const {
+  std::vector<transfer::PathToTransfer> group;
+  for (const Prepared& one : prepared) {
+    const store::StoredPath& stored = paths[one.index];
+    group.push_back(
+        {stored.path, T_target_source(key_.T_task_base, stored.T_task_base), one.filters});
+  }
+  std::vector<transfer::TransferredPath> transferred =
+      transfer::transfer_paths(group, pair, key_.profile.transfer, key_.profile.seed);
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    KnownPath known = prepared[i].known;
+    known.path = std::make_shared<const transfer::TransferredPath>(std::move(transferred[i]));
+    outcomes[prepared[i].index] = {std::move(known), false, {}};
+  }
 }
 
 }  // namespace kinship::service

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,22 +35,33 @@ class PathTransfer {
                const KnownPaths* known, int threads);
 
   /// \param pair  of the paths' robot and the target.
-  /// \param stop  looked at before each path: those that are left have neither path nor problem.
-  /// \return one per path, in their order. A bad path costs nothing but itself.
+  /// \param stop  looked at before each group of paths: those that are left have neither path nor
+  /// problem. \return one per path, in their order. A bad path costs nothing but itself.
   std::vector<PathOutcome> transfer(std::span<const store::StoredPath> paths,
                                     const transfer::ArmPair& pair, const std::stop_token& stop);
 
  private:
   /// What one thread needs for itself: worlds of collisions are asked by one at a time.
   struct Lane {
-    transfer::Filters filters;  // the scene is that of the path under way
+    transfer::Keep self;
     SceneFilters scenes;
+  };
+  /// A path that can be transferred, and what is known of it before.
+  struct Prepared {
+    std::size_t index = 0;
+    transfer::Filters filters;
+    KnownPath known;
   };
   Lane& lane(std::size_t index);
   const KnownPath* find_known(const store::StoredPath& stored) const;
-  PathOutcome outcome(const store::StoredPath& stored, const transfer::ArmPair& pair, Lane& lane);
-  KnownPath transferred(const store::StoredPath& stored, const transfer::ArmPair& pair,
-                        Lane& lane) const;
+  /// \param group  indices of paths.
+  void transfer_group(std::span<const store::StoredPath> paths, std::span<const std::size_t> group,
+                      const transfer::ArmPair& pair, Lane& lane,
+                      std::vector<PathOutcome>& outcomes) const;
+  Prepared prepare(const store::StoredPath& stored, std::size_t index,
+                   const transfer::ArmPair& pair, Lane& lane) const;
+  void transfer_all(std::span<const store::StoredPath> paths, std::span<const Prepared> prepared,
+                    const transfer::ArmPair& pair, std::vector<PathOutcome>& outcomes) const;
 
   const store::Store& store_;
   const DistributionKey& key_;

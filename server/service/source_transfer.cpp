@@ -8,7 +8,7 @@
 namespace kinship::service {
 namespace {
 
-constexpr std::size_t kPathsPerRead = 64;  // bounds what one read transaction holds in memory
+constexpr std::size_t kPathsPerRead = 128;  // bounds what one read transaction holds in memory
 
 /// Whether item `index` of `count` is one of the `wanted` that are spread evenly over them.
 bool is_chosen(std::uint64_t index, std::uint64_t count, std::uint64_t wanted) {

@@ -29,11 +29,12 @@ void append_distinct(const Eigen::MatrixXd& more, const inverse::JointSpace& tar
 RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
-                                 CountedFilters& filters) {
+                                 CountedFilters& filters, Patience patience) {
   const Eigen::Isometry3d T_base_tip = T_base_transfer * target.T_tip_transfer().inverse();
   inverse::InverseOptions options{.max_solutions = parameters.max_solutions,
                                   .min_distance = parameters.min_distance,
-                                  .seed = seed};
+                                  .seed = seed,
+                                  .patient = patience == Patience::Full};
   inverse::InverseSolutions first = target.solve(T_base_tip, options);
   const Eigen::Index found = first.configurations.cols();
   RandomSolutions result{passed(std::move(first.configurations), filters), first.reason, false};

@@ -17,12 +17,16 @@ struct RandomSolutions {
   bool colliding = false;  ///< it found some, but the filters left out each
 };
 
+/// How long inverse kinematics looks where it has found nothing yet: InverseOptions::patient.
+enum class Patience { None, Full };
+
 /// Up to parameters.max_solutions configurations at least parameters.min_distance apart, a random
 /// choice among those that the filters keep. Where they leave some out, others are looked for once.
 /// \param T_base_transfer  pose of the transfer frame in the target's base link.
+/// \param patience         whether to go on where the first starts found nothing.
 RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
-                                 CountedFilters& filters);
+                                 CountedFilters& filters, Patience patience = Patience::Full);
 
 }  // namespace kinship::transfer

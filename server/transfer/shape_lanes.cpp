@@ -1,6 +1,8 @@
 #include "server/transfer/shape_lanes.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 #include "server/transfer/shape_pull.hpp"
 
@@ -9,7 +11,9 @@ namespace {
 
 constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
-constexpr double kArrived = 1e-8;  // squared error before a last step, which squares it again
+constexpr double kArrived = 1e-12;  // squared error before a last step, which squares it again
+constexpr int kEndedShare = 3;      // of the lanes at work, one in so many
+constexpr int kMeasuringShare = 2;  // so many for each that descends: a pull costs three descents
 
 bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
 unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
@@ -29,6 +33,12 @@ inverse::JointVector read(const inverse::LaneChain& chain, const Rows& rows, int
   return q;
 }
 
+template <typename Rows>
+void copy_lane(const inverse::LaneChain& chain, int lane, const Rows& from, Rows& to) {
+  for (int j = 0; j < chain.dof; ++j)
+    to[j][lane] = from[j][lane];
+}
+
 }  // namespace
 
 ShapeLanes::ShapeLanes(const ArmPair& pair) : pair_(pair), solver_(pair.target_solver()) {
@@ -36,6 +46,8 @@ ShapeLanes::ShapeLanes(const ArmPair& pair) : pair_(pair), solver_(pair.target_s
   for (int lane = 0; lane < kCount; ++lane) {
     aim(lane, Eigen::Isometry3d::Identity(), ArmShape::Zero());
     put(lane, middle);
+    write(solver_.lanes(), middle, lane, batch_.q);
+    write(solver_.lanes(), middle, lane, pull_.q);
   }
 }
 
@@ -55,90 +67,144 @@ void ShapeLanes::put(int lane, const inverse::JointVector& q) {
   q_[static_cast<std::size_t>(lane)] = q;
 }
 
-inverse::JointVector ShapeLanes::at(int lane) const { return q_[static_cast<std::size_t>(lane)]; }
+void ShapeLanes::begin_step(int lane, double most_motion, int steps) {
+  Work& now = work(lane);
+  now.most_motion = most_motion;
+  now.start = at(lane);
+  now.iterations = 0;
+  now.steps_left = steps;
+  write(solver_.lanes(), at(lane), lane, batch_.q);
+  reaching_ |= bit(lane);
+}
+
+void ShapeLanes::begin_pull(int lane, int steps) {
+  Work& now = work(lane);
+  now.most_motion = std::numeric_limits<double>::infinity();
+  now.start = now.reached = at(lane);
+  start_pull(lane, steps);
+}
+
+void ShapeLanes::start_pull(int lane, int steps) {
+  const auto i = static_cast<std::size_t>(lane);
+  work_[i].steps_left = steps;
+  work_[i].distance_m = std::numeric_limits<double>::infinity();  // not measured yet
+  if (!pair_.target_marks()) {
+    work_[i].distance_m = pull_alone(pair_, T_base_transfer_[i], wanted_[i], steps, q_[i]);
+    pulled_ |= bit(lane);
+  } else if (!solver_.redundant()) {  // no self-motion
+    pulled_ |= bit(lane);
+  } else {
+    work_[i].settled = at(lane);
+    write(solver_.lanes(), at(lane), lane, pull_.q);
+    measuring_ |= bit(lane);
+  }
+}
+
+ShapeLanes::Ended ShapeLanes::run() {
+  Ended ended;
+  for (;;) {
+    end_pulls(ended);
+    const int descending = std::popcount(reaching_ | settling_);
+    const int measuring = std::popcount(measuring_);
+    if (kEndedShare * std::popcount(ended.arrived | ended.failed) >= descending + measuring)
+      return ended;
+    if (measuring >= kMeasuringShare * descending)
+      measure();
+    else
+      descend(ended);
+  }
+}
+
+/// All lanes of the batch move, those that do not descend for nothing.
+void ShapeLanes::descend(Ended& ended) {
+  solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
+  const unsigned reaching = reaching_;
+  const unsigned descending = reaching_ | settling_;
+  for (int lane = 0; lane < kCount; ++lane) {
+    if (!has(descending, lane))
+      continue;
+    const bool arrived = batch_.squared[lane] < kArrived;
+    if (!arrived && ++work(lane).iterations <= kDescentIterations)
+      continue;
+    reaching_ &= ~bit(lane);
+    settling_ &= ~bit(lane);
+    if (!arrived)
+      (has(reaching, lane) ? ended.failed : pulled_) |= bit(lane);
+    else if (has(reaching, lane))
+      reached(lane, ended);
+    else
+      settled(lane);
+  }
+}
+
+void ShapeLanes::reached(int lane, Ended& ended) {
+  Work& now = work(lane);
+  now.reached = read(solver_.lanes(), batch_.q, lane);
+  if (!((now.reached - now.start).norm() <= now.most_motion)) {
+    ended.failed |= bit(lane);
+    return;
+  }
+  put(lane, now.reached);
+  start_pull(lane, now.steps_left);
+}
+
+void ShapeLanes::settled(int lane) {
+  work(lane).settled = read(solver_.lanes(), batch_.q, lane);
+  copy_lane(solver_.lanes(), lane, batch_.q, pull_.q);
+  measuring_ |= bit(lane);
+}
+
+void ShapeLanes::measure() {
+  solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), pull_);
+  for (int lane = 0; lane < kCount; ++lane) {
+    if (!has(measuring_, lane))
+      continue;
+    Work& now = work(lane);
+    const double reached_m = pull_.distance_m[lane];
+    const bool gains = reached_m <= now.distance_m * (1 - kLeastGain);
+    if (reached_m < now.distance_m) {
+      put(lane, now.settled);
+      now.distance_m = reached_m;
+    }
+    if (!gains || now.steps_left == 0) {
+      pulled_ |= bit(lane);
+      continue;
+    }
+    --now.steps_left;
+    now.iterations = 0;
+    copy_lane(solver_.lanes(), lane, pull_.q, batch_.q);
+    settling_ |= bit(lane);
+  }
+  measuring_ = 0;
+}
+
+void ShapeLanes::end_pulls(Ended& ended) {
+  for (int lane = 0; lane < kCount; ++lane)
+    if (has(pulled_, lane) && !((at(lane) - work(lane).start).norm() <= work(lane).most_motion))
+      put(lane, work(lane).reached);
+  ended.arrived |= pulled_;
+  pulled_ = 0;
+}
+
+unsigned ShapeLanes::run_all() {
+  unsigned arrived = 0;
+  while ((reaching_ | settling_ | measuring_ | pulled_) != 0)
+    arrived |= run().arrived;
+  return arrived;
+}
 
 unsigned ShapeLanes::reach(unsigned lanes) {
   for (int lane = 0; lane < kCount; ++lane)
-    write(solver_.lanes(), at(lane), lane, batch_.q);
-  const unsigned arrived = descend(lanes);
-  for (int lane = 0; lane < kCount; ++lane)
-    if (has(arrived, lane))
-      put(lane, read(solver_.lanes(), batch_.q, lane));
-  return arrived;
-}
-
-/// Of what stands in the batch; all lanes move, those that have arrived next to nothing.
-unsigned ShapeLanes::descend(unsigned lanes) {
-  unsigned arrived = 0;
-  for (int i = 0; i <= kDescentIterations && arrived != lanes; ++i) {
-    solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
-    for (int lane = 0; lane < kCount; ++lane)
-      if (has(lanes, lane) && batch_.squared[lane] < kArrived)
-        arrived |= bit(lane);
-  }
-  return arrived;
+    if (has(lanes, lane))
+      begin_step(lane, std::numeric_limits<double>::infinity(), 0);
+  return run_all();
 }
 
 void ShapeLanes::pull(unsigned lanes, int steps) {
-  const inverse::LaneChain& chain = solver_.lanes();
-  if (!pair_.target_marks()) {
-    for (int lane = 0; lane < kCount; ++lane)
-      if (has(lanes, lane))
-        pull_one(lane, steps);
-    return;
-  }
   for (int lane = 0; lane < kCount; ++lane)
-    write(chain, at(lane), lane, pull_.q);
-  solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
-  std::copy_n(pull_.distance_m, kCount, distance_m_.begin());
-  if (!solver_.redundant())  // no self-motion
-    return;
-  for (int i = 0; i < steps && lanes != 0; ++i) {
-    std::copy_n(&pull_.q[0][0], chain.dof * kCount, &batch_.q[0][0]);
-    lanes = descend(lanes);
-    std::copy_n(&batch_.q[0][0], chain.dof * kCount, &pull_.q[0][0]);
-    solver_.kernels().pull(chain, *pair_.target_marks(), pull_);
-    for (int lane = 0; lane < kCount; ++lane) {
-      double& distance_m = distance_m_[static_cast<std::size_t>(lane)];
-      const double reached_m = pull_.distance_m[lane];
-      if (!has(lanes, lane))
-        continue;
-      if (!(reached_m <= distance_m * (1 - kLeastGain)))
-        lanes &= ~bit(lane);
-      if (!(reached_m < distance_m))
-        continue;
-      put(lane, read(chain, batch_.q, lane));
-      distance_m = reached_m;
-    }
-  }
-}
-
-Eigen::VectorXd ShapeLanes::distances_m(const Eigen::MatrixXd& configurations,
-                                        const ArmShape& wanted) const {
-  const Eigen::Index count = configurations.cols();
-  Eigen::VectorXd distances(count);
-  if (!pair_.target_marks()) {
-    for (Eigen::Index i = 0; i < count; ++i)
-      distances[i] = shape_distance(arm_shape(pair_.target(), configurations.col(i)), wanted);
-    return distances;
-  }
-  inverse::LanePull measured = pull_;
-  for (int i = 0; i < ArmShapeMotion::kRows; ++i)
-    std::fill_n(measured.wanted[i], kCount, wanted.reshaped()[i]);
-  for (Eigen::Index first = 0; first < count; first += kCount) {
-    const Eigen::Index many = std::min<Eigen::Index>(kCount, count - first);
-    for (int lane = 0; lane < kCount; ++lane)
-      write(solver_.lanes(), configurations.col(first + std::min<Eigen::Index>(lane, many - 1)),
-            lane, measured.q);
-    solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), measured);
-    std::copy_n(measured.distance_m, many, distances.data() + first);
-  }
-  return distances;
-}
-
-void ShapeLanes::pull_one(int lane, int steps) {
-  const auto i = static_cast<std::size_t>(lane);
-  distance_m_[i] = pull_alone(pair_, T_base_transfer_[i], wanted_[i], steps, q_[i]);
+    if (has(lanes, lane))
+      begin_pull(lane, steps);
+  run_all();
 }
 
 unsigned ShapeLanes::verified(unsigned lanes, const Eigen::MatrixXd& configurations) {
@@ -152,6 +218,31 @@ unsigned ShapeLanes::verified(unsigned lanes, const Eigen::MatrixXd& configurati
         check_.angle_rad[lane] <= inverse::kPoseTolerance)
       right |= bit(lane);
   return right;
+}
+
+Eigen::VectorXd shape_distances_m(const ArmPair& pair, const Eigen::MatrixXd& configurations,
+                                  const ArmShape& wanted) {
+  constexpr int kCount = inverse::kLanes;
+  const inverse::Solver& solver = pair.target_solver();
+  const Eigen::Index count = configurations.cols();
+  Eigen::VectorXd distances(count);
+  if (!pair.target_marks()) {
+    for (Eigen::Index i = 0; i < count; ++i)
+      distances[i] = shape_distance(arm_shape(pair.target(), configurations.col(i)), wanted);
+    return distances;
+  }
+  inverse::LanePull measured;
+  for (int i = 0; i < ArmShapeMotion::kRows; ++i)
+    std::fill_n(measured.wanted[i], kCount, wanted.reshaped()[i]);
+  for (Eigen::Index first = 0; first < count; first += kCount) {
+    const Eigen::Index many = std::min<Eigen::Index>(kCount, count - first);
+    for (int lane = 0; lane < kCount; ++lane)
+      write(solver.lanes(), configurations.col(first + std::min<Eigen::Index>(lane, many - 1)),
+            lane, measured.q);
+    solver.kernels().pull(solver.lanes(), *pair.target_marks(), measured);
+    std::copy_n(measured.distance_m, many, distances.data() + first);
+  }
+  return distances;
 }
 
 }  // namespace kinship::transfer

@@ -7,10 +7,9 @@
 
 #include "proto/types/profile.hpp"
 #include "robots/inverse/counter_generator.hpp"
-#include "robots/inverse/joint_space.hpp"
 #include "server/transfer/filters.hpp"
 #include "server/transfer/path_poses.hpp"
-#include "server/transfer/shape_lanes.hpp"
+#include "server/transfer/walk.hpp"
 
 namespace kinship::transfer {
 
@@ -28,56 +27,65 @@ struct Track {
 /// A step ends the track if the pose is not reached within the limits, if the target would move
 /// more than kMostMotion times as far as the source and kSpareMotion (joint units), or if a filter
 /// says no. Deterministic: depends on the seed and on what it is given. Not shared between threads.
+///
+/// Tries are made in rounds: as many as would be made one after the other whatever comes of them.
+/// The tracker draws where they start and judges what came of them; their walks are run by a
+/// WalkPool, together with those of other paths.
 class ShapeTracker {
  public:
   static constexpr double kMostMotion = 3;
   static constexpr double kSpareMotion = 0.3;
   static constexpr int kTriesPerTrack = 6;
-  /// Tries that go on side by side: each takes two lanes, one to each end of the path.
-  static constexpr int kTriesAtOnce = ShapeLanes::kCount / 2;
 
   /// \param pair, poses, parameters, filters  outlive it.
   ShapeTracker(const ArmPair& pair, const PathPoses& poses, const TransferParameters& parameters,
                std::uint64_t seed, CountedFilters& filters);
+  ShapeTracker(const ShapeTracker&) = delete;  // walks point to it
+  ShapeTracker& operator=(const ShapeTracker&) = delete;
 
   /// Up to parameters.tracks tracks that cover at least parameters.least_coverage of the poses.
-  /// Gives up after kTriesPerTrack tries in a row that brought none.
-  std::vector<Track> find_tracks();
+  /// Gives up after kTriesPerTrack tries in a row that brought none. Alone, by a pool of its own.
+  const std::vector<Track>& find_tracks();
 
+  /// What the pool found so far.
+  const std::vector<Track>& tracks() const noexcept { return tracks_; }
   std::uint64_t tried() const noexcept { return tried_; }
   /// Tries whose track came through the whole path.
   std::uint64_t came_through() const noexcept { return came_through_; }
 
+  /// For the pool: the walks with which the next tries begin. None: there is nothing left to try.
+  std::vector<Walk> begin_round();
+  /// Moves a walk on to where it found `found` (`q` as the lanes have it), unless filters say no.
+  bool take(Walk& walk, const inverse::JointVector& q,
+            const Eigen::Ref<const Eigen::VectorXd>& found);
+  /// \return what is to be walked because this walk has ended: both ways from where a try starts,
+  ///         or the next round.
+  std::vector<Walk> end(const Walk& walk);
+  const PathPoses& poses() const noexcept { return poses_; }
+  /// How far the target may move on the next step of a walk.
+  double most_motion(const Walk& walk) const;
+  int steps() const noexcept { return parameters_.shape_steps; }  ///< of the pull at a pose
+  int start_steps() const noexcept;                               ///< where a try starts
+
  private:
   /// Where a try begins, and how far it has come to both ends.
   struct Try {
+    Eigen::Index start = 0;            // pose
     Eigen::Index first = 0, last = 0;  // poses
-    Eigen::MatrixXd along;             // dof x poses; columns first to last
+    Eigen::MatrixXd along;             // dof x poses; columns first to last. Empty: no start
   };
-  /// One end of a try.
-  struct Walker {
-    std::size_t index = 0;  // of the try
-    Eigen::Index direction = 1;
-    Eigen::Index pose = 0;  // where it is
-    inverse::JointVector q;
-  };
-
-  /// `count` tries one after the other would give the same. \return those that had a start.
-  std::vector<Try> make_tries(int count);
   /// Where a track may start at a pose.
   struct Candidates {
     Eigen::MatrixXd configurations;  // dof x n, n >= 0
     Eigen::VectorXd distances_m;     // n: of their shapes from the source's
   };
+
+  Try make_try();
+  /// Keeps the tracks of the round that are long enough.
+  void judge();
   const Candidates& candidates(Eigen::Index pose);
   /// \return a column of the candidates of a pose; -1: there are none.
   Eigen::Index choose_start(Eigen::Index pose);
-  /// The candidates, pulled towards the source's shape where filters allow where they get to.
-  void pull_starts(std::vector<Try>& tries);
-  void follow_to_both_ends(std::vector<Try>& tries);
-  /// Moves the walkers to the next pose of each. \return those that got there, as lanes.
-  unsigned walk(std::vector<Walker>& walkers, unsigned walking, std::vector<Try>& tries);
-  void aim(int lane, Eigen::Index pose);
   double normal();
 
   const ArmPair& pair_;
@@ -87,8 +95,10 @@ class ShapeTracker {
   CountedFilters& filters_;
   inverse::CounterGenerator generator_;
   std::vector<std::optional<Candidates>> candidates_;  // of each pose; missing: not asked yet
-  ShapeLanes lanes_;
-  inverse::JointSpace space_;
+  std::vector<Try> round_;
+  std::size_t walks_left_ = 0;  // of the round
+  int idle_ = 0;                // tries in a row that brought no track
+  std::vector<Track> tracks_;
   std::uint64_t tried_ = 0, came_through_ = 0;
 };
 

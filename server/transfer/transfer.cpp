@@ -1,15 +1,18 @@
 #include "server/transfer/transfer.hpp"
 
+#include <cstddef>
+#include <deque>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "server/transfer/path_poses.hpp"
-#include "server/transfer/random_solutions.hpp"
 #include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/take_over.hpp"
+#include "server/transfer/uncovered_poses.hpp"
+#include "server/transfer/walk_pool.hpp"
 
 namespace kinship::transfer {
 namespace {
@@ -47,6 +50,14 @@ class PathSolutions {
 
   Eigen::MatrixXd& operator[](std::size_t pose) { return of_pose_[pose]; }
 
+  /// Of each pose whether there is any.
+  std::vector<bool> covered() const {
+    std::vector<bool> result;
+    for (const Eigen::MatrixXd& solutions : of_pose_)
+      result.push_back(solutions.cols() > 0);
+    return result;
+  }
+
   /// One row per solution, in the order of poses.
   TransferredPath stacked(const TransferSummary& summary) const;
 
@@ -73,44 +84,83 @@ TransferredPath PathSolutions::stacked(const TransferSummary& summary) const {
   return result;
 }
 
+/// A path on its way through inverse kinematics.
+struct PathUnderWay {
+  PathUnderWay(std::size_t index_, const Eigen::MatrixXd& waypoints, const PathToTransfer& path,
+               const ArmPair& pair, const TransferParameters& parameters, std::uint64_t seed)
+      : index(index_),
+        poses(path_poses(waypoints, pair, path.T_target_source)),
+        counted(path.filters),
+        tracker(pair, poses, parameters, seed, counted) {}
+
+  const std::size_t index;  // of the group
+  const PathPoses poses;
+  CountedFilters counted;
+  ShapeTracker tracker;  // of the poses
+};
+
+/// Tracks, and random solutions where they are missing.
+TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
+                                      const TransferParameters& parameters, std::uint64_t seed) {
+  PathSolutions solutions(pair.target().dof(), path.poses.size());
+  TransferSummary summary;
+  for (const Track& track : path.tracker.tracks()) {
+    solutions.add(track);
+    ++summary.tracks_kept;
+  }
+  summary.tracks_tried = path.tracker.tried();
+  summary.tracks_through = path.tracker.came_through();
+  const std::vector<bool> covered = solutions.covered();
+  std::vector<RandomSolutions> random =
+      solve_uncovered(pair, path.poses, covered, parameters, seed, path.counted);
+  for (std::size_t pose = 0; pose < covered.size(); ++pose) {
+    if (covered[pose]) {
+      summary.count(solutions[pose].cols(), inverse::NoSolution::None);
+      continue;
+    }
+    summary.count(random[pose]);
+    solutions[pose] = std::move(random[pose].configurations);
+  }
+  summary.set(path.counted);
+  return solutions.stacked(summary);
+}
+
 }  // namespace
+
+std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
+                                            const ArmPair& pair,
+                                            const TransferParameters& parameters,
+                                            std::uint64_t seed) {
+  check(parameters);
+  std::vector<TransferredPath> results(paths.size());
+  std::deque<PathUnderWay> under_way;  // trackers stay where they are
+  std::vector<ShapeTracker*> trackers;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const Path& path = paths[i].path;
+    if (path.dof() != pair.source().dof())
+      throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
+                                  " joints for a source robot of " +
+                                  std::to_string(pair.source().dof()));
+    const Eigen::MatrixXd waypoints = resample(path, parameters);
+    if (parameters.take_over && pair.takes_over(paths[i].T_target_source)) {
+      results[i] = take_over(waypoints, pair);
+      continue;
+    }
+    under_way.emplace_back(i, waypoints, paths[i], pair, parameters, seed);
+    trackers.push_back(&under_way.back().tracker);
+  }
+  WalkPool(pair).run(trackers);
+  for (PathUnderWay& path : under_way)
+    results[path.index] = with_random_solutions(path, pair, parameters, seed);
+  return results;
+}
 
 TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const Eigen::Isometry3d& T_target_source,
                               const TransferParameters& parameters, std::uint64_t seed,
                               const Filters& filters) {
-  check(parameters);
-  if (path.dof() != pair.source().dof())
-    throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
-                                " joints for a source robot of " +
-                                std::to_string(pair.source().dof()));
-  const Eigen::MatrixXd waypoints = resample(path, parameters);
-  if (parameters.take_over && pair.takes_over(T_target_source))
-    return take_over(waypoints, pair);
-
-  const PathPoses poses = path_poses(waypoints, pair, T_target_source);
-  CountedFilters counted(filters);
-  ShapeTracker tracker(pair, poses, parameters, seed, counted);
-  PathSolutions solutions(pair.target().dof(), poses.size());
-  TransferSummary summary;
-  for (const Track& track : tracker.find_tracks()) {
-    solutions.add(track);
-    ++summary.tracks_kept;
-  }
-  summary.tracks_tried = tracker.tried();
-  summary.tracks_through = tracker.came_through();
-  for (std::size_t pose = 0; pose < poses.T_base_transfer.size(); ++pose) {
-    if (solutions[pose].cols() > 0) {
-      summary.count(solutions[pose].cols(), inverse::NoSolution::None);
-      continue;
-    }
-    RandomSolutions random = random_solutions(pair.target_solver(), poses.T_base_transfer[pose],
-                                              parameters, seed, counted);
-    summary.count(random);
-    solutions[pose] = std::move(random.configurations);
-  }
-  summary.set(counted);
-  return solutions.stacked(summary);
+  const PathToTransfer alone{path, T_target_source, filters};
+  return std::move(transfer_paths({&alone, 1}, pair, parameters, seed).front());
 }
 
 }  // namespace kinship::transfer

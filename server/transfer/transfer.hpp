@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "proto/types/path.hpp"
 #include "proto/types/profile.hpp"
@@ -32,7 +34,23 @@ TransferredPath transfer_path(const Path& path, const ArmPair& pair,
                               const TransferParameters& parameters, std::uint64_t seed,
                               const Filters& filters = {});
 
+/// One of a group of paths.
+struct PathToTransfer {
+  const Path& path;
+  Eigen::Isometry3d T_target_source;
+  const Filters& filters;
+};
+
+/// The same for paths of one source robot, in their order. Each becomes what it becomes alone, but
+/// sooner: the kernels of inverse kinematics work on several paths at once. A group of 16 keeps
+/// them busy.
+/// \throws as transfer_path, for the first path that gives a reason.
+std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
+                                            const ArmPair& pair,
+                                            const TransferParameters& parameters,
+                                            std::uint64_t seed);
+
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kTransferVersion = 8;
+inline constexpr int kTransferVersion = 9;
 
 }  // namespace kinship::transfer

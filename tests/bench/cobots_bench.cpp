@@ -38,6 +38,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kThreads = 2;
+constexpr std::size_t kGroup = 16;
 constexpr std::size_t kAskedAgain = 60;  // poses without a solution, of each pair
 constexpr int kOtherStarts = 1000;
 constexpr int kOtherIterations = 40;
@@ -99,13 +100,19 @@ struct Run {
   }
 };
 
-/// Both take every second path.
+/// Threads take groups of paths in turn, as the server does.
 Run run_pair(const Teacher& source, const transfer::ArmPair& pair,
              const Eigen::Isometry3d& T_target_source, const TransferParameters& parameters) {
+  const transfer::Filters none;
   std::vector<transfer::TransferredPath> results(source.paths.size());
-  const auto work = [&](std::size_t first) {
-    for (std::size_t i = first; i < results.size(); i += kThreads)
-      results[i] = transfer_path(source.paths[i], pair, T_target_source, parameters, 0);
+  const auto work = [&](std::size_t thread) {
+    for (std::size_t first = thread * kGroup; first < results.size(); first += kThreads * kGroup) {
+      std::vector<transfer::PathToTransfer> group;
+      for (std::size_t i = first; i < std::min(first + kGroup, results.size()); ++i)
+        group.push_back({source.paths[i], T_target_source, none});
+      std::ranges::move(transfer::transfer_paths(group, pair, parameters, 0),
+                        results.begin() + static_cast<std::ptrdiff_t>(first));
+    }
   };
   Run run;
   const auto start = std::chrono::steady_clock::now();

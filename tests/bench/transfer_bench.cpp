@@ -19,6 +19,8 @@
 namespace kinship {
 namespace {
 
+constexpr std::size_t kGroup = 16;  // paths that are transferred at once, as the server does
+
 std::vector<Path> random_paths(const kinematics::Chain& chain, int count) {
   std::mt19937_64 generator(1);
   std::vector<Path> paths;
@@ -58,12 +60,15 @@ void transfer_pair(benchmark::State& state, const std::string& from, const std::
   const std::vector<Path> paths = near ? near_paths(source, target, 50) : random_paths(source, 50);
   const transfer::ArmPair pair(source, target);
   const TransferParameters parameters{.tracks = tracks};
+  const transfer::Filters none;
   std::size_t next = 0;
   transfer::TransferSummary sum;
   for (auto step : state) {
-    sum.add(transfer::transfer_path(paths[next], pair, Eigen::Isometry3d::Identity(), parameters, 0)
-                .summary);
-    next = (next + 1) % paths.size();
+    std::vector<transfer::PathToTransfer> group;
+    for (; group.size() < kGroup; next = (next + 1) % paths.size())
+      group.push_back({paths[next], Eigen::Isometry3d::Identity(), none});
+    for (const auto& path : transfer::transfer_paths(group, pair, parameters, 0))
+      sum.add(path.summary);
   }
   const auto rate = [](std::uint64_t count) {
     return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);

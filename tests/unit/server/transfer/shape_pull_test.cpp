@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <random>
 #include <vector>
 
@@ -130,7 +129,7 @@ TEST(ShapeLanes, MeasureShapesAsOneAfterTheOther) {
       Eigen::MatrixXd configurations(arm.dof(), count);
       for (Eigen::Index i = 0; i < count; ++i)
         configurations.col(i) = test::random_configuration(arm, generator);
-      const Eigen::VectorXd distances_m = ShapeLanes(pair).distances_m(configurations, wanted);
+      const Eigen::VectorXd distances_m = shape_distances_m(pair, configurations, wanted);
       ASSERT_EQ(distances_m.size(), count);
       for (Eigen::Index i = 0; i < count; ++i)
         EXPECT_NEAR(distances_m[i], shape_distance(arm_shape(arm, configurations.col(i)), wanted),
@@ -155,13 +154,15 @@ TEST(ShapeLanes, EndAtTheirPosesWithinLimits) {
       lanes.put(lane, q.col(lane));
     }
     lanes.pull(0xff, 20);
+    int moved = 0;
     for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
-      EXPECT_GT((lanes.at(lane) - q.col(lane)).norm(), 1e-3) << model;
+      moved += (lanes.at(lane) - q.col(lane)).norm() > 1e-3 ? 1 : 0;
       EXPECT_TRUE(arm.within_limits(lanes.at(lane), 1e-9)) << model;
       q.col(lane) = lanes.at(lane);
     }
-    // A last step is not always enough near a singular posture; who asks verifies.
-    EXPECT_GE(std::popcount(lanes.verified(0xff, q)), ShapeLanes::kCount - 1) << model;
+    // Near a singular posture a descent may be too slow to settle: the lane stays where it was.
+    EXPECT_GE(moved, ShapeLanes::kCount - 1) << model;
+    EXPECT_EQ(lanes.verified(0xff, q), 0xffU) << model;
   }
 }
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "robots/inverse/joint_space.hpp"
+#include "server/transfer/shape_lanes.hpp"
+#include "server/transfer/walk.hpp"
+
+namespace kinship::transfer {
+
+/// Runs the walks of several trackers of one pair side by side: a lane whose walk has ended takes
+/// the next one that waits, whichever path it belongs to. What a walk does depends on itself only,
+/// so each tracker's tracks are those that it would find alone. Not shared between threads.
+class WalkPool {
+ public:
+  /// \param pair  outlives it.
+  explicit WalkPool(const ArmPair& pair);
+
+  /// Until no tracker has anything left to try.
+  /// \param trackers  of the pair.
+  void run(const std::vector<ShapeTracker*>& trackers);
+
+ private:
+  /// Gives lanes without a walk those that wait.
+  void fill();
+  /// Lets a lane make the next step of its walk. \return false: it is at the end of the path.
+  bool go_on(int lane);
+  /// Hands over to the trackers what lanes found.
+  void look_at(const ShapeLanes::Ended& ended);
+  void end_walk(int lane);
+
+  ShapeLanes lanes_;
+  inverse::JointSpace space_;
+  std::array<Walk, ShapeLanes::kCount> walks_;
+  unsigned walking_ = 0;      // lanes that have one
+  std::deque<Walk> waiting_;  // to be walked
+  Eigen::MatrixXd found_;     // dof x kCount, in the copies that stand for all
+};
+
+}  // namespace kinship::transfer
