@@ -114,6 +114,17 @@ std::string why_unguided(const QueryGuidance& query) {
   return query.guidance->share == 0 ? "the share of guided samples is 0" : "";
 }
 
+/// Which planner answers: a roadmap leaves a mixture of too many components to its trees.
+std::string planner_text(const PlannerChoice& planner,
+                         const planning::ConfigurationSampler& sampler) {
+  const std::string name = name_of(planner);
+  if (planner.kind != PlannerKind::Roadmap || !sampler.mixture() ||
+      sampler.mixture()->size() <= planning::kMaxRoadmapComponents)
+    return name;
+  return name + " (trees alone: " + std::to_string(sampler.mixture()->size()) +
+         " components exceed " + std::to_string(planning::kMaxRoadmapComponents) + ")";
+}
+
 Outcome outcome_of(const planning::PlanSummary& summary) {
   if (summary.waypoints)
     return Outcome::Solved;
@@ -154,6 +165,7 @@ class Planning {
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     heed_gate(goals, guidance, planned.result);
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
+    planned.result.planner = planner_text(planner, sampler);
     const planning::PlanSummary summary = search(planner, goals, sampler, options);
     planned.outcome = outcome_of(summary);
     planned.result.solved = summary.waypoints.has_value();

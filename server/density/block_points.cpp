@@ -16,36 +16,52 @@ class NeighbourOrder {
  public:
   NeighbourOrder(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                  const std::vector<std::uint32_t>& columns)
-      : configurations_(configurations), columns_(columns), ranks_(columns.size()) {
-    std::iota(ranks_.begin(), ranks_.end(), Rank{0});
-    order(0, ranks_.size());
+      : configurations_(configurations), columns_(columns), places_(columns.size()) {
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      places_[i].rank = static_cast<Rank>(i);
+    order(0, places_.size());
   }
-  const std::vector<Rank>& ranks() const noexcept { return ranks_; }
+  std::vector<Rank> ranks() const {
+    std::vector<Rank> ranks;
+    ranks.reserve(places_.size());
+    for (const Place& place : places_)
+      ranks.push_back(place.rank);
+    return ranks;
+  }
 
  private:
+  /// A point and its value of the joint that is being halved: looked up once a halving, since
+  /// points lie far apart in memory.
+  struct Place {
+    double value = 0;
+    Rank rank = 0;
+  };
+
   void order(std::size_t begin, std::size_t end) {
     while (end - begin > kBlockPoints) {
       const std::size_t blocks = (end - begin + kBlockPoints - 1) / kBlockPoints;
       const std::size_t middle = begin + blocks / 2 * kBlockPoints;
       const Eigen::Index joint = widest_joint(begin, end);
+      for (std::size_t i = begin; i < end; ++i)
+        places_[i].value = configurations_(joint, columns_[places_[i].rank]);
       const auto at = [this](std::size_t i) {
-        return ranks_.begin() + static_cast<std::ptrdiff_t>(i);
+        return places_.begin() + static_cast<std::ptrdiff_t>(i);
       };
-      std::nth_element(at(begin), at(middle), at(end), [&](Rank a, Rank b) {
-        return configurations_(joint, columns_[a]) < configurations_(joint, columns_[b]);
-      });
+      std::nth_element(at(begin), at(middle), at(end),
+                       [](const Place& a, const Place& b) { return a.value < b.value; });
       order(begin, middle);
       begin = middle;
     }
   }
 
-  /// Of a thousand of the points or so: it need not be exact.
+  /// Of some hundred of the points: it need not be exact.
   Eigen::Index widest_joint(std::size_t begin, std::size_t end) const {
-    const std::size_t step = (end - begin) / 1024 + 1;
-    Eigen::VectorXd least = configurations_.col(columns_[ranks_[begin]]);
+    const std::size_t step = (end - begin) / 256 + 1;
+    Eigen::VectorXd least = configurations_.col(columns_[places_[begin].rank]);
     Eigen::VectorXd most = least;
     for (std::size_t i = begin; i < end; i += step) {
-      const Eigen::Ref<const Eigen::VectorXd> point = configurations_.col(columns_[ranks_[i]]);
+      const Eigen::Ref<const Eigen::VectorXd> point =
+          configurations_.col(columns_[places_[i].rank]);
       least = least.cwiseMin(point);
       most = most.cwiseMax(point);
     }
@@ -56,7 +72,7 @@ class NeighbourOrder {
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
   const std::vector<std::uint32_t>& columns_;
-  std::vector<Rank> ranks_;
+  std::vector<Place> places_;
 };
 
 }  // namespace

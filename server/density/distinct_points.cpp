@@ -49,14 +49,14 @@ DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configur
   };
   distinct.columns.reserve(order.size());
   distinct.weights.reserve(order.size());
+  const Candidate* previous = nullptr;  // the last distinct one
   for (const Candidate& candidate : order) {
-    const bool is_repeated =
-        !distinct.columns.empty() &&
-        configurations.col(distinct.columns.back()) == configurations.col(candidate.column);
-    if (is_repeated) {
+    if (previous != nullptr && previous->first == candidate.first &&
+        configurations.col(previous->column) == configurations.col(candidate.column)) {
       distinct.weights.back() += weight_of(candidate);
       continue;
     }
+    previous = &candidate;
     distinct.columns.push_back(candidate.column);
     distinct.weights.push_back(weight_of(candidate));
   }

@@ -111,6 +111,20 @@ double mean_log_density(const Mixture& mixture, const BlockPoints& points, doubl
   return total / points.total_weight();
 }
 
+Eigen::VectorXd log_densities(const Mixture& mixture, const BlockPoints& points,
+                              const Computation& computation) {
+  const PackedMixture packed(mixture, points.offset());
+  Eigen::VectorXd densities(points.size());
+  visit_blocks(packed, points, chunks(points, 1), computation,
+               [&](int, int block, const BlockPosterior& posterior) {
+                 const Eigen::Index first = Eigen::Index{block} * kBlockPoints;
+                 std::copy_n(posterior.log_densities(),
+                             std::min<Eigen::Index>(kBlockPoints, points.size() - first),
+                             densities.data() + first);
+               });
+  return densities;
+}
+
 Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
                      const Eigen::VectorXd& floors) {
   const Eigen::Index dimension = moments.dimension;

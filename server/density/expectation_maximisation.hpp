@@ -48,6 +48,10 @@ Expectation expectation(const Mixture& mixture, const BlockPoints& points,
 double mean_log_density(const Mixture& mixture, const BlockPoints& points, double background_share,
                         double log_background, const Computation& computation);
 
+/// The logarithm of the density at each point, N, in block order.
+Eigen::VectorXd log_densities(const Mixture& mixture, const BlockPoints& points,
+                              const Computation& computation);
+
 /// M-step: the mixture that fits the moments best, with the floor of its joint added to each
 /// variance. Components whose mass is below d + 1 average points have lost their data and are left
 /// out; the heaviest stays in any case.

@@ -118,21 +118,24 @@ class Fit {
     return refined(std::move(start), points, em_);
   }
 
-  /// With at most as many components as the configurations can carry.
+  /// With at most as many components as the configurations can carry. The mixture before is nearly
+  /// there: what joins it settles on a sample, and all points are seen a few times only.
   FitSummary run_warm(DistinctPoints all, const WarmStart& warm) const {
     const Eigen::Index wanted = options_.components > 0 ? options_.components : warm.mixture.size();
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
     Mixture start = with_components_for_new(configurations_, all, warm, options_.seed, em_);
     const BlockPoints points = blocks_of(std::move(all));
+    EmOptions few = em_;
     if (start.size() > components) {
-      EmOptions few = em_;
       few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
-      start = is_large(points, components)
-                  ? run_em(std::move(start), sample_of(points, components), few).mixture
-                  : run_em(std::move(start), points, few).mixture;
+      start = run_em(std::move(start), thinned(points, sample_size(components)), few).mixture;
       start = merged(start, components);
     }
-    return refined(std::move(start), points, em_);
+    few.max_iterations = points.size() > sample_size(components)
+                             ? std::min(em_.max_iterations, kWarmPasses)
+                             : em_.max_iterations;
+    EmRun run = run_em(std::move(start), points, few);
+    return {std::move(run.mixture), std::move(run.log_likelihoods)};
   }
 
   /// The distinct configurations of the paths that are held out, or of the others.

@@ -52,9 +52,10 @@ struct FitSummary {
 /// climb_down) when the others are fitted; the mixture of that K is then refitted to all. Below
 /// kLeastPathsToScore paths it is components_of_few_paths, without a curve.
 ///
-/// A warm start adds at most kMostNewComponents, runs EM (kIterationsBeforeMerging), merges down to
-/// K and runs EM again: cheaper than a full fit, and what comes out depends on the mixture it
-/// began with. It leaves curve and held_out_score empty.
+/// A warm start adds at most kMostNewComponents, runs EM on a sample (kIterationsBeforeMerging),
+/// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there
+/// is: cheaper than a full fit, and what comes out depends on the mixture it began with. It leaves
+/// curve and held_out_score empty.
 ///
 /// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
 /// that lose their data on the way are left out. With more than four times kSamplePoints or
@@ -81,6 +82,6 @@ inline constexpr int kFullPasses = 6;
 int components_of_few_paths(std::uint32_t paths);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kDensityVersion = 2;
+inline constexpr int kDensityVersion = 3;
 
 }  // namespace kinship::density

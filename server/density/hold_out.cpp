@@ -6,7 +6,8 @@
 
 namespace kinship::density {
 
-std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed) {
+std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed,
+                                         std::uint32_t fold) {
   std::vector<std::uint8_t> held_out(count, 0);
   if (count < kLeastPathsToScore)
     return held_out;
@@ -14,7 +15,10 @@ std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed
   std::iota(order.begin(), order.end(), 0U);
   std::mt19937_64 generator(seed);
   std::shuffle(order.begin(), order.end(), generator);
-  for (std::uint32_t i = 0; i < count / 5; ++i)
+  const auto border = [count](std::uint64_t part) {
+    return static_cast<std::uint32_t>(part * count / kFolds);
+  };
+  for (std::uint32_t i = border(fold); i < border(fold + 1); ++i)
     held_out[order[i]] = 1;
   return held_out;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -26,6 +27,8 @@ constexpr std::array kClusters = {1, 4, 16, 64};
 /// Falling by about the square root of 2.
 constexpr std::array kScales = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
 constexpr Eigen::Index kScoredPoints = 1000;  // of all folds together
+/// Up to here each fifth is held out in turn: one alone is too few paths to choose by.
+constexpr std::uint32_t kFewPaths = 60;
 constexpr double kLowScore_nats = 0.25;  // below the best of the clusters: narrower is no better
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
@@ -142,7 +145,7 @@ class Estimate {
         choice.bandwidth};
     mixture::cholesky_factors(estimate.mixture);  // throws if there is none
     if (paths >= kLeastPathsToScore)
-      estimate.held_out_score = choice.score;
+      estimate.held_out_score = choice.score_of_first;
     return estimate;
   }
 
@@ -155,7 +158,8 @@ class Estimate {
   };
   struct Choice {
     Bandwidth bandwidth;
-    std::optional<double> score = {};
+    std::optional<double> score = {};           // the mean over the folds
+    std::optional<double> score_of_first = {};  // of them
   };
 
   BlockPoints blocks_of(DistinctPoints distinct) const {
@@ -166,7 +170,12 @@ class Estimate {
   std::vector<Fold> folds_of(std::uint32_t paths) const {
     std::vector<Fold> folds;
     if (paths >= kLeastPathsToScore) {
-      add_fold(held_out_paths(paths, options_.seed), kScoredPoints, folds);
+      const std::uint32_t count = paths <= kFewPaths ? kFolds : 1;
+      for (std::uint32_t fold = 0; fold < count; ++fold) {
+        add_fold(held_out_paths(paths, options_.seed, fold), kScoredPoints / count, folds);
+        if (folds.empty())
+          break;  // the score that is told is that of the first
+      }
       return folds;
     }
     for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
@@ -210,9 +219,11 @@ class Estimate {
             pooled_covariance(fold.training, clusters, options_.seed, options_.computation));
       double best_of_clusters = -std::numeric_limits<double>::infinity();
       for (const double scale : kScales) {
-        const double score = score_of(folds, pooled, scale);
+        const std::vector<double> scores = scores_of(folds, pooled, scale);
+        const double score =
+            std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
         if (!best.score || score > *best.score)
-          best = {{clusters, scale}, score};
+          best = {{clusters, scale}, score, scores.front()};
         best_of_clusters = std::max(best_of_clusters, score);
         if (score < best_of_clusters - kLowScore_nats)
           break;
@@ -228,15 +239,15 @@ class Estimate {
                        [&](const Fold& fold) { return fold.training.size() >= least; });
   }
 
-  /// The mean over the folds.
-  double score_of(const std::vector<Fold>& folds, const std::vector<Eigen::MatrixXd>& pooled,
-                  double scale) const {
-    double sum = 0;
+  /// Of each fold.
+  std::vector<double> scores_of(const std::vector<Fold>& folds,
+                                const std::vector<Eigen::MatrixXd>& pooled, double scale) const {
+    std::vector<double> scores;
     for (std::size_t i = 0; i < folds.size(); ++i)
-      sum += mean_log_density(
+      scores.push_back(mean_log_density(
           mixture_of(folds[i].kernels, pooled[i], scale, options_.floors_of_joints),
-          folds[i].held_out, kBackgroundShare, log_uniform_, options_.computation);
-    return sum / static_cast<double>(folds.size());
+          folds[i].held_out, kBackgroundShare, log_uniform_, options_.computation));
+    return scores;
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;

@@ -1,13 +1,11 @@
 #include "server/density/warm_start.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
-#include "proto/mixture/density.hpp"
 #include "server/density/distinct_points.hpp"
 
 namespace kinship::density {
@@ -46,39 +44,44 @@ DistinctPoints sample_of(const DistinctPoints& points) {
   return sample;
 }
 
-/// Finite: where rounding leaves no density it is the least number.
-Eigen::VectorXd scores_of(const Mixture& mixture, const DistinctPoints& points,
-                          const Eigen::Ref<const Eigen::MatrixXd>& configurations) {
-  Eigen::MatrixXd columns(configurations.rows(), static_cast<Eigen::Index>(points.columns.size()));
-  for (Eigen::Index i = 0; i < columns.cols(); ++i)
-    columns.col(i) = configurations.col(points.columns[static_cast<std::size_t>(i)]);
-  return mixture::log_density(mixture, columns).unaryExpr([](double score) {
-    return std::isfinite(score) ? score : std::numeric_limits<double>::lowest();
-  });
+BlockPoints blocks_of(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                      DistinctPoints points) {
+  const Eigen::VectorXd mean = mean_of(configurations, points);
+  return {configurations, std::move(points), mean};
 }
 
-/// The score that so much of the weight lies below.
-double quantile(const Eigen::VectorXd& scores, const std::vector<double>& weights, double share) {
-  std::vector<std::size_t> order(weights.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto score = [&scores](std::size_t i) { return scores[static_cast<Eigen::Index>(i)]; };
+/// The score that so much of the points' weight lies below.
+double quantile(const Eigen::VectorXd& scores, const BlockPoints& points, double share) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(scores.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::sort(order.begin(), order.end(),
-            [&score](std::size_t a, std::size_t b) { return score(a) < score(b); });
-  double left = share * std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (const std::size_t i : order)
-    if ((left -= weights[i]) <= 0)
-      return score(i);
-  return score(order.back());
+            [&scores](Eigen::Index a, Eigen::Index b) { return scores[a] < scores[b]; });
+  double left = share * points.total_weight();
+  for (const Eigen::Index i : order)
+    if ((left -= points.weight(i)) <= 0)
+      return scores[i];
+  return scores[order.back()];
 }
+
+/// Some of the points, and what all of them weigh.
+struct Poor {
+  Eigen::MatrixXd configurations;
+  DistinctPoints points;  // of these configurations
+  double weight = 0;
+};
 
 /// Those below a score.
-DistinctPoints poor_of(const DistinctPoints& points, const Eigen::VectorXd& scores, double limit) {
-  DistinctPoints poor;
-  for (std::size_t i = 0; i < points.columns.size(); ++i)
-    if (scores[static_cast<Eigen::Index>(i)] < limit) {
-      poor.columns.push_back(points.columns[i]);
-      poor.weights.push_back(points.weights[i]);
-    }
+Poor poor_of(const BlockPoints& points, const Eigen::VectorXd& scores, double limit) {
+  Poor poor{Eigen::MatrixXd(points.dimension(), points.size()), {}};
+  std::uint32_t count = 0;
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    if (scores[i] >= limit)
+      continue;
+    poor.configurations.col(count) = points.point(i) + points.offset();
+    poor.points.columns.push_back(count++);
+    poor.points.weights.push_back(points.weight(i));
+  }
+  poor.weight = total_weight(poor.points);
   return poor;
 }
 
@@ -105,22 +108,23 @@ Mixture with_components_for_new(const Eigen::Ref<const Eigen::MatrixXd>& configu
   const DistinctPoints new_ones = sample_of(all_new);
   if (old_ones.columns.empty() || new_ones.columns.empty())
     return warm.mixture;
+  const BlockPoints scored = blocks_of(configurations, old_ones);
   const double limit =
-      quantile(scores_of(warm.mixture, old_ones, configurations), old_ones.weights, kPoorQuantile);
-  DistinctPoints poor = poor_of(new_ones, scores_of(warm.mixture, new_ones, configurations), limit);
-  const auto count = static_cast<Eigen::Index>(poor.columns.size());
+      quantile(log_densities(warm.mixture, scored, options.computation), scored, kPoorQuantile);
+  const BlockPoints added = blocks_of(configurations, new_ones);
+  Poor poor = poor_of(added, log_densities(warm.mixture, added, options.computation), limit);
+  const auto count = static_cast<Eigen::Index>(poor.points.columns.size());
   const Eigen::Index clusters =
       std::min(count / (2 * (configurations.rows() + 1)), kMostNewComponents);
   if (clusters == 0)
     return warm.mixture;
 
   const double share =
-      total_weight(all_new) / total_weight(points) * total_weight(poor) / total_weight(new_ones);
-  const double average = total_weight(poor) / static_cast<double>(count);
-  for (double& weight : poor.weights)
+      total_weight(all_new) / total_weight(points) * poor.weight / added.total_weight();
+  const double average = poor.weight / static_cast<double>(count);
+  for (double& weight : poor.points.weights)
     weight /= average;  // as clusters are left out by their number of average points
-  const Eigen::VectorXd mean = mean_of(configurations, poor);
-  const BlockPoints poor_points(configurations, std::move(poor), mean);
+  const BlockPoints poor_points = blocks_of(poor.configurations, std::move(poor.points));
   return joined(warm.mixture, start_mixture(poor_points, clusters, seed, options), share);
 }
 

@@ -29,7 +29,10 @@ Mixture with_components_for_new(const Eigen::Ref<const Eigen::MatrixXd>& configu
 /// Most clusters that are added.
 inline constexpr Eigen::Index kMostNewComponents = 16;
 
-/// EM with them, before components are merged down again.
+/// EM with them on a sample, before components are merged down again.
 inline constexpr int kIterationsBeforeMerging = 10;
+
+/// EM over all points after that, where they are more than a sample.
+inline constexpr int kWarmPasses = 4;
 
 }  // namespace kinship::density

@@ -359,6 +359,22 @@ TEST(PlanProblem, TheRoadmapAnswersWithAndWithoutGuidanceAndConstraint) {
   EXPECT_TRUE(along.solved) << along.reason;
 }
 
+TEST(PlanProblem, ARoadmapThatLeavesTooManyKernelsToItsTreesSaysSo) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::Roadmap;
+  Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  constexpr Eigen::Index kKernels = 1025;
+  guidance.mixture = Mixture(Eigen::VectorXd::Constant(kKernels, 1.0 / kKernels),
+                             guidance.mixture.means().col(0).replicate(1, kKernels),
+                             {guidance.mixture.covariance(0)});
+  const auto planner_with = [&](Arm arm) {
+    return planned(wall_problem(), settings, {&guidance, arm}).result.planner;
+  };
+  EXPECT_EQ(planner_with(Arm::Guided),
+            "Repetition Roadmap (trees alone: 1025 components exceed 1024)");
+  EXPECT_EQ(planner_with(Arm::Uniform), "Repetition Roadmap");
+}
+
 TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {
   PlanSettings settings;
   settings.planner = parse_planner("ompl:RRT").value();

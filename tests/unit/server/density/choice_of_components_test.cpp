@@ -61,6 +61,15 @@ TEST(HeldOutPaths, AreAFifthAndNoneBelowTen) {
     EXPECT_EQ(held_out, held_out_paths(count, 1));
   }
   EXPECT_NE(held_out_paths(500, 1), held_out_paths(500, 2));
+  for (const std::uint32_t count : {10U, 13U, 61U}) {
+    std::vector<int> times(count, 0);
+    for (std::uint32_t fold = 0; fold < kFolds; ++fold) {
+      const std::vector<std::uint8_t> part = held_out_paths(count, 1, fold);
+      for (std::uint32_t path = 0; path < count; ++path)
+        times[path] += part[path];
+    }
+    EXPECT_EQ(times, std::vector<int>(count, 1)) << "each path in one fold of " << count;
+  }
   const std::vector<std::uint8_t> few = held_out_paths(9, 1);
   EXPECT_EQ(std::count(few.begin(), few.end(), 0), 9);
 }

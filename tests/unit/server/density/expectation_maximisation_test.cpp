@@ -89,6 +89,17 @@ Mixture uneven_start(const Example& example, Eigen::Index components) {
           covariances};
 }
 
+TEST(LogDensities, AreTheMixturesPointByPoint) {
+  const Example example = random_points(3, 700);
+  const Mixture mixture = start_of(3, 5);
+  const Eigen::VectorXd densities = log_densities(mixture, example.points, {.threads = 2});
+  ASSERT_EQ(densities.size(), example.points.size());
+  for (Eigen::Index i = 0; i < densities.size(); ++i) {
+    const Eigen::VectorXd point = example.points.point(i) + example.points.offset();
+    EXPECT_NEAR(densities[i], mixture::log_density(mixture, point)[0], 1e-11) << i;
+  }
+}
+
 TEST(Expectation, PrunedEqualsDense) {
   for (const Eigen::Index dimension : {2, 5, 7, 9}) {
     const Example example = random_points(dimension, 3000);

@@ -9,6 +9,7 @@
 
 #include "proto/mixture/density.hpp"
 #include "proto/types/limits.hpp"
+#include "server/density/hold_out.hpp"
 
 namespace kinship::density {
 namespace {
@@ -192,6 +193,43 @@ TEST(KernelEstimate, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {
   // two paths far from each other: wide ones
   twice << points, points.colwise() + Eigen::Vector2d(6, 0);
   EXPECT_GT(estimate(twice, options_for(twice, 40)).bandwidth.scale, 0.4);
+}
+
+TEST(KernelEstimate, WithFewPathsTheBandwidthIsNotTheLuckOfOneFifth) {
+  // One fifth of 20 paths loses 0.25 more than each in turn, and up to 3.8 in a draw.
+  constexpr int kDraws = 16;
+  double mean = 0, worst = 0;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    const Eigen::MatrixXd points = draws_around(0, 20, kSeed + 10 * draw);
+    const double loss = loss_of(estimate(points, options_for(points, 1)).mixture, 0);
+    mean += loss / kDraws;
+    worst = std::max(worst, loss);
+  }
+  EXPECT_LT(mean, 0.4);
+  EXPECT_LT(worst, 1.2);
+}
+
+TEST(KernelEstimate, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
+  const Eigen::MatrixXd points = normal_points(2, 200);
+  const KernelOptions options = options_for(points, 10);
+  const KernelEstimate all = estimate(points, options);
+  const std::vector<std::uint8_t> held_out = held_out_paths(20, options.seed);
+  Eigen::MatrixXd others(2, 160), scored(2, 40);
+  for (Eigen::Index i = 0, other = 0, mine = 0; i < 200; ++i)
+    if (held_out[static_cast<std::size_t>(i / 10)] != 0)
+      scored.col(mine++) = points.col(i);
+    else
+      others.col(other++) = points.col(i);
+  // Its kernels, were they at the other paths' configurations, with a covariance like theirs.
+  const Mixture mixture(Eigen::VectorXd::Constant(160, 1.0 / 160), others,
+                        {all.mixture.covariance(0)});
+  const double log_uniform =
+      -(points.rowwise().maxCoeff() - points.rowwise().minCoeff()).array().log().sum();
+  const double score =
+      (0.99 * mixture::log_density(mixture, scored).array().exp() + 0.01 * std::exp(log_uniform))
+          .log()
+          .mean();
+  EXPECT_NEAR(*all.held_out_score, score, 0.1);
 }
 
 TEST(KernelEstimate, HasAScoreFromTenPathsOn) {

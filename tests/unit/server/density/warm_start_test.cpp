@@ -84,6 +84,27 @@ TEST(WarmStart, MoreOfTheSameAddsNoComponent) {
   EXPECT_NEAR(longer.weights().sum(), 1, 1e-12);
 }
 
+TEST(WarmStart, ManyPointsAreSeenAFewTimesAndDescribedAsWell) {
+  std::vector<double> places;
+  for (int i = 0; i < 150; ++i)
+    places.push_back(i % 3);
+  const Eigen::MatrixXd before = clouds(places, 5);
+  Eigen::MatrixXd all(2, before.cols() + 5 * kPoints);
+  all << before, clouds({9, 9, 9, 1, 1}, 6);
+  ASSERT_GT(all.cols(), kSamplePoints);
+  FitOptions options = fixed();
+  const Mixture cold = try_fit(all, options).value_or_throw().mixture;
+  options.warm_start = WarmStart{try_fit(before, options).value_or_throw().mixture, {}};
+  options.warm_start->is_new.assign(static_cast<std::size_t>(all.cols()), 0);
+  std::fill(options.warm_start->is_new.begin() + before.cols(), options.warm_start->is_new.end(),
+            std::uint8_t{1});
+  const FitSummary warm = try_fit(all, options).value_or_throw();
+  EXPECT_LE(warm.log_likelihoods.size(), static_cast<std::size_t>(kWarmPasses));
+  EXPECT_EQ(warm.mixture.size(), kComponents);
+  const Eigen::MatrixXd others = clouds({0, 1, 2, 0, 1, 2, 0, 1, 2, 9}, 7);
+  EXPECT_GT(mean_score(warm.mixture, others), mean_score(cold, others) - 0.02);
+}
+
 TEST(WarmStart, SameBytesWhateverTheThreads) {
   const Grown grown(clouds({9}, 2));
   FitOptions options = grown.options();
