@@ -206,6 +206,25 @@ TEST_F(FitDistribution, RobotsThatCannotBeReadAreLeftOutAndNamed) {
       << distribution.reason;
 }
 
+/// Paths are transferred in groups; one of them has a length that no number holds.
+TEST_F(FitDistribution, APathThatCannotBeTransferredCostsNothingButItself) {
+  report(fleet::solved(teacher_, "shelf", 20, 1));
+  const Distribution without = fitted(quick_key_of(pupil_));
+  Attempt endless = fleet::solved(teacher_, "shelf", 70);
+  Eigen::MatrixXd waypoints = endless.path->waypoints();
+  waypoints(0, 0) = 1e308;
+  waypoints(0, 1) = -1e308;
+  endless.path = Path(waypoints);
+  report({endless});
+  const Distribution with = fitted(quick_key_of(pupil_));
+  EXPECT_EQ(source(with, teacher_).paths, 21U);
+  EXPECT_EQ(source(with, teacher_).paths_used, 20U);
+  EXPECT_NE(with.reason.find("the length of the path is not finite"), std::string::npos)
+      << with.reason;
+  EXPECT_EQ(with.configurations, without.configurations);
+  EXPECT_EQ(with.mixture->means(), without.mixture->means());
+}
+
 TEST_F(FitDistribution, OfMorePathsThanItMayReadEachSourceGivesAsMany) {
   report(fleet::solved(teacher_, "shelf", 90, 1));
   report(fleet::solved(pupil_, "shelf", 10, 200));
