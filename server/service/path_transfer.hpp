@@ -36,7 +36,8 @@ class PathTransfer {
 
   /// \param pair  of the paths' robot and the target.
   /// \param stop  looked at before each group of paths: those that are left have neither path nor
-  /// problem. \return one per path, in their order. A bad path costs nothing but itself.
+  ///              problem.
+  /// \return      one per path, in their order. A bad path costs nothing but itself.
   std::vector<PathOutcome> transfer(std::span<const store::StoredPath> paths,
                                     const transfer::ArmPair& pair, const std::stop_token& stop);
 
