@@ -26,7 +26,7 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   attempt.T_task_base = problem.T_task_base;
   PlanningRecord& record = attempt.record;
   record.outcome = planned.outcome;
-  record.planner = result.planner;
+  record.planner = planned.planner;
   record.planner_options = describe(settings, result);
   record.planning_time_s = result.planning_time_s;
   record.collision_checks = result.collision_checks;

@@ -308,7 +308,8 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   try {
     Planning planning(robot, problem, settings, stop);
     planned.attempted = true;
-    planned.result.planner = name_of(*planner);
+    planned.planner = name_of(*planner);
+    planned.result.planner = planned.planner;
     planning.run(*planner, query.guidance, planned);
   } catch (const Interrupted&) {
     planned.interrupted = true;

@@ -44,6 +44,7 @@ struct QueryGuidance {
 
 struct PlannedProblem {
   ProblemResult result;
+  std::string planner;  ///< its name; what else is to be said of it stands in the result only
   Outcome outcome = Outcome::Failed;
   bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
   bool interrupted = false;  ///< given up because `stop` said so; the rest is then not meaningful

@@ -213,7 +213,7 @@ void read_provenance(const Reader& reader, Distribution& distribution) {
   distribution.robot = reader.at("robot").digest();
   if (const auto placement = reader.find("T_task_base"))
     distribution.T_task_base = placement->pose();
-  distribution.profile = reader.at("profile").text(kMaxLabelBytes);
+  distribution.profile = reader.at("profile").text(kMaxProfileBytes);
   distribution.engines = reader.at("engines").text(kMaxMessageBytes);
   for (const Reader& source : reader.at("sources").elements(kMaxSources))
     distribution.sources.push_back(read_source(source));

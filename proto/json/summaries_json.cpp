@@ -72,7 +72,7 @@ DistributionSummary read_distribution(const Reader& reader) {
   summary.task = reader.at("task").text(kMaxTaskBytes);
   summary.robot = reader.at("robot").digest();
   summary.label = reader.at("label").text(kMaxLabelBytes);
-  summary.profile = reader.at("profile").text(kMaxLabelBytes);
+  summary.profile = reader.at("profile").text(kMaxProfileBytes);
   summary.state = parse_distribution_state(reader.at("state").text(kMaxWordBytes)).value_or_throw();
   summary.reason = reader.at("reason").text(kMaxMessageBytes);
   summary.components = reader.at("components").count();

@@ -16,6 +16,10 @@ namespace kinship::service {
 template <typename Value>
 class LastUsed {
  public:
+  LastUsed() = default;
+  LastUsed(const LastUsed&) = delete;  // the index points into the list
+  LastUsed& operator=(const LastUsed&) = delete;
+
   /// The value, now the last one used; null if there is none. Valid until it is dropped.
   Value* find(const Digest& id) {
     const auto known = index_.find(id);
@@ -33,6 +37,7 @@ class LastUsed {
     bytes_ += bytes;
   }
 
+  /// Drops the value of this id, if there is one.
   void erase(const Digest& id) {
     if (const auto known = index_.find(id); known != index_.end())
       drop(known->second);
@@ -41,8 +46,8 @@ class LastUsed {
   /// Drops the one not used for longest; there is one.
   void drop_oldest() { drop(std::prev(nodes_.end())); }
 
-  std::size_t size() const noexcept { return index_.size(); }
-  std::size_t bytes() const noexcept { return bytes_; }
+  std::size_t size() const noexcept { return index_.size(); }  ///< number of values
+  std::size_t bytes() const noexcept { return bytes_; }        ///< of all of them
 
  private:
   struct Node {

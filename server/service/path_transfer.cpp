@@ -14,7 +14,7 @@
 namespace kinship::service {
 namespace {
 
-constexpr std::size_t kGroup = 16;  // paths that keep the kernels of inverse kinematics busy
+constexpr std::size_t kMostGroup = 16;  // paths that keep the kernels of inverse kinematics busy
 
 /// Pose of the source's base in the target's; exactly the identity if both stand at the same
 /// place up to snapping, so that paths of the same arm are taken over.
@@ -58,15 +58,18 @@ std::vector<PathOutcome> PathTransfer::transfer(std::span<const store::StoredPat
       outcomes[i] = {*known, true, {}};
     else
       unknown.push_back(i);
-  const std::size_t groups = (unknown.size() + kGroup - 1) / kGroup;
+  // Few paths, as a refit has, are shared out; what comes of them does not depend on it.
+  const std::size_t share = (unknown.size() + lanes_.size() - 1) / lanes_.size();
+  const std::size_t size = std::clamp(share, std::size_t{1}, kMostGroup);
+  const std::size_t groups = (unknown.size() + size - 1) / size;
   const std::size_t lanes = std::min(lanes_.size(), groups);
   std::atomic<std::size_t> next = 0;
   density::for_each_part(static_cast<int>(lanes), static_cast<int>(lanes), [&](int part) {
     Lane& own = lane(static_cast<std::size_t>(part));
     for (std::size_t i = next++; i < groups && !stop.stop_requested(); i = next++) {
-      const std::size_t first = i * kGroup;
-      const std::size_t count = std::min(kGroup, unknown.size() - first);
-      transfer_group(paths, std::span(unknown).subspan(first, count), pair, own, outcomes);
+      const std::size_t first = i * size;
+      const std::size_t count = std::min(size, unknown.size() - first);
+      transfer_group(paths, std::span(unknown).subspan(first, count), pair, own, stop, outcomes);
     }
   });
   return outcomes;
@@ -83,7 +86,8 @@ const KnownPath* PathTransfer::find_known(const store::StoredPath& stored) const
 
 void PathTransfer::transfer_group(std::span<const store::StoredPath> paths,
                                   std::span<const std::size_t> group, const transfer::ArmPair& pair,
-                                  Lane& lane, std::vector<PathOutcome>& outcomes) const {
+                                  Lane& lane, const std::stop_token& stop,
+                                  std::vector<PathOutcome>& outcomes) const {
   std::vector<Prepared> prepared;
   for (const std::size_t i : group) {
     try {
@@ -96,6 +100,8 @@ void PathTransfer::transfer_group(std::span<const store::StoredPath> paths,
     transfer_all(paths, prepared, pair, outcomes);
   } catch (const std::exception&) {  // one by one, the one that is to blame is found
     for (const Prepared& one : prepared) {
+      if (stop.stop_requested())
+        return;
       try {
         transfer_all(paths, {&one, 1}, pair, outcomes);
       } catch (const std::exception& exception) {

@@ -57,7 +57,7 @@ class PathTransfer {
   const KnownPath* find_known(const store::StoredPath& stored) const;
   /// \param group  indices of paths.
   void transfer_group(std::span<const store::StoredPath> paths, std::span<const std::size_t> group,
-                      const transfer::ArmPair& pair, Lane& lane,
+                      const transfer::ArmPair& pair, Lane& lane, const std::stop_token& stop,
                       std::vector<PathOutcome>& outcomes) const;
   Prepared prepare(const store::StoredPath& stored, std::size_t index,
                    const transfer::ArmPair& pair, Lane& lane) const;

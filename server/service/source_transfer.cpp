@@ -8,7 +8,9 @@
 namespace kinship::service {
 namespace {
 
-constexpr std::size_t kPathsPerRead = 128;  // bounds what one read transaction holds in memory
+// Bounds what one read transaction holds in memory: megabytes, for paths as planners write them;
+// half a gigabyte, were all of them as long and as wide as a report may be.
+constexpr std::size_t kPathsPerRead = 128;
 
 /// Whether item `index` of `count` is one of the `wanted` that are spread evenly over them.
 bool is_chosen(std::uint64_t index, std::uint64_t count, std::uint64_t wanted) {

@@ -45,7 +45,7 @@ class SourceTransfer {
 
   /// Adds `wanted` of the `selected` paths of a source, spread evenly over their order of arrival.
   /// Bad paths and robots that cannot be read cost nothing but themselves; the summary says so.
-  /// \param stop  looked at between paths: what was transferred until then is incomplete.
+  /// \param stop  looked at between groups of paths: what was transferred until then is incomplete.
   /// \throws Failure(Storage)
   SourceSummary add(const store::ExperienceSummary& experience, std::uint64_t selected,
                     std::uint64_t wanted, const std::stop_token& stop);

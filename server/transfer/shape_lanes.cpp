@@ -186,25 +186,12 @@ void ShapeLanes::end_pulls(Ended& ended) {
   pulled_ = 0;
 }
 
-unsigned ShapeLanes::run_all() {
-  unsigned arrived = 0;
-  while ((reaching_ | settling_ | measuring_ | pulled_) != 0)
-    arrived |= run().arrived;
-  return arrived;
-}
-
-unsigned ShapeLanes::reach(unsigned lanes) {
-  for (int lane = 0; lane < kCount; ++lane)
-    if (has(lanes, lane))
-      begin_step(lane, std::numeric_limits<double>::infinity(), 0);
-  return run_all();
-}
-
 void ShapeLanes::pull(unsigned lanes, int steps) {
   for (int lane = 0; lane < kCount; ++lane)
     if (has(lanes, lane))
       begin_pull(lane, steps);
-  run_all();
+  while ((reaching_ | settling_ | measuring_ | pulled_) != 0)
+    run();
 }
 
 unsigned ShapeLanes::verified(unsigned lanes, const Eigen::MatrixXd& configurations) {

@@ -44,8 +44,7 @@ class ShapeLanes {
   /// Works until a share of the lanes at work have ended, so that others can take their place.
   Ended run();
 
-  /// Does the same for some lanes, from begin to end. \return those that arrived.
-  unsigned reach(unsigned lanes);
+  /// begin_pull for some lanes, with all that follows from it.
   void pull(unsigned lanes, int steps);
 
   /// How far the shape of a redundant arm was from the wanted one at the end of the last pull, m.
@@ -76,7 +75,6 @@ class ShapeLanes {
   /// One step of the lanes that are pulled: measures their shapes and moves on from there.
   void measure();
   void end_pulls(Ended& ended);
-  unsigned run_all();
 
   const ArmPair& pair_;
   const inverse::Solver& solver_;

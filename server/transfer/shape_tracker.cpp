@@ -91,7 +91,7 @@ bool ShapeTracker::take(Walk& walk, const inverse::JointVector& q,
                         const Eigen::Ref<const Eigen::VectorXd>& found) {
   if (!filters_.keep(found))
     return false;
-  Try& made = round_[walk.attempt];
+  Try& made = round_[walk.of_round];
   walk.q = q;
   walk.pose += walk.direction;
   made.along.col(walk.pose) = found;
@@ -103,10 +103,10 @@ bool ShapeTracker::take(Walk& walk, const inverse::JointVector& q,
 std::vector<Walk> ShapeTracker::end(const Walk& walk) {
   --walks_left_;
   if (walk.direction == 0) {
-    const Try& made = round_[walk.attempt];
+    const Try& made = round_[walk.of_round];
     walks_left_ += 2;
-    return {{this, walk.attempt, 1, made.start, made.along.col(made.start)},
-            {this, walk.attempt, -1, made.start, made.along.col(made.start)}};
+    return {{this, walk.of_round, 1, made.start, made.along.col(made.start)},
+            {this, walk.of_round, -1, made.start, made.along.col(made.start)}};
   }
   if (walks_left_ > 0)
     return {};

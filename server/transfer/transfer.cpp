@@ -86,9 +86,9 @@ TransferredPath PathSolutions::stacked(const TransferSummary& summary) const {
 
 /// A path on its way through inverse kinematics.
 struct PathUnderWay {
-  PathUnderWay(std::size_t index_, const Eigen::MatrixXd& waypoints, const PathToTransfer& path,
+  PathUnderWay(std::size_t place, const Eigen::MatrixXd& waypoints, const PathToTransfer& path,
                const ArmPair& pair, const TransferParameters& parameters, std::uint64_t seed)
-      : index(index_),
+      : index(place),
         poses(path_poses(waypoints, pair, path.T_target_source)),
         counted(path.filters),
         tracker(pair, poses, parameters, seed, counted) {}

@@ -22,7 +22,8 @@ namespace kinship::transfer {
 /// \param T_target_source  pose of the source robot's base in the target robot's base:
 ///                         T_task_target^-1 * T_task_source.
 /// \param seed             equal input and seed: equal bytes. A pose's solutions depend on the seed
-///                         and that pose only, not on the path around it.
+///                         and that pose only; whether it is searched with patience depends on the
+///                         poses beside it (uncovered_poses.hpp).
 /// \param filters          asked about every configuration that inverse kinematics found; what they
 ///                         reject is left out and counted. Waypoints that are taken over were free
 ///                         on their robot and are not asked about.
@@ -44,7 +45,7 @@ struct PathToTransfer {
 /// The same for paths of one source robot, in their order. Each becomes what it becomes alone, but
 /// sooner: the kernels of inverse kinematics work on several paths at once. A group of 16 keeps
 /// them busy.
-/// \throws as transfer_path, for the first path that gives a reason.
+/// \throws as transfer_path, for one of the paths that give a reason.
 std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,

@@ -29,7 +29,7 @@ struct TuningOptions {
   double share = 1;  ///< of guided samples; the rest is uniform
   std::uint32_t instances = 30;
   std::uint32_t seeds = 2;
-  std::vector<std::string> targets, sources;  ///< labels; empty: all
+  std::vector<std::string> targets, sources;  ///< labels; empty: all. A source may be kOtherRobots
 };
 
 /// As a source of a tuning run: all robots but the one that plans, together.

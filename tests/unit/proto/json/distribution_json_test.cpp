@@ -1,4 +1,5 @@
 #include "proto/json/distribution_json.hpp"
+#include "proto/types/limits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ Distribution two_components() {
   distribution.id.bytes.fill(0x1a);
   distribution.revision = 3;
   distribution.task = "bin_to_shelf";
-  distribution.profile = "default";
+  distribution.profile = std::string(kMaxProfileBytes, 'p');
   distribution.engines = "transfer 1, density 1";
   distribution.configurations = 400;
   Eigen::MatrixXd means(2, 2);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace kinship::transfer {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
+constexpr int kMostDraws = 10'000;
 
 /// Poses of a Panda by what they cost: e, found at once; h, found with patience only (joints at
 /// their limits); f, out of reach by a few centimetres, as patience finds out.
@@ -24,7 +26,7 @@ class UncoveredPoses : public testing::Test {
   }
 
   Eigen::Isometry3d pose(char kind) {
-    for (;;) {
+    for (int i = 0; i < kMostDraws; ++i) {
       Eigen::VectorXd q = test::random_configuration(arm_, generator_);
       for (Eigen::Index j = 0; kind == 'h' && j < q.size(); ++j)
         q[j] = generator_() % 2 == 0 ? arm_.lower()[j] : arm_.upper()[j];
@@ -36,6 +38,7 @@ class UncoveredPoses : public testing::Test {
       if (at_once == (kind == 'e') && at_all == (kind != 'f'))
         return T;
     }
+    throw std::runtime_error(std::string("no pose of kind ") + kind);
   }
 
   PathPoses path(const std::string& kinds) {
