@@ -1,9 +1,10 @@
 #include "proto/json/distribution_json.hpp"
-#include "proto/types/limits.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "proto/types/limits.hpp"
 
 namespace kinship::json {
 namespace {
