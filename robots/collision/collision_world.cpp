@@ -14,20 +14,29 @@ class CollisionWorld::Implementation {
     pairs_ = moving_pairs(bodies_, robot.parts().unchecked, surroundings);
     T_base_bodies_ = standing_poses(bodies_);
     for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
-      if (!standing_contact_ && touching(pair))
-        standing_contact_ = pair;
+      if (touching(pair))
+        standing_contacts_.push_back(pair);
   }
 
   std::optional<BodyPair> first_contact(const Eigen::Ref<const Eigen::VectorXd>& q) {
-    if (!q.allFinite())
-      throw std::invalid_argument("CollisionWorld: q is not finite");
-    if (standing_contact_)
-      return standing_contact_;
+    require_finite(q);
+    if (!standing_contacts_.empty())
+      return standing_contacts_.front();
     place_bodies(robot_.parts().chain, bodies_, q, T_base_bodies_);
     for (const BodyPair& pair : pairs_)
       if (touching(pair))
         return pair;
     return std::nullopt;
+  }
+
+  std::vector<BodyPair> contacts(const Eigen::Ref<const Eigen::VectorXd>& q) {
+    require_finite(q);
+    std::vector<BodyPair> found = standing_contacts_;
+    place_bodies(robot_.parts().chain, bodies_, q, T_base_bodies_);
+    for (const BodyPair& pair : pairs_)
+      if (touching(pair))
+        found.push_back(pair);
+    return found;
   }
 
   std::pair<std::string, std::string> names(const BodyPair& pair) const {
@@ -37,6 +46,10 @@ class CollisionWorld::Implementation {
   std::uint64_t checks = 0;
 
  private:
+  static void require_finite(const Eigen::Ref<const Eigen::VectorXd>& q) {
+    if (!q.allFinite())
+      throw std::invalid_argument("CollisionWorld: q is not finite");
+  }
   bool touching(const BodyPair& pair) const {
     const auto [a, b] = pair;
     return touch(bodies_[a].solid, T_base_bodies_[a], bodies_[b].solid, T_base_bodies_[b]);
@@ -46,7 +59,7 @@ class CollisionWorld::Implementation {
   std::vector<Body> bodies_;
   std::vector<Eigen::Isometry3d> T_base_bodies_;  // one per body; moving ones change per check
   std::vector<BodyPair> pairs_;
-  std::optional<BodyPair> standing_contact_;  // makes every configuration collide
+  std::vector<BodyPair> standing_contacts_;  // each makes every configuration collide
 };
 
 CollisionWorld::CollisionWorld(const RobotSolids& robot, const Surroundings& surroundings)
@@ -71,6 +84,14 @@ std::optional<std::pair<std::string, std::string>> CollisionWorld::find_contact(
   if (!pair)
     return std::nullopt;
   return implementation_->names(*pair);
+}
+
+std::set<std::pair<std::string, std::string>> CollisionWorld::find_contacts(
+    const Eigen::Ref<const Eigen::VectorXd>& q) {
+  std::set<std::pair<std::string, std::string>> names;
+  for (const BodyPair& pair : implementation_->contacts(q))
+    names.insert(implementation_->names(pair));
+  return names;
 }
 
 std::uint64_t CollisionWorld::checks() const noexcept { return implementation_->checks; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,10 @@ class CollisionWorld {
 
   /// Names of two things that touch at q, for messages; empty if none do. Counts no check.
   std::optional<std::pair<std::string, std::string>> find_contact(
+      const Eigen::Ref<const Eigen::VectorXd>& q);
+
+  /// Names of all pairs of things that touch at q. Counts no check.
+  std::set<std::pair<std::string, std::string>> find_contacts(
       const Eigen::Ref<const Eigen::VectorXd>& q);
 
   std::uint64_t checks() const noexcept;

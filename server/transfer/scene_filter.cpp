@@ -1,8 +1,8 @@
 #include "server/transfer/scene_filter.hpp"
 
 #include <map>
-#include <optional>
 #include <random>
+#include <vector>
 
 #include "robots/collision/collision_world.hpp"
 #include "server/transfer/collision_filter.hpp"
@@ -44,18 +44,19 @@ Eigen::VectorXd random_configuration(const kinematics::Chain& robot, std::mt1993
   return q;
 }
 
-/// The pair that is found first in almost every random configuration, if there is one. A pair that
-/// always touches may hide behind another that is found first: it is found once that one is
-/// allowed.
-std::optional<Names> always_found(const kinematics::Chain& robot,
-                                  collision::CollisionWorld& world) {
+/// The pairs that touch in almost every random configuration, whatever else does.
+std::vector<Names> always_touching(const kinematics::Chain& robot,
+                                   collision::CollisionWorld world) {
   std::mt19937_64 generator(kSeed);
-  std::map<Names, int> found;
+  std::map<Names, int> touched;
   for (int sample = 0; sample < kSamples; ++sample)
-    if (const auto contact = world.find_contact(random_configuration(robot, generator)))
-      if (++found[*contact] >= kAlways)
-        return contact;
-  return std::nullopt;
+    for (const Names& names : world.find_contacts(random_configuration(robot, generator)))
+      ++touched[names];
+  std::vector<Names> always;
+  for (const auto& [names, count] : touched)
+    if (count >= kAlways)
+      always.push_back(names);
+  return always;
 }
 
 }  // namespace
@@ -67,15 +68,10 @@ SceneFilter scene_filter(const kinematics::Chain& robot, const geometry::RobotSh
     return filter;
   const geometry::RobotShapes body = without_self_collision(shapes, robot.links().size());
   collision::Surroundings surroundings = surroundings_of(robot, scene, T_task_base);
-  const std::size_t most = body.shapes.size() * (scene.objects.size() + scene.held.size() + 1);
-  while (filter.always_touching.size() < most) {
-    collision::CollisionWorld world(robot, body, surroundings);
-    const std::optional<Names> names = always_found(robot, world);
-    if (!names)
-      break;
-    filter.always_touching.push_back(*names);
-    surroundings.allowed_collisions.push_back(*names);
-  }
+  filter.always_touching =
+      always_touching(robot, collision::CollisionWorld(robot, body, surroundings));
+  for (const Names& names : filter.always_touching)
+    surroundings.allowed_collisions.push_back(names);
   filter.keep = collision_filter(robot, body, surroundings);
   return filter;
 }

@@ -52,6 +52,6 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
                                             std::uint64_t seed);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kTransferVersion = 9;
+inline constexpr int kTransferVersion = 10;
 
 }  // namespace kinship::transfer

@@ -14,7 +14,7 @@ PlannedProblem solved() {
   planned.result.collision_checks = 1234;
   planned.result.shortcut_checks = 300;
   planned.result.planning_time_s = 0.5;
-  planned.result.planner = "CBiRRT2";
+  planned.planner = "CBiRRT2";
   planned.result.time_limit_s = 10;
   planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
   return planned;

@@ -97,6 +97,18 @@ TEST(SceneFilter, WhatAlwaysTouchesIsNamedAndNotLookedAt) {
   EXPECT_TRUE(drowned.keep(kLeft));
 }
 
+TEST(SceneFilter, WhatAlwaysTouchesDoesNotHideBehindWhatSometimesDoes) {
+  const Beam beam;
+  // The upper link turns in the hub; the fore link, which is looked at first, often meets the wall.
+  const SceneObject hub{"hub", BoxShape{{0.05, 0.05, 0.02}}, at(0, 0, 0.1)};
+  const SceneObject wall{"wall", BoxShape{{0.1, 4, 1}}, at(0.6, 0, 0)};
+  const SceneFilter filter = beam.filter({{hub, wall}, {}, {}});
+  EXPECT_EQ(filter.always_touching,
+            (std::vector<std::pair<std::string, std::string>>{{"upper", "hub"}}));
+  EXPECT_FALSE(filter.keep(kAhead));
+  EXPECT_TRUE(filter.keep(kLeft));
+}
+
 TEST(SceneFilter, WithoutShapesOrObjectsThereIsNone) {
   const Beam beam;
   EXPECT_FALSE(beam.filter({}).keep);
