@@ -31,7 +31,7 @@ Examples:
   kinship-experiments planar --out build/tuning --tuning --overshoot 1.5 --share 0.9
       the same on tuning instances, to choose options by
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist.)";
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist, 4 its kinshipd did not start.)";
 
 struct CommandLine {
   ShelfOptions shelf;

@@ -1,11 +1,35 @@
 #include "client/experiments/study_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <string>
 
 #include "client/arguments/profile_options.hpp"
+#include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
 namespace {
+
+constexpr std::uint32_t kDomain = 60, kMostDomain = 230;
+
+/// That of the environment, or kDomain. The commands share one value: CLI11 would write what the
+/// environment says over what the command line of one of them said.
+/// \throws Failure(InvalidInput)
+std::uint32_t usual_domain() {
+  const char* const text = std::getenv("KINSHIP_DOMAIN");
+  if (text == nullptr || *text == '\0')
+    return kDomain;
+  std::uint32_t domain = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, domain);
+  if (error != std::errc() || stopped != end || domain > kMostDomain)
+    throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
+                                               "' is not a DDS domain (0 to " +
+                                               std::to_string(kMostDomain) + ")");
+  return domain;
+}
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.folder, "folder of learning sets, results and the store")
@@ -14,9 +38,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->capture_default_str();
   command.add_option("--kinshipd", options.kinshipd,
                      "program of the server that is started (default: beside this program)");
-  command.add_option("--domain", options.domain, "DDS domain of that server")
-      ->envname("KINSHIP_DOMAIN")
-      ->check(CLI::Range(0, 230))
+  command
+      .add_option("--domain", options.domain,
+                  "DDS domain of that server (default: KINSHIP_DOMAIN, or 60)")
+      ->check(CLI::Range(std::uint32_t{0}, kMostDomain))
       ->capture_default_str();
   command.add_option("--threads", options.threads, "instances that are planned side by side")
       ->check(CLI::Range(1, 64))
@@ -71,8 +96,7 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
 
 void add_study_commands(CLI::App& app, StudyOptions& options) {
   options.run.models = "robots/models";
-  constexpr std::uint32_t kDomain = 60;
-  options.run.domain = kDomain;
+  options.run.domain = usual_domain();
   for (const Study& study : studies()) {
     CLI::App* const command = app.add_subcommand(study.name, study.purpose);
     add_run_options(*command, options.run);

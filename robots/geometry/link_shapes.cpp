@@ -48,11 +48,12 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   return T;
 }
 
-/// The shape of one collision element; nothing if the element is empty or its mesh left out.
+/// The shape of one collision element; nothing if its mesh is left out.
 Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision, int link,
                                                 const MeshSource& meshes) {
+  // urdfdom goes on without the geometry that it cannot read: a solid must not vanish like that.
   if (!collision.geometry)
-    return std::optional<LinkShape>();
+    return invalid("its collision geometry is missing or cannot be read");
   LinkShape result;
   result.link = link;
   result.T_link_shape = to_isometry(collision.origin);

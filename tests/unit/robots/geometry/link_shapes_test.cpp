@@ -146,6 +146,13 @@ TEST(ReadShapes, RefusesSizesThatAreNotPositive) {
             "link 'arm': sphere radius of -0.1 m is not between 0 and 1000 m");
 }
 
+TEST(ReadShapes, RefusesGeometryThatCannotBeRead) {
+  const auto shapes = read(describe(collision("<cylinder radius='abc' length='1'/>")));
+  ASSERT_FALSE(shapes);
+  EXPECT_EQ(shapes.error().message,
+            "link 'arm': its collision geometry is missing or cannot be read");
+}
+
 TEST(ReadShapes, TurnsNeverCollidingNamesIntoSortedIndices) {
   RobotDescription description = describe("");
   description.never_colliding = {{"arm", "base"}, {"base", "arm"}, {"arm", "arm"}};
