@@ -48,12 +48,11 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   return T;
 }
 
-/// The shape of one collision element; nothing if its mesh is left out.
+/// The shape of one collision element; nothing if the element is empty or its mesh left out.
 Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision, int link,
                                                 const MeshSource& meshes) {
-  // urdfdom goes on without the geometry that it cannot read: a solid must not vanish like that.
   if (!collision.geometry)
-    return invalid("its collision geometry is missing or cannot be read");
+    return std::optional<LinkShape>();
   LinkShape result;
   result.link = link;
   result.T_link_shape = to_isometry(collision.origin);
@@ -135,9 +134,13 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& /*uri*
 
 Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
                                 const MeshSource& meshes) {
-  const auto model = kinematics::parse_urdf(description.urdf);
+  std::string complaints;
+  const auto model = kinematics::parse_urdf(description.urdf, &complaints);
   if (!model)
     return model.error();
+  // urdfdom goes on without the element that it cannot read: a solid must not vanish like that.
+  if (complaints.find("collision element") != std::string::npos)
+    return invalid("URDF: " + complaints);
   auto shapes = read_links(**model, chain, meshes);
   if (!shapes)
     return shapes.error();

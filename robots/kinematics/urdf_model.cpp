@@ -6,6 +6,7 @@
 
 #include <exception>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "proto/types/limits.hpp"
@@ -86,25 +87,27 @@ std::optional<Error> check_tree(const urdf::ModelInterface& model) {
 
 }  // namespace
 
-Result<UrdfModel> parse_urdf(const std::string& text) {
+Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
   if (const auto error = check_markup(text))
     return *error;
-  std::string complaints;
+  std::string errors;
   urdf::ModelInterfaceSharedPtr model;
   try {
-    const CollectErrors collect(complaints);
+    const CollectErrors collect(errors);
     model = urdf::parseURDF(text);
   } catch (const std::exception& exception) {
-    complaints += complaints.empty() ? exception.what() : std::string("; ") + exception.what();
+    errors += errors.empty() ? exception.what() : std::string("; ") + exception.what();
   }
   if (model == nullptr || model->getRoot() == nullptr)
-    return invalid(complaints.empty() ? "not understood" : complaints);
+    return invalid(errors.empty() ? "not understood" : errors);
   if (const auto error = check_names("link", model->links_))
     return *error;
   if (const auto error = check_names("joint", model->joints_))
     return *error;
   if (const auto error = check_tree(*model))
     return *error;
+  if (complaints != nullptr)
+    *complaints = std::move(errors);
   return UrdfModel(model);
 }
 

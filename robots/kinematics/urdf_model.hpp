@@ -15,8 +15,11 @@ namespace kinship::kinematics {
 using UrdfModel = std::shared_ptr<const urdf::ModelInterface>;
 
 /// Parses URDF text from outside with urdfdom, without output and without throwing.
+/// \param complaints  if not null: what the parser said about parts that it left out of a model
+/// that
+///                    it gave all the same.
 /// \return a model whose links form one tree and whose names have at most kMaxLinkNameBytes;
 ///         InvalidInput or TooLarge with the parser's own message otherwise.
-Result<UrdfModel> parse_urdf(const std::string& text);
+Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints = nullptr);
 
 }  // namespace kinship::kinematics

@@ -149,8 +149,9 @@ TEST(ReadShapes, RefusesSizesThatAreNotPositive) {
 TEST(ReadShapes, RefusesGeometryThatCannotBeRead) {
   const auto shapes = read(describe(collision("<cylinder radius='abc' length='1'/>")));
   ASSERT_FALSE(shapes);
-  EXPECT_EQ(shapes.error().message,
-            "link 'arm': its collision geometry is missing or cannot be read");
+  EXPECT_EQ(
+      shapes.error().message,
+      "URDF: radius [abc] is not a valid float; Could not parse collision element for Link [arm]");
 }
 
 TEST(ReadShapes, TurnsNeverCollidingNamesIntoSortedIndices) {
