@@ -5,6 +5,7 @@
 #include <string>
 
 #include "proto/json/robot_answers_json.hpp"
+#include "proto/types/limits.hpp"
 
 namespace kinship::json {
 namespace {
@@ -61,8 +62,9 @@ TEST(SummariesJson, PathIsReadBack) {
 
 TEST(SummariesJson, DistributionIsReadBack) {
   expect_same_text_again(
-      DistributionSummary{digest_of(6), 2, "bin_to_shelf", digest_of(7), "ur10e", "default",
-                          DistributionState::Failed, "nothing within reach", 0, 0, 120, 99},
+      DistributionSummary{digest_of(6), 2, "bin_to_shelf", digest_of(7), "ur10e",
+                          std::string(kMaxProfileBytes, 'p'), DistributionState::Failed,
+                          "nothing within reach", 0, 0, 120, 99},
       distribution_summary_from_json);
 }
 
