@@ -20,7 +20,17 @@ if(KINSHIP_SANITIZE)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
 endif()
 
-include(${CMAKE_CURRENT_LIST_DIR}/precompiled_headers.cmake)
+# A quarter of all lines are includes, and most of a compilation is reading them: several sources of a target compile as
+# one. So names in the anonymous namespaces of a library must differ. Sources with options of their own (kernels) compile
+# alone. Who edits one file all day turns it off; .ci/tidy reads each source by itself and finds what it forgot to include.
+option(KINSHIP_UNITY "Compile the sources of a target together" ON)
+function(kinship_unite target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${KINSHIP_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+  if(KINSHIP_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # A source is an include there, and its anonymous namespaces look like a header's.
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
 
 # kinship_library(NAME SOURCES a.cpp ... DEPENDS kinship::types ... PRIVATE_DEPENDS Some::Library ...)
 #
@@ -32,13 +42,7 @@ function(kinship_library name)
     add_library(kinship_${name} STATIC ${arg_SOURCES})
     target_link_libraries(kinship_${name} PUBLIC kinship_options ${arg_DEPENDS}
                           PRIVATE ${arg_PRIVATE_DEPENDS})
-    if("CLI11::CLI11" IN_LIST arg_DEPENDS OR "CLI11::CLI11" IN_LIST arg_PRIVATE_DEPENDS
-       OR "kinship::arguments" IN_LIST arg_DEPENDS OR "kinship::arguments" IN_LIST arg_PRIVATE_DEPENDS
-       OR "nlohmann_json::nlohmann_json" IN_LIST arg_PRIVATE_DEPENDS)
-      kinship_use_precompiled(kinship_${name} kinship_text_headers)
-    else()
-      kinship_use_precompiled(kinship_${name} kinship_headers)
-    endif()
+    kinship_unite(kinship_${name})
   else()
     add_library(kinship_${name} INTERFACE)
     target_link_libraries(kinship_${name} INTERFACE kinship_options ${arg_DEPENDS})
@@ -51,7 +55,6 @@ function(kinship_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS})
-  kinship_use_precompiled(${name} kinship_headers)
 endfunction()
 
 # Defines KINSHIP_SOURCE_DIR and KINSHIP_BIN_DIR for those of the sources that name them. The others compile to the same
@@ -85,7 +88,7 @@ function(kinship_test name)
   kinship_tell_places(${arg_SOURCES})
   # What is tested is fully optimized, the tests themselves need not be: a third of their build time.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  kinship_use_precompiled(${name} kinship_test_headers)
+  kinship_unite(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   if(NOT TARGET tests_${arg_LABEL})
     add_custom_target(tests_${arg_LABEL})

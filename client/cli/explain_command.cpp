@@ -13,7 +13,7 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kCommand = "distributions explain";
+constexpr const char* kExplain = "distributions explain";
 
 /// The generation of a robot's experience that the fit read; empty if it read none.
 std::string fitted_generation(const Distribution& distribution, const Digest& robot) {
@@ -55,10 +55,10 @@ void print_explanation(const Explanation& explanation, std::ostream& out) {
 int explain_distribution(link::Client& server, const DistributionWish& wish, bool json,
                          std::ostream& out, std::ostream& err) {
   int code = kDone;
-  const std::string id = id_of_wish(server, wish, kCommand, true, err, code);
+  const std::string id = id_of_wish(server, wish, kExplain, true, err, code);
   if (code != kDone)
     return code;
-  const auto rows = show_rows(server, AdminVerb::ExplainDistribution, id, kCommand, err, code);
+  const auto rows = show_rows(server, AdminVerb::ExplainDistribution, id, kExplain, err, code);
   if (code != kDone)
     return code;
   if (json) {
@@ -67,7 +67,7 @@ int explain_distribution(link::Client& server, const DistributionWish& wish, boo
   }
   const auto explanation = json::explanation_from_json(rows.front());
   if (!explanation)
-    return refuse(kCommand, {ErrorCode::Internal, explanation.error().message}, err);
+    return refuse(kExplain, {ErrorCode::Internal, explanation.error().message}, err);
   print_explanation(*explanation, out);
   return kDone;
 }

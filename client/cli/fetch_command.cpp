@@ -18,7 +18,7 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kCommand = "distributions fetch";
+constexpr const char* kFetch = "distributions fetch";
 
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {
@@ -30,7 +30,7 @@ int print_samples(const Distribution& distribution, const FetchOptions& options,
   for (std::uint64_t i = 0; i < options.samples; ++i) {
     const auto q = sampler.sample(generator);
     if (!q) {
-      err << kCommand << ": the mixture lies outside the joint limits\n";
+      err << kFetch << ": the mixture lies outside the joint limits\n";
       return kFailed;
     }
     for (Eigen::Index joint = 0; joint < q->size(); ++joint)
@@ -76,7 +76,7 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 }
 
 /// How the poses of each source became configurations.
-void print_transfer(const Distribution& distribution, std::ostream& out) {
+void print_source_transfers(const Distribution& distribution, std::ostream& out) {
   Table table({"SOURCE", "POSES SOLVED", "TRACKS KEPT", "THROUGH", "RANDOM", "SELF-COLLIDING",
                "IN RECORDED SCENE", "PATHS WITH SCENE"});
   for (const Source& source : distribution.sources)
@@ -165,13 +165,13 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
                    std::to_string(source.configurations), number_text(source.mass, kMassDigits)});
   table.print(out);
   out << '\n';
-  print_transfer(distribution, out);
+  print_source_transfers(distribution, out);
 }
 
 int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,
                        std::ostream& err) {
   int code = kDone;
-  const auto distribution = fetch_wish(server, options.wish, kCommand, false, err, code);
+  const auto distribution = fetch_wish(server, options.wish, kFetch, false, err, code);
   if (!distribution)
     return code;
   if (options.samples > 0)

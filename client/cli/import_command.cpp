@@ -18,7 +18,7 @@
 namespace kinship::cli {
 namespace {
 
-constexpr const char* kCommand = "paths import";
+constexpr const char* kImport = "paths import";
 constexpr std::size_t kHeldBytes = 8 * kMaxBatchBytes;  // before they are handed over
 
 struct Counts {
@@ -71,7 +71,7 @@ class Import {
  private:
   void refuse_line(std::size_t number, const std::string& why) {
     clear_progress();
-    err_ << kCommand << ": line " << number << ": " << why << '\n';
+    err_ << kImport << ": line " << number << ": " << why << '\n';
     ++counts_.refused;
   }
 
@@ -90,7 +90,7 @@ class Import {
     labels_.insert_or_assign(description.label, reply->robot);
     if (!reply->message.empty()) {
       clear_progress();
-      err_ << kCommand << ": line " << number << ": " << reply->message << '\n';
+      err_ << kImport << ": line " << number << ": " << reply->message << '\n';
     }
   }
 
@@ -197,7 +197,7 @@ int import_paths(link::Client& server, const ImportOptions& options, std::istrea
     err << "\r\033[K" << std::flush;
   print(import.counts(), options.json, out);
   if (import.end())
-    return refuse(kCommand, *import.end(), err);
+    return refuse(kImport, *import.end(), err);
   return import.counts().refused > 0 ? kFailed : kDone;
 }
 

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <random>
 
+#include "client/cli/admin_rows.hpp"
 #include "client/cli/exit_code.hpp"
 #include "client/cli/robot_geometry.hpp"
 #include "client/cli/robot_text.hpp"
@@ -29,11 +30,6 @@ double cpu_time_s() {
   std::timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-int refuse(const char* command, const Error& error, std::ostream& err) {
-  err << command << ": " << error.message << '\n';
-  return exit_code(error.code);
 }
 
 Error in_line(const std::filesystem::path& file, std::size_t number, const Error& error) {

@@ -15,7 +15,8 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr double kTimeLimit_s = 60;  // far beyond what the checks take: checks end a query first
+constexpr double kShelfTimeLimit_s =
+    60;  // far beyond what the checks take: checks end a query first
 
 /// Links that move with the tip hold the box; links before the second joint stand on the table.
 void add_touching_links(const kinematics::Chain& chain, AttachedObject& box, Problem& problem) {
@@ -70,7 +71,7 @@ std::optional<Problem> try_draw(const models::LoadedRobot& robot,
   problem.T_task_base = T_task_base;
   problem.scene = instance.scene;
   problem.T_task_goal = instance.T_task_place;
-  problem.time_limit_s = kTimeLimit_s;
+  problem.time_limit_s = kShelfTimeLimit_s;
   problem.seed = planner_seed(key);
   AttachedObject box{"box",
                      robot.chain.tip_link(),

@@ -15,13 +15,6 @@ namespace {
 
 constexpr double kClose = 1;  // Bhattacharyya distance
 
-Mixture widened(const Mixture& mixture) {
-  std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
-  for (Eigen::MatrixXd& covariance : covariances)
-    covariance.diagonal().array() += kGateVariance;
-  return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
-}
-
 double half_log_determinant(const Eigen::MatrixXd& factor) {
   return factor.diagonal().array().log().sum();
 }

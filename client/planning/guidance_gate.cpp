@@ -11,9 +11,6 @@
 #include "proto/mixture/cholesky.hpp"
 
 namespace kinship::planning {
-namespace {
-
-constexpr double kTurn = 2 * M_PI;
 
 Mixture widened(const Mixture& mixture) {
   std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
@@ -21,6 +18,8 @@ Mixture widened(const Mixture& mixture) {
     covariance.diagonal().array() += kGateVariance;
   return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
 }
+
+namespace {
 
 /// Measures many configurations against one mixture.
 class Ruler {
@@ -37,7 +36,7 @@ class Ruler {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
       for (Eigen::Index i = 0; i < offset.size(); ++i)
         if (turning_[static_cast<std::size_t>(i)])
-          offset[i] = std::remainder(offset[i], kTurn);
+          offset[i] = std::remainder(offset[i], 2 * M_PI);
       factors_[mixture_.covariance_index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
       nearest = std::min(nearest, offset.squaredNorm());
     }

@@ -14,6 +14,9 @@ inline constexpr double kGateDistance = 60;
 /// no wall. With it kGateDistance was found not to fire on good distributions.
 inline constexpr double kGateVariance = 0.05 * 0.05;
 
+/// The mixture with kGateVariance added to each variance.
+Mixture widened(const Mixture& mixture);
+
 /// How far a query is from what a distribution knows: squared Mahalanobis distances to the nearest
 /// component, dimensionless, its variances widened by kGateVariance.
 struct QueryDistance {

@@ -8,12 +8,12 @@
 namespace kinship::planning {
 namespace {
 
-constexpr double kTolerance = 1e-9;  // joint units
+constexpr double kStepRounding = 1e-9;  // joint units
 
 /// Number of equal parts of at most `step` that a distance is cut into.
 Eigen::Index parts(double distance, double step) {
   return std::max<Eigen::Index>(
-      1, static_cast<Eigen::Index>(std::ceil((distance - kTolerance) / step)));
+      1, static_cast<Eigen::Index>(std::ceil((distance - kStepRounding) / step)));
 }
 
 void check_arguments(const Eigen::MatrixXd& waypoints, double step) {
@@ -28,7 +28,7 @@ bool continues(const Eigen::MatrixXd& waypoints, Eigen::Index first, Eigen::Inde
   const Eigen::Index count = last - first;
   const Eigen::VectorXd expected = waypoints.col(first) + static_cast<double>(count) * stride;
   const double distance = (waypoints.col(last) - waypoints.col(first)).norm();
-  return (waypoints.col(last) - expected).norm() <= kTolerance && parts(distance, step) == count;
+  return (waypoints.col(last) - expected).norm() <= kStepRounding && parts(distance, step) == count;
 }
 
 Eigen::MatrixXd without_repetitions(const Eigen::MatrixXd& waypoints) {

@@ -116,7 +116,7 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
     attempt.scene = read_scene(scene[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = check(attempt))
+  if (const auto error = codec::check(attempt))
     return *error;
   return attempt;
 }

@@ -9,8 +9,6 @@
 namespace kinship::json {
 namespace {
 
-constexpr std::size_t kMaxWordBytes = 64;
-
 Explanation read_explanation(const Reader& reader) {
   Explanation explanation;
   explanation.distribution =

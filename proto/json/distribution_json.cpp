@@ -16,8 +16,6 @@
 namespace kinship::json {
 namespace {
 
-constexpr std::size_t kMaxWordBytes = 64;
-
 OrderedJson source_object(const Source& source) {
   OrderedJson object;
   object["robot"] = source.robot.hex();

@@ -14,7 +14,6 @@ namespace kinship::json {
 namespace {
 
 constexpr std::size_t kMaxAttached = 64;
-constexpr std::size_t kMaxWordBytes = 64;
 constexpr double kMaxTimeLimit = 86400;  // s
 
 void read_goal(const Reader& reader, Problem& problem) {

@@ -7,12 +7,6 @@
 #include "proto/types/names.hpp"
 
 namespace kinship::json {
-namespace {
-
-constexpr std::size_t kMaxWordBytes = 64;
-
-}  // namespace
-
 OrderedJson record_object(const PlanningRecord& record) {
   OrderedJson object;
   object["outcome"] = to_text(record.outcome);

@@ -11,13 +11,11 @@
 namespace kinship::json {
 namespace {
 
-constexpr std::size_t kMaxWordBytes = 64;
-
 std::uint32_t read_count32(const Reader& reader) {
   return static_cast<std::uint32_t>(reader.count(std::numeric_limits<std::uint32_t>::max()));
 }
 
-RobotSummary read_robot(const Reader& reader) {
+RobotSummary read_robot_summary(const Reader& reader) {
   RobotSummary summary;
   summary.robot = reader.at("robot").digest();
   summary.label = reader.at("label").text(kMaxLabelBytes);
@@ -31,7 +29,7 @@ RobotSummary read_robot(const Reader& reader) {
   return summary;
 }
 
-TaskSummary read_task(const Reader& reader) {
+TaskSummary read_task_summary(const Reader& reader) {
   TaskSummary summary;
   summary.task = reader.at("task").text(kMaxTaskBytes);
   summary.paths = reader.at("paths").count();
@@ -48,7 +46,7 @@ TaskSummary read_task(const Reader& reader) {
   return summary;
 }
 
-PathSummary read_path(const Reader& reader) {
+PathSummary read_path_summary(const Reader& reader) {
   PathSummary summary;
   summary.report_uuid = reader.at("report_uuid").uuid();
   summary.robot = reader.at("robot").digest();
@@ -65,7 +63,7 @@ PathSummary read_path(const Reader& reader) {
   return summary;
 }
 
-DistributionSummary read_distribution(const Reader& reader) {
+DistributionSummary read_distribution_summary(const Reader& reader) {
   DistributionSummary summary;
   summary.id = reader.at("id").digest();
   summary.revision = reader.at("revision").count();
@@ -201,19 +199,19 @@ std::string to_json(const ServerStatus& status) {
 }
 
 Result<RobotSummary> robot_summary_from_json(std::string_view text) {
-  return read_document(text, "robot", read_robot);
+  return read_document(text, "robot", read_robot_summary);
 }
 
 Result<TaskSummary> task_summary_from_json(std::string_view text) {
-  return read_document(text, "task", read_task);
+  return read_document(text, "task", read_task_summary);
 }
 
 Result<PathSummary> path_summary_from_json(std::string_view text) {
-  return read_document(text, "path", read_path);
+  return read_document(text, "path", read_path_summary);
 }
 
 Result<DistributionSummary> distribution_summary_from_json(std::string_view text) {
-  return read_document(text, "distribution", read_distribution);
+  return read_document(text, "distribution", read_distribution_summary);
 }
 
 Result<ServerStatus> server_status_from_json(std::string_view text) {

@@ -23,6 +23,11 @@ struct Error {
   std::string message;
 };
 
+/// The error of a value from outside that breaks a rule.
+inline Error invalid_input(std::string message) {
+  return {ErrorCode::InvalidInput, std::move(message)};
+}
+
 /// Ends the current request; caught once, in the dispatcher or in main.
 class Failure : public std::runtime_error {
  public:

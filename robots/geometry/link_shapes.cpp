@@ -13,8 +13,6 @@
 namespace kinship::geometry {
 namespace {
 
-Error invalid(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
-
 std::optional<Shape> to_shape(const urdf::Geometry& geometry) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
     return BoxShape{{box->dim.x, box->dim.y, box->dim.z}};
@@ -35,7 +33,7 @@ Result<std::optional<FittedMesh>> read_fitted(const urdf::Mesh& mesh, const Mesh
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
   auto fitted = fit_mesh(scale.asDiagonal() * **corners);
   if (!fitted)
-    return invalid("mesh '" + mesh.filename + "': " + fitted.error().message);
+    return invalid_input("mesh '" + mesh.filename + "': " + fitted.error().message);
   return std::optional<FittedMesh>(*std::move(fitted));
 }
 
@@ -69,12 +67,12 @@ Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision
   } else if (const auto shape = to_shape(*collision.geometry)) {
     result.shape = *shape;
   } else {
-    return invalid("its collision geometry is of no known kind");
+    return invalid_input("its collision geometry is of no known kind");
   }
   if (const auto why = broken_rule(result.shape))
-    return invalid(*why);
+    return invalid_input(*why);
   if (!result.T_link_shape.matrix().allFinite())
-    return invalid("collision origin is not finite");
+    return invalid_input("collision origin is not finite");
   return std::optional<LinkShape>(result);
 }
 
@@ -85,7 +83,7 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
   for (const auto& [name, link] : model.links_) {
     const int index = chain.find_link(name);
     if (index < 0)
-      return invalid("link '" + name + "' of the URDF is not a link of the chain");
+      return invalid_input("link '" + name + "' of the URDF is not a link of the chain");
     for (const auto& collision : link->collision_array) {
       if (!collision)
         continue;
@@ -102,8 +100,8 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
 }
 
 Error no_such_link(const std::string& first, const std::string& second, const std::string& name) {
-  return invalid("never-colliding pair ('" + first + "', '" + second + "'): no link named '" +
-                 name + "'");
+  return invalid_input("never-colliding pair ('" + first + "', '" + second + "'): no link named '" +
+                       name + "'");
 }
 
 Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& description,
@@ -125,7 +123,7 @@ Result<std::vector<std::pair<int, int>>> read_pairs(const RobotDescription& desc
 }  // namespace
 
 Result<std::optional<Eigen::Matrix3Xd>> refuse_mesh(const std::string& uri) {
-  return invalid("mesh '" + uri + "' is out of reach here");
+  return invalid_input("mesh '" + uri + "' is out of reach here");
 }
 
 Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& /*uri*/) {
@@ -140,7 +138,7 @@ Result<RobotShapes> read_shapes(const RobotDescription& description, const kinem
     return model.error();
   // urdfdom goes on without the element that it cannot read: a solid must not vanish like that.
   if (complaints.find("collision element") != std::string::npos)
-    return invalid("URDF: " + complaints);
+    return invalid_input("URDF: " + complaints);
   auto shapes = read_links(**model, chain, meshes);
   if (!shapes)
     return shapes.error();

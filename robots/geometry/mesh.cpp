@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kFormats = {"stl", "obj", "dae"};
 
-Error invalid(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
-
 /// The corners of a scene's meshes where its nodes put them.
 class Corners {
  public:
@@ -79,7 +77,7 @@ Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view form
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (std::find(kFormats.begin(), kFormats.end(), ending) == kFormats.end())
-    return invalid("format '" + std::string(format) + "' is not one of stl, obj, dae");
+    return invalid_input("format '" + std::string(format) + "' is not one of stl, obj, dae");
   if (bytes.size() > kMaxMeshBytes)
     return Error{ErrorCode::TooLarge,
                  std::to_string(bytes.size()) + " bytes exceed " + std::to_string(kMaxMeshBytes)};
@@ -88,17 +86,18 @@ Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view form
   const aiScene* const scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str());
   if (scene == nullptr)
-    return invalid(std::string("cannot be read as ") + ending + ": " + importer.GetErrorString());
+    return invalid_input(std::string("cannot be read as ") + ending + ": " +
+                         importer.GetErrorString());
   const Corners corners(*scene);
   if (corners.triangles() > kMaxMeshTriangles)
     return Error{ErrorCode::TooLarge, std::to_string(corners.triangles()) +
                                           " triangles or more exceed " +
                                           std::to_string(kMaxMeshTriangles)};
   if (corners.triangles() == 0)
-    return invalid("holds no triangles");
+    return invalid_input("holds no triangles");
   Eigen::Matrix3Xd matrix = corners.matrix();
   if (!matrix.allFinite())
-    return invalid("holds a coordinate that is not finite");
+    return invalid_input("holds a coordinate that is not finite");
   return matrix;
 }
 

@@ -7,7 +7,7 @@
 namespace kinship::geometry {
 namespace {
 
-Error invalid(int line, const std::string& message) {
+Error invalid_in_line(int line, const std::string& message) {
   return {ErrorCode::InvalidInput, "line " + std::to_string(line) + ": " + message};
 }
 
@@ -16,10 +16,11 @@ Result<std::string> read_link(const tinyxml2::XMLElement& element, const char* a
                               const kinematics::Chain& chain) {
   const char* const name = element.Attribute(attribute);
   if (name == nullptr)
-    return invalid(element.GetLineNum(), std::string("disable_collisions has no ") + attribute);
+    return invalid_in_line(element.GetLineNum(),
+                           std::string("disable_collisions has no ") + attribute);
   if (chain.find_link(name) < 0)
-    return invalid(element.GetLineNum(), std::string("disable_collisions: ") + attribute + " '" +
-                                             name + "' is not a link of the robot");
+    return invalid_in_line(element.GetLineNum(), std::string("disable_collisions: ") + attribute +
+                                                     " '" + name + "' is not a link of the robot");
   return std::string(name);
 }
 
@@ -32,8 +33,8 @@ Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_v
                                           std::to_string(kMaxSrdfBytes)};
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    return invalid(document.ErrorLineNum(), std::string("not well-formed XML: ") +
-                                                document.ErrorIDToName(document.ErrorID()));
+    return invalid_in_line(document.ErrorLineNum(), std::string("not well-formed XML: ") +
+                                                        document.ErrorIDToName(document.ErrorID()));
   const tinyxml2::XMLElement* const robot = document.FirstChildElement("robot");
   if (robot == nullptr)
     return Error{ErrorCode::InvalidInput, "no <robot> element"};

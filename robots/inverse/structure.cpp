@@ -10,9 +10,9 @@ namespace {
 constexpr double kDistinct = 0.02;  // sine or distance: less is too close to make use of
 constexpr int kLockTrials = 3;      // a structure must hold at as many values of the locks
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::size_t kJoints = 6;
+constexpr std::size_t kFreeJoints = 6;
 
-using SixAxes = std::array<Axis, kJoints>;
+using SixAxes = std::array<Axis, kFreeJoints>;
 
 double sine_between(const Axis& a, const Axis& b) { return a.direction.cross(b.direction).norm(); }
 
@@ -153,8 +153,8 @@ std::array<double, kMostLocked> lock_values(int trial) {
 /// The free axes once the axes before them have been locked, and what moved each of them.
 struct Carried {
   SixAxes axes;
-  std::array<Displacement, kJoints> by;
-  std::array<int, kJoints> joints;
+  std::array<Displacement, kFreeJoints> by;
+  std::array<int, kFreeJoints> joints;
 };
 
 Carried carry(const std::vector<Axis>& axes, const std::vector<int>& locks, const double* values) {
@@ -192,7 +192,7 @@ std::vector<Axis> obedient_axes(const AxisChain& chain, const std::vector<int>& 
   Carried carried = carry(chain.axes, locks, lock_values(0).data());
   fit_either_way(carried.axes, rule);
   std::vector<Axis> axes = chain.axes;
-  for (std::size_t i = 0; i < kJoints; ++i)
+  for (std::size_t i = 0; i < kFreeJoints; ++i)
     axes[static_cast<std::size_t>(carried.joints[i])] =
         carried.axes[i].moved(carried.by[i].inverse());
   return axes;
@@ -216,10 +216,10 @@ std::vector<std::vector<int>> choices(int dof, int count) {
 std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain) {
   std::vector<SixJointStructure> structures;
   const int dof = static_cast<int>(chain.axes.size());
-  if (dof < static_cast<int>(kJoints) || dof > static_cast<int>(kJoints) + kMostLocked)
+  if (dof < static_cast<int>(kFreeJoints) || dof > static_cast<int>(kFreeJoints) + kMostLocked)
     return structures;
   static const std::vector<SixJointRule> kRules = all_rules();
-  for (std::vector<int>& locks : choices(dof, dof - static_cast<int>(kJoints))) {
+  for (std::vector<int>& locks : choices(dof, dof - static_cast<int>(kFreeJoints))) {
     SixJointStructure best;
     best.deviation = kNone;
     for (const SixJointRule& rule : kRules) {
@@ -261,7 +261,7 @@ void lock(const std::vector<Axis>& axes, const std::vector<int>& locks, const do
   }
   Displacement back;  // inverse of the product of the locks from here on
   std::size_t left = locks.size();
-  std::size_t i = kJoints;
+  std::size_t i = kFreeJoints;
   for (std::size_t j = axes.size(); j-- > 0;) {
     if (left > 0 && locks[left - 1] == static_cast<int>(j)) {
       --left;

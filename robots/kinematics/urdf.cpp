@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kShortestAxis = 1e-6;
 
-Failure invalid(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
+Failure refused(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
 
 std::string words(const urdf::Joint& joint) { return "joint '" + joint.name + "'"; }
 
@@ -48,10 +48,10 @@ struct Limits {
 /// The stricter of the hard and the soft limits; soft limits of 0 and 0 are absent ones.
 Limits stricter_limits(const urdf::Joint& joint) {
   if (joint.limits == nullptr)
-    throw invalid(words(joint) + ": no limits");
+    throw refused(words(joint) + ": no limits");
   const auto check = [&](const std::string& which, double lower, double upper) {
     if (!(lower <= upper))
-      throw invalid(words(joint) + ": lower" + which + " limit " + number_text(lower) +
+      throw refused(words(joint) + ": lower" + which + " limit " + number_text(lower) +
                     " exceeds upper" + which + " limit " + number_text(upper));
   };
   Limits limits{joint.limits->lower, joint.limits->upper};
@@ -76,7 +76,7 @@ Joint read_joint(const urdf::Joint& source) {
   const Eigen::Vector3d axis(source.axis.x, source.axis.y, source.axis.z);
   const double length = axis.norm();
   if (!(length >= kShortestAxis && std::isfinite(length)))
-    throw invalid(words(source) + ": axis has length " + number_text(length) +
+    throw refused(words(source) + ": axis has length " + number_text(length) +
                   ", which gives no direction");
   joint.axis = axis / length;
   if (source.type == urdf::Joint::CONTINUOUS) {
@@ -95,14 +95,14 @@ std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface
                                                       const std::string& base,
                                                       const std::string& tip) {
   if (model.getLink(base) == nullptr)
-    throw invalid("base link '" + base + "': not in the URDF");
+    throw refused("base link '" + base + "': not in the URDF");
   urdf::LinkConstSharedPtr link = model.getLink(tip);
   if (link == nullptr)
-    throw invalid("tip link '" + tip + "': not in the URDF");
+    throw refused("tip link '" + tip + "': not in the URDF");
   std::vector<urdf::JointConstSharedPtr> joints;
   while (link->name != base) {
     if (link->parent_joint == nullptr)
-      throw invalid("base link '" + base + "' is not an ancestor of tip link '" + tip + "'");
+      throw refused("base link '" + base + "' is not an ancestor of tip link '" + tip + "'");
     joints.push_back(link->parent_joint);
     link = link->getParent();
   }
@@ -112,9 +112,9 @@ std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface
 
 void check_on_chain(const urdf::Joint& joint) {
   if (!has_one_value(joint))
-    throw invalid(words(joint) + " on the chain is floating or planar, which is not supported");
+    throw refused(words(joint) + " on the chain is floating or planar, which is not supported");
   if (joint.mimic != nullptr)
-    throw invalid(words(joint) + " on the chain mimics joint '" + joint.mimic->joint_name +
+    throw refused(words(joint) + " on the chain mimics joint '" + joint.mimic->joint_name +
                   "', which is not supported");
 }
 
@@ -126,15 +126,15 @@ class HeldJoints {
       : model_(model), held_(held), on_chain_(on_chain) {
     for (const auto& [name, value] : held) {
       if (name.size() > kMaxLinkNameBytes)
-        throw invalid("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
+        throw refused("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
                       std::to_string(kMaxLinkNameBytes));
       const urdf::JointConstSharedPtr joint = model.getJoint(name);
       if (joint == nullptr)
-        throw invalid("held joint '" + name + "': not in the URDF");
+        throw refused("held joint '" + name + "': not in the URDF");
       if (on_chain.contains(name))
-        throw invalid("held joint '" + name + "': is on the chain");
+        throw refused("held joint '" + name + "': is on the chain");
       if (!has_one_value(*joint))
-        throw invalid("held joint '" + name + "': is fixed, floating or planar");
+        throw refused("held joint '" + name + "': is fixed, floating or planar");
       check_value(*joint, value);
     }
   }
@@ -153,7 +153,7 @@ class HeldJoints {
     const Limits limits =
         continuous ? Limits{-kMaxPlacement_m, kMaxPlacement_m} : stricter_limits(joint);
     if (!(value >= limits.lower && value <= limits.upper))
-      throw invalid("held joint '" + joint.name + "': value " + number_text(value) +
+      throw refused("held joint '" + joint.name + "': value " + number_text(value) +
                     " is outside its limits " + number_text(limits.lower) + " to " +
                     number_text(limits.upper));
   }
@@ -179,7 +179,7 @@ class HeldJoints {
     const double value =
         joint.mimic->multiplier * value_of(*leader, followings - 1) + joint.mimic->offset;
     if (!(std::abs(value) <= kMaxPlacement_m))
-      throw invalid(words(joint) + ": mimics joint '" + leader->name + "' at " +
+      throw refused(words(joint) + ": mimics joint '" + leader->name + "' at " +
                     number_text(value) + ", more than " + number_text(kMaxPlacement_m));
     return value;
   }
@@ -252,13 +252,13 @@ void check_description(const RobotDescription& description) {
   for (const auto& [what, name] : {std::pair("base link", &description.base_link),
                                    std::pair("tip link", &description.tip_link)}) {
     if (name->empty())
-      throw invalid(std::string(what) + ": name is empty");
+      throw refused(std::string(what) + ": name is empty");
     if (name->size() > kMaxLinkNameBytes)
-      throw invalid(std::string(what) + ": name of " + std::to_string(name->size()) +
+      throw refused(std::string(what) + ": name of " + std::to_string(name->size()) +
                     " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
   }
   if (description.held_joints.size() > kMaxHeldJoints)
-    throw invalid("held joints: " + std::to_string(description.held_joints.size()) + " exceed " +
+    throw refused("held joints: " + std::to_string(description.held_joints.size()) + " exceed " +
                   std::to_string(kMaxHeldJoints));
 }
 
@@ -277,7 +277,7 @@ ChainParts read_parts(const RobotDescription& description) {
   const HeldJoints held(*model, description.held_joints, on_chain);
   TreeWalk(held, joints, parts).walk(*model);
   if (const auto fault = find_fault(parts))
-    throw invalid(*fault);
+    throw refused(*fault);
   return parts;
 }
 

@@ -59,29 +59,31 @@ class CollectErrors {
   CollectErrors& operator=(const CollectErrors&) = delete;
 };
 
-Error invalid(const std::string& message) { return {ErrorCode::InvalidInput, "URDF: " + message}; }
+Error invalid_urdf(const std::string& message) {
+  return {ErrorCode::InvalidInput, "URDF: " + message};
+}
 
 template <typename Map>
 std::optional<Error> check_names(std::string_view what, const Map& named) {
   for (const auto& [name, value] : named)
     if (name.size() > kMaxLinkNameBytes)
-      return invalid(std::string(what) + " name of " + std::to_string(name.size()) +
-                     " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
+      return invalid_urdf(std::string(what) + " name of " + std::to_string(name.size()) +
+                          " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
   return std::nullopt;
 }
 
 /// urdfdom lets a link have two parents and lets links go in circles apart from the root.
 std::optional<Error> check_tree(const urdf::ModelInterface& model) {
   if (model.joints_.size() + 1 != model.links_.size())
-    return invalid(std::to_string(model.joints_.size()) + " joints for " +
-                   std::to_string(model.links_.size()) + " links do not form a tree");
+    return invalid_urdf(std::to_string(model.joints_.size()) + " joints for " +
+                        std::to_string(model.links_.size()) + " links do not form a tree");
   std::vector<urdf::LinkConstSharedPtr> reached = {model.getRoot()};
   for (std::size_t i = 0; i < reached.size() && reached.size() <= model.links_.size(); ++i) {
     const auto children = reached[i]->child_links;
     reached.insert(reached.end(), children.begin(), children.end());
   }
   if (reached.size() != model.links_.size())
-    return invalid("links do not form a tree below '" + model.getRoot()->name + "'");
+    return invalid_urdf("links do not form a tree below '" + model.getRoot()->name + "'");
   return std::nullopt;
 }
 
@@ -99,7 +101,7 @@ Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
     errors += errors.empty() ? exception.what() : std::string("; ") + exception.what();
   }
   if (model == nullptr || model->getRoot() == nullptr)
-    return invalid(errors.empty() ? "not understood" : errors);
+    return invalid_urdf(errors.empty() ? "not understood" : errors);
   if (const auto error = check_names("link", model->links_))
     return *error;
   if (const auto error = check_names("joint", model->joints_))

@@ -12,8 +12,6 @@ namespace {
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
-Error wrong(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
-
 }  // namespace
 
 Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments) {
@@ -22,13 +20,13 @@ Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments)
     const std::string what = "--package '" + argument + "': ";
     const std::size_t equals = argument.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == argument.size())
-      return wrong(what + "must be NAME=DIR");
+      return invalid_input(what + "must be NAME=DIR");
     const std::filesystem::path folder = argument.substr(equals + 1);
     std::error_code unreadable;
     if (!std::filesystem::is_directory(folder, unreadable))
       return Error{ErrorCode::NotFound, what + "no such folder"};
     if (!folders.emplace(argument.substr(0, equals), folder).second)
-      return wrong(what + "the package is named twice");
+      return invalid_input(what + "the package is named twice");
   }
   return folders;
 }
@@ -36,7 +34,7 @@ Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments)
 Result<std::filesystem::path> MeshFiles::find(const std::string& uri) const {
   const std::string_view text = uri;
   const auto wrong_uri = [&](const std::string& problem) {
-    return wrong("mesh '" + uri + "': " + problem);
+    return invalid_input("mesh '" + uri + "': " + problem);
   };
   if (text.starts_with(kPackage)) {
     const std::string_view rest = text.substr(kPackage.size());

@@ -19,8 +19,6 @@
 namespace kinship::models {
 namespace {
 
-Error wrong(const std::string& message) { return {ErrorCode::InvalidInput, message}; }
-
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> parts;
   while (!text.empty()) {
@@ -132,13 +130,13 @@ Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
   const auto parts = split(text, " ,\t");
   PoseArray pose{};
   if (parts.size() != pose.size())
-    return wrong("pose '" + std::string(text) + "': has " + std::to_string(parts.size()) +
-                 " numbers, must be 7: x y z qx qy qz qw");
+    return invalid_input("pose '" + std::string(text) + "': has " + std::to_string(parts.size()) +
+                         " numbers, must be 7: x y z qx qy qz qw");
   for (std::size_t i = 0; i < pose.size(); ++i) {
     const auto value = parse_number(parts[i]);
     if (!value)
-      return wrong("pose '" + std::string(text) + "': '" + std::string(parts[i]) +
-                   "' is no number");
+      return invalid_input("pose '" + std::string(text) + "': '" + std::string(parts[i]) +
+                           "' is no number");
     pose[i] = *value;
   }
   return from_pose_array(pose);

@@ -26,10 +26,11 @@ namespace {
 constexpr std::array kClusters = {1, 4, 16, 64};
 /// Falling by about the square root of 2.
 constexpr std::array kScales = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
-constexpr Eigen::Index kScoredPoints = 1000;  // of all folds together
+constexpr Eigen::Index kFoldPoints = 1000;  // of all folds together
 /// Up to here each fifth is held out in turn: one alone is too few paths to choose by.
 constexpr std::uint32_t kFewPaths = 60;
-constexpr double kLowScore_nats = 0.25;  // below the best of the clusters: narrower is no better
+constexpr double kLowClusterScore_nats =
+    0.25;  // below the best of the clusters: narrower is no better
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options) {
@@ -172,7 +173,7 @@ class Estimate {
     if (paths >= kLeastPathsToScore) {
       const std::uint32_t count = paths <= kFewPaths ? kFolds : 1;
       for (std::uint32_t fold = 0; fold < count; ++fold) {
-        add_fold(held_out_paths(paths, options_.seed, fold), kScoredPoints / count, folds);
+        add_fold(held_out_paths(paths, options_.seed, fold), kFoldPoints / count, folds);
         if (folds.empty())
           break;  // the score that is told is that of the first
       }
@@ -181,7 +182,7 @@ class Estimate {
     for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
       std::vector<std::uint8_t> held_out(paths, 0);
       held_out[path] = 1;
-      add_fold(held_out, kScoredPoints / paths, folds);
+      add_fold(held_out, kFoldPoints / paths, folds);
     }
     return folds;
   }
@@ -225,7 +226,7 @@ class Estimate {
         if (!best.score || score > *best.score)
           best = {{clusters, scale}, score, scores.front()};
         best_of_clusters = std::max(best_of_clusters, score);
-        if (score < best_of_clusters - kLowScore_nats)
+        if (score < best_of_clusters - kLowClusterScore_nats)
           break;
       }
     }

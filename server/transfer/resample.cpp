@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of an interval: 3.0 / 0.3 is ten intervals, not eleven
 
-void check(const TransferParameters& parameters) {
+void check_resampling(const TransferParameters& parameters) {
   if (!(parameters.pose_spacing > 0))
     throw std::invalid_argument("resample: pose_spacing " +
                                 std::to_string(parameters.pose_spacing) + " is not above 0");
@@ -44,7 +44,7 @@ Eigen::Index count_poses(double length, const TransferParameters& parameters) {
 }  // namespace
 
 Eigen::MatrixXd resample(const Path& path, const TransferParameters& parameters) {
-  check(parameters);
+  check_resampling(parameters);
   const Eigen::MatrixXd& waypoints = path.waypoints();
   const Eigen::VectorXd along = distances(waypoints);
   const double total = along[along.size() - 1];

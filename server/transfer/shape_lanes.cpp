@@ -15,9 +15,6 @@ constexpr double kArrived = 1e-12;  // squared error before a last step, which s
 constexpr int kEndedShare = 3;      // of the lanes at work, one in so many
 constexpr int kMeasuringShare = 2;  // so many for each that descends: a pull costs three descents
 
-bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
-unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
-
 /// Values of the joints as the kernels have them.
 template <typename Rows>
 void write(const inverse::LaneChain& chain, const inverse::JointVector& q, int lane, Rows& rows) {
@@ -74,7 +71,7 @@ void ShapeLanes::begin_step(int lane, double most_motion, int steps) {
   now.iterations = 0;
   now.steps_left = steps;
   write(solver_.lanes(), at(lane), lane, batch_.q);
-  reaching_ |= bit(lane);
+  reaching_ |= lane_bit(lane);
 }
 
 void ShapeLanes::begin_pull(int lane, int steps) {
@@ -90,13 +87,13 @@ void ShapeLanes::start_pull(int lane, int steps) {
   work_[i].distance_m = std::numeric_limits<double>::infinity();  // not measured yet
   if (!pair_.target_marks()) {
     work_[i].distance_m = pull_alone(pair_, T_base_transfer_[i], wanted_[i], steps, q_[i]);
-    pulled_ |= bit(lane);
+    pulled_ |= lane_bit(lane);
   } else if (!solver_.redundant()) {  // no self-motion
-    pulled_ |= bit(lane);
+    pulled_ |= lane_bit(lane);
   } else {
     work_[i].settled = at(lane);
     write(solver_.lanes(), at(lane), lane, pull_.q);
-    measuring_ |= bit(lane);
+    measuring_ |= lane_bit(lane);
   }
 }
 
@@ -121,16 +118,16 @@ void ShapeLanes::descend(Ended& ended) {
   const unsigned reaching = reaching_;
   const unsigned descending = reaching_ | settling_;
   for (int lane = 0; lane < kCount; ++lane) {
-    if (!has(descending, lane))
+    if (!has_lane(descending, lane))
       continue;
     const bool arrived = batch_.squared[lane] < kArrived;
     if (!arrived && ++work(lane).iterations <= kDescentIterations)
       continue;
-    reaching_ &= ~bit(lane);
-    settling_ &= ~bit(lane);
+    reaching_ &= ~lane_bit(lane);
+    settling_ &= ~lane_bit(lane);
     if (!arrived)
-      (has(reaching, lane) ? ended.failed : pulled_) |= bit(lane);
-    else if (has(reaching, lane))
+      (has_lane(reaching, lane) ? ended.failed : pulled_) |= lane_bit(lane);
+    else if (has_lane(reaching, lane))
       reached(lane, ended);
     else
       settled(lane);
@@ -141,7 +138,7 @@ void ShapeLanes::reached(int lane, Ended& ended) {
   Work& now = work(lane);
   now.reached = read(solver_.lanes(), batch_.q, lane);
   if (!((now.reached - now.start).norm() <= now.most_motion)) {
-    ended.failed |= bit(lane);
+    ended.failed |= lane_bit(lane);
     return;
   }
   put(lane, now.reached);
@@ -151,13 +148,13 @@ void ShapeLanes::reached(int lane, Ended& ended) {
 void ShapeLanes::settled(int lane) {
   work(lane).settled = read(solver_.lanes(), batch_.q, lane);
   copy_lane(solver_.lanes(), lane, batch_.q, pull_.q);
-  measuring_ |= bit(lane);
+  measuring_ |= lane_bit(lane);
 }
 
 void ShapeLanes::measure() {
   solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), pull_);
   for (int lane = 0; lane < kCount; ++lane) {
-    if (!has(measuring_, lane))
+    if (!has_lane(measuring_, lane))
       continue;
     Work& now = work(lane);
     const double reached_m = pull_.distance_m[lane];
@@ -167,20 +164,21 @@ void ShapeLanes::measure() {
       now.distance_m = reached_m;
     }
     if (!gains || now.steps_left == 0) {
-      pulled_ |= bit(lane);
+      pulled_ |= lane_bit(lane);
       continue;
     }
     --now.steps_left;
     now.iterations = 0;
     copy_lane(solver_.lanes(), lane, pull_.q, batch_.q);
-    settling_ |= bit(lane);
+    settling_ |= lane_bit(lane);
   }
   measuring_ = 0;
 }
 
 void ShapeLanes::end_pulls(Ended& ended) {
   for (int lane = 0; lane < kCount; ++lane)
-    if (has(pulled_, lane) && !((at(lane) - work(lane).start).norm() <= work(lane).most_motion))
+    if (has_lane(pulled_, lane) &&
+        !((at(lane) - work(lane).start).norm() <= work(lane).most_motion))
       put(lane, work(lane).reached);
   ended.arrived |= pulled_;
   pulled_ = 0;
@@ -188,7 +186,7 @@ void ShapeLanes::end_pulls(Ended& ended) {
 
 void ShapeLanes::pull(unsigned lanes, int steps) {
   for (int lane = 0; lane < kCount; ++lane)
-    if (has(lanes, lane))
+    if (has_lane(lanes, lane))
       begin_pull(lane, steps);
   while ((reaching_ | settling_ | measuring_ | pulled_) != 0)
     run();
@@ -201,9 +199,9 @@ unsigned ShapeLanes::verified(unsigned lanes, const Eigen::MatrixXd& configurati
   solver_.kernels().check(solver_.arm(), check_);
   unsigned right = 0;
   for (int lane = 0; lane < kCount; ++lane)
-    if (has(lanes, lane) && check_.distance_m[lane] <= inverse::kPoseTolerance &&
+    if (has_lane(lanes, lane) && check_.distance_m[lane] <= inverse::kPoseTolerance &&
         check_.angle_rad[lane] <= inverse::kPoseTolerance)
-      right |= bit(lane);
+      right |= lane_bit(lane);
   return right;
 }
 

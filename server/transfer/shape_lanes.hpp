@@ -10,6 +10,10 @@
 
 namespace kinship::transfer {
 
+/// Sets of lanes are bits.
+inline unsigned lane_bit(int lane) { return 1U << static_cast<unsigned>(lane); }
+inline bool has_lane(unsigned lanes, int lane) { return (lanes & lane_bit(lane)) != 0; }
+
 /// Configurations of a pair's target, moved side by side: each lane has a pose to be at, a shape to
 /// look like and a configuration, and is given something to do of its own, at any time. What
 /// becomes of it does not depend on the other lanes. Sets of lanes are bits. Not shared between

@@ -11,8 +11,8 @@ namespace {
 constexpr double kPoseWeight = 10;    // of the pose against the shape
 constexpr double kDamping = 0.02;     // m per joint unit
 constexpr double kLargestStep = 0.3;  // of one joint, joint units
-constexpr double kLeastGain = 1e-3;   // share of the distance that a step has to take away
-constexpr int kDescentIterations = 15;
+constexpr double kLeastPull = 1e-3;   // share of the distance that a step has to take away
+constexpr int kPullIterations = 15;
 
 /// The step that would close the distance if shape and pose were linear in the joints, damped.
 inverse::JointVector step_towards(const ArmShape& wanted, const TaskAxes& axes,
@@ -53,14 +53,14 @@ double pull_alone(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
   for (int i = 0; i < steps; ++i) {
     inverse::JointVector next = q + step_towards(wanted, arm.task_axes(), motion);
     const double squared = pair.target_descent().run(
-        T_base_transfer, inverse::Descent::Limits::Hold, kDescentIterations, next);
+        T_base_transfer, inverse::Descent::Limits::Hold, kPullIterations, next);
     if (!(squared <= inverse::kPoseTolerance * inverse::kPoseTolerance))
       break;
     motion = arm_shape_motion(arm, next);
     const double reached = shape_distance(motion.shape, wanted);
     if (!(reached < distance))
       break;
-    const bool goes_on = reached <= distance * (1 - kLeastGain);
+    const bool goes_on = reached <= distance * (1 - kLeastPull);
     q = next;
     distance = reached;
     if (!goes_on)

@@ -19,7 +19,7 @@ namespace {
 
 /// \throws std::invalid_argument with the parameter that breaks a rule. Those of resampling and
 ///         inverse kinematics are checked there.
-void check(const TransferParameters& parameters) {
+void check_tracking(const TransferParameters& parameters) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
     if (!holds)
       throw std::invalid_argument(std::string("transfer_path: ") + name + " " +
@@ -131,7 +131,7 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,
                                             std::uint64_t seed) {
-  check(parameters);
+  check_tracking(parameters);
   std::vector<TransferredPath> results(paths.size());
   std::deque<PathUnderWay> under_way;  // trackers stay where they are
   std::vector<ShapeTracker*> trackers;

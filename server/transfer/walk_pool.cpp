@@ -5,12 +5,7 @@
 #include "server/transfer/shape_tracker.hpp"
 
 namespace kinship::transfer {
-namespace {
-
-bool has(unsigned lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
-unsigned bit(int lane) { return 1U << static_cast<unsigned>(lane); }
-
-}  // namespace
+namespace {}  // namespace
 
 WalkPool::WalkPool(const ArmPair& pair)
     : lanes_(pair),
@@ -27,10 +22,10 @@ void WalkPool::run(const std::vector<ShapeTracker*>& trackers) {
 
 void WalkPool::fill() {
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane)
-    while (!has(walking_, lane) && !waiting_.empty()) {
+    while (!has_lane(walking_, lane) && !waiting_.empty()) {
       walks_[static_cast<std::size_t>(lane)] = std::move(waiting_.front());
       waiting_.pop_front();
-      walking_ |= bit(lane);
+      walking_ |= lane_bit(lane);
       if (!go_on(lane))
         end_walk(lane);
     }
@@ -55,19 +50,19 @@ bool WalkPool::go_on(int lane) {
 void WalkPool::look_at(const ShapeLanes::Ended& ended) {
   unsigned right = 0;
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
-    if (!has(ended.arrived, lane))
+    if (!has_lane(ended.arrived, lane))
       continue;
     found_.col(lane) = lanes_.at(lane);
     if (space_.normalize(found_.col(lane).data()))
-      right |= bit(lane);
+      right |= lane_bit(lane);
   }
   right = lanes_.verified(right, found_);
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
-    if (!has(ended.arrived | ended.failed, lane))
+    if (!has_lane(ended.arrived | ended.failed, lane))
       continue;
     Walk& walk = walks_[static_cast<std::size_t>(lane)];
     const bool taken =
-        has(right, lane) && walk.tracker->take(walk, lanes_.at(lane), found_.col(lane));
+        has_lane(right, lane) && walk.tracker->take(walk, lanes_.at(lane), found_.col(lane));
     if (!taken || walk.direction == 0 || !go_on(lane))
       end_walk(lane);
   }
@@ -75,7 +70,7 @@ void WalkPool::look_at(const ShapeLanes::Ended& ended) {
 
 void WalkPool::end_walk(int lane) {
   const Walk& walk = walks_[static_cast<std::size_t>(lane)];
-  walking_ &= ~bit(lane);
+  walking_ &= ~lane_bit(lane);
   for (Walk& next : walk.tracker->end(walk))
     waiting_.push_back(std::move(next));
 }

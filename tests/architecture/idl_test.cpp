@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-namespace kinship::architecture {
+namespace kinship::architecture::idl_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ TEST(Idl, NoStructureIsAPlainMemberOfAnother) {
 }
 
 }  // namespace
-}  // namespace kinship::architecture
+}  // namespace kinship::architecture::idl_test

@@ -9,7 +9,7 @@
 
 #include "tests/architecture/edges.hpp"
 
-namespace kinship::architecture {
+namespace kinship::architecture::include_direction_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ TEST(Architecture, EveryLibraryExplainsItself) {
 }
 
 }  // namespace
-}  // namespace kinship::architecture
+}  // namespace kinship::architecture::include_direction_test

@@ -7,7 +7,7 @@
 #include "tests/support/temporary_directory.hpp"
 
 /// A disk that stops taking writes and takes them again later.
-namespace kinship::store {
+namespace kinship::store::store_disk_test {
 namespace {
 
 /// While it lives, this process cannot write to any file beyond a size (EFBIG).
@@ -157,4 +157,4 @@ TEST(StoreBackupDisk, ABackupThatFindsNoRoomLeavesNothingAndTheStoreGoesOn) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::store_disk_test

@@ -13,7 +13,7 @@
 #include "tests/support/temporary_directory.hpp"
 
 /// kill -9 at any instant: every acknowledged report is there afterwards, none twice.
-namespace kinship::store {
+namespace kinship::store::store_kill_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20261121;
@@ -146,4 +146,4 @@ TEST(StoreKill, TheLedgerFindsAReceiptThatComesBeforeTheCommit) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::store_kill_test

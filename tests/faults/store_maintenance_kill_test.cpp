@@ -12,7 +12,7 @@
 #include "tests/support/temporary_directory.hpp"
 
 /// kill -9 before every single change that a verb makes to the file system.
-namespace kinship::store {
+namespace kinship::store::store_maintenance_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ TEST_F(StoreMaintenanceKill, AMigrationHappensWhollyOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::store_maintenance_kill_test

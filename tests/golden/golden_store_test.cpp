@@ -7,7 +7,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::golden_store_test {
 namespace {
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
@@ -144,4 +144,4 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
 INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3));
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::golden_store_test

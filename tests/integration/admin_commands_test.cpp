@@ -18,7 +18,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::admin_commands_test {
 namespace {
 
 using std::chrono::seconds;
@@ -354,4 +354,4 @@ TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::admin_commands_test

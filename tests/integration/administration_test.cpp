@@ -17,7 +17,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::administration_test {
 namespace {
 
 using std::chrono::seconds;
@@ -199,4 +199,4 @@ TEST_F(Administrators, WhatWasRetiredIsNeverServedAgainAlsoIfTheServerDiesAtOnce
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::administration_test

@@ -16,7 +16,7 @@
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/client/plan/planar_problem.hpp"
 
-namespace kinship {
+namespace kinship::advice_test {
 namespace {
 
 using std::chrono::seconds;
@@ -230,4 +230,4 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::advice_test

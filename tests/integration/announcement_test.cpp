@@ -15,7 +15,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::announcement_test {
 namespace {
 
 using std::chrono::seconds;
@@ -101,4 +101,4 @@ TEST(Announcements, TellOfARefitThatNobodyAskedFor) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::announcement_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/bad_input_test.hpp"
 
-namespace kinship::test {
+namespace kinship::test::bad_input_register_test {
 namespace {
 
 using codec::Arena;
@@ -210,4 +210,4 @@ TEST_F(BadRegister, AUrdfOf10MbIsRefusedByTheClientAndDroppedByTheServer) {
 }
 
 }  // namespace
-}  // namespace kinship::test
+}  // namespace kinship::test::bad_input_register_test

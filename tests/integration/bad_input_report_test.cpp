@@ -7,7 +7,7 @@
 #include "tests/support/bad_input_test.hpp"
 #include "tests/support/panda_experience.hpp"
 
-namespace kinship::test {
+namespace kinship::test::bad_input_report_test {
 namespace {
 
 using codec::Arena;
@@ -283,4 +283,4 @@ TEST_F(BadReport, AMillionWaypointsAreRefusedByTheClientAndDroppedByTheServer) {
 }
 
 }  // namespace
-}  // namespace kinship::test
+}  // namespace kinship::test::bad_input_report_test

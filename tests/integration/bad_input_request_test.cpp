@@ -5,7 +5,7 @@
 
 #include "tests/support/bad_input_test.hpp"
 
-namespace kinship::test {
+namespace kinship::test::bad_input_request_test {
 namespace {
 
 using codec::Arena;
@@ -209,4 +209,4 @@ TEST_F(BadRequest, ABackupOntoTheStoreItselfLeavesItAsItWas) {
 }
 
 }  // namespace
-}  // namespace kinship::test
+}  // namespace kinship::test::bad_input_request_test

@@ -14,7 +14,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::brought_robot_test {
 namespace {
 
 std::string box_link(const std::string& name, const std::string& center, const std::string& size) {
@@ -234,4 +234,4 @@ TEST_F(BroughtRobot, AMimicJointOnTheChainIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::brought_robot_test

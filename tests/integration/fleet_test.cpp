@@ -14,7 +14,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::fleet_test {
 namespace {
 
 using std::chrono::seconds;
@@ -174,4 +174,4 @@ TEST_F(Fleet, KilledBetweenReportsItHasEveryAcknowledgedOneOnceAfterARestart) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::fleet_test

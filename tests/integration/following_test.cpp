@@ -13,7 +13,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::following_test {
 namespace {
 
 using std::chrono::seconds;
@@ -143,4 +143,4 @@ TEST_F(Following, WhereTheLeaseHasLapsedNothingIsFittedBehindAnybodysBack) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::following_test

@@ -9,7 +9,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::test {
+namespace kinship::test::foreign_client_test {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -75,4 +75,4 @@ TEST(ForeignClient, RegistersReportsFetchesAndHearsOfTheNewerRevision) {
 }
 
 }  // namespace
-}  // namespace kinship::test
+}  // namespace kinship::test::foreign_client_test

@@ -12,7 +12,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::kinshipd_process_test {
 namespace {
 
 class KinshipdProcess : public testing::Test {
@@ -109,4 +109,4 @@ TEST_F(KinshipdProcess, TellsTheServiceManagerWhenItServesAndWhenItStops) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::kinshipd_process_test

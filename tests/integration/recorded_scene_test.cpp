@@ -17,7 +17,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::recorded_scene_test {
 namespace {
 
 using std::chrono::seconds;
@@ -152,4 +152,4 @@ TEST_F(RecordedScenes, AreNotSentIfTheUserDoesNotWantIt) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::recorded_scene_test

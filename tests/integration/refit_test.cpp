@@ -10,7 +10,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::refit_test {
 namespace {
 
 using std::chrono::seconds;
@@ -94,4 +94,4 @@ TEST_F(Refit, AServerThatWasKilledServesWhatItHadAndFitsFully) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::refit_test

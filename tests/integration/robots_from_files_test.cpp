@@ -11,7 +11,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::robots_from_files_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
@@ -121,4 +121,4 @@ TEST_F(RobotsFromFiles, PlanningTakesMeshesFromTheirPackage) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::robots_from_files_test

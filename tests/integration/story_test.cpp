@@ -10,7 +10,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::test {
+namespace kinship::test::story_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ TEST(Story, QuickstartLeavesAForeignFolderAlone) {
 }
 
 }  // namespace
-}  // namespace kinship::test
+}  // namespace kinship::test::story_test

@@ -22,7 +22,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::study_cell_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models";
@@ -197,4 +197,4 @@ TEST_F(StudyCell, AFolderIsNotUsedAgainUnasked) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::study_cell_test

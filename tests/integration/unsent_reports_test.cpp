@@ -16,7 +16,7 @@
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship {
+namespace kinship::unsent_reports_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ TEST_F(UnsentReports, AreStoredOnceByAServerThatDidNotKnowTheRobot) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::unsent_reports_test

@@ -13,7 +13,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::closed_form_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 72;
@@ -155,4 +155,4 @@ TEST(ClosedFormLimits, LeaveTheOneBranchThatTheyAllow) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::closed_form_test

@@ -16,7 +16,7 @@
 #include "proto/json/robot_description_json.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::codec {
+namespace kinship::codec::codec_round_trip_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 31;
@@ -438,4 +438,4 @@ TEST(CodecGarbage, SpoiledPublicationIsRefusedOrKeepsTheRules) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::codec_round_trip_test

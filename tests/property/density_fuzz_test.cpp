@@ -19,7 +19,7 @@
 #include "server/density/fit.hpp"
 #include "server/density/kernel_estimate.hpp"
 
-namespace kinship::density {
+namespace kinship::density::density_fuzz_test {
 namespace {
 
 constexpr int kCalls = 800;  // of each estimator
@@ -325,4 +325,4 @@ TEST(DensityFuzz, EstimateKernelsAnswersRefusesOrNamesTheBug) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::density_fuzz_test

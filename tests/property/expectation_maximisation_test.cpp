@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace kinship::density {
+namespace kinship::density::expectation_maximisation_test {
 namespace {
 
 constexpr int kCases = 30;
@@ -116,4 +116,4 @@ TEST(ExpectationMaximisation, MixtureMeanIsThePointsMean) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::expectation_maximisation_test

@@ -17,7 +17,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/twins.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::inverse_hard_cases_test {
 namespace {
 
 using kinematics::Chain;
@@ -312,4 +312,4 @@ TEST(InverseReasons, LimitsAreTheReasonWhereTheArmWouldReach) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::inverse_hard_cases_test

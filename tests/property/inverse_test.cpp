@@ -9,7 +9,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::inverse_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 71;
@@ -74,4 +74,4 @@ TEST(InverseOfUr10e, AllBranchesHoldTheOneThePoseCameFrom) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::inverse_test

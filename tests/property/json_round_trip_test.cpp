@@ -9,7 +9,7 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 
-namespace kinship::json {
+namespace kinship::json::json_round_trip_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 8;
@@ -209,4 +209,4 @@ TEST(JsonRoundTrip, DamagedTextNeverDoesMoreThanRefuse) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::json_round_trip_test

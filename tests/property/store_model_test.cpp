@@ -12,7 +12,7 @@
 
 /// Random reports with many retries and repeated paths against a model that holds what the
 /// contract says in a few maps; the store is reopened now and then.
-namespace kinship::store {
+namespace kinship::store::store_model_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20261121;
@@ -189,4 +189,4 @@ TEST_F(StoreModel, EveryReceiptAndEveryReadingIsAsTheContractSays) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::store_model_test

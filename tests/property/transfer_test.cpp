@@ -15,7 +15,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/twins.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::transfer_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -133,4 +133,4 @@ TEST_F(TransferToATwin, OneWithNarrowLimitsTakesThemTurnedIntoThose) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::transfer_test

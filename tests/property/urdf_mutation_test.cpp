@@ -9,7 +9,7 @@
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship {
+namespace kinship::urdf_mutation_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 31;
@@ -60,4 +60,4 @@ TEST(UrdfMutation, EveryTextGivesAChainThatMovesOrAReason) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::urdf_mutation_test

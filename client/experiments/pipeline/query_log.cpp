@@ -17,7 +17,8 @@ std::string describe(const std::optional<Digest>& distribution) {
 }
 
 /// \param drop_broken_end  whether a last line that is no result is left out instead of refused.
-std::map<QueryKey, QueryResult> read(const std::filesystem::path& file, bool drop_broken_end) {
+std::map<QueryKey, QueryResult> read_results(const std::filesystem::path& file,
+                                             bool drop_broken_end) {
   std::map<QueryKey, QueryResult> results;
   std::optional<std::string> broken;
   std::ifstream stream = files::open_input(file);
@@ -42,7 +43,7 @@ std::map<QueryKey, QueryResult> read(const std::filesystem::path& file, bool dro
 
 QueryLog::QueryLog(std::filesystem::path file) : file_(std::move(file)) {
   if (expand_file(file_)) {
-    results_ = read(file_, true);
+    results_ = read_results(file_, true);
     files::OutputFile whole_lines(file_, std::cout);
     for (const auto& [key, result] : results_)
       whole_lines.stream() << to_json(result) << '\n';
@@ -85,7 +86,7 @@ std::vector<QueryResult> QueryLog::results() const {
 std::vector<QueryResult> read_query_results(const std::filesystem::path& file) {
   expand_file(file);
   std::vector<QueryResult> results;
-  for (auto& [key, result] : read(file, false))
+  for (auto& [key, result] : read_results(file, false))
     results.push_back(std::move(result));
   return results;
 }

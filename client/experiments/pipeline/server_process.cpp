@@ -37,7 +37,7 @@ pid_t start_program(char* const* arguments, int output, const char* log) {
 }
 
 /// The next line without the line feed; what there was at the end of the output.
-std::string read_line(int descriptor) {
+std::string read_output_line(int descriptor) {
   std::string line;
   char c = 0;
   while (read(descriptor, &c, 1) == 1 && c != '\n')
@@ -73,7 +73,7 @@ ServerProcess::ServerProcess(const Options& options) {
   pid_ = start_program(arguments.data(), ends[1], log.c_str());
   const int error = errno;
   close(ends[1]);
-  const std::string ready = pid_ > 0 ? read_line(output_) : "";
+  const std::string ready = pid_ > 0 ? read_output_line(output_) : "";
   if (ready.starts_with("ready "))
     return;
   const std::string how =

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSide = 300, kMargin = 12, kTitle = 20;  // pixels
 
-constexpr std::array<const char*, kCloudPostures> kColours = {"#d55e00", "#009e73", "#cc79a7",
-                                                              "#e69f00", "#7a3e9d"};
+constexpr std::array<const char*, kCloudPostures> kPostureColours = {
+    "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#7a3e9d"};
 
 Eigen::Matrix3Xd posture_of(const kinematics::Chain& chain, const Eigen::Isometry3d& T_task_base,
                             const Eigen::VectorXd& q) {
@@ -124,7 +124,7 @@ std::string cloud_figure(const Cloud& cloud, View view, const std::string& title
          "stroke-opacity=\"0.45\"/>\n";
   for (std::size_t i = 0; i < cloud.postures.size(); ++i)
     svg += "<path d=\"" + frame.line(cloud.postures[i]) + "\" fill=\"none\" stroke=\"" +
-           kColours[i % kColours.size()] +
+           kPostureColours[i % kPostureColours.size()] +
            "\" stroke-width=\"2.5\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
   return svg + "</svg>\n";
 }

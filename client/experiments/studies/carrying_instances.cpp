@@ -17,8 +17,6 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr double kTimeLimit_s = 86400;  // checks end a query, never seconds
-
 /// Draws the instances of one robot.
 class CarryingInstances {
  public:

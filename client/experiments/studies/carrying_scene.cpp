@@ -11,9 +11,9 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr double kPlaceNoise_m = 0.02;
-constexpr double kTurnNoise_rad = 0.04;
-constexpr double kPickTurnNoise_rad = 0.06;
+constexpr double kCarryingPlaceNoise_m = 0.02;
+constexpr double kCarryingTurnNoise_rad = 0.04;
+constexpr double kCarryingPickTurnNoise_rad = 0.06;
 
 constexpr double kRimBelowPalm_m = 0.02;  // the fingers hold the container at its rim
 constexpr double kLift_m = 0.025;         // of a carried container above the table
@@ -32,8 +32,8 @@ Eigen::Isometry3d at_height(const TablePose& pose, double z) {
 
 TablePose noisy(const TablePose& pose, double turn_noise_rad, const Spread& spread) {
   TablePose moved = pose;
-  moved.x += spread(kPlaceNoise_m);
-  moved.y += spread(kPlaceNoise_m);
+  moved.x += spread(kCarryingPlaceNoise_m);
+  moved.y += spread(kCarryingPlaceNoise_m);
   moved.yaw_rad += spread(turn_noise_rad);
   return moved;
 }
@@ -67,7 +67,8 @@ CarryingScene make_scene(const CarryingLayout& layout, const Spread& spread, std
       {"table", BoxShape{kTableSize},
        Eigen::Isometry3d(Eigen::Translation3d(kTableEdge_m + kTableSize.x() / 2, 0,
                                               -kTableSize.z() / 2 - kBelow_m))});
-  const Eigen::Isometry3d T_task_middle = at_height(noisy(layout.place, kTurnNoise_rad, spread), 0);
+  const Eigen::Isometry3d T_task_middle =
+      at_height(noisy(layout.place, kCarryingTurnNoise_rad, spread), 0);
   const std::array<double, 2> places = {-layout.between_places_m / 2, layout.between_places_m / 2};
   const auto T_task_place = [&](std::size_t place, double z) -> Eigen::Isometry3d {
     return T_task_middle * Eigen::Translation3d(places.at(place), 0, z);
@@ -78,12 +79,13 @@ CarryingScene make_scene(const CarryingLayout& layout, const Spread& spread, std
   }
   for (const TableObject& object : layout.objects)
     add_standing(instance.scene, object.name, object.size,
-                 at_height(noisy(object.pose, kTurnNoise_rad, spread), 0));
+                 at_height(noisy(object.pose, kCarryingTurnNoise_rad, spread), 0));
 
   const Eigen::AngleAxisd down(std::numbers::pi, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd half_turn(std::numbers::pi, Eigen::Vector3d::UnitZ());
   const double palm = kLift_m + layout.container.z() + kRimBelowPalm_m;
-  instance.T_task_pick = at_height(noisy(layout.pick, kPickTurnNoise_rad, spread), palm) * down;
+  instance.T_task_pick =
+      at_height(noisy(layout.pick, kCarryingPickTurnNoise_rad, spread), palm) * down;
   const Eigen::Isometry3d T_task_goal = T_task_place(1 - taken, palm);
   instance.T_task_places = {T_task_goal * down, T_task_goal * half_turn * down};
   return instance;

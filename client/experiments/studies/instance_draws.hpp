@@ -16,6 +16,8 @@
 /// What instances of all tasks have in common, whatever their scene.
 namespace kinship::experiments {
 
+inline constexpr double kTimeLimit_s = 86400;  ///< of a query: checks end it, never seconds
+
 /// Tries an instance draw by draw until the robot can do it.
 /// \param key       its draw is where to begin.
 /// \param complaint  "robot 'x' has no ... in", for the failure.

@@ -22,8 +22,6 @@ constexpr double kBoxNoise_m = 0.02, kBoxNoise_rad = 0.04;
 constexpr double kStartNoise_m = 0.02, kStartNoise_rad = 0.06;
 constexpr double kGoalNoise_m = 0.01, kGoalNoise_rad = 0.04;
 
-constexpr double kTimeLimit_s = 86400;  // checks end a query, never seconds
-
 Eigen::Isometry3d in_space(const PlanarPose& pose) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() << pose.x, pose.y, 0;

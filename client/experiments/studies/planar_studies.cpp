@@ -7,8 +7,8 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr double kStep_rad = 0.05;
-constexpr std::uint64_t kMaxChecks = 200'000;
+constexpr double kPlanarStep_rad = 0.05;
+constexpr std::uint64_t kPlanarMaxChecks = 200'000;
 
 /// Where an arm stands: its base turned like the task frame.
 Eigen::Isometry3d at(double x, double y) {
@@ -40,9 +40,9 @@ Study planar_study(PlanarLayout layout, std::string purpose, std::vector<StudyRo
   study.name = layout.name;
   study.purpose = std::move(purpose);
   study.robots = std::move(robots);
-  study.settings.resolution = kStep_rad;
+  study.settings.resolution = kPlanarStep_rad;
   study.settings.overshoot = 1;
-  study.settings.max_checks = kMaxChecks;
+  study.settings.max_checks = kPlanarMaxChecks;
   study.settings.max_goals = max_goals;
   study.learning_instances = 200;
   study.test_instances = 50;

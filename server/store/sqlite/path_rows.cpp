@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kContentColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
-constexpr std::string_view kColumns =
+constexpr std::string_view kPathColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
     " received_ms, scene_id FROM path ";
 
@@ -33,8 +33,8 @@ struct PathContent {
   }
 };
 
-/// \param row  of kColumns.
-std::optional<StoredPath> read_row(const Statement& row) {
+/// \param row  of kPathColumns.
+std::optional<StoredPath> read_path(const Statement& row) {
   const PathContent content{row.column_blob(1),    row.column_blob(2),    row.column_integer(3),
                             row.column_integer(4), row.column_integer(5), row.column_blob(7)};
   if (content.crc() != row.column_integer(6))
@@ -57,7 +57,7 @@ std::optional<StoredPath> read_row(const Statement& row) {
 }
 
 void take_row(const Statement& row, PathsRead& read) {
-  if (std::optional<StoredPath> path = read_row(row))
+  if (std::optional<StoredPath> path = read_path(row))
     read.paths.push_back(std::move(*path));
   else
     read.damaged.push_back(row.column_integer(0));
@@ -121,7 +121,7 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
 
 PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
   const auto query =
-      database.cached(std::string(kColumns) +
+      database.cached(std::string(kPathColumns) +
                       "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
                       "AND damaged = 0 AND retired_ms IS NULL ORDER BY id");
   query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
@@ -132,7 +132,7 @@ PathsRead select_paths(Database& database, const ExperienceKey& key, const PathR
 }
 
 PathsRead select_path(Database& database, std::int64_t id) {
-  const auto query = database.cached(std::string(kColumns) + "WHERE id = ? AND damaged = 0");
+  const auto query = database.cached(std::string(kPathColumns) + "WHERE id = ? AND damaged = 0");
   query->bind(1, id);
   PathsRead read;
   if (query->step())
@@ -155,7 +155,7 @@ PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t
   while (query->step()) {
     checked.last_id = query->column_integer(0);
     ++checked.paths;
-    if (!read_row(*query))
+    if (!read_path(*query))
       checked.damaged.push_back(checked.last_id);
   }
   return checked;
@@ -163,11 +163,11 @@ PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t
 
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {
   const auto query =
-      database.cached(std::string(kColumns) + "WHERE damaged = 0 ORDER BY id DESC LIMIT ?");
+      database.cached(std::string(kPathColumns) + "WHERE damaged = 0 ORDER BY id DESC LIMIT ?");
   query->bind(1, count);
   std::vector<std::int64_t> damaged;
   while (query->step())
-    if (!read_row(*query))
+    if (!read_path(*query))
       damaged.push_back(query->column_integer(0));
   return damaged;
 }

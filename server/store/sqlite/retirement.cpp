@@ -33,10 +33,10 @@ void retire(Batch& batch, const PathRow& path, Retirement& retired) {
     retired.robots.insert(place, path.robot);
 }
 
-constexpr std::string_view kColumns =
+constexpr std::string_view kRetiredColumns =
     "SELECT path.id, path.task_id, path.robot_id, robot.digest, path.damaged FROM path ";
 
-PathRow read_row(const Statement& row) {
+PathRow read_retired(const Statement& row) {
   return {row.column_integer(0),
           {row.column_integer(1), row.column_integer(2)},
           id_of<Digest>(row.column_blob(3)),
@@ -46,11 +46,11 @@ PathRow read_row(const Statement& row) {
 /// \param condition  an index serves it; parameters ?1 task, ?2 last path, ?3 rows.
 std::vector<PathRow> select_rows(Database& database, const TaskReset& reset,
                                  const std::string& condition, std::int64_t limit) {
-  const auto query = database.cached(std::string(kColumns) + condition);
+  const auto query = database.cached(std::string(kRetiredColumns) + condition);
   query->bind_all(reset.task_id, reset.last_path_id, limit);
   std::vector<PathRow> rows;
   while (query->step())
-    rows.push_back(read_row(*query));
+    rows.push_back(read_retired(*query));
   return rows;
 }
 
@@ -75,11 +75,11 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
                  "path " + report_uuid.text() + ": this report brought no path"};
   std::optional<PathRow> path;
   {
-    const auto query = database.cached(std::string(kColumns) +
+    const auto query = database.cached(std::string(kRetiredColumns) +
                                        "JOIN robot ON robot.id = path.robot_id "
                                        "WHERE path.id = ? AND retired_ms IS NULL");
     if (query->bind(1, *path_id).step())
-      path = read_row(*query);
+      path = read_retired(*query);
   }
   if (path)
     retire(batch, *path, retired);

@@ -9,7 +9,7 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kColumns =
+constexpr std::string_view kRobotColumns =
     "SELECT id, digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes, registered_ms,"
     " crc32c, urdf FROM robot ";
 
@@ -68,7 +68,7 @@ void select_parts(Database& database, std::int64_t robot_id, RobotDescription& d
 }
 
 /// Empty if the row is not what insert_robot() wrote.
-std::optional<RobotRecord> read_row(Database& database, const Statement& row) {
+std::optional<RobotRecord> read_robot(Database& database, const Statement& row) {
   RobotRecord robot;
   robot.digest = id_of<Digest>(row.column_blob(1));
   robot.dof = static_cast<std::uint32_t>(row.column_integer(3));
@@ -90,8 +90,8 @@ std::optional<RobotRecord> read_row(Database& database, const Statement& row) {
 }
 
 bool has_undamaged(Database& database, const Digest& digest) {
-  const auto query = database.cached(std::string(kColumns) + "WHERE digest = ?");
-  return query->bind(1, Bytes(digest.bytes)).step() && read_row(database, *query);
+  const auto query = database.cached(std::string(kRobotColumns) + "WHERE digest = ?");
+  return query->bind(1, Bytes(digest.bytes)).step() && read_robot(database, *query);
 }
 
 bool another_has_label(Database& database, const RobotRecord& robot) {
@@ -147,20 +147,20 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
 }
 
 std::optional<RobotRecord> select_robot(Database& database, const Digest& robot) {
-  const auto query = database.cached(std::string(kColumns) + "WHERE digest = ?");
+  const auto query = database.cached(std::string(kRobotColumns) + "WHERE digest = ?");
   if (!query->bind(1, Bytes(robot.bytes)).step())
     return std::nullopt;
-  std::optional<RobotRecord> record = read_row(database, *query);
+  std::optional<RobotRecord> record = read_robot(database, *query);
   if (!record)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged");
   return record;
 }
 
 RobotsRead select_robots(Database& database) {
-  const auto query = database.cached(std::string(kColumns) + "ORDER BY label");
+  const auto query = database.cached(std::string(kRobotColumns) + "ORDER BY label");
   RobotsRead read;
   while (query->step()) {
-    if (std::optional<RobotRecord> robot = read_row(database, *query))
+    if (std::optional<RobotRecord> robot = read_robot(database, *query))
       read.robots.push_back(std::move(*robot));
     else
       read.damaged.emplace_back(query->column_text(2));

@@ -7,7 +7,7 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kColumns =
+constexpr std::string_view kSceneColumns =
     "SELECT id, content_sha256, size, encoding, crc32c, scene FROM scene ";
 
 /// The content's digest is under the checksum: a scene that stands under another's digest would be
@@ -20,8 +20,8 @@ std::uint32_t crc_of(Bytes content, std::int64_t size, std::int64_t encoding, By
   return crc32c(scene, crc32c(header.bytes()));
 }
 
-/// \param row  of kColumns.
-std::optional<RecordedScene> read_row(const Statement& row) {
+/// \param row  of kSceneColumns.
+std::optional<RecordedScene> read_scene(const Statement& row) {
   const Bytes content = row.column_blob(1), scene = row.column_blob(5);
   const std::int64_t size = row.column_integer(2), encoding = row.column_integer(3);
   if (crc_of(content, size, encoding, scene) != row.column_integer(4))
@@ -65,10 +65,10 @@ std::int64_t ensure_scene(Database& database, const PreparedScene& scene,
 }
 
 SceneRead select_scene(Database& database, std::int64_t id) {
-  const auto query = database.cached(std::string(kColumns) + "WHERE id = ? AND damaged = 0");
+  const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ? AND damaged = 0");
   SceneRead read;
   if (query->bind(1, id).step()) {
-    read.scene = read_row(*query);
+    read.scene = read_scene(*query);
     read.damaged = !read.scene;
   }
   return read;
@@ -79,14 +79,14 @@ void set_scene_aside(Database& database, std::int64_t id) {
 }
 
 ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit) {
-  const auto query =
-      database.cached(std::string(kColumns) + "WHERE id > ? AND damaged = 0 ORDER BY id LIMIT ?");
+  const auto query = database.cached(std::string(kSceneColumns) +
+                                     "WHERE id > ? AND damaged = 0 ORDER BY id LIMIT ?");
   query->bind_all(after_id, limit);
   ScenesChecked checked;
   while (query->step()) {
     checked.last_id = query->column_integer(0);
     ++checked.scenes;
-    if (!read_row(*query))
+    if (!read_scene(*query))
       checked.damaged.push_back(checked.last_id);
   }
   return checked;

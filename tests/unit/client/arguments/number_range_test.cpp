@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace kinship::arguments {
+namespace kinship::arguments::number_range_test {
 namespace {
 
 std::string complaint(const CLI::Validator& check, const std::string& given) {
@@ -30,4 +30,4 @@ TEST(Between, RefusesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace kinship::arguments
+}  // namespace kinship::arguments::number_range_test

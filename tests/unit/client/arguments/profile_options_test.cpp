@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace kinship::arguments {
+namespace kinship::arguments::profile_options_test {
 namespace {
 
 std::string profile_of(const std::string& line) {
@@ -27,4 +27,4 @@ TEST(ProfileOptions, AnotherEstimatorIsRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::arguments
+}  // namespace kinship::arguments::profile_options_test

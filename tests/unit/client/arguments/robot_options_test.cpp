@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace kinship::arguments {
+namespace kinship::arguments::robot_options_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -40,4 +40,4 @@ TEST(RobotOptions, AreAllOptional) {
 }
 
 }  // namespace
-}  // namespace kinship::arguments
+}  // namespace kinship::arguments::robot_options_test

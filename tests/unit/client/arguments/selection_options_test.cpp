@@ -7,7 +7,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::arguments {
+namespace kinship::arguments::selection_options_test {
 namespace {
 
 using Time = std::chrono::system_clock::time_point;
@@ -110,4 +110,4 @@ TEST(SelectionOptions, RefuseWhileTheCommandLineIsParsed) {
 }
 
 }  // namespace
-}  // namespace kinship::arguments
+}  // namespace kinship::arguments::selection_options_test

@@ -13,7 +13,7 @@
 #include "client/cli/exit_code.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::cli {
+namespace kinship::cli::commands_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
@@ -262,4 +262,4 @@ TEST(RobotsIk, AnswersAFileLineByLineAndNamesABrokenLine) {
 }
 
 }  // namespace
-}  // namespace kinship::cli
+}  // namespace kinship::cli::commands_test

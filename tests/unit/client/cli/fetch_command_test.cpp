@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace kinship::cli {
+namespace kinship::cli::fetch_command_test {
 namespace {
 
 std::string printed(const Distribution& distribution) {
@@ -47,4 +47,4 @@ TEST(PrintDistribution, OneScoreIsTheBest) {
 }
 
 }  // namespace
-}  // namespace kinship::cli
+}  // namespace kinship::cli::fetch_command_test

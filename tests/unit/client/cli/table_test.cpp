@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace kinship::cli {
+namespace kinship::cli::table_test {
 namespace {
 
 TEST(Table, AlignsTextLeftAndNumbersRight) {
@@ -37,4 +37,4 @@ TEST(TimeText, IsUtcToTheSecond) {
 }
 
 }  // namespace
-}  // namespace kinship::cli
+}  // namespace kinship::cli::table_test

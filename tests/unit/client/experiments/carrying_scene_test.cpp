@@ -13,7 +13,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::carrying_scene_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 77;  // of no set of instances
@@ -185,4 +185,4 @@ TEST(CobotStudy, ARobotThatCannotReachThePickIsSaid) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::carrying_scene_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace kinship::experiments {
+namespace kinship::experiments::cell_statistics_test {
 namespace {
 
 constexpr std::uint64_t kMaxChecks = 1000;
@@ -97,4 +97,4 @@ TEST(CellStatistics, McNemarIsTheTwoSidedBinomialTest) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::cell_statistics_test

@@ -8,7 +8,7 @@
 
 #include "client/experiments/comparison_table.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::comparison_test {
 namespace {
 
 ProblemResult attempt(const std::string& name, bool solved, std::uint64_t checks, double time_s) {
@@ -147,4 +147,4 @@ TEST(ComparisonJson, IsOneDocumentWithNullForInfinity) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::comparison_test

@@ -16,7 +16,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::page_test {
 namespace {
 
 constexpr const char* kModels = KINSHIP_SOURCE_DIR "/robots/models";
@@ -173,4 +173,4 @@ TEST(Bones, AreAsManyAsShapesAndMoveWithTheRobot) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::page_test

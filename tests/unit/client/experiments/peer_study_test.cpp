@@ -7,7 +7,7 @@
 
 #include "client/experiments/pipeline/peer_process.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::peer_study_test {
 namespace {
 
 constexpr std::uint64_t kMost = 1000;
@@ -77,4 +77,4 @@ TEST(PeerProcess, WhatIsThrownEndsTheChildOnly) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::peer_study_test

@@ -10,7 +10,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::planar_scene_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 77;  // of no set of instances
@@ -103,4 +103,4 @@ TEST(Studies, AnUnknownOneIsRefusedWithTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::planar_scene_test

@@ -9,7 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::query_log_test {
 namespace {
 
 Digest digest_of(std::uint8_t byte) {
@@ -104,4 +104,4 @@ TEST(QueryResults, ALineWithoutAMemberIsRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::query_log_test

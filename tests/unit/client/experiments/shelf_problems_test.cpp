@@ -11,7 +11,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/loaded_robot.hpp"
 
-namespace kinship::experiments {
+namespace kinship::experiments::shelf_problems_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -111,4 +111,4 @@ TEST(ShelfProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::shelf_problems_test

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace kinship::experiments {
+namespace kinship::experiments::shelf_scene_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -106,4 +106,4 @@ TEST(ShelfScene, TheHeldBoxIsFreeAtThePickAndAtTheGoal) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::shelf_scene_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace kinship::experiments {
+namespace kinship::experiments::statistics_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -50,4 +50,4 @@ TEST(Statistics, RefuseNothingAndNotANumber) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::statistics_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace kinship::experiments {
+namespace kinship::experiments::wilcoxon_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -139,4 +139,4 @@ TEST(Wilcoxon, RefusesWhatCannotBeRanked) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments
+}  // namespace kinship::experiments::wilcoxon_test

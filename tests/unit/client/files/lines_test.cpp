@@ -9,7 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::files {
+namespace kinship::files::lines_test {
 namespace {
 
 std::vector<std::string> read(const std::string& text, std::size_t max_bytes = kMaxLineBytes) {
@@ -88,4 +88,4 @@ TEST(OpenInput, AFolderIsNoFile) {
 }
 
 }  // namespace
-}  // namespace kinship::files
+}  // namespace kinship::files::lines_test

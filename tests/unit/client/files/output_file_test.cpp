@@ -12,7 +12,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::files {
+namespace kinship::files::output_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST_F(OutputFileTest, KnowsWhenItWouldOverwriteItsInput) {
 }
 
 }  // namespace
-}  // namespace kinship::files
+}  // namespace kinship::files::output_file_test

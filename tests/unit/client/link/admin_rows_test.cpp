@@ -9,7 +9,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/json/admin_rows_json.hpp"
 
-namespace kinship::link {
+namespace kinship::link::admin_rows_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -139,4 +139,4 @@ TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::admin_rows_test

@@ -13,7 +13,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::link {
+namespace kinship::link::client_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -193,4 +193,4 @@ TEST_F(ClientTest, TwoClientsMayShareAnOutbox) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::client_test

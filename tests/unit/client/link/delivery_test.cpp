@@ -7,7 +7,7 @@
 #include "proto/types/limits.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::link {
+namespace kinship::link::delivery_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -126,4 +126,4 @@ TEST_F(Deliver, WhatHasNoReceiptInTimeIsToBeTriedAgain) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::delivery_test

@@ -29,7 +29,7 @@ extern "C" int fsync(int descriptor) {
   return static_cast<int>(syscall(SYS_fsync, descriptor));
 }
 
-namespace kinship::link {
+namespace kinship::link::durable_folder_test {
 namespace {
 
 class DurableFolder : public testing::Test {
@@ -75,4 +75,4 @@ TEST_F(DurableFolder, FileInTheWayIsNamed) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::durable_folder_test

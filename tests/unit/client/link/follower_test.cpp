@@ -11,7 +11,7 @@
 #include "tests/support/random_values.hpp"
 #include "tests/unit/client/link/follow_server.hpp"
 
-namespace kinship::link {
+namespace kinship::link::follower_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -194,4 +194,4 @@ TEST_F(FollowerTest, ARequestThatBreaksARuleIsRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::follower_test

@@ -15,7 +15,7 @@
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::link {
+namespace kinship::link::outbox_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -237,4 +237,4 @@ TEST(DefaultOutboxFolder, FollowsTheXdgSpecification) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::outbox_test

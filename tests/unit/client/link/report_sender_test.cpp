@@ -12,7 +12,7 @@
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::link {
+namespace kinship::link::report_sender_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -232,4 +232,4 @@ TEST_F(ReportSenderTest, SecondSenderOfAnOutboxLeavesItToTheFirst) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::report_sender_test

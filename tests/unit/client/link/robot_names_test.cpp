@@ -10,7 +10,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/json/summaries_json.hpp"
 
-namespace kinship::link {
+namespace kinship::link::robot_names_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -92,4 +92,4 @@ TEST(ResolveRobots, WithoutAServerIsUnavailable) {
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::robot_names_test

@@ -10,7 +10,7 @@
 #include "tests/support/random_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::link {
+namespace kinship::link::unknown_robot_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -161,4 +161,4 @@ TEST_F(UnknownRobot, StoreRestoredFromBeforeTheRegistrationGetsEverythingAgain) 
 }
 
 }  // namespace
-}  // namespace kinship::link
+}  // namespace kinship::link::unknown_robot_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace kinship::plan {
+namespace kinship::plan::guidance_test {
 namespace {
 
 constexpr Eigen::Index kDof = 2;
@@ -212,4 +212,4 @@ TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::guidance_test

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-namespace kinship::plan {
+namespace kinship::plan::plan_options_test {
 namespace {
 
 struct Parsed {
@@ -227,4 +227,4 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::plan_options_test

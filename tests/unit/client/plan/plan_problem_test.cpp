@@ -10,7 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/client/plan/planar_problem.hpp"
 
-namespace kinship::plan {
+namespace kinship::plan::plan_problem_test {
 namespace {
 
 using test::planar_robot;
@@ -424,4 +424,4 @@ TEST(PlanProblem, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::plan_problem_test

@@ -15,7 +15,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/unit/client/plan/planar_problem.hpp"
 
-namespace kinship::plan {
+namespace kinship::plan::plan_run_test {
 namespace {
 
 bool never() { return false; }
@@ -242,4 +242,4 @@ TEST_F(PlanRunWithoutServer, WithoutReportingNoOutboxIsOpened) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::plan_run_test

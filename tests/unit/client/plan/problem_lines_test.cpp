@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace kinship::plan {
+namespace kinship::plan::problem_lines_test {
 namespace {
 
 constexpr const char* kGood = R"({"name":"a","T_task_base":[0,0,0,0,0,0,1],"start":[0,0],)"
@@ -36,4 +36,4 @@ TEST(ProblemLines, WhatCannotBeReadIsNotAnEmptyFile) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::problem_lines_test

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-namespace kinship::plan {
+namespace kinship::plan::progress_test {
 namespace {
 
 ProblemResult solved(const std::string& name, std::uint64_t checks) {
@@ -97,4 +97,4 @@ TEST(Progress, NoProblemsIsNoDivisionByZero) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::progress_test

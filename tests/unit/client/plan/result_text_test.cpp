@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::plan {
+namespace kinship::plan::result_text_test {
 namespace {
 
 ProblemResult solved_result() {
@@ -50,4 +50,4 @@ TEST(ResultText, NamesABrokenLineOnce) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::result_text_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/client/plan/planar_problem.hpp"
 
-namespace kinship::plan {
+namespace kinship::plan::scene_record_test {
 namespace {
 
 const kinematics::Chain& chain() {
@@ -64,4 +64,4 @@ TEST(SceneRecord, AMeshIsNotSent) {
 }
 
 }  // namespace
-}  // namespace kinship::plan
+}  // namespace kinship::plan::scene_record_test

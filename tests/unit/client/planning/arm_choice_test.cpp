@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace kinship::planning {
+namespace kinship::planning::arm_choice_test {
 namespace {
 
 constexpr std::uint64_t kQueries = 20'000;
@@ -184,4 +184,4 @@ TEST(ArmSeed, IsTheSameForTheSameQueryOnly) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::arm_choice_test

@@ -8,7 +8,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::birrt_test {
 namespace {
 
 using test_support::at;
@@ -195,4 +195,4 @@ TEST(Birrt, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::birrt_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/client/planning/carrying_problem.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::cbirrt2_test {
 namespace {
 
 using test_support::largest_excess;
@@ -132,4 +132,4 @@ TEST(Cbirrt2, EqualSeedEqualPathAndItsLastCheckEndsIt) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::cbirrt2_test

@@ -8,7 +8,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::configuration_sampler_test {
 namespace {
 
 using test_support::at;
@@ -121,4 +121,4 @@ TEST(ConfigurationSampler, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::configuration_sampler_test

@@ -8,7 +8,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::goal_configurations_test {
 namespace {
 
 using test::planar_pose;
@@ -111,4 +111,4 @@ TEST(GoalConfigurations, SayWhyThereAreNone) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::goal_configurations_test

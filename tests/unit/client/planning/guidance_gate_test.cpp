@@ -8,7 +8,7 @@
 
 #include "tests/support/robots.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::guidance_gate_test {
 namespace {
 
 constexpr double kTurn = 2 * M_PI;
@@ -132,4 +132,4 @@ TEST_F(GuidanceGate, WithoutAGoalNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::guidance_gate_test

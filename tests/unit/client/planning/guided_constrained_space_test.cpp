@@ -16,7 +16,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/client/planning/carrying_problem.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::guided_constrained_space_test {
 namespace {
 
 namespace ob = ompl::base;
@@ -190,4 +190,4 @@ TEST(GuidedConstrainedSpace, GuidesRrtConnectOnAProjectedSpace) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::guided_constrained_space_test

@@ -16,7 +16,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::guided_state_sampler_test {
 namespace {
 
 namespace ob = ompl::base;
@@ -175,4 +175,4 @@ TEST(GuidedStateSampler, RefusesASpaceOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::guided_state_sampler_test

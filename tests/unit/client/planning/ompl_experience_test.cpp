@@ -6,7 +6,7 @@
 
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::ompl_experience_test {
 namespace {
 
 using test_support::at;
@@ -108,4 +108,4 @@ TEST(LightningExperience, RefusesAStepOfNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::ompl_experience_test

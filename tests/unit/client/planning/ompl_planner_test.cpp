@@ -5,7 +5,7 @@
 #include "tests/unit/client/planning/carrying_problem.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::ompl_planner_test {
 namespace {
 
 using test_support::at;
@@ -229,4 +229,4 @@ TEST(OmplPlanner, ConstrainedWaypointsAreThoseThatWereAsked) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::ompl_planner_test

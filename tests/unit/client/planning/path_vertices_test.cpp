@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace kinship::planning {
+namespace kinship::planning::path_vertices_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -74,4 +74,4 @@ TEST(PathVertices, RefuseNoWaypointAndNoStep) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::path_vertices_test

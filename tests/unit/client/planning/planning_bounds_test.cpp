@@ -8,7 +8,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::planning_bounds_test {
 namespace {
 
 using kinematics::JointType;
@@ -121,4 +121,4 @@ TEST(TurnedInto, LeavesWhatLiesWithinAndNeverTurnsOtherJoints) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::planning_bounds_test

@@ -10,7 +10,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::region_constraint_test {
 namespace {
 
 using Vector6 = RegionConstraint::Vector6;
@@ -213,4 +213,4 @@ TEST(RegionConstraint, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::region_constraint_test

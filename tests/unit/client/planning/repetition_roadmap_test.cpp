@@ -8,7 +8,7 @@
 #include "tests/unit/client/planning/carrying_problem.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::repetition_roadmap_test {
 namespace {
 
 using test_support::at;
@@ -301,4 +301,4 @@ TEST(RepetitionRoadmap, CarriesAContainerAsBefore) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::repetition_roadmap_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/client/planning/wall_world.hpp"
 
-namespace kinship::planning {
+namespace kinship::planning::shortcut_test {
 namespace {
 
 using test_support::at;
@@ -87,4 +87,4 @@ TEST(Shortcut, EqualSeedEqualPath) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::shortcut_test

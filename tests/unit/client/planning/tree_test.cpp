@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace kinship::planning {
+namespace kinship::planning::tree_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -45,4 +45,4 @@ TEST(Tree, BranchLeadsFromANodeToItsRoot) {
 }
 
 }  // namespace
-}  // namespace kinship::planning
+}  // namespace kinship::planning::tree_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/random_values.hpp"
 
-namespace kinship::codec {
+namespace kinship::codec::fetch_codec_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 33;
@@ -272,4 +272,4 @@ TEST(FetchCodec, StatusOutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::fetch_codec_test

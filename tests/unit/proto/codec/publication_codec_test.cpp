@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace kinship::codec {
+namespace kinship::codec::publication_codec_test {
 namespace {
 
 TEST(AnnouncementCodec, TaskIsATask) {
@@ -46,4 +46,4 @@ TEST(EventCodec, IncomingOneIsCheckedByName) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::publication_codec_test

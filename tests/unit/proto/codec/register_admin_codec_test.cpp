@@ -6,7 +6,7 @@
 #include "proto/codec/register_codec.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::codec {
+namespace kinship::codec::register_admin_codec_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 34;
@@ -160,4 +160,4 @@ TEST(Refusal, AdminStatusTellsWhoseFaultItIs) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::register_admin_codec_test

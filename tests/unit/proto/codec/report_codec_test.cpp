@@ -6,7 +6,7 @@
 
 #include "tests/support/random_values.hpp"
 
-namespace kinship::codec {
+namespace kinship::codec::report_codec_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 32;
@@ -213,4 +213,4 @@ TEST(ReportCodec, AnOddMessageHoldsNoReceiptBack) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::report_codec_test

@@ -6,7 +6,7 @@
 #include "proto/codec/fetch_codec.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::codec {
+namespace kinship::codec::selection_codec_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 35;
@@ -85,4 +85,4 @@ TEST(SelectionCodec, TooManySourcesAreRefusedBeforeTheyAreRead) {
 }
 
 }  // namespace
-}  // namespace kinship::codec
+}  // namespace kinship::codec::selection_codec_test

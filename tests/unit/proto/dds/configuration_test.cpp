@@ -11,7 +11,7 @@
 #include "proto/dds/qos.hpp"
 #include "proto/types/failure.hpp"
 
-namespace kinship::dds {
+namespace kinship::dds::configuration_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -74,4 +74,4 @@ TEST(Log, FloodIsCutAndTheNewestLineIsKnown) {
 }
 
 }  // namespace
-}  // namespace kinship::dds
+}  // namespace kinship::dds::configuration_test

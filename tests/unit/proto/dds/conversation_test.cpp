@@ -12,7 +12,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/dds/requester.hpp"
 
-namespace kinship::dds {
+namespace kinship::dds::conversation_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -232,4 +232,4 @@ TEST(WaitLoop, DoesNotRunAfterStop) {
 }
 
 }  // namespace
-}  // namespace kinship::dds
+}  // namespace kinship::dds::conversation_test

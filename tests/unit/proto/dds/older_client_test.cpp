@@ -8,7 +8,7 @@
 #include "proto/dds/replier.hpp"
 #include "tests/support/child_process.hpp"
 
-namespace kinship::dds {
+namespace kinship::dds::older_client_test {
 namespace {
 
 TEST(OlderClient, AttemptWithoutARecordIsRefusedByName) {
@@ -39,4 +39,4 @@ TEST(OlderClient, AttemptWithoutARecordIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace kinship::dds
+}  // namespace kinship::dds::older_client_test

@@ -9,7 +9,7 @@
 #include "proto/dds/requester.hpp"
 #include "tests/support/child_process.hpp"
 
-namespace kinship::dds {
+namespace kinship::dds::processes_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,4 +138,4 @@ TEST(Processes, ReplyThatIsTooLargeBecomesARefusal) {
 }
 
 }  // namespace
-}  // namespace kinship::dds
+}  // namespace kinship::dds::processes_test

@@ -20,7 +20,7 @@
 #include "proto/types/limits.hpp"
 #include "tests/support/child_process.hpp"
 
-namespace kinship::dds {
+namespace kinship::dds::publication_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ TEST(Publication, IsShortOnTheWire) {
 }
 
 }  // namespace
-}  // namespace kinship::dds
+}  // namespace kinship::dds::publication_test

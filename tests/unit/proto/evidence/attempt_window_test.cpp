@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace kinship::evidence {
+namespace kinship::evidence::attempt_window_test {
 namespace {
 
 TEST(AttemptWindow, AddedAttemptsMakeTheOthersOlder) {
@@ -48,4 +48,4 @@ TEST(AttemptWindow, AgeEndsAtTheGreatestNumber) {
 }
 
 }  // namespace
-}  // namespace kinship::evidence
+}  // namespace kinship::evidence::attempt_window_test

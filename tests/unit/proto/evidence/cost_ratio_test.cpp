@@ -7,7 +7,7 @@
 
 #include "proto/evidence/attempt_window.hpp"
 
-namespace kinship::evidence {
+namespace kinship::evidence::cost_ratio_test {
 namespace {
 
 constexpr double kCap = 100'000;
@@ -207,4 +207,4 @@ TEST(CostRatio, EqualCostsAreSeldomCalledClearlyDifferent) {
 }
 
 }  // namespace
-}  // namespace kinship::evidence
+}  // namespace kinship::evidence::cost_ratio_test

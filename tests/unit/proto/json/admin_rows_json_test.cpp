@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace kinship::json {
+namespace kinship::json::admin_rows_json_test {
 namespace {
 
 Digest digest_of(std::uint8_t byte) {
@@ -97,4 +97,4 @@ TEST(AdminRowsJson, RefusalInsideAnExplanationNamesThePlace) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::admin_rows_json_test

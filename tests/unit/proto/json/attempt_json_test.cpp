@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace kinship::json {
+namespace kinship::json::attempt_json_test {
 namespace {
 
 constexpr const char* kUuid = "01234567-89ab-4def-8123-456789abcdef";
@@ -170,4 +170,4 @@ TEST(AttemptJson, BytesThatAreNotUtf8AreReplacedWhenWritten) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::attempt_json_test

@@ -6,7 +6,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::json {
+namespace kinship::json::distribution_json_test {
 namespace {
 
 Distribution two_components() {
@@ -228,4 +228,4 @@ TEST(DistributionJson, ComponentsAreLimited) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::distribution_json_test

@@ -8,7 +8,7 @@
 #include "proto/json/robot_description_json.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::json {
+namespace kinship::json::experience_line_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -71,4 +71,4 @@ TEST(EventJson, IsALine) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::experience_line_test

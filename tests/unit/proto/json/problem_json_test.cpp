@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace kinship::json {
+namespace kinship::json::problem_json_test {
 namespace {
 
 constexpr const char* kProblem = R"({"name": "shelf 7", "T_task_base": [0, 0, 0.5, 0, 0, 0, 1],
@@ -246,4 +246,4 @@ TEST(ProblemJson, AMisspeltMemberIsNotDropped) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::problem_json_test

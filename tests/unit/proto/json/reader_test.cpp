@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace kinship::json {
+namespace kinship::json::reader_test {
 namespace {
 
 /// The member "x" of a document, read as a finite number.
@@ -129,4 +129,4 @@ TEST(Reader, IdentitiesAreShownWhenRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::reader_test

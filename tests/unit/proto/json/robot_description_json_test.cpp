@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace kinship::json {
+namespace kinship::json::robot_description_json_test {
 namespace {
 
 RobotDescription planar_arm() {
@@ -61,4 +61,4 @@ TEST(RobotDescriptionJson, SizesAreLimited) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::robot_description_json_test

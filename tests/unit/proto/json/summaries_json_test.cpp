@@ -7,7 +7,7 @@
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/types/limits.hpp"
 
-namespace kinship::json {
+namespace kinship::json::summaries_json_test {
 namespace {
 
 /// Law: what was read writes the same text again, so every member went both ways.
@@ -113,4 +113,4 @@ TEST(SummariesJson, CountersMustFit) {
 }
 
 }  // namespace
-}  // namespace kinship::json
+}  // namespace kinship::json::summaries_json_test

@@ -11,7 +11,7 @@
 #include "proto/mixture/component_densities.hpp"
 #include "proto/types/failure.hpp"
 
-namespace kinship::mixture {
+namespace kinship::mixture::density_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -133,4 +133,4 @@ TEST(LogSumExp, NeitherOverflowsNorUnderflows) {
 }
 
 }  // namespace
-}  // namespace kinship::mixture
+}  // namespace kinship::mixture::density_test

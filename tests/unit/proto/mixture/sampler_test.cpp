@@ -9,7 +9,7 @@
 
 #include "proto/types/failure.hpp"
 
-namespace kinship::mixture {
+namespace kinship::mixture::sampler_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
@@ -150,4 +150,4 @@ TEST(Sampler, RefusesACovarianceThatIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace kinship::mixture
+}  // namespace kinship::mixture::sampler_test

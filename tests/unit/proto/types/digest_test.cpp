@@ -6,7 +6,7 @@
 
 #include "proto/types/sha256.hpp"
 
-namespace kinship {
+namespace kinship::digest_test {
 namespace {
 
 TEST(Digest, RoundTripsThroughHex) {
@@ -37,4 +37,4 @@ TEST(Sha256, NegativeZeroCountsAsZero) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::digest_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship {
+namespace kinship::enum_text_test {
 namespace {
 
 TEST(EnumText, EveryWordIsReadBack) {
@@ -28,4 +28,4 @@ TEST(EnumText, ValueOutsideTheEnumIsACallersBug) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::enum_text_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship {
+namespace kinship::fit_origin_test {
 namespace {
 
 TEST(FitOrigin, SaysWhichOfTheTwoHappened) {
@@ -14,4 +14,4 @@ TEST(FitOrigin, SaysWhichOfTheTwoHappened) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::fit_origin_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace kinship {
+namespace kinship::names_test {
 namespace {
 
 TEST(Names, TaskNeedsItsCharacterSet) {
@@ -67,4 +67,4 @@ TEST(Names, ACutTextMayAlwaysBeSent) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::names_test

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace kinship {
+namespace kinship::number_text_test {
 namespace {
 
 TEST(NumberText, IsShortAndReadsBack) {
@@ -22,4 +22,4 @@ TEST(NumberText, NamesWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::number_text_test

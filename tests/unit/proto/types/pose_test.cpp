@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace kinship {
+namespace kinship::pose_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20;
@@ -64,4 +64,4 @@ TEST(Pose, SnappedKnowsAHalfTurnFromBothSides) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::pose_test

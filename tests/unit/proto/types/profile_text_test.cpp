@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship {
+namespace kinship::profile_text_test {
 namespace {
 
 TEST(ProfileText, ANameAloneIsThatProfile) {
@@ -62,4 +62,4 @@ TEST(ProfileText, RefusesWithOptionValueAndLimits) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::profile_text_test

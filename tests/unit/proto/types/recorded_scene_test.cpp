@@ -9,7 +9,7 @@
 #include "proto/types/pose.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship {
+namespace kinship::recorded_scene_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -87,4 +87,4 @@ TEST(RecordedScene, BytesCountSolidsPairsAndNames) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::recorded_scene_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace kinship {
+namespace kinship::rounded_inward_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -38,4 +38,4 @@ TEST(RoundedInward, WhereNoFloatLiesBetweenTheLimitsTheNearestStands) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::rounded_inward_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace kinship {
+namespace kinship::uuid_test {
 namespace {
 
 TEST(Uuid, RoundTripsThroughText) {
@@ -29,4 +29,4 @@ TEST(Uuid, RefusesOtherForms) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::uuid_test

@@ -8,7 +8,7 @@
 #include "proto/types/profile.hpp"
 #include "proto/types/result.hpp"
 
-namespace kinship {
+namespace kinship::values_test {
 namespace {
 
 TEST(Path, RefusesOneWaypointAndNan) {
@@ -62,4 +62,4 @@ TEST(Profile, KnowsDefaultAndPaper) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::values_test

@@ -8,7 +8,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision {
+namespace kinship::collision::collision_world_test {
 namespace {
 
 using namespace test_support;
@@ -252,4 +252,4 @@ TEST(CollisionWorld, RefusesAConfigurationThatIsNone) {
 }
 
 }  // namespace
-}  // namespace kinship::collision
+}  // namespace kinship::collision::collision_world_test

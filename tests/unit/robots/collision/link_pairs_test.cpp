@@ -4,7 +4,7 @@
 
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision {
+namespace kinship::collision::link_pairs_test {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
@@ -55,4 +55,4 @@ TEST(NeighbouringLinks, MeetThroughAShapelessRoot) {
 }
 
 }  // namespace
-}  // namespace kinship::collision
+}  // namespace kinship::collision::link_pairs_test

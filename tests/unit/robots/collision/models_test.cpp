@@ -8,7 +8,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision {
+namespace kinship::collision::models_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 2;
@@ -98,4 +98,4 @@ TEST(Ur10e, FoldedOntoItselfCollides) {
 }
 
 }  // namespace
-}  // namespace kinship::collision
+}  // namespace kinship::collision::models_test

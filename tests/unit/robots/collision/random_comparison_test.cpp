@@ -6,7 +6,7 @@
 #include "tests/unit/robots/collision/nearest_points.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision {
+namespace kinship::collision::random_comparison_test {
 namespace {
 
 using namespace test_support;
@@ -124,4 +124,4 @@ TEST(CollisionWorld, AgreesWithDistancesOfAPlanarArm) {
 }
 
 }  // namespace
-}  // namespace kinship::collision
+}  // namespace kinship::collision::random_comparison_test

@@ -8,7 +8,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision {
+namespace kinship::collision::solid_test {
 namespace {
 
 using test_support::shift;
@@ -120,4 +120,4 @@ TEST(Solid, RefusesWhatIsNoShape) {
 }
 
 }  // namespace
-}  // namespace kinship::collision
+}  // namespace kinship::collision::solid_test

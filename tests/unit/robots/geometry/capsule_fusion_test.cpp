@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::geometry {
+namespace kinship::geometry::capsule_fusion_test {
 namespace {
 
 constexpr double kRadius = 0.06, kLength = 0.4;
@@ -79,4 +79,4 @@ TEST(FuseCapsules, TwoCapsulesMayShareASphere) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::capsule_fusion_test

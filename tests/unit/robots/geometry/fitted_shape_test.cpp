@@ -8,7 +8,7 @@
 
 #include "robots/geometry/shape_rules.hpp"
 
-namespace kinship::geometry {
+namespace kinship::geometry::fitted_shape_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 8;
@@ -110,4 +110,4 @@ TEST(FitShape, GivesFlatAndPointSizedMeshesAThickness) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::fitted_shape_test

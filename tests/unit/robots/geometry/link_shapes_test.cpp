@@ -7,7 +7,7 @@
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 
-namespace kinship::geometry {
+namespace kinship::geometry::link_shapes_test {
 namespace {
 
 /// Two links and a joint between them; the collision elements go into the second.
@@ -183,4 +183,4 @@ TEST(ReadShapes, SaysNothingOnTheTerminal) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::link_shapes_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/box_mesh.hpp"
 
-namespace kinship::geometry {
+namespace kinship::geometry::mesh_test {
 namespace {
 
 const Eigen::Vector3d kSize(0.25, 0.5, 2);
@@ -122,4 +122,4 @@ TEST(ReadMesh, DoesNotExpandEntitiesOfADaeFile) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::mesh_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace kinship::geometry {
+namespace kinship::geometry::shape_rules_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -36,4 +36,4 @@ TEST(BrokenRule, NamesSizeAndValue) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::shape_rules_test

@@ -4,7 +4,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::geometry {
+namespace kinship::geometry::srdf_test {
 namespace {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
@@ -88,4 +88,4 @@ TEST(ReadSrdf, RefusesTooMuchBeforeItReadsIt) {
 }
 
 }  // namespace
-}  // namespace kinship::geometry
+}  // namespace kinship::geometry::srdf_test

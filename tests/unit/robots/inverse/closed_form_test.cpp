@@ -15,7 +15,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::closed_form_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -315,4 +315,4 @@ TEST(DescribeStructure, SaysWhatFewerJointsCannotDo) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::closed_form_test

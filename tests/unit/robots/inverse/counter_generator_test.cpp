@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace kinship::inverse {
+namespace kinship::inverse::counter_generator_test {
 namespace {
 
 TEST(CounterGenerator, EqualSeedAndPoseGiveEqualNumbers) {
@@ -47,4 +47,4 @@ TEST(CounterGenerator, UniformFillsTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::counter_generator_test

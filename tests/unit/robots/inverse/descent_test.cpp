@@ -7,7 +7,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::descent_test {
 namespace {
 
 using test::planar_axes;
@@ -90,4 +90,4 @@ TEST(Descent, ReachBoundsTheArm) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::descent_test

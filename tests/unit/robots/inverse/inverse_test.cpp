@@ -13,7 +13,7 @@
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::inverse_test {
 namespace {
 
 using kinematics::JointType;
@@ -174,4 +174,4 @@ TEST(Inverse, SixJointsOfAnyKindReachAPoseInPairs) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::inverse_test

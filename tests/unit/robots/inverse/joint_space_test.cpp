@@ -6,7 +6,7 @@
 
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::joint_space_test {
 namespace {
 
 using kinematics::JointType;
@@ -81,4 +81,4 @@ TEST(Chosen, IsUniformAndApart) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::joint_space_test

@@ -10,7 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/random_chain.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::lanes_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -169,4 +169,4 @@ TEST(Lanes, HalfATurnIsLeftAndIsNoSolution) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::lanes_test

@@ -11,7 +11,7 @@
 #include "tests/support/screw_arm.hpp"
 #include "tests/unit/robots/inverse/checked_inverse.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::limit_cases_test {
 namespace {
 
 using kinematics::Chain;
@@ -196,4 +196,4 @@ TEST(LimitCases, ASlidingJointCountsAMetreAsARadian) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::limit_cases_test

@@ -8,7 +8,7 @@
 #include "tests/support/screw_arm.hpp"
 #include "tests/unit/robots/inverse/checked_inverse.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::out_of_reach_test {
 namespace {
 
 using kinematics::Chain;
@@ -153,4 +153,4 @@ TEST(OutOfReach, AMillimetreOffThePosesOfFewJoints) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::out_of_reach_test

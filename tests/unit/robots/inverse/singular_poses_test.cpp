@@ -9,7 +9,7 @@
 #include "tests/support/screw_arm.hpp"
 #include "tests/unit/robots/inverse/checked_inverse.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::singular_poses_test {
 namespace {
 
 using kinematics::Chain;
@@ -161,4 +161,4 @@ TEST(SingularPoses, EveryModelIsSolvedAtZeroAndAQuarterTurnFromIt) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::singular_poses_test

@@ -12,7 +12,7 @@
 #include "tests/support/screw_arm.hpp"
 #include "tests/unit/robots/inverse/checked_inverse.hpp"
 
-namespace kinship::inverse {
+namespace kinship::inverse::unusual_arms_test {
 namespace {
 
 using kinematics::Chain;
@@ -252,4 +252,4 @@ TEST(UnusualArms, AnswersDependOnPoseAndSeedOnly) {
 }
 
 }  // namespace
-}  // namespace kinship::inverse
+}  // namespace kinship::inverse::unusual_arms_test

@@ -9,7 +9,7 @@
 #include "proto/types/limits.hpp"
 #include "tests/unit/robots/kinematics/random_chains.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::chain_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -126,4 +126,4 @@ TEST(ChainDigest, DependsOnEveryNumber) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::chain_test

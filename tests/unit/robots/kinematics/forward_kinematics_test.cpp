@@ -4,7 +4,7 @@
 
 #include "tests/unit/robots/kinematics/random_chains.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::forward_kinematics_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 8;
@@ -68,4 +68,4 @@ TEST(ForwardKinematics, RefusesAConfigurationOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::forward_kinematics_test

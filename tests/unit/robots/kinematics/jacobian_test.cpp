@@ -5,7 +5,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/robots/kinematics/random_chains.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::jacobian_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 9;
@@ -42,4 +42,4 @@ TEST(Jacobian, RefusesAConfigurationOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::jacobian_test

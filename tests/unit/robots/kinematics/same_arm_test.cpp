@@ -10,7 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/robots/kinematics/random_chains.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::same_arm_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -186,4 +186,4 @@ TEST(SameArm, ComparesUpToTheLargestChain) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::same_arm_test

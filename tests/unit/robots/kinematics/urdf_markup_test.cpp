@@ -6,7 +6,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::urdf_markup_test {
 namespace {
 
 std::string repeated(const std::string& text, int times) {
@@ -73,4 +73,4 @@ TEST(UrdfMarkup, RefusesControlCharacters) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::urdf_markup_test

@@ -9,7 +9,7 @@
 
 #include "tests/unit/robots/kinematics/small_arm.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::urdf_model_test {
 namespace {
 
 std::string message(const std::string& text) {
@@ -102,4 +102,4 @@ TEST(UrdfModel, ThreadsGetTheirOwnMessages) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::urdf_model_test

@@ -10,7 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/robots/kinematics/small_arm.hpp"
 
-namespace kinship::kinematics {
+namespace kinship::kinematics::urdf_test {
 namespace {
 
 constexpr double kTolerance = 1e-12;
@@ -231,4 +231,4 @@ TEST(ReadChain, LabelsAndLinkNamesDoNotCountForTheIdentity) {
 }
 
 }  // namespace
-}  // namespace kinship::kinematics
+}  // namespace kinship::kinematics::urdf_test

@@ -7,7 +7,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::models {
+namespace kinship::models::loaded_robot_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
@@ -105,4 +105,4 @@ TEST(LoadRobot, SaysWhatIsWrongWithFilesChainAndShapes) {
 }
 
 }  // namespace
-}  // namespace kinship::models
+}  // namespace kinship::models::loaded_robot_test

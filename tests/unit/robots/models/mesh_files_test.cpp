@@ -8,7 +8,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::models {
+namespace kinship::models::mesh_files_test {
 namespace {
 
 std::string found(const MeshFiles& files, const std::string& uri) {
@@ -82,4 +82,4 @@ TEST(ParsePackages, ReadsNamesAndFolders) {
 }
 
 }  // namespace
-}  // namespace kinship::models
+}  // namespace kinship::models::mesh_files_test

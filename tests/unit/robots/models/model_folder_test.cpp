@@ -7,7 +7,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::models {
+namespace kinship::models::model_folder_test {
 namespace {
 
 const std::string kNames = "label = 'r'\nbase = 'b'\ntip = 't'\n";
@@ -102,4 +102,4 @@ TEST_F(ModelFolder, RefusesAUrdfThatIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace kinship::models
+}  // namespace kinship::models::model_folder_test

@@ -9,7 +9,7 @@
 #include "robots/kinematics/jacobian.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship {
+namespace kinship::models_test {
 namespace {
 
 using kinematics::Chain;
@@ -280,4 +280,4 @@ TEST(ReferenceLimits, AreThoseOfTheManufacturers) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::models_test

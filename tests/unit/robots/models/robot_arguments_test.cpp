@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::models {
+namespace kinship::models::robot_arguments_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
@@ -71,4 +71,4 @@ TEST(DescribeRobot, RefusesAHeldJointWithoutValue) {
 }
 
 }  // namespace
-}  // namespace kinship::models
+}  // namespace kinship::models::robot_arguments_test

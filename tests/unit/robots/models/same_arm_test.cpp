@@ -10,7 +10,7 @@
 #include "tests/support/robots.hpp"
 
 // The UR10e against twins as fleets have them: calibrated, remounted, turned, renamed.
-namespace kinship {
+namespace kinship::same_arm_test {
 namespace {
 
 using kinematics::ArmLikeness;
@@ -113,4 +113,4 @@ TEST(ModelArms, AreAllDifferent) {
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::same_arm_test

@@ -7,7 +7,7 @@
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::models {
+namespace kinship::models::scene_meshes_test {
 namespace {
 
 class SceneMeshesTest : public testing::Test {
@@ -61,4 +61,4 @@ TEST_F(SceneMeshesTest, NamesTheObjectWhoseFileCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace kinship::models
+}  // namespace kinship::models::scene_meshes_test

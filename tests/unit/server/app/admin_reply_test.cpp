@@ -8,7 +8,7 @@
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/limits.hpp"
 
-namespace kinship::app {
+namespace kinship::app::admin_reply_test {
 namespace {
 
 TaskSummary task(const std::string& name) {
@@ -101,4 +101,4 @@ TEST(AdminReply, TheRestOfARowIsAskedForAsItWas) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::admin_reply_test

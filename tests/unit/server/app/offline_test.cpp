@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::app {
+namespace kinship::app::offline_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST_F(Offline, ATerminalSeesHowFarItIs) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::offline_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::app {
+namespace kinship::app::options_test {
 namespace {
 
 class Options : public testing::Test {
@@ -150,4 +150,4 @@ TEST_F(Options, AnEmptyStoreIsSaidToBeEmpty) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::options_test

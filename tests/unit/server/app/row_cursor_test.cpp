@@ -5,7 +5,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
-namespace kinship::app {
+namespace kinship::app::row_cursor_test {
 namespace {
 
 AdminReply reply_of(std::vector<std::string> rows) {
@@ -100,4 +100,4 @@ TEST(RowCursor, ATextIsReadBackAsTheSamePlace) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::row_cursor_test

@@ -8,7 +8,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::app {
+namespace kinship::app::serve_test {
 namespace {
 
 TEST(Serve, WhoCannotJoinTheDomainLeavesNoStoreBehind) {
@@ -24,4 +24,4 @@ TEST(Serve, WhoCannotJoinTheDomainLeavesNoStoreBehind) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::serve_test

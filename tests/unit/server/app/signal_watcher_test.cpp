@@ -6,7 +6,7 @@
 
 #include <future>
 
-namespace kinship::app {
+namespace kinship::app::signal_watcher_test {
 namespace {
 
 TEST(SignalWatcher, PassesOnSignalsAlsoThoseHeldBefore) {
@@ -29,4 +29,4 @@ TEST(SignalWatcher, EndsWithoutASignal) {
 }
 
 }  // namespace
-}  // namespace kinship::app
+}  // namespace kinship::app::signal_watcher_test

@@ -11,7 +11,7 @@
 
 #include "server/density/instruction_set.hpp"
 
-namespace kinship::density {
+namespace kinship::density::block_kernels_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets, Kernels,
                                          InstructionSet::Avx512));
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::block_kernels_test

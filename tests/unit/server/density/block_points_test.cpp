@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace kinship::density {
+namespace kinship::density::block_points_test {
 namespace {
 
 BlockPoints blocks_of(const Eigen::MatrixXd& configurations, const Eigen::VectorXd& offset) {
@@ -71,4 +71,4 @@ TEST(BlockPoints, ThinnedKeepsSpaceAndMeanWeight) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::block_points_test

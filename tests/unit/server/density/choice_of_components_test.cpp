@@ -10,7 +10,7 @@
 #include "proto/mixture/density.hpp"
 #include "server/density/fit.hpp"
 
-namespace kinship::density {
+namespace kinship::density::choice_of_components_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 31;
@@ -170,4 +170,4 @@ TEST(ChoiceOfComponents, WithoutThePathsIsACallersBug) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::choice_of_components_test

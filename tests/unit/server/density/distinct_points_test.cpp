@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace kinship::density {
+namespace kinship::density::distinct_points_test {
 namespace {
 
 Eigen::MatrixXd columns_of(const Eigen::MatrixXd& configurations, const DistinctPoints& points) {
@@ -62,4 +62,4 @@ TEST(DistinctPoints, OrderChangesNoBit) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::distinct_points_test

@@ -12,7 +12,7 @@
 #include "proto/types/failure.hpp"
 #include "server/density/em_run.hpp"
 
-namespace kinship::density {
+namespace kinship::density::expectation_maximisation_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 9;
@@ -244,4 +244,4 @@ TEST(Maximisation, FloorIsTheLeastEigenvalue) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::expectation_maximisation_test

@@ -13,7 +13,7 @@
 
 #include "proto/mixture/density.hpp"
 
-namespace kinship::density {
+namespace kinship::density::fit_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 13;
@@ -216,4 +216,4 @@ TEST(FitMixture, OptionsOutsideTheirRangeAreACallersBug) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::fit_test

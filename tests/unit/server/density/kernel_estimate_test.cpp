@@ -11,7 +11,7 @@
 #include "proto/types/limits.hpp"
 #include "server/density/hold_out.hpp"
 
-namespace kinship::density {
+namespace kinship::density::kernel_estimate_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -311,4 +311,4 @@ TEST(KernelEstimate, RefusesWhatNoMixtureIsMadeOfEither) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::kernel_estimate_test

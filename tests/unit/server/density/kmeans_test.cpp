@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace kinship::density {
+namespace kinship::density::kmeans_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
@@ -131,4 +131,4 @@ TEST(MomentsOfClusters, AreThoseOfTheirPoints) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::kmeans_test

@@ -13,7 +13,7 @@
 #include "proto/mixture/sampler.hpp"
 #include "tests/unit/server/density/estimators.hpp"
 
-namespace kinship::density {
+namespace kinship::density::laws_test {
 namespace {
 
 using test::Sample;
@@ -234,4 +234,4 @@ INSTANTIATE_TEST_SUITE_P(Ways, Laws, testing::ValuesIn(test::kWays),
                          [](const auto& way) { return test::name_of(way.param); });
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::laws_test

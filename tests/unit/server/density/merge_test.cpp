@@ -10,7 +10,7 @@
 
 #include "proto/types/failure.hpp"
 
-namespace kinship::density {
+namespace kinship::density::merge_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 29;
@@ -136,4 +136,4 @@ TEST(Merged, FewEnoughStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::merge_test

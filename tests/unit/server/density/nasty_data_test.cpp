@@ -10,7 +10,7 @@
 #include "proto/mixture/density.hpp"
 #include "server/density/fit.hpp"
 
-namespace kinship::density {
+namespace kinship::density::nasty_data_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 37;
@@ -120,4 +120,4 @@ TEST(NastyData, EveryDimensionUpToTheLimit) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::nasty_data_test

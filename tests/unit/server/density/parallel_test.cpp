@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kinship::density {
+namespace kinship::density::parallel_test {
 namespace {
 
 TEST(ForEachPart, DoesEachPartOnce) {
@@ -37,4 +37,4 @@ TEST(ForEachPart, ThrowsWhatTheFirstFailingPartThrew) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::parallel_test

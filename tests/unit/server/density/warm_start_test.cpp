@@ -10,7 +10,7 @@
 #include "proto/mixture/density.hpp"
 #include "server/density/fit.hpp"
 
-namespace kinship::density {
+namespace kinship::density::warm_start_test {
 namespace {
 
 constexpr int kComponents = 8;
@@ -156,4 +156,4 @@ TEST(WarmStart, OtherSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::density
+}  // namespace kinship::density::warm_start_test

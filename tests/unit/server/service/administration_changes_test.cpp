@@ -12,7 +12,7 @@
 #include "proto/types/limits.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::administration_changes_test {
 namespace {
 
 class AdministrationChanges : public ServiceFixture {
@@ -311,4 +311,4 @@ TEST_F(AdministrationChanges, StatusCountsJobs) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::administration_changes_test

@@ -9,7 +9,7 @@
 #include "tests/unit/server/service/fleet.hpp"
 #include "tests/unit/server/service/troubled_store.hpp"
 
-namespace kinship::service {
+namespace kinship::service::administration_test {
 namespace {
 
 class AdministrationTest : public testing::Test {
@@ -205,4 +205,4 @@ TEST_F(AdministrationTest, APrefixThatIsTooShortIsSaidToBe) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::administration_test

@@ -7,7 +7,7 @@
 
 #include "proto/types/failure.hpp"
 
-namespace kinship::service {
+namespace kinship::service::advice_book_test {
 namespace {
 
 constexpr double kProfileShare = 0.9;
@@ -157,4 +157,4 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::advice_book_test

@@ -7,7 +7,7 @@
 
 #include "proto/evidence/attempt_window.hpp"
 
-namespace kinship::service {
+namespace kinship::service::advice_rule_test {
 namespace {
 
 constexpr double kProfileShare = 0.9;
@@ -116,4 +116,4 @@ TEST(AdviceRule, WhatWasLongAgoDoesNotDecide) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::advice_rule_test

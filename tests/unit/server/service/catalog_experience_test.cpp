@@ -5,7 +5,7 @@
 #include "tests/unit/server/service/catalog_fixture.hpp"
 
 /// Of which experience a distribution may be when it is served: selected, not retired, not evicted.
-namespace kinship::service {
+namespace kinship::service::catalog_experience_test {
 namespace {
 
 class CatalogExperienceTest : public CatalogTest {};
@@ -125,4 +125,4 @@ TEST_F(CatalogExperienceTest, AFitDuringWhichItIsEvictedAnswersAndIsKept) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::catalog_experience_test

@@ -11,7 +11,7 @@
 #include "tests/unit/server/service/catalog_fixture.hpp"
 #include "tests/unit/server/service/troubled_store.hpp"
 
-namespace kinship::service {
+namespace kinship::service::catalog_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -417,4 +417,4 @@ TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::catalog_test

@@ -8,7 +8,7 @@
 #include "proto/types/number_text.hpp"
 #include "tests/unit/server/service/fleet.hpp"
 
-namespace kinship::service {
+namespace kinship::service::check_attempt_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -121,4 +121,4 @@ TEST_F(CheckAttempt, AJointWithoutLimitsCountsItsTurnsUpToALimit) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::check_attempt_test

@@ -4,7 +4,7 @@
 
 #include "server/service/fetch_reply.hpp"
 
-namespace kinship::service {
+namespace kinship::service::distribution_cache_test {
 namespace {
 
 Digest id(std::uint8_t number) {
@@ -85,4 +85,4 @@ TEST(DistributionCache, OtherAdviceReplacesOnlyTheReplyItWasMadeFrom) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::distribution_cache_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace kinship::service {
+namespace kinship::service::distribution_key_test {
 namespace {
 
 FetchRequest request() {
@@ -129,4 +129,4 @@ TEST(DistributionKey, RequestsThatBreakARuleAreRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::distribution_key_test

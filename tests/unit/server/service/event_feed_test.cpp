@@ -6,7 +6,7 @@
 
 #include "proto/types/limits.hpp"
 
-namespace kinship::service {
+namespace kinship::service::event_feed_test {
 namespace {
 
 class EventFeedTest : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(EventFeedTest, WithoutASinkNothingIsMade) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::event_feed_test

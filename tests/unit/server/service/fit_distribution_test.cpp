@@ -17,7 +17,7 @@
 #include "tests/unit/server/service/fit_fixture.hpp"
 #include "tests/unit/server/service/fleet.hpp"
 
-namespace kinship::service {
+namespace kinship::service::fit_distribution_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 21;
@@ -412,4 +412,4 @@ TEST_F(FitDistribution, AnUnknownTargetEndsTheRequest) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::fit_distribution_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::service {
+namespace kinship::service::fit_memory_test {
 namespace {
 
 Digest id_of(int number) {
@@ -57,4 +57,4 @@ TEST(FitMemory, KeepsNothingThatIsLargerThanAll) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::fit_memory_test

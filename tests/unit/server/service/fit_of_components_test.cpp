@@ -8,7 +8,7 @@
 
 #include "tests/unit/server/service/fit_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::fit_of_components_test {
 namespace {
 
 using FitOfComponents = FitDistribution;
@@ -98,4 +98,4 @@ TEST_F(FitOfComponents, AContinuousJointIsCutBesideItsAngles) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::fit_of_components_test

@@ -10,7 +10,7 @@
 #include "server/service/freshness.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::following_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -258,4 +258,4 @@ TEST_F(Following, AnUnknownRobotHoldsNoLease) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::following_test

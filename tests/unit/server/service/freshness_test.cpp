@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::service {
+namespace kinship::service::freshness_test {
 namespace {
 
 Digest robot(std::uint8_t number) {
@@ -91,4 +91,4 @@ TEST(Freshness, OwnGenerationIsZeroWithoutExperience) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::freshness_test

@@ -11,7 +11,7 @@
 #include "tests/unit/server/service/fleet.hpp"
 #include "tests/unit/server/service/troubled_store.hpp"
 
-namespace kinship::service {
+namespace kinship::service::ingest_test {
 namespace {
 
 class IngestTest : public testing::Test {
@@ -159,4 +159,4 @@ TEST_F(IngestTest, WhatTheStoreCannotTakeIsAskedForAgainAndDrainingEnds) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::ingest_test

@@ -4,7 +4,7 @@
 
 #include "proto/types/failure.hpp"
 
-namespace kinship::service {
+namespace kinship::service::job_rows_test {
 namespace {
 
 using Rows = std::vector<std::string>;
@@ -47,4 +47,4 @@ TEST(JobRows, TheErrorNamesRowSizeAndLimit) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::job_rows_test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-namespace kinship::service {
+namespace kinship::service::jobs_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -296,4 +296,4 @@ TEST_F(JobsTest, StoppingCancelsEverythingAndAnswersWhoWaits) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::jobs_test

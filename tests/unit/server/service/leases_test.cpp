@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::service {
+namespace kinship::service::leases_test {
 namespace {
 
 using std::chrono::seconds;
@@ -101,4 +101,4 @@ TEST(Leases, MayBeForbidden) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::leases_test

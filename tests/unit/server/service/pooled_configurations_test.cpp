@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace kinship::service {
+namespace kinship::service::pooled_configurations_test {
 namespace {
 
 std::shared_ptr<transfer::TransferredPath> transferred(Eigen::Index count, double value) {
@@ -111,4 +111,4 @@ TEST(PooledConfigurations, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::pooled_configurations_test

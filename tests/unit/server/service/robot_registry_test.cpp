@@ -7,7 +7,7 @@
 #include "tests/unit/server/service/fleet.hpp"
 #include "tests/unit/server/service/troubled_store.hpp"
 
-namespace kinship::service {
+namespace kinship::service::robot_registry_test {
 namespace {
 
 class Registry : public testing::Test {
@@ -136,4 +136,4 @@ TEST_F(Registry, ADamagedRobotIsAnErrorOfTheStoreAndNoException) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::robot_registry_test

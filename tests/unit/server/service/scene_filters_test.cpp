@@ -14,7 +14,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::service {
+namespace kinship::service::scene_filters_test {
 namespace {
 
 constexpr std::uint64_t kPaths = 4;
@@ -148,4 +148,4 @@ TEST_F(FitAmongScenes, ThreadsMakeNoDifference) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::scene_filters_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kinship::service {
+namespace kinship::service::selected_experience_test {
 namespace {
 
 using Counts = std::vector<std::uint64_t>;
@@ -59,4 +59,4 @@ TEST(SharePaths, EverySourceIsHeard) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::selected_experience_test

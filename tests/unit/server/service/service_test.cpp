@@ -4,7 +4,7 @@
 
 #include "tests/unit/server/service/service_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::service_test {
 namespace {
 
 class ServiceTest : public ServiceFixture {};
@@ -97,4 +97,4 @@ TEST_F(ServiceTest, OnceStoppedRegisteringIsLeftUnansweredAndAdministrationFails
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::service_test

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-namespace kinship::service {
+namespace kinship::service::source_masses_test {
 namespace {
 
 TEST(SourceMasses, NothingWeighsNothing) {
@@ -59,4 +59,4 @@ TEST(SourceMasses, SumToOne) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::source_masses_test

@@ -9,7 +9,7 @@
 #include "server/density/fit.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::service {
+namespace kinship::service::turn_cuts_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -106,4 +106,4 @@ TEST(TurnCuts, FullTurnsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::turn_cuts_test

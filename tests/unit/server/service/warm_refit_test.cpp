@@ -7,7 +7,7 @@
 #include "proto/mixture/density.hpp"
 #include "tests/unit/server/service/fit_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::warm_refit_test {
 namespace {
 
 /// Fits of the pupil, one after the other, each stored as the next revision.
@@ -216,4 +216,4 @@ TEST_F(WarmRefit, AfterAFailureTheNextFitIsAFullOne) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::warm_refit_test

@@ -5,7 +5,7 @@
 #include "server/service/freshness.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
-namespace kinship::service {
+namespace kinship::service::warm_service_test {
 namespace {
 
 /// A service that remembers its fits.
@@ -84,4 +84,4 @@ TEST_F(WarmService, ARetirementIsAFullFitOfWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::warm_service_test

@@ -12,7 +12,7 @@
 
 #include "proto/types/failure.hpp"
 
-namespace kinship::service {
+namespace kinship::service::worker_pool_test {
 namespace {
 
 using Priority = WorkerPool::Priority;
@@ -131,4 +131,4 @@ TEST(WorkerPool, MoreThreadsThanThereIsRoomForAreAFailure) {
 #endif
 
 }  // namespace
-}  // namespace kinship::service
+}  // namespace kinship::service::worker_pool_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace kinship::store {
+namespace kinship::store::crc32c_test {
 namespace {
 
 TEST(Crc32c, MatchesThePublishedVectors) {  // RFC 3720, appendix B.4, and the usual check value
@@ -41,4 +41,4 @@ TEST(Crc32c, FindsEveryFlippedBit) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::crc32c_test

@@ -8,7 +8,7 @@
 #include "server/store/sqlite/transaction.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::database_test {
 namespace {
 
 class DatabaseTest : public testing::Test {
@@ -115,4 +115,4 @@ TEST_F(DatabaseTest, AReadOnlyConnectionWritesNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::database_test

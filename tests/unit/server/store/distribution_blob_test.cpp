@@ -11,7 +11,7 @@
 
 #include "tests/support/store_values.hpp"
 
-namespace kinship::store {
+namespace kinship::store::distribution_blob_test {
 namespace {
 
 Distribution example() { return test::make_distribution(test::id_from<Digest>(1), "shelf", 2); }
@@ -173,4 +173,4 @@ TEST(DistributionBlob, SurvivesEveryFlippedByteWithoutALargeAllocation) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::distribution_blob_test

@@ -9,7 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::lock_file_test {
 namespace {
 
 /// What another process says when it wants the lock; empty: it got it.
@@ -61,4 +61,4 @@ TEST(LockFile, SaysWhyItCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::lock_file_test

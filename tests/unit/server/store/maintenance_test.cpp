@@ -11,7 +11,7 @@
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::maintenance_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -314,4 +314,4 @@ TEST_F(Maintenance, AMigrationKeepsTheStoreAsItWas) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::maintenance_test

@@ -10,7 +10,7 @@
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::migrations_test {
 namespace {
 
 constexpr Migration kSecond{2, "0002_extra", "CREATE TABLE extra (x INTEGER) STRICT;"};
@@ -115,4 +115,4 @@ TEST_F(Migrations, RefuseAFileOfSomebodyElse) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::migrations_test

@@ -10,7 +10,7 @@
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::reader_pool_test {
 namespace {
 
 class ReaderPoolTest : public testing::Test {
@@ -83,4 +83,4 @@ TEST_F(ReaderPoolTest, AFailedOpeningIsNotLentForGood) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::reader_pool_test

@@ -5,7 +5,7 @@
 #include "proto/types/pose.hpp"
 #include "tests/support/random_values.hpp"
 
-namespace kinship::store {
+namespace kinship::store::scene_blob_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 51;
@@ -66,4 +66,4 @@ TEST(SceneBlob, WhatIsNoSceneIsNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::scene_blob_test

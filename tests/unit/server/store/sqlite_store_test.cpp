@@ -11,7 +11,7 @@
 #include "server/store/sqlite/database.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
 
-namespace kinship::store {
+namespace kinship::store::sqlite_store_test {
 namespace {
 
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance,
@@ -356,4 +356,4 @@ TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf8KbAndTheRulesOfItsSchema) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::sqlite_store_test

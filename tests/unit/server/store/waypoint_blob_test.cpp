@@ -9,7 +9,7 @@
 #include "proto/types/limits.hpp"
 #include "tests/support/store_values.hpp"
 
-namespace kinship::store {
+namespace kinship::store::waypoint_blob_test {
 namespace {
 
 std::optional<Path> decode(const WaypointBlob& blob) {
@@ -87,4 +87,4 @@ TEST(WaypointBlob, RefusesValuesThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::waypoint_blob_test

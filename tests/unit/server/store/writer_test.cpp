@@ -9,7 +9,7 @@
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace kinship::store {
+namespace kinship::store::writer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -233,4 +233,4 @@ TEST_F(WriterTest, RaisesAGenerationOncePerBatch) {
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::store::writer_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::arm_shape_test {
 namespace {
 
 using test::planar_pose;
@@ -54,4 +54,4 @@ TEST(ArmShape, AnArmOfNoLengthIsAPoint) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::arm_shape_test

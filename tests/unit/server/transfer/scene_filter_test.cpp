@@ -6,7 +6,7 @@
 
 #include "robots/kinematics/urdf.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::scene_filter_test {
 namespace {
 
 /// A column with a beam of two links of 0.5 m that turns in the plane z = 0.1; the transfer frame
@@ -117,4 +117,4 @@ TEST(SceneFilter, WithoutShapesOrObjectsThereIsNone) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::scene_filter_test

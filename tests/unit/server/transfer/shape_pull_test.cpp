@@ -11,7 +11,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::shape_pull_test {
 namespace {
 
 using test::PlanarArm;
@@ -226,4 +226,4 @@ TEST(ArmShapeMotion, IsTheDerivative) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::shape_pull_test

@@ -8,7 +8,7 @@
 #include "server/transfer/transfer.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::take_over_test {
 namespace {
 
 using kinematics::ArmLikeness;
@@ -138,4 +138,4 @@ TEST(TakeOver, NeedsTheSamePlaceAndTheSameArm) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::take_over_test

@@ -11,7 +11,7 @@
 #include "server/transfer/transfer.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::tracking_test {
 namespace {
 
 using kinematics::JointType;
@@ -252,4 +252,4 @@ TEST(TransferWithTracks, ParametersOutsideTheirRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::tracking_test

@@ -10,7 +10,7 @@
 #include "server/transfer/resample.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::transfer_test {
 namespace {
 
 using test::planar_pose;
@@ -183,4 +183,4 @@ TEST(Transfer, OwnContinuousJointsAreTurnedToWhereSamplesLie) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::transfer_test

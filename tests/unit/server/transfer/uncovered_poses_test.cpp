@@ -10,7 +10,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::uncovered_poses_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -98,4 +98,4 @@ TEST_F(UncoveredPoses, WhatATrackCoversIsReachedAndNotSolvedAgain) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::uncovered_poses_test

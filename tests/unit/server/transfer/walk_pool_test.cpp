@@ -11,7 +11,7 @@
 #include "server/transfer/transfer.hpp"
 #include "tests/support/robots.hpp"
 
-namespace kinship::transfer {
+namespace kinship::transfer::walk_pool_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 8;
@@ -121,4 +121,4 @@ TEST(TransferPaths, OfAnEmptyGroupNothingComes) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer
+}  // namespace kinship::transfer::walk_pool_test
