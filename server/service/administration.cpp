@@ -145,7 +145,8 @@ AdminPage Administration::explain(const std::string& prefix) {
 
 AdminPage Administration::export_configurations(const std::string& prefix,
                                                 const std::string& asker) {
-  const FitContext context{.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock};
+  const fitting::FitContext context{
+      .store = parts_.store, .robots = parts_.robots, .clock = parts_.clock};
   return begin(export_configurations_job(context, find_distribution(prefix), asker));
 }
 
@@ -221,7 +222,7 @@ RobotSummary Administration::summary_of(const Digest& robot) const {
 }
 
 void Administration::name_solver(RobotSummary& summary) {
-  const Result<RobotRegistry::RobotPointer> robot = parts_.robots.find(summary.robot);
+  const Result<runtime::RobotRegistry::RobotPointer> robot = parts_.robots.find(summary.robot);
   summary.solver = robot ? inverse::solver_name(robot.value()->chain) : robot.error().message;
 }
 

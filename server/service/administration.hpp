@@ -8,10 +8,10 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
+#include "server/runtime/clock.hpp"
+#include "server/runtime/robot_registry.hpp"
 #include "server/service/admin_page.hpp"
-#include "server/service/clock.hpp"
 #include "server/service/jobs.hpp"
-#include "server/service/robot_registry.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -24,9 +24,9 @@ class Administration {
   /// What it works with; all of it outlives it.
   struct Parts {
     store::Store& store;
-    RobotRegistry& robots;
+    runtime::RobotRegistry& robots;
     Jobs& jobs;
-    const Clock& clock;
+    const runtime::Clock& clock;
     std::function<ServerStatus()> status;
     /// What share of guidance is recommended now; empty: what the distribution says.
     std::function<Advice(const Distribution&)> advise = {};

@@ -79,7 +79,7 @@ std::optional<Error> check_joint(const Joint& joint, const Eigen::VectorXd& valu
                  std::to_string(bad - values.begin() + 1));
 }
 
-std::optional<Error> check_path(const Path& path, const Robot& robot) {
+std::optional<Error> check_path(const Path& path, const runtime::Robot& robot) {
   const std::string name = "robot '" + robot.label + "': ";
   if (path.dof() != robot.chain.dof())
     return invalid(name + "a path of " + std::to_string(path.dof()) + " joints, but it has " +
@@ -99,7 +99,7 @@ std::optional<Error> check_path(const Path& path, const Robot& robot) {
 
 }  // namespace
 
-std::optional<Error> check_attempt(const Attempt& attempt, const Robot& robot) {
+std::optional<Error> check_attempt(const Attempt& attempt, const runtime::Robot& robot) {
   if (auto error = check_task(attempt.task))
     return error;
   if (auto error = check_machine(attempt.machine))

@@ -4,7 +4,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/failure.hpp"
-#include "server/service/robot_registry.hpp"
+#include "server/runtime/robot_registry.hpp"
 
 namespace kinship::service {
 
@@ -13,6 +13,6 @@ inline constexpr double kLimitTolerance = 1e-6;
 
 /// What is wrong with an attempt of this robot, or nothing if it may be stored. The first thing
 /// found is named with its value and limit; joints and waypoints count from 1.
-std::optional<Error> check_attempt(const Attempt& attempt, const Robot& robot);
+std::optional<Error> check_attempt(const Attempt& attempt, const runtime::Robot& robot);
 
 }  // namespace kinship::service

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "proto/types/publications.hpp"
-#include "server/service/clock.hpp"
+#include "server/runtime/clock.hpp"
 
 namespace kinship::service {
 
@@ -22,7 +22,7 @@ class EventFeed {
 
   /// \param clock  outlives the feed.
   /// \param sink   empty: nobody watches, nothing is done.
-  EventFeed(const Clock& clock, Sink sink, std::size_t per_second = 1000)
+  EventFeed(const runtime::Clock& clock, Sink sink, std::size_t per_second = 1000)
       : clock_(clock), sink_(std::move(sink)), per_second_(per_second) {}
   EventFeed(const EventFeed&) = delete;
   EventFeed& operator=(const EventFeed&) = delete;
@@ -41,7 +41,7 @@ class EventFeed {
   bool may_tell();
   void send(EventKind kind, std::string_view task, std::string_view robot, std::string_view text);
 
-  const Clock& clock_;
+  const runtime::Clock& clock_;
   const Sink sink_;
   const std::size_t per_second_;
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/service/freshness.hpp"
+#include "server/catalog/freshness.hpp"
 
 namespace kinship::service {
 namespace {
@@ -52,9 +52,9 @@ std::string next_fit(const Distribution& distribution, const Explanation& explan
     return has_mixture(distribution.state)
                ? "when the paths have grown by 5, or by 5 % if that is more" + paths
                : "when the experience has changed" + paths;
-  if (may_refit(distribution, now_ms))
+  if (catalog::may_refit(distribution, now_ms))
     return "at the next fetch, or soon if it is followed" + paths;
-  const std::int64_t wait_ms = distribution.fitted_ms + kRefitInterval.count() - now_ms;
+  const std::int64_t wait_ms = distribution.fitted_ms + catalog::kRefitInterval.count() - now_ms;
   return "in " + std::to_string((wait_ms + 999) / 1000) +
          " s at the earliest, then at the next fetch" + ", or by itself if it is followed" + paths;
 }
@@ -69,8 +69,8 @@ Explanation explain_distribution(const store::Store& store, Distribution distrib
   for (const store::ExperienceSummary& source : experience)
     explanation.experience.push_back(
         {source.robot, label_of(store, source.robot), source.paths, source.generation});
-  const bool is_gone = is_retired(distribution, all);
-  explanation.behind = is_gone || is_behind(distribution, experience);
+  const bool is_gone = catalog::is_retired(distribution, all);
+  explanation.behind = is_gone || catalog::is_behind(distribution, experience);
   explanation.next_fit = next_fit(distribution, explanation, is_gone, experience, now_ms);
   distribution.mixture.reset();
   explanation.distribution = std::move(distribution);

@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "proto/types/number_text.hpp"
+#include "server/catalog/freshness.hpp"
 #include "server/density/hold_out.hpp"
-#include "server/service/freshness.hpp"
-#include "server/service/source_transfer.hpp"
-#include "server/service/turn_cuts.hpp"
+#include "server/fitting/source_transfer.hpp"
+#include "server/fitting/turn_cuts.hpp"
 
 namespace kinship::service {
 namespace {
@@ -26,13 +26,14 @@ FetchRequest request_of(const Distribution& distribution) {
   return request;
 }
 
-Result<DistributionKey> key_of(const Distribution& distribution) {
-  Result<DistributionKey> key = make_key(request_of(distribution));
+Result<fitting::DistributionKey> key_of(const Distribution& distribution) {
+  Result<fitting::DistributionKey> key = fitting::make_key(request_of(distribution));
   if (key && identify(*key) == distribution.id)
     return key;
   return Error{ErrorCode::Conflict, "distribution " + distribution.id.short_hex() +
                                         " was made by other code (" + distribution.engines +
-                                        ") than this server's (" + engines() + "): fetch it anew"};
+                                        ") than this server's (" + fitting::engines() +
+                                        "): fetch it anew"};
 }
 
 /// The experience as the fit saw it: what came later has higher ids, and is not reached.
@@ -45,7 +46,8 @@ std::vector<store::ExperienceSummary> experience_then(const Distribution& distri
 }
 
 /// \throws Failure(Conflict) if a source became something else than for the fit.
-void require_same(const Distribution& distribution, const std::vector<SourceSummary>& sources) {
+void require_same(const Distribution& distribution,
+                  const std::vector<fitting::SourceSummary>& sources) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Source& then = distribution.sources[i];
     const Source& now = sources[i].source;
@@ -68,7 +70,7 @@ std::string header(Eigen::Index dof) {
   return line;
 }
 
-void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights,
+void write_rows(const fitting::PooledConfigurations& pool, const Eigen::VectorXd& weights,
                 const Distribution& distribution, std::uint64_t seed, JobRows& rows) {
   rows.add(header(distribution.limits.cols()));
   const auto count = static_cast<std::uint32_t>(pool.paths().size());
@@ -78,10 +80,10 @@ void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights
                                                  ? density::held_out_paths(count, seed)
                                                  : std::vector<std::uint8_t>(count, 0);
   Eigen::MatrixXd configurations = pool.configurations();
-  wrap(distribution.cuts, configurations);
+  fitting::wrap(distribution.cuts, configurations);
   Eigen::Index row = 0;
   std::size_t path_index = 0;
-  for (const PooledConfigurations::PooledPath& pooled : pool.paths()) {
+  for (const fitting::PooledConfigurations::PooledPath& pooled : pool.paths()) {
     const std::string whose =
         pooled.report.text() + "," + distribution.sources[pooled.source].robot.hex() + ",";
     const transfer::TransferredPath& path = *pooled.path;
@@ -97,17 +99,18 @@ void write_rows(const PooledConfigurations& pool, const Eigen::VectorXd& weights
   }
 }
 
-bool run_export(const FitContext& context, const DistributionKey& key,
+bool run_export(const fitting::FitContext& context, const fitting::DistributionKey& key,
                 const Distribution& distribution, JobRun& run) {
-  const RobotRegistry::RobotPointer target = context.robots.find(key.robot).value_or_throw();
-  SourceTransfer transfer(context.store, context.robots, key, *target);
-  const std::vector<SourceSummary> sources = transfer_sources(
+  const runtime::RobotRegistry::RobotPointer target =
+      context.robots.find(key.robot).value_or_throw();
+  fitting::SourceTransfer transfer(context.store, context.robots, key, *target);
+  const std::vector<fitting::SourceSummary> sources = transfer_sources(
       transfer, key, experience_then(distribution), context.max_paths, run.stop_token());
   if (run.should_stop())
     return false;
   require_same(distribution, sources);
   run.set_progress(0.9);
-  const PooledConfigurations& pool = transfer.pool();
+  const fitting::PooledConfigurations& pool = transfer.pool();
   write_rows(pool, pool.weights(key.profile.density), distribution, key.profile.seed, run.rows);
   run.message = std::to_string(pool.size()) + " configurations of revision " +
                 std::to_string(distribution.revision);
@@ -116,15 +119,15 @@ bool run_export(const FitContext& context, const DistributionKey& key,
 
 }  // namespace
 
-Result<Jobs::Task> export_configurations_job(const FitContext& context, Distribution distribution,
-                                             const std::string& asker) {
-  const Result<DistributionKey> key = key_of(distribution);
+Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
+                                             Distribution distribution, const std::string& asker) {
+  const Result<fitting::DistributionKey> key = key_of(distribution);
   if (!key)
     return key.error();
   if (distribution.configurations == 0)
     return Error{ErrorCode::InvalidInput, "distribution " + distribution.id.short_hex() +
                                               " has no configurations: " + distribution.reason};
-  if (is_retired(distribution, context.store.experience(distribution.task)))
+  if (catalog::is_retired(distribution, context.store.experience(distribution.task)))
     return Error{ErrorCode::Conflict, "paths of task '" + distribution.task +
                                           "' were retired since the fit of revision " +
                                           std::to_string(distribution.revision) +

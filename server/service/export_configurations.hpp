@@ -4,7 +4,7 @@
 
 #include "proto/types/distribution.hpp"
 #include "proto/types/result.hpp"
-#include "server/service/fit_distribution.hpp"
+#include "server/fitting/fit_distribution.hpp"
 #include "server/service/jobs.hpp"
 
 namespace kinship::service {
@@ -23,7 +23,7 @@ namespace kinship::service {
 /// \return Conflict, with what to do, if the distribution was made by other code than this
 /// server's,
 ///         or paths were retired since; InvalidInput if it has no configurations.
-Result<Jobs::Task> export_configurations_job(const FitContext& context, Distribution distribution,
-                                             const std::string& asker);
+Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
+                                             Distribution distribution, const std::string& asker);
 
 }  // namespace kinship::service

@@ -24,7 +24,7 @@ ReceiptStatus status_of(bool is_robot_there, const Error& error) {
 /// A batch on its way. Shared by the callbacks of one submission, never used by two at a time.
 struct Ingest::Batch {
   std::vector<Attempt> attempts;  // until they are handed to the store
-  std::vector<AttemptCost> costs;
+  std::vector<catalog::AttemptCost> costs;
   std::vector<Receipt> receipts;
   std::vector<std::size_t> accepted;  // positions of what the store was given
   std::size_t bytes = 0;
@@ -32,7 +32,8 @@ struct Ingest::Batch {
   Done done;
 };
 
-Ingest::Ingest(store::Store& store, RobotRegistry& robots, WorkerPool& desk, Options options)
+Ingest::Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& desk,
+               Options options)
     : store_(store), robots_(robots), desk_(desk), options_(std::move(options)) {}
 
 void Ingest::submit(std::vector<Attempt> attempts, Done done) {
@@ -40,7 +41,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   batch->done = std::move(done);
   for (const Attempt& attempt : attempts) {
     batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
-    batch->costs.push_back(cost_of(attempt));
+    batch->costs.push_back(catalog::cost_of(attempt));
     if (attempt.path)
       batch->bytes += sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
     if (attempt.scene)
@@ -57,7 +58,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   if (in_memory)
     return check_and_commit(batch);
   const bool accepted = desk_.submit(
-      WorkerPool::Priority::Interactive,
+      runtime::WorkerPool::Priority::Interactive,
       {.run = [this, batch] { check_and_commit(batch); },
        .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); }});
   if (!accepted)
@@ -100,7 +101,7 @@ void Ingest::commit(const BatchPointer& batch) {
 void Ingest::check(Batch& batch) {
   for (std::size_t i = 0; i < batch.attempts.size(); ++i) {
     const Attempt& attempt = batch.attempts[i];
-    const Result<RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
+    const Result<runtime::RobotRegistry::RobotPointer> robot = robots_.find(attempt.robot);
     const std::optional<Error> error =
         robot ? check_attempt(attempt, *robot.value()) : robot.error();
     if (error) {

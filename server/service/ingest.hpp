@@ -12,9 +12,9 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
-#include "server/service/advice_book.hpp"
-#include "server/service/robot_registry.hpp"
-#include "server/service/worker_pool.hpp"
+#include "server/catalog/advice_book.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/runtime/worker_pool.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -30,13 +30,14 @@ class Ingest {
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
     /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how
     /// they fared. Must not throw or block.
-    std::function<void(std::span<const AttemptCost>, std::span<const Receipt>)> on_answer =
-        [](std::span<const AttemptCost>, std::span<const Receipt>) {};
+    std::function<void(std::span<const catalog::AttemptCost>, std::span<const Receipt>)> on_answer =
+        [](std::span<const catalog::AttemptCost>, std::span<const Receipt>) {};
   };
 
   /// \param store, robots, desk  outlive the ingest, which drains on destruction; `desk` reads
   /// robots that are not in memory.
-  Ingest(store::Store& store, RobotRegistry& robots, WorkerPool& desk, Options options);
+  Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& desk,
+         Options options);
   ~Ingest() { drain(); }
   Ingest(const Ingest&) = delete;
   Ingest& operator=(const Ingest&) = delete;
@@ -68,8 +69,8 @@ class Ingest {
   void answer_try_again(Batch& batch, std::string_view message);
 
   store::Store& store_;
-  RobotRegistry& robots_;
-  WorkerPool& desk_;
+  runtime::RobotRegistry& robots_;
+  runtime::WorkerPool& desk_;
   const Options options_;
   std::atomic<std::uint64_t> received_{0}, refused_{0};
 

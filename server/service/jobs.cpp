@@ -48,7 +48,7 @@ struct Jobs::Entry {
   }
 };
 
-Jobs::Jobs(const Clock& clock, Options options)
+Jobs::Jobs(const runtime::Clock& clock, Options options)
     : clock_(clock),
       options_(std::move(options)),
       worker_({.threads = 1, .queue_limit = 2, .niceness = options_.niceness}) {}
@@ -72,7 +72,7 @@ Result<Job> Jobs::begin(Task task) {
   entry->task = std::move(task);
   entries_.push_back(entry);
   if (!is_working_)
-    is_working_ = worker_.submit(WorkerPool::Priority::Background,
+    is_working_ = worker_.submit(runtime::WorkerPool::Priority::Background,
                                  {.run = [this] { work(); }, .abandon = {}});
   return entry->job;
 }
@@ -273,7 +273,7 @@ void Jobs::stop() {
     }
   }
   make(calls);
-  worker_.stop(WorkerPool::Leftovers::Abandon);
+  worker_.stop(runtime::WorkerPool::Leftovers::Abandon);
 }
 
 Jobs::EntryPointer Jobs::find_entry(const std::string& id) const {

@@ -14,9 +14,9 @@
 
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
-#include "server/service/clock.hpp"
+#include "server/runtime/clock.hpp"
+#include "server/runtime/worker_pool.hpp"
 #include "server/service/job_rows.hpp"
-#include "server/service/worker_pool.hpp"
 
 namespace kinship::service {
 
@@ -71,7 +71,7 @@ class Jobs {
     std::function<bool(JobRun&)> run;
   };
 
-  Jobs(const Clock& clock, Options options);
+  Jobs(const runtime::Clock& clock, Options options);
   ~Jobs() { stop(); }
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
@@ -137,7 +137,7 @@ class Jobs {
   void end(Entry& entry, JobState state, const std::string& message, Calls& calls);
   void forget_old(TimePoint now);
 
-  const Clock& clock_;
+  const runtime::Clock& clock_;
   const Options options_;
 
   mutable std::mutex mutex_;          // guards what follows, but for the worker
@@ -145,7 +145,7 @@ class Jobs {
   std::vector<Waiter> waiters_;
   bool is_working_ = false;
   bool is_stopping_ = false;
-  WorkerPool worker_;  // last: its thread uses all of the above
+  runtime::WorkerPool worker_;  // last: its thread uses all of the above
 };
 
 }  // namespace kinship::service

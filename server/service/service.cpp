@@ -29,7 +29,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       advice_([this](const Digest& robot,
                      const std::string& task) { return store_->attempt_totals(robot, task); },
               [this](std::function<void()> run) {
-                return desk_.submit(WorkerPool::Priority::Background,
+                return desk_.submit(runtime::WorkerPool::Priority::Background,
                                     {.run = std::move(run), .abandon = {}});
               }),
       fitters_({.threads = options_.fit_threads,
@@ -40,15 +40,15 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
           *store_, robots_, desk_,
           {.max_attempts = options_.max_queued_attempts,
            .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); },
-           .on_answer = [this](std::span<const AttemptCost> costs,
+           .on_answer = [this](std::span<const catalog::AttemptCost> costs,
                                std::span<const Receipt> receipts) { answered(costs, receipts); }}),
       jobs_(options_.clock, job_options(options_)),
       administration_(administration_parts()) {}
 
 Service::~Service() { shutdown(); }
 
-Catalog::Options Service::catalog_options(const ServiceOptions& options) {
-  Catalog::Options catalog;
+catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options) {
+  catalog::Catalog::Options catalog;
   catalog.memory = options.memory;
   catalog.fit = options.fit;
   catalog.on_fit = [this](const Distribution& distribution) {
@@ -84,7 +84,7 @@ Administration::Parts Service::administration_parts() {
               [this](const Distribution& distribution) {
                 const Result<Profile> profile = profile_from_text(distribution.profile);
                 return advice_.advise(distribution.task, distribution.robot,
-                                      profile ? first_share(*profile, distribution.state)
+                                      profile ? fitting::first_share(*profile, distribution.state)
                                               : distribution.advice.recommended_share);
               },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
@@ -96,7 +96,8 @@ Administration::Parts Service::administration_parts() {
               }};
 }
 
-void Service::answered(std::span<const AttemptCost> costs, std::span<const Receipt> receipts) {
+void Service::answered(std::span<const catalog::AttemptCost> costs,
+                       std::span<const Receipt> receipts) {
   for (std::size_t i = 0; i < std::min(costs.size(), receipts.size()); ++i)
     if (receipts[i].status == ReceiptStatus::Stored ||
         receipts[i].status == ReceiptStatus::Recorded)
@@ -122,7 +123,8 @@ void Service::register_robot(RobotDescription description,
     tell_registered(events_, description, reply);
     done(reply);
   };
-  if (!desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
+  if (!desk_.submit(runtime::WorkerPool::Priority::Interactive,
+                    {.run = std::move(run), .abandon = {}}))
     options_.log("register: not answered, busy or stopping");
 }
 
@@ -139,7 +141,8 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
                  });
 }
 
-void Service::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
+void Service::fetch(const FetchRequest& request, const std::string& waiter,
+                    catalog::FetchDone done) {
   if (!options_.on_event)
     return catalog_.fetch(request, waiter, std::move(done));
   catalog_.fetch(request, waiter,
@@ -159,20 +162,21 @@ void Service::administer(AdminRequest request, const std::string& asker,
   auto run = [this, request = std::move(request), asker, done] {
     done(administration_.answer(request, asker));
   };
-  if (desk_.submit(WorkerPool::Priority::Interactive, {.run = std::move(run), .abandon = {}}))
+  if (desk_.submit(runtime::WorkerPool::Priority::Interactive,
+                   {.run = std::move(run), .abandon = {}}))
     return;
   AdminPage page;
   page.message = "the server is busy or stopping";
   done(page);
 }
 
-std::optional<Catalog::TimePoint> Service::next_deadline() const {
-  const std::optional<Catalog::TimePoint> fetch = catalog_.next_deadline();
-  const std::optional<Catalog::TimePoint> job = jobs_.next_deadline();
+std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {
+  const std::optional<catalog::Catalog::TimePoint> fetch = catalog_.next_deadline();
+  const std::optional<catalog::Catalog::TimePoint> job = jobs_.next_deadline();
   return fetch && job ? std::min(fetch, job) : fetch ? fetch : job;
 }
 
-void Service::expire(Catalog::TimePoint now) {
+void Service::expire(catalog::Catalog::TimePoint now) {
   catalog_.expire(now);
   jobs_.expire(now);
 }
@@ -236,8 +240,8 @@ void Service::log_fit(const Distribution& distribution) const {
 void Service::shutdown() {
   catalog_.stop();
   jobs_.stop();
-  desk_.stop(WorkerPool::Leftovers::Run);
-  fitters_.stop(WorkerPool::Leftovers::Abandon);
+  desk_.stop(runtime::WorkerPool::Leftovers::Run);
+  fitters_.stop(runtime::WorkerPool::Leftovers::Abandon);
   ingest_.drain();
 }
 

@@ -10,15 +10,15 @@
 #include <string_view>
 
 #include "proto/types/conversations.hpp"
+#include "server/catalog/advice_book.hpp"
+#include "server/catalog/catalog.hpp"
+#include "server/runtime/clock.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/runtime/worker_pool.hpp"
 #include "server/service/administration.hpp"
-#include "server/service/advice_book.hpp"
-#include "server/service/catalog.hpp"
-#include "server/service/clock.hpp"
 #include "server/service/event_feed.hpp"
 #include "server/service/ingest.hpp"
 #include "server/service/jobs.hpp"
-#include "server/service/robot_registry.hpp"
-#include "server/service/worker_pool.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -30,9 +30,9 @@ struct ServiceOptions {
   int fit_niceness = 10;          ///< so that planners on the same machine come first
   std::size_t desk_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
   std::size_t max_queued_attempts = 4096;
-  DistributionCache::Limits memory;
-  Clock clock;
-  Catalog::Fit fit;  ///< empty: fit_distribution
+  catalog::DistributionCache::Limits memory;
+  runtime::Clock clock;
+  catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;
   /// Something happened, for people who watch; at most 1000 a second (event_feed.hpp). Called from
   /// any thread, must not block. Empty: nobody watches.
@@ -63,14 +63,14 @@ class Service {
   void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done);
   void report(ReportRequest request, std::function<void(const ReportReply&)> done);
   /// \param waiter  who asks; see Catalog::fetch.
-  void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
+  void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
   /// \param asker  the request's name; see Administration::answer.
   void administer(AdminRequest request, const std::string& asker,
                   const std::function<void(const AdminPage&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
-  std::optional<Catalog::TimePoint> next_deadline() const;
-  void expire(Catalog::TimePoint now);
+  std::optional<catalog::Catalog::TimePoint> next_deadline() const;
+  void expire(catalog::Catalog::TimePoint now);
 
   ServerStatus status() const;
 
@@ -80,24 +80,24 @@ class Service {
   void shutdown();
 
  private:
-  Catalog::Options catalog_options(const ServiceOptions& options);
+  catalog::Catalog::Options catalog_options(const ServiceOptions& options);
   Jobs::Options job_options(const ServiceOptions& options);
   Administration::Parts administration_parts();
-  void answered(std::span<const AttemptCost> costs, std::span<const Receipt> receipts);
+  void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   void log_refused(const std::vector<Receipt>& receipts) const;
   void log_fit(const Distribution& distribution) const;
 
   const ServiceOptions options_;
-  const Catalog::TimePoint started_;
+  const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
   const Uuid epoch_;
-  RobotRegistry robots_;
+  runtime::RobotRegistry robots_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
-  WorkerPool desk_;
-  AdviceBook advice_;
-  WorkerPool fitters_;
-  Catalog catalog_;
+  runtime::WorkerPool desk_;
+  catalog::AdviceBook advice_;
+  runtime::WorkerPool fitters_;
+  catalog::Catalog catalog_;
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;

@@ -94,8 +94,8 @@ std::string in_words(const Distribution& distribution) {
 
 }  // namespace
 
-std::string name_of(const RobotRegistry& robots, const Digest& robot) {
-  const RobotRegistry::RobotPointer known = robots.find_in_memory(robot);
+std::string name_of(const runtime::RobotRegistry& robots, const Digest& robot) {
+  const runtime::RobotRegistry::RobotPointer known = robots.find_in_memory(robot);
   return known ? known->label : robot.short_hex();
 }
 
@@ -110,8 +110,8 @@ void tell_registered(EventFeed& feed, const RobotDescription& description,
   });
 }
 
-void tell_report(EventFeed& feed, const RobotRegistry& robots, std::span<const AttemptCost> costs,
-                 std::span<const Receipt> receipts) {
+void tell_report(EventFeed& feed, const runtime::RobotRegistry& robots,
+                 std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts) {
   std::map<std::pair<std::string, Digest>, Fate> fates;
   for (std::size_t i = 0; i < std::min(costs.size(), receipts.size()); ++i)
     if (receipts[i].status != ReceiptStatus::Refused)
@@ -143,7 +143,8 @@ void tell_fetch(EventFeed& feed, const std::string& robot, const std::string& ta
             [&] { return is_refused ? "fetch: " + in_words(reply) : in_words(reply); });
 }
 
-void tell_fit(EventFeed& feed, const RobotRegistry& robots, const Distribution& distribution) {
+void tell_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
+              const Distribution& distribution) {
   feed.tell(EventKind::Fit, distribution.task, name_of(robots, distribution.robot),
             [&] { return in_words(distribution); });
 }

@@ -6,9 +6,9 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/summaries.hpp"
-#include "server/service/advice_book.hpp"
+#include "server/catalog/advice_book.hpp"
+#include "server/runtime/robot_registry.hpp"
 #include "server/service/event_feed.hpp"
-#include "server/service/robot_registry.hpp"
 
 /// What the service does, told to people who watch.
 namespace kinship::service {
@@ -18,8 +18,8 @@ void tell_registered(EventFeed& feed, const RobotDescription& description,
 
 /// One event per robot and task of a batch, and one for what was refused of it.
 /// \param robots  knows labels.
-void tell_report(EventFeed& feed, const RobotRegistry& robots, std::span<const AttemptCost> costs,
-                 std::span<const Receipt> receipts);
+void tell_report(EventFeed& feed, const runtime::RobotRegistry& robots,
+                 std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
 
 /// Attempts that broke a rule before anybody knew whose they are.
 void tell_refused(EventFeed& feed, std::span<const Receipt> receipts);
@@ -27,11 +27,12 @@ void tell_refused(EventFeed& feed, std::span<const Receipt> receipts);
 void tell_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
                 const FetchReply& reply);
 
-void tell_fit(EventFeed& feed, const RobotRegistry& robots, const Distribution& distribution);
+void tell_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
+              const Distribution& distribution);
 
 void tell_job(EventFeed& feed, const Job& job);
 
 /// The label of a robot in memory, else its short digest.
-std::string name_of(const RobotRegistry& robots, const Digest& robot);
+std::string name_of(const runtime::RobotRegistry& robots, const Digest& robot);
 
 }  // namespace kinship::service

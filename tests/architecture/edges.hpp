@@ -48,6 +48,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
+  const std::string runtime = "server/runtime";
+  const std::string fitting = "server/fitting";
+  const std::string catalog = "server/catalog";
   const std::string service = "server/service";
   const std::string files = "client/files";
   const std::string arguments = "client/arguments";
@@ -75,9 +78,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
-      {service,
-       {{store, transfer, density, evidence, inverse, geometry, kinematics, mixture, types},
-        {"Eigen"}}},
+      {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},
+      {fitting, {{runtime, store, transfer, density, inverse, kinematics, types}, {"Eigen"}}},
+      {catalog, {{fitting, runtime, store, evidence, types}, {"Eigen"}}},
+      {service, {{catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
       {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

@@ -15,9 +15,9 @@
 
 #include "proto/mixture/density.hpp"
 #include "proto/types/profile_text.hpp"
-#include "server/service/fit_distribution.hpp"
-#include "server/service/source_transfer.hpp"
-#include "server/service/turn_cuts.hpp"
+#include "server/fitting/fit_distribution.hpp"
+#include "server/fitting/source_transfer.hpp"
+#include "server/fitting/turn_cuts.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/bench/learning_sets.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -6,8 +6,8 @@
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tests/unit/server/service/fleet.hpp"
-#include "tests/unit/server/service/troubled_store.hpp"
+#include "tests/unit/server/fleet.hpp"
+#include "tests/unit/server/troubled_store.hpp"
 
 namespace kinship::service::administration_test {
 namespace {
@@ -45,7 +45,7 @@ class AdministrationTest : public testing::Test {
     return std::get<Row>(page.rows.at(index));
   }
 
-  Administration::Parts parts(RobotRegistry& robots) {
+  Administration::Parts parts(runtime::RobotRegistry& robots) {
     return {.store = *store_,
             .robots = robots,
             .jobs = jobs_,
@@ -65,12 +65,12 @@ class AdministrationTest : public testing::Test {
   std::string forgotten_, changes_;
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
-  RobotRegistry registry_{*store_};
-  Clock clock_;
+  runtime::RobotRegistry registry_{*store_};
+  runtime::Clock clock_;
   Jobs jobs_{clock_, {}};
   Administration administration_{parts(registry_)};
-  const Robot teacher_ = fleet::robot_of(fleet::teacher());
-  const Robot pupil_ = fleet::robot_of(fleet::pupil());
+  const runtime::Robot teacher_ = fleet::robot_of(fleet::teacher());
+  const runtime::Robot pupil_ = fleet::robot_of(fleet::pupil());
 };
 
 TEST_F(AdministrationTest, StatusIsOneRow) {
@@ -185,8 +185,8 @@ TEST_F(AdministrationTest, AForeignCursorIsRefused) {
 }
 
 TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
-  damage_robot(directory_ / "fleet.db", "pupil");
-  RobotRegistry cold(*store_);
+  store::damage_robot(directory_ / "fleet.db", "pupil");
+  runtime::RobotRegistry cold(*store_);
   Administration administration(parts(cold));
   const AdminPage page = administration.answer(fleet::question(AdminVerb::ListRobots));
   ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;

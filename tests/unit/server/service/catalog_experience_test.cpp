@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "server/service/catalog.hpp"
-#include "server/service/freshness.hpp"
+#include "server/catalog/catalog.hpp"
+#include "server/catalog/freshness.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
 
 /// Of which experience a distribution may be when it is served: selected, not retired, not evicted.
@@ -40,7 +40,7 @@ TEST_F(CatalogExperienceTest, GrowthOfARobotThatIsNotSelectedIsNone) {
   request.selection.sources = {teacher_.digest};
   fetch(request);
   report(fleet::solved(pupil_, "shelf", 9, 300));
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   EXPECT_EQ(fetch(request).distribution->revision, 1U);
   wait_for_desk();
   EXPECT_EQ(service_->status().queued_fits, 0U);

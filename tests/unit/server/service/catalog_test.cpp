@@ -1,4 +1,4 @@
-#include "server/service/catalog.hpp"
+#include "server/catalog/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
-#include "server/service/freshness.hpp"
+#include "server/catalog/freshness.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
-#include "tests/unit/server/service/troubled_store.hpp"
+#include "tests/unit/server/troubled_store.hpp"
 
 namespace kinship::service::catalog_test {
 namespace {
@@ -112,7 +112,7 @@ TEST_F(CatalogTest, AGrownExperienceIsServedAsItWasAndFittedBehind) {
   wait_for_desk();
   EXPECT_EQ(gate_.calls(), 1) << "10 s have not passed since the fit";
 
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
   gate_.wait_for_calls(2);
   EXPECT_EQ(fetch(with_generation(request_for(teacher_), 2)).distribution->revision, 2U);
@@ -124,7 +124,7 @@ TEST_F(CatalogTest, GrowthIsSeenAfterARestartToo) {
   teach(6);
   fetch(request_for(teacher_));
   teach(5, 100);
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   start();
   EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
   gate_.wait_for_calls(2);
@@ -134,7 +134,7 @@ TEST_F(CatalogTest, FourNewPathsAreNoReasonForAFit) {
   teach(6);
   fetch(request_for(teacher_));
   teach(4, 100);
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   fetch(request_for(teacher_));
   wait_for_desk();
   EXPECT_EQ(service_->status().queued_fits, 0U);
@@ -222,7 +222,7 @@ TEST_F(CatalogTest, AFailureIsKeptWithItsReasonUntilTheExperienceChanges) {
 
   report(fleet::solved(dwarf_, "shelf", 5, 7));
   EXPECT_EQ(fetch(request_for(dwarf_)).status, FetchStatus::Failed) << "10 s have not passed";
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   const FetchReply later = fetch(request_for(dwarf_));
   EXPECT_EQ(later.status, FetchStatus::Ready) << later.message;
   EXPECT_EQ(later.distribution->revision, 2U);
@@ -245,7 +245,7 @@ TEST_F(CatalogTest, ABackgroundFitThatSomebodyWaitsForGoesFirstAndIsDoneOnce) {
   teach(6);
   fetch(request_for(teacher_));
   teach(5, 100);
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   gate_.close();
   fetch(at_once(request_for(pupil_)));  // these two hold the two workers
   fetch(at_once(elsewhere(request_for(pupil_), 0.1)));
@@ -309,7 +309,7 @@ TEST_F(CatalogTest, ADamagedSourceIsLeftOutOfTheFitWhichSaysSo) {
   teach(6);
   report(fleet::solved(dwarf_, "shelf", 2, 50));
   start();  // the fit's registry has nothing in memory
-  damage_robot(directory_ / "fleet.db", "dwarf");
+  store::damage_robot(directory_ / "fleet.db", "dwarf");
   const FetchReply reply = fetch(request_for(pupil_));
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_NE(reply.distribution->reason.find(dwarf_.digest.short_hex() + "': left out"),
@@ -326,7 +326,7 @@ TEST_F(CatalogTest, AFitThatThrowsIsAFailureWithItsReasonAndNotTriedForEver) {
   EXPECT_EQ(reply.distribution->revision, 1U);
   ASSERT_EQ(reply.distribution->sources.size(), 1U);
   EXPECT_EQ(reply.distribution->sources[0].label, "teacher");
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Failed);
   EXPECT_EQ(gate_.calls(), 1);
 }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "proto/types/number_text.hpp"
-#include "tests/unit/server/service/fleet.hpp"
+#include "tests/unit/server/fleet.hpp"
 
 namespace kinship::service::check_attempt_test {
 namespace {
@@ -30,7 +30,7 @@ class CheckAttempt : public testing::Test {
     attempt_.path = Path(waypoints);
   }
 
-  Robot robot_ = fleet::robot_of(fleet::teacher());
+  runtime::Robot robot_ = fleet::robot_of(fleet::teacher());
   Attempt attempt_ = fleet::solved(robot_, "shelf", 1);
 };
 

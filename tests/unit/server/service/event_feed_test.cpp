@@ -19,7 +19,7 @@ class EventFeedTest : public testing::Test {
   }
 
   std::int64_t time_ms_ = 5000;
-  Clock clock_{
+  runtime::Clock clock_{
       .now =
           [this] {
             return std::chrono::steady_clock::time_point(std::chrono::milliseconds(time_ms_));

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "server/service/freshness.hpp"
+#include "server/catalog/freshness.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::service::following_test {
@@ -86,7 +86,7 @@ TEST_F(Following, GrownExperienceIsFittedAndAnnouncedWithoutAFetch) {
 
   const auto fitted = clock_.now();
   teach(5, 100);
-  EXPECT_EQ(service_->next_deadline(), fitted + kRefitInterval);
+  EXPECT_EQ(service_->next_deadline(), fitted + catalog::kRefitInterval);
   run_to_next_deadline();
   const Announcement second = wait_for_announcement(2);
   EXPECT_EQ(second.revision, 2U);
@@ -129,7 +129,7 @@ TEST_F(Following, WhatNobodyFollowsIsLeftAlone) {
   teach(6, 1);
   fetch(request_for(pupil_));
   teach(50, 100);
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   service_->expire(clock_.now());
   EXPECT_FALSE(is_anything_due());
   EXPECT_EQ(announcements(), 0U);
@@ -207,7 +207,7 @@ TEST_F(Following, AFitThatTheQueueHadNoRoomForIsBegunLater) {
 TEST_F(Following, ReportsOneByOneAreNotEachAReasonToAskTheStore) {
   teach(6, 1);
   fetch(following(request_for(pupil_)));
-  advance(kRefitInterval);
+  advance(catalog::kRefitInterval);
   teach(1, 100);
   run_to_next_deadline();
   wait_for_desk();

@@ -8,8 +8,8 @@
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tests/unit/server/service/fleet.hpp"
-#include "tests/unit/server/service/troubled_store.hpp"
+#include "tests/unit/server/fleet.hpp"
+#include "tests/unit/server/troubled_store.hpp"
 
 namespace kinship::service::ingest_test {
 namespace {
@@ -35,8 +35,8 @@ class IngestTest : public testing::Test {
 
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
-  RobotRegistry registry_{*store_};
-  WorkerPool desk_{{.threads = 1, .queue_limit = 8, .niceness = 0}};
+  runtime::RobotRegistry registry_{*store_};
+  runtime::WorkerPool desk_{{.threads = 1, .queue_limit = 8, .niceness = 0}};
   std::mutex mutex_;
   std::vector<std::string> grown_;  // guarded by mutex_
   Ingest ingest_{*store_,
@@ -46,7 +46,7 @@ class IngestTest : public testing::Test {
                     const std::lock_guard lock(mutex_);
                     grown_.emplace_back(task);
                   }}};
-  const Robot robot_ = fleet::robot_of(fleet::teacher());
+  const runtime::Robot robot_ = fleet::robot_of(fleet::teacher());
 };
 
 TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
@@ -104,7 +104,7 @@ TEST_F(IngestTest, MoreThanItMayHoldIsAskedToTryAgain) {
 }
 
 TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
-  RobotRegistry cold(*store_);
+  runtime::RobotRegistry cold(*store_);
   Ingest ingest(*store_, cold, desk_, {});
   std::promise<std::vector<Receipt>> done;
   ingest.submit({fleet::solved(robot_, "shelf", 1)},
@@ -114,7 +114,7 @@ TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
 }
 
 TEST_F(IngestTest, ABusyDeskIsAReasonToTryAgain) {
-  desk_.stop(WorkerPool::Leftovers::Run);
+  desk_.stop(runtime::WorkerPool::Leftovers::Run);
   Attempt unknown = fleet::solved(robot_, "shelf", 1);
   unknown.robot.bytes[0] ^= 1U;
   const std::vector<Receipt> receipts = submit({unknown}).get();
@@ -138,9 +138,10 @@ TEST_F(IngestTest, DrainingAnswersWhatWasTakenInAndTakesInNothingMore) {
 TEST_F(IngestTest, AnEmptyBatchIsAnsweredToo) { EXPECT_TRUE(submit({}).get().empty()); }
 
 TEST_F(IngestTest, ADamagedRobotCostsItsOwnAttemptsOnly) {
-  const Robot pupil = fleet::robot_of(fleet::pupil());
-  RobotRegistry(*store_).register_robot(fleet::pupil(), 2);  // not in the memory of the other one
-  damage_robot(directory_ / "fleet.db", "pupil");
+  const runtime::Robot pupil = fleet::robot_of(fleet::pupil());
+  runtime::RobotRegistry(*store_).register_robot(fleet::pupil(),
+                                                 2);  // not in the memory of the other one
+  store::damage_robot(directory_ / "fleet.db", "pupil");
   const std::vector<Receipt> receipts =
       submit({fleet::solved(pupil, "shelf", 1), fleet::solved(robot_, "shelf", 2)}).get();
   EXPECT_EQ(statuses(receipts), (std::vector{ReceiptStatus::TryAgain, ReceiptStatus::Stored}));
@@ -148,7 +149,7 @@ TEST_F(IngestTest, ADamagedRobotCostsItsOwnAttemptsOnly) {
 }
 
 TEST_F(IngestTest, WhatTheStoreCannotTakeIsAskedForAgainAndDrainingEnds) {
-  TroubledStore troubled(*store_);
+  store::TroubledStore troubled(*store_);
   Ingest ingest(troubled, registry_, desk_, {});
   std::vector<Receipt> receipts;
   ingest.submit({fleet::solved(robot_, "shelf", 1), fleet::unsolved(robot_.digest, "shelf")},

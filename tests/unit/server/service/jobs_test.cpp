@@ -83,7 +83,7 @@ class JobsTest : public testing::Test {
   }
 
   std::atomic<std::int64_t> time_ms_{1'000'000};
-  Clock clock_{
+  runtime::Clock clock_{
       .now = [this] { return std::chrono::steady_clock::time_point(milliseconds(time_ms_)); },
       .unix_ms = [this] { return time_ms_.load(); }};
   std::mutex mutex_;

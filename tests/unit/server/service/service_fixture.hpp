@@ -17,7 +17,7 @@
 #include "server/service/service.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tests/unit/server/service/fleet.hpp"
+#include "tests/unit/server/fleet.hpp"
 
 namespace kinship::service {
 
@@ -45,8 +45,8 @@ class GatedFit {
     const std::lock_guard lock(mutex_);
     return calls_;
   }
-  FitOutcome operator()(const DistributionKey& key, const FitContext& context,
-                        const std::stop_token& stop) {
+  fitting::FitOutcome operator()(const fitting::DistributionKey& key,
+                                 const fitting::FitContext& context, const std::stop_token& stop) {
     {
       std::unique_lock lock(mutex_);
       ++calls_;
@@ -57,7 +57,7 @@ class GatedFit {
       if (permits_ != kAlways)
         --permits_;
     }
-    FitOutcome outcome = fit_distribution(key, context, stop);
+    fitting::FitOutcome outcome = fit_distribution(key, context, stop);
     std::function<void()> afterwards;
     {
       const std::lock_guard lock(mutex_);
@@ -105,16 +105,16 @@ class ServiceFixture : public testing::Test {
     service_.reset();
     context_.reset();
     std::unique_ptr<store::Store> store = store::open_sqlite_store(directory_ / "fleet.db");
-    registry_ = std::make_unique<RobotRegistry>(*store);
-    context_ = std::make_unique<FitContext>(
-        FitContext{.store = *store, .robots = *registry_, .clock = clock_});
+    registry_ = std::make_unique<runtime::RobotRegistry>(*store);
+    context_ = std::make_unique<fitting::FitContext>(
+        fitting::FitContext{.store = *store, .robots = *registry_, .clock = clock_});
     ServiceOptions options;
     options.version = "1.2.3";
     options.fit_threads = fit_threads_;
     options.fit_queue = fit_queue_;
     options.desk_queue = desk_queue_;
     options.clock = clock_;
-    options.fit = [this](const DistributionKey& key, const std::stop_token& stop) {
+    options.fit = [this](const fitting::DistributionKey& key, const std::stop_token& stop) {
       return gate_(key, *context_, stop);
     };
     options.log = [this](std::string_view line) {
@@ -159,7 +159,7 @@ class ServiceFixture : public testing::Test {
     return page.get_future().get();
   }
 
-  static FetchRequest request_for(const Robot& robot) {
+  static FetchRequest request_for(const runtime::Robot& robot) {
     FetchRequest request;
     request.task = "shelf";
     request.robot = robot.digest;
@@ -189,7 +189,7 @@ class ServiceFixture : public testing::Test {
 
   test::TemporaryDirectory directory_;
   std::atomic<std::int64_t> time_ms_{1'700'000'000'000};
-  Clock clock_{
+  runtime::Clock clock_{
       .now =
           [this] {
             return std::chrono::steady_clock::time_point(std::chrono::milliseconds(time_ms_));
@@ -202,11 +202,11 @@ class ServiceFixture : public testing::Test {
   std::vector<std::string> log_;  // guarded by log_mutex_
   std::string events_;            // guarded by log_mutex_
   std::condition_variable event_told_;
-  std::unique_ptr<RobotRegistry> registry_;
-  std::unique_ptr<FitContext> context_;
-  const Robot teacher_ = fleet::robot_of(fleet::teacher());
-  const Robot pupil_ = fleet::robot_of(fleet::pupil());
-  const Robot dwarf_ = fleet::robot_of(fleet::dwarf());
+  std::unique_ptr<runtime::RobotRegistry> registry_;
+  std::unique_ptr<fitting::FitContext> context_;
+  const runtime::Robot teacher_ = fleet::robot_of(fleet::teacher());
+  const runtime::Robot pupil_ = fleet::robot_of(fleet::pupil());
+  const runtime::Robot dwarf_ = fleet::robot_of(fleet::dwarf());
   std::unique_ptr<Service> service_;  // last: its threads use all of the above
 };
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/service/freshness.hpp"
+#include "server/catalog/freshness.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::service::warm_service_test {
@@ -21,7 +21,7 @@ class WarmService : public ServiceFixture {
   void report_more(int paths) {
     report(fleet::solved(teacher_, "shelf", paths, next_seed_));
     next_seed_ += 1000;
-    advance(kRefitInterval);
+    advance(catalog::kRefitInterval);
   }
   /// The one after a revision: fetched, and fetched again once its fit was told.
   Distribution after(std::uint64_t revision) {
@@ -30,8 +30,8 @@ class WarmService : public ServiceFixture {
     return fetch(request_).distribution.value();
   }
 
-  const Robot teacher_ = fleet::robot_of(fleet::teacher());
-  const Robot pupil_ = fleet::robot_of(fleet::pupil());
+  const runtime::Robot teacher_ = fleet::robot_of(fleet::teacher());
+  const runtime::Robot pupil_ = fleet::robot_of(fleet::pupil());
   FetchRequest request_;
   std::uint64_t next_seed_ = 1;
 };

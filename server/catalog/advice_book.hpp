@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "proto/types/advice.hpp"
+#include "proto/types/attempt.hpp"
+#include "proto/types/digest.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::catalog {
+
+/// What a report says about the cost of planning.
+struct AttemptCost {
+  std::string task;
+  Digest robot;
+  Arm arm = Arm::Uniform;
+  Outcome outcome = Outcome::Failed;
+  std::uint64_t checks = 0;
+};
+
+AttemptCost cost_of(const Attempt& attempt);
+
+/// Knows what the attempts of each (task, robot) that somebody asked for recommend. The sums are
+/// read from the store once, in the background, and then kept up with what is committed. May be
+/// shared between threads; asking never waits for the store.
+///
+/// Attempts that are committed while the sums are read have them read again, a few times; an
+/// attempt of that moment may in the end count twice or not at all, until the next start.
+class AdviceBook {
+ public:
+  /// Reads the sums from the store; may throw.
+  using Read = std::function<store::AttemptTotals(const Digest& robot, const std::string& task)>;
+  /// Has a function called soon on another thread. \return false if there is no room for it.
+  using Later = std::function<bool(std::function<void()>)>;
+
+  AdviceBook(Read read, Later later) : read_(std::move(read)), later_(std::move(later)) {}
+  AdviceBook(const AdviceBook&) = delete;
+  AdviceBook& operator=(const AdviceBook&) = delete;
+
+  /// The advice of now (advice_rule.hpp). The first time, and as long as the store has not
+  /// answered: `profile_share`, and the sums are read.
+  Advice advise(const std::string& task, const Digest& robot, double profile_share);
+
+  /// Grows whenever advise() may say something else than before; 0: nothing is known yet.
+  std::uint64_t version(const std::string& task, const Digest& robot) const;
+
+  /// An attempt was committed, Stored or Recorded.
+  void add(const AttemptCost& cost);
+
+ private:
+  enum class State { Unread, Reading, Read };
+  struct Entry {
+    State state = State::Unread;
+    bool is_overtaken = false;  // something was committed since the reading began
+    std::uint64_t version = 0;
+    store::AttemptTotals totals;
+  };
+  using Key = std::pair<std::string, Digest>;
+
+  void read_totals(const Key& key);
+  bool end_reading(const Key& key, const store::AttemptTotals* totals, bool is_last_try);
+
+  const Read read_;
+  const Later later_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::map<Key, Entry> entries_;
+};
+
+}  // namespace kinship::catalog

@@ -1,0 +1,79 @@
+#include "server/catalog/advice_rule.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "proto/evidence/cost_ratio.hpp"
+
+namespace kinship::catalog {
+namespace {
+
+constexpr double kDoubt = 0.05;         // of being right that is left where it is called clear
+constexpr double kQuantile90 = 1.6449;  // two-sided, of the normal distribution
+
+std::optional<ArmEvidence> evidence_of(const store::ArmTotals& totals) {
+  if (totals.attempts == 0)
+    return std::nullopt;
+  ArmEvidence arm{totals.attempts, totals.solved, 0};
+  if (totals.solved > 0)
+    arm.checks_per_solution = totals.checks / static_cast<double>(totals.solved);
+  return arm;
+}
+
+std::string text(const char* format, double value) {
+  char words[32];
+  std::snprintf(words, sizeof words, format, value);
+  return words;
+}
+
+std::string in_words(const char* arm, const char* unit, const store::ArmTotals& totals) {
+  const std::string attempts = std::to_string(totals.attempts);
+  if (totals.solved == 0)
+    return std::string(arm) + " none solved in " + attempts;
+  return arm + text(" %.0f", totals.checks / static_cast<double>(totals.solved)) + unit + " in " +
+         attempts;
+}
+
+std::string in_words(const evidence::CostRatio& ratio) {
+  const double better = ratio.guided_is_cheaper();
+  const std::string words = text("lately ratio %.2f", ratio.quantile(0)) +
+                            text(" (90 %% %.2f", ratio.quantile(-kQuantile90)) +
+                            text(" to %.2f)", ratio.quantile(kQuantile90));
+  if (better >= 1 - kDoubt)
+    return words + ", clearly better: share of the profile";
+  if (better <= kDoubt)
+    return words + ", clearly worse: uniform";
+  return words + ", undecided: part of the profile's share";
+}
+
+}  // namespace
+
+Advice advise(const store::AttemptTotals& totals, double profile_share) {
+  Advice advice;
+  advice.guided_share = std::clamp(profile_share, 0.0, 1.0);
+  advice.recommended_share = advice.guided_share;
+  advice.guided = evidence_of(totals.guided);
+  advice.control = evidence_of(totals.control);
+  advice.recent = totals.recent;
+  if (std::min(totals.guided.attempts, totals.control.attempts) < kLeastAttempts) {
+    advice.evidence = std::to_string(totals.guided.attempts) + " guided and " +
+                      std::to_string(totals.control.attempts) +
+                      " control attempts, compared from " + std::to_string(kLeastAttempts) +
+                      " of each on: share of the profile";
+    return advice;
+  }
+  const evidence::CostRatio ratio = evidence::compare_costs(totals.recent);
+  if (!ratio.is_compared) {
+    advice.evidence =
+        "an arm has no attempts of late that report collision checks: share of the profile";
+    return advice;
+  }
+  advice.recommended_share *=
+      std::clamp((ratio.guided_is_cheaper() - kDoubt) / (1 - 2 * kDoubt), 0.0, 1.0);
+  advice.evidence = in_words("guided", " checks per solution", totals.guided) + " attempts, " +
+                    in_words("control", "", totals.control) + "; " + in_words(ratio);
+  return advice;
+}
+
+}  // namespace kinship::catalog

@@ -1,0 +1,35 @@
+#include "server/catalog/distribution_cache.hpp"
+
+#include <utility>
+
+namespace kinship::catalog {
+namespace {
+
+/// About what a reply occupies: the numbers of its mixture, and a page for the rest.
+std::size_t size_of(const FetchReply& reply) {
+  constexpr std::size_t kRest = 4096;
+  if (!reply.distribution || !reply.distribution->mixture)
+    return kRest;
+  const Mixture& mixture = *reply.distribution->mixture;
+  const auto k = static_cast<std::size_t>(mixture.size());
+  const auto d = static_cast<std::size_t>(mixture.dimension());
+  return kRest + sizeof(double) * (k * (1 + d) + mixture.covariances().size() * d * d);
+}
+
+}  // namespace
+
+void DistributionCache::put(const Digest& id, Entry entry) {
+  const std::size_t bytes = size_of(*entry.reply.reply);
+  replies_.put(id, std::move(entry), bytes);
+  while (size() > 1 && (size() > limits_.entries || this->bytes() > limits_.bytes))
+    replies_.drop_oldest();
+}
+
+void DistributionCache::replace(const Digest& id, const SharedReply& before,
+                                const AdvisedReply& after) {
+  Entry* const entry = replies_.find(id);
+  if (entry != nullptr && entry->reply.reply == before)
+    entry->reply = after;
+}
+
+}  // namespace kinship::catalog

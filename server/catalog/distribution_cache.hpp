@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+
+#include "proto/types/conversations.hpp"
+#include "proto/types/digest.hpp"
+#include "server/catalog/adviser.hpp"
+#include "server/catalog/flight.hpp"
+#include "server/catalog/task_marks.hpp"
+#include "server/fitting/last_used.hpp"
+
+namespace kinship::catalog {
+
+/// The replies that were asked for last, bounded by number and size; the one not used for longest
+/// goes first. Not shared between threads.
+class DistributionCache {
+ public:
+  struct Limits {
+    std::size_t entries = 1024;
+    std::size_t bytes = std::size_t{128} << 20U;
+  };
+
+  struct Entry {
+    AdvisedReply reply;  ///< Ready or Failed, with its distribution
+    /// Of the task when the distribution was last compared with its experience, and whether it was
+    /// found to be behind.
+    Marks marks = {};
+    bool behind = false;
+  };
+
+  explicit DistributionCache(const Limits& limits) : limits_(limits) {}
+
+  /// Replaces the entry of this id. One that is larger than the limit is kept alone.
+  void put(const Digest& id, Entry entry);
+
+  /// The entry, now the last one used; null if there is none. Valid until the next put.
+  Entry* find(const Digest& id) { return replies_.find(id); }
+
+  void erase(const Digest& id) { replies_.erase(id); }
+
+  /// The same distribution with other advice; nothing if the entry holds another reply by now.
+  void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);
+
+  std::size_t size() const noexcept { return replies_.size(); }
+  std::size_t bytes() const noexcept { return replies_.bytes(); }  ///< of the mixtures, about
+
+ private:
+  Limits limits_;
+  fitting::LastUsed<Entry> replies_;
+};
+
+}  // namespace kinship::catalog

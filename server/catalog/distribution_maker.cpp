@@ -1,0 +1,84 @@
+#include "server/catalog/distribution_maker.hpp"
+
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
+#include "server/catalog/freshness.hpp"
+
+namespace kinship::catalog {
+namespace {
+
+/// As many as the machine runs at once: fits are at low priority, and rarely many.
+int fit_threads() {
+  constexpr unsigned kMost = 8;
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMost));
+}
+
+}  // namespace
+
+DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
+    : parts_(parts),
+      fit_(fit ? std::move(fit)
+               : [this](const fitting::DistributionKey& key, const std::stop_token& stop) {
+                   return fit_distribution(key,
+                                           {.store = parts_.store,
+                                            .robots = parts_.robots,
+                                            .clock = parts_.clock,
+                                            .fit_threads = fit_threads(),
+                                            .before = memory_.find(identify(key))},
+                                           stop);
+                 }) {}
+
+fitting::FitOutcome DistributionMaker::make(const fitting::DistributionKey& key,
+                                            const std::stop_token& stop) const {
+  std::string reason;
+  try {
+    return fit_(key, stop);
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
+      throw;  // the next attempt may find it well again
+    reason = failure.what();
+  } catch (const std::exception& exception) {
+    reason = exception.what();
+  }
+  return {fitting::FitOutcome::Kind::Fitted,
+          failed_distribution(
+              key, {.store = parts_.store, .robots = parts_.robots, .clock = parts_.clock},
+              "the fit ended: " + reason)};
+}
+
+bool DistributionMaker::is_outdated(const Distribution& distribution) const {
+  return is_retired(distribution, parts_.store.experience(distribution.task));
+}
+
+Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
+  Distribution distribution = std::move(outcome.distribution).value();
+  try {
+    distribution.revision = parts_.store.put_distribution(distribution);
+  } catch (const Failure& failure) {
+    distribution.revision = 0;
+    distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
+                           std::string(failure.what());
+    distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
+  }
+  if (outcome.remains)
+    remember(distribution, std::move(outcome.remains));
+  return distribution;
+}
+
+void DistributionMaker::remember(const Distribution& distribution,
+                                 std::shared_ptr<fitting::FitRemains> remains) const {
+  remains->revision = distribution.revision;
+  if (remains->revision == 0)
+    remains->mixture.reset();  // no revision could say what it began with
+  if (distribution.fit && distribution.fit->from_revision == 0)
+    remains->full.revision = distribution.revision;
+  memory_.put(distribution.id, std::move(remains));
+}
+
+}  // namespace kinship::catalog

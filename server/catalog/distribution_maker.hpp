@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "server/fitting/fit_distribution.hpp"
+
+namespace kinship::catalog {
+
+/// Makes distributions and puts them into the store. May be shared between threads.
+class DistributionMaker {
+ public:
+  using Fit =
+      std::function<fitting::FitOutcome(const fitting::DistributionKey&, const std::stop_token&)>;
+
+  struct Parts {
+    store::Store& store;
+    runtime::RobotRegistry& robots;
+    const runtime::Clock& clock;
+  };
+
+  /// \param parts  outlive the maker.
+  /// \param fit    empty: fit_distribution.
+  DistributionMaker(const Parts& parts, Fit fit);
+
+  DistributionMaker(const DistributionMaker&) = delete;
+  DistributionMaker& operator=(const DistributionMaker&) = delete;
+
+  /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
+  /// \throws Failure(Storage or Unavailable), which may pass.
+  fitting::FitOutcome make(const fitting::DistributionKey& key, const std::stop_token& stop) const;
+
+  /// Whether its paths were retired while it was made. \throws Failure(Storage)
+  bool is_outdated(const Distribution& distribution) const;
+
+  /// Stores it, gives it its revision and remembers what it left for the next fit. If the store
+  /// cannot take it, it is of use all the same while this server runs: with revision 0, and the
+  /// reason says so; the next fit is a full one then.
+  /// \param outcome  with a distribution.
+  Distribution keep(fitting::FitOutcome outcome) const;
+
+  /// The next fit of this distribution begins anew.
+  void forget(const Digest& id) const { memory_.erase(id); }
+
+ private:
+  void remember(const Distribution& distribution,
+                std::shared_ptr<fitting::FitRemains> remains) const;
+
+  const Parts parts_;
+  mutable fitting::FitMemory memory_;
+  const Fit fit_;
+};
+
+}  // namespace kinship::catalog

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/types/conversations.hpp"
+#include "server/fitting/distribution_key.hpp"
+
+namespace kinship::catalog {
+
+/// A reply on its way to one or many; shared by the catalog's memory and by those who send it.
+using SharedReply = std::shared_ptr<const FetchReply>;
+using FetchDone = std::function<void(const FetchReply&)>;
+
+/// Answers to be given once no lock is held.
+using Answers = std::vector<std::pair<FetchDone, SharedReply>>;
+void give(const Answers& answers);
+
+/// Whether a distribution is there that knows this generation of its robot's own experience.
+bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation);
+
+/// Somebody who waits for a distribution.
+struct Waiter {
+  std::string key;  ///< a second waiter of the same key takes the place of the first
+  std::uint64_t minimum_generation = 0;
+  /// When it is told Pending. Empty: it takes what the store has.
+  std::optional<std::chrono::steady_clock::time_point> deadline;
+  FetchDone done;
+};
+
+/// One distribution being looked up or fitted, and who waits for it: however many ask, there is
+/// one flight per id. Not shared between threads.
+class Flight {
+ public:
+  enum class Stage {
+    Idle,     ///< nobody works on it: its waiters ask for experience that has not arrived
+    Looking,  ///< the store is being asked
+    Queued,   ///< for a fit
+    Fitting
+  };
+
+  explicit Flight(fitting::DistributionKey key) : key_(std::move(key)) {}
+
+  const fitting::DistributionKey& key() const noexcept { return key_; }
+  Stage stage = Stage::Idle;
+  bool urgent = false;       ///< while Queued: before the background jobs
+  bool is_wanted = false;    ///< somebody asked, and not a lease alone
+  bool was_evicted = false;  ///< the distribution, since the look began or the fit was compared
+  /// While Idle: its experience changed, but the desk had no room; when to try again.
+  std::optional<std::chrono::steady_clock::time_point> look_due;
+
+  /// A waiter that takes another's place keeps the earlier deadline of the two.
+  void join(Waiter waiter);
+
+  // Each of these adds an answer for those it lets go.
+  void answer_all(const SharedReply& reply, Answers& answers);
+  void answer_satisfied(const SharedReply& reply, Answers& answers);
+  void answer_without_deadline(const SharedReply& reply, Answers& answers);
+  void answer_expired(std::chrono::steady_clock::time_point now, const SharedReply& reply,
+                      Answers& answers);
+
+  const std::vector<Waiter>& waiters() const noexcept { return waiters_; }
+
+ private:
+  template <typename Predicate>
+  void answer_if(Predicate predicate, const SharedReply& reply, Answers& answers);
+
+  fitting::DistributionKey key_;
+  std::vector<Waiter> waiters_;
+};
+
+}  // namespace kinship::catalog

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "proto/types/distribution.hpp"
+#include "server/fitting/distribution_key.hpp"
+#include "server/fitting/fit_memory.hpp"
+#include "server/runtime/clock.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::fitting {
+
+/// What a fit reads, and how much of it.
+struct FitContext {
+  const store::Store& store;
+  runtime::RobotRegistry& robots;
+  const runtime::Clock& clock;
+  /// Of all sources together. From more than that each source contributes its share (share_paths),
+  /// evenly over the order of arrival, and the distribution's reason says so.
+  std::size_t max_paths = 4000;
+  int fit_threads = 1;  ///< of one fit and its transfer; the result does not depend on them
+  /// What the last fit of the same distribution left: its paths are not transferred again, and the
+  /// mixture may start from its mixture (warm_refit.hpp). Null: everything is made anew.
+  FitMemory::Remains before = nullptr;
+};
+
+/// A distribution is thin if fewer of its sources' poses were solved, each source counted by its
+/// mass.
+inline constexpr double kThinShare = 0.2;
+
+struct FitOutcome {
+  enum class Kind { Fitted, NoExperience, Abandoned };
+  Kind kind = Kind::NoExperience;
+  std::optional<Distribution> distribution;  ///< present exactly if Fitted; its state may be Failed
+  /// For the next fit, if Fitted; the revision of a mixture is to be filled in once it is stored.
+  std::shared_ptr<FitRemains> remains = nullptr;
+};
+
+/// Reads the selected experience of a task, transfers it to the target robot and fits a mixture.
+/// The revision is left 0. Paths and robots that cannot be used are left out, and the reason says
+/// so. Equal store content, key and `before`: equal distribution, but for the times; without
+/// `before` its mixture is that of any other full fit. \param stop  looked at
+/// between paths: Abandoned. \throws Failure(NotFound or InvalidInput) for the target robot;
+/// Failure(Storage). Source: Lehner et al., ICRA 2022, section IV.
+FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
+                            const std::stop_token& stop);
+
+/// The record of a fit that ended without one: Failed with this reason, cut to what a message may
+/// have, and with the experience of now as its sources.
+/// \throws Failure(NotFound or InvalidInput) for the target robot; Failure(Storage).
+Distribution failed_distribution(const DistributionKey& key, const FitContext& context,
+                                 const std::string& reason);
+
+}  // namespace kinship::fitting

@@ -1,0 +1,46 @@
+#include "server/fitting/fit_memory.hpp"
+
+#include <utility>
+
+namespace kinship::fitting {
+
+std::size_t size_of(const KnownPaths& paths) {
+  constexpr std::size_t kRest = 512;  // of a path, beside its configurations
+  std::size_t bytes = 0;
+  for (const auto& [id, known] : paths) {
+    const transfer::TransferredPath& path = *known.path;
+    const auto numbers = static_cast<std::size_t>(path.configurations.size() + path.weights.size());
+    const auto indices =
+        static_cast<std::size_t>(path.pose_index.size() + path.solution_index.size());
+    bytes += kRest + sizeof(double) * numbers + sizeof(int) * indices;
+  }
+  return bytes;
+}
+
+FitMemory::Remains FitMemory::find(const Digest& id) {
+  const std::lock_guard lock(mutex_);
+  const Remains* const known = remains_.find(id);
+  return known != nullptr ? *known : nullptr;
+}
+
+void FitMemory::put(const Digest& id, Remains remains) {
+  const std::size_t bytes = size_of(remains->paths);
+  const std::lock_guard lock(mutex_);
+  if (bytes > max_bytes_)
+    return remains_.erase(id);
+  remains_.put(id, std::move(remains), bytes);
+  while (remains_.bytes() > max_bytes_)
+    remains_.drop_oldest();
+}
+
+void FitMemory::erase(const Digest& id) {
+  const std::lock_guard lock(mutex_);
+  remains_.erase(id);
+}
+
+std::size_t FitMemory::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return remains_.bytes();
+}
+
+}  // namespace kinship::fitting

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/distribution.hpp"
+#include "proto/types/mixture.hpp"
+#include "server/fitting/known_paths.hpp"
+#include "server/fitting/last_used.hpp"
+#include "server/fitting/turn_cuts.hpp"
+
+namespace kinship::fitting {
+
+/// The last full fit of a distribution, against which growth is measured.
+struct FullFit {
+  std::uint64_t revision = 0;
+  std::uint64_t paths = 0;     ///< used
+  std::vector<double> masses;  ///< of the sources, in their order
+  std::optional<double> held_out_score;
+  std::vector<ComponentScore> component_scores;
+};
+
+/// What a fit leaves behind for the next one of the same distribution.
+struct FitRemains {
+  KnownPaths paths;                ///< it used
+  std::vector<Digest> sources;     ///< of which it used a path, ascending
+  std::optional<Mixture> mixture;  ///< none: the next fit is a full one
+  std::uint64_t revision = 0;      ///< of that mixture
+  TurnCuts cuts;                   ///< it was fitted with
+  FullFit full;                    ///< itself, or the one it goes back to
+};
+
+/// What fits left behind, by distribution, bounded by size: the one not used for longest goes
+/// first. In memory only: a server that starts anew makes full fits. May be shared between threads.
+class FitMemory {
+ public:
+  using Remains = std::shared_ptr<const FitRemains>;
+
+  /// About what 15 distributions of 4000 paths each leave, or 300 of 500 paths.
+  static constexpr std::size_t kDefaultBytes = std::size_t{256} << 20U;
+
+  explicit FitMemory(std::size_t max_bytes = kDefaultBytes) : max_bytes_(max_bytes) {}
+
+  Remains find(const Digest& id);  ///< null if there are none; the last ones used from now on
+
+  /// Replaces those of this distribution. What is larger than the limit is not kept.
+  void put(const Digest& id, Remains remains);
+
+  void erase(const Digest& id);
+
+  std::size_t bytes() const;  ///< of the configurations, about
+
+ private:
+  const std::size_t max_bytes_;
+  mutable std::mutex mutex_;  // guards what follows
+  LastUsed<Remains> remains_;
+};
+
+}  // namespace kinship::fitting

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "server/fitting/distribution_key.hpp"
+#include "server/fitting/known_paths.hpp"
+#include "server/fitting/scene_filters.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+#include "server/transfer/arm_pair.hpp"
+#include "server/transfer/filters.hpp"
+
+namespace kinship::fitting {
+
+/// What became of one stored path.
+struct PathOutcome {
+  std::optional<KnownPath> path;  ///< none: it cannot be used
+  bool was_known = false;         ///< from an earlier fit
+  std::string problem;            ///< why it cannot
+};
+
+/// Transfers paths to one target, several at a time; the others' results do not depend on that.
+class PathTransfer {
+ public:
+  /// \param store, key, target  outlive it.
+  /// \param known    of an earlier fit of the same key; outlives it, may be null.
+  /// \param threads  at least 1.
+  PathTransfer(const store::Store& store, const DistributionKey& key, const runtime::Robot& target,
+               const KnownPaths* known, int threads);
+
+  /// \param pair  of the paths' robot and the target.
+  /// \param stop  looked at before each group of paths: those that are left have neither path nor
+  ///              problem.
+  /// \return      one per path, in their order. A bad path costs nothing but itself.
+  std::vector<PathOutcome> transfer(std::span<const store::StoredPath> paths,
+                                    const transfer::ArmPair& pair, const std::stop_token& stop);
+
+ private:
+  /// What one thread needs for itself: worlds of collisions are asked by one at a time.
+  struct Lane {
+    transfer::Keep self;
+    SceneFilters scenes;
+  };
+  /// A path that can be transferred, and what is known of it before.
+  struct Prepared {
+    std::size_t index = 0;
+    transfer::Filters filters;
+    KnownPath known;
+  };
+  Lane& lane(std::size_t index);
+  const KnownPath* find_known(const store::StoredPath& stored) const;
+  /// \param group  indices of paths.
+  void transfer_group(std::span<const store::StoredPath> paths, std::span<const std::size_t> group,
+                      const transfer::ArmPair& pair, Lane& lane, const std::stop_token& stop,
+                      std::vector<PathOutcome>& outcomes) const;
+  Prepared prepare(const store::StoredPath& stored, std::size_t index,
+                   const transfer::ArmPair& pair, Lane& lane) const;
+  void transfer_all(std::span<const store::StoredPath> paths, std::span<const Prepared> prepared,
+                    const transfer::ArmPair& pair, std::vector<PathOutcome>& outcomes) const;
+
+  const store::Store& store_;
+  const DistributionKey& key_;
+  const runtime::Robot& target_;
+  const KnownPaths* const known_;
+  std::vector<std::unique_ptr<Lane>> lanes_;  // made when they are first used
+};
+
+}  // namespace kinship::fitting

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "server/fitting/distribution_key.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+#include "server/transfer/scene_filter.hpp"
+
+namespace kinship::fitting {
+
+/// What a recorded scene says about the configurations of a target.
+struct PathScene {
+  transfer::Keep keep;  ///< empty: nothing is left out
+  /// An object that a moving link of the target touches wherever it goes, and that is therefore not
+  /// looked at, in words; empty if there is none. (That a base touches the table it stands on is no
+  /// news.)
+  std::string ignored;
+  bool is_damaged = false;  ///< it could not be read; a report may bring it anew
+};
+
+/// The recorded scenes of one fit as filters for its target at its placement, one for each content.
+/// Used by one thread.
+class SceneFilters {
+ public:
+  /// \param store, key, target  outlive it.
+  SceneFilters(const store::Store& store, const DistributionKey& key, const runtime::Robot& target)
+      : store_(store), key_(key), target_(target) {}
+
+  /// That of a path; without a filter if the profile wants none, the path came without a scene or
+  /// its scene is damaged, or the target has no shapes. Valid until the next call.
+  /// \throws Failure(Storage)
+  const PathScene& find(const store::StoredPath& path);
+
+ private:
+  static constexpr std::size_t kMost = 64;  ///< filters in memory, about 0.1 MB each
+  PathScene read(std::int64_t scene_id) const;
+  std::string ignored_of(const transfer::SceneFilter& filter) const;
+
+  const PathScene none_;
+
+  const store::Store& store_;
+  const DistributionKey& key_;
+  const runtime::Robot& target_;
+  std::map<std::int64_t, PathScene> scenes_;  // by scene id
+};
+
+}  // namespace kinship::fitting

@@ -1,0 +1,179 @@
+#include "server/fitting/source_transfer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/fitting/selected_experience.hpp"
+
+namespace kinship::fitting {
+namespace {
+
+// Bounds what one read transaction holds in memory: megabytes, for paths as planners write them;
+// half a gigabyte, were all of them as long and as wide as a report may be.
+constexpr std::size_t kPathsPerRead = 128;
+
+/// Whether item `index` of `count` is one of the `wanted` that are spread evenly over them.
+bool is_chosen(std::uint64_t index, std::uint64_t count, std::uint64_t wanted) {
+  return wanted >= count || (index + 1) * wanted / count > index * wanted / count;
+}
+
+Relation relation_of(const transfer::ArmPair& pair) {
+  switch (pair.likeness()) {
+    case kinematics::ArmLikeness::Exact:
+      return Relation::Identical;
+    case kinematics::ArmLikeness::Near:
+      return Relation::SameArm;
+    case kinematics::ArmLikeness::Different:
+      return Relation::Other;
+  }
+  return Relation::Other;
+}
+
+void write(const transfer::TransferSummary& total, Source& source) {
+  source.poses = total.poses;
+  source.poses_solved = total.poses_solved;
+  source.out_of_reach = total.out_of_reach;
+  source.outside_limits = total.outside_limits;
+  source.not_converged = total.not_converged;
+  source.configurations = total.configurations;
+  source.colliding = total.colliding;
+  source.tracks_tried = total.tracks_tried;
+  source.tracks_kept = total.tracks_kept;
+  source.tracks_through = total.tracks_through;
+  source.random_configurations = total.random_configurations;
+  source.filter_checks = total.filter_checks;
+  source.self_collisions = total.self_collisions;
+  source.scene_collisions = total.scene_collisions;
+}
+
+/// Calls `visit` with the paths of a robot and task in the order of arrival, page by page, until it
+/// says false.
+template <typename Visit>
+void visit_pages(const store::Store& store, const Digest& robot, const DistributionKey& key,
+                 Visit visit) {
+  store::PathRange range{.after_id = 0, .limit = kPathsPerRead, .since_ms = key.since_ms};
+  for (;;) {
+    std::vector<store::StoredPath> page = store.read_paths(robot, key.task, range);
+    if (page.empty())
+      return;
+    range.after_id = page.back().id;
+    if (!visit(std::move(page)))
+      return;
+  }
+}
+
+}  // namespace
+
+Source source_of(const store::ExperienceSummary& experience) {
+  Source source;
+  source.robot = experience.robot;
+  source.label = experience.robot.short_hex();
+  source.paths = experience.paths;
+  source.generation = experience.generation;
+  return source;
+}
+
+SourceTransfer::SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+                               const DistributionKey& key, const runtime::Robot& target,
+                               const KnownPaths* known, int threads)
+    : store_(store),
+      robots_(robots),
+      key_(key),
+      target_(target),
+      transfer_(store, key, target, known, threads),
+      pool_(target.chain.dof()) {}
+
+std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience) const {
+  if (key_.since_ms == 0)
+    return experience.paths;
+  std::uint64_t count = 0;
+  visit_pages(store_, experience.robot, key_, [&count](const std::vector<store::StoredPath>& page) {
+    count += page.size();
+    return true;
+  });
+  return std::min(count, experience.paths);  // others may arrive meanwhile
+}
+
+SourceSummary SourceTransfer::add(const store::ExperienceSummary& experience,
+                                  std::uint64_t selected, std::uint64_t wanted,
+                                  const std::stop_token& stop) {
+  SourceSummary summary;
+  summary.source = source_of(experience);
+  summary.paths_selected = selected;
+  pool_.begin_source(experience.robot == key_.robot);
+  const Result<runtime::RobotRegistry::RobotPointer> robot = robots_.find(experience.robot);
+  if (!robot) {
+    summary.problem = robot.error().message;
+    return summary;
+  }
+  summary.source.label = robot.value()->label;
+  add_paths(*robot.value(), wanted, stop, summary);
+  return summary;
+}
+
+void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted,
+                               const std::stop_token& stop, SourceSummary& summary) {
+  const transfer::ArmPair pair(robot.chain, target_.chain);
+  summary.source.relation = relation_of(pair);
+  transfer::TransferSummary total;
+  const std::uint64_t count = summary.paths_selected;
+  std::uint64_t index = 0;
+  if (count > 0)
+    visit_pages(store_, robot.digest, key_, [&](std::vector<store::StoredPath> page) {
+      std::erase_if(page, [&](const store::StoredPath&) {
+        const bool is_wanted = index < count && is_chosen(index, count, wanted);
+        ++index;
+        return !is_wanted;
+      });
+      const std::vector<PathOutcome> outcomes = transfer_.transfer(page, pair, stop);
+      for (std::size_t i = 0; i < page.size(); ++i)
+        add_path(page[i], outcomes[i], summary, total);
+      return index < count && !stop.stop_requested();
+    });
+  write(total, summary.source);
+}
+
+void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome& outcome,
+                              SourceSummary& summary, transfer::TransferSummary& total) {
+  if (!outcome.path) {  // one bad path must not cost the others
+    ++summary.paths_left_out;
+    if (summary.problem.empty())
+      summary.problem = "path " + stored.report_uuid.text() + ": " + outcome.problem;
+    return;
+  }
+  ++summary.source.paths_used;
+  pool_.add(outcome.path->path, stored.report_uuid);
+  total.add(outcome.path->path->summary);
+  count_scene(*outcome.path, summary);
+  (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
+  transferred_ += outcome.was_known ? 0 : 1;
+  used_.emplace(stored.id, *outcome.path);
+}
+
+void SourceTransfer::count_scene(const KnownPath& path, SourceSummary& summary) {
+  const transfer::TransferSummary& transferred = path.path->summary;
+  if (!path.has_scene || transferred.filter_checks == 0)
+    return;  // nothing was asked: waypoints that were taken over were free on their robot
+  ++summary.source.paths_with_scene;
+  if (transferred.configurations == 0 && transferred.scene_collisions > 0)
+    ++summary.paths_blocked;
+  if (summary.scene_problem.empty())
+    summary.scene_problem = path.scene_problem;
+}
+
+std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
+                                            const std::vector<store::ExperienceSummary>& experience,
+                                            std::size_t max_paths, const std::stop_token& stop) {
+  std::vector<std::uint64_t> selected;
+  selected.reserve(experience.size());
+  for (const store::ExperienceSummary& source : experience)
+    selected.push_back(transfer.count_selected(source));
+  const std::vector<std::uint64_t> wanted =
+      share_paths(selected, max_paths, key.profile.density.weighting);
+  std::vector<SourceSummary> summaries;
+  for (std::size_t i = 0; i < experience.size(); ++i)
+    summaries.push_back(transfer.add(experience[i], selected[i], wanted[i], stop));
+  return summaries;
+}
+
+}  // namespace kinship::fitting

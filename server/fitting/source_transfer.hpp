@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "proto/types/distribution.hpp"
+#include "server/fitting/distribution_key.hpp"
+#include "server/fitting/known_paths.hpp"
+#include "server/fitting/path_transfer.hpp"
+#include "server/fitting/pooled_configurations.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+#include "server/transfer/transferred_path.hpp"
+
+namespace kinship::fitting {
+
+/// How the experience of one source robot fared in a fit.
+struct SourceSummary {
+  Source source;                     ///< but for its mass
+  std::uint64_t paths_selected = 0;  ///< of them the key wants: all, or those since its date
+  std::uint64_t paths_left_out = 0;  ///< bad data
+  std::string problem;               ///< with the robot or the first path left out
+  std::uint64_t paths_blocked = 0;   ///< their recorded scene left nothing of them
+  std::string scene_problem;         ///< what was not looked at in the recorded scenes
+  bool has_placed = false, has_unplaced = false;
+};
+
+/// A source before anything of it was transferred; its label is a short digest.
+Source source_of(const store::ExperienceSummary& experience);
+
+/// Reads the paths of source robots and transfers them into a pool of the target's configurations.
+class SourceTransfer {
+ public:
+  /// \param robots, store, key, target  outlive it.
+  /// \param known    of an earlier fit of the same key: taken over where the store still has them.
+  ///                 Outlives it, may be null.
+  /// \param threads  that transfer; what comes out does not depend on them.
+  SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+                 const DistributionKey& key, const runtime::Robot& target,
+                 const KnownPaths* known = nullptr, int threads = 1);
+
+  /// How many paths of the source the key wants.
+  std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
+
+  /// Adds `wanted` of the `selected` paths of a source, spread evenly over their order of arrival.
+  /// Bad paths and robots that cannot be read cost nothing but themselves; the summary says so.
+  /// \param stop  looked at between groups of paths: what was transferred until then is incomplete.
+  /// \throws Failure(Storage)
+  SourceSummary add(const store::ExperienceSummary& experience, std::uint64_t selected,
+                    std::uint64_t wanted, const std::stop_token& stop);
+
+  const PooledConfigurations& pool() const noexcept { return pool_; }
+  /// Those used, also if nothing came of them.
+  const KnownPaths& used() const noexcept { return used_; }
+  std::uint64_t transferred() const noexcept { return transferred_; }  ///< of those used, anew
+
+ private:
+  void add_paths(const runtime::Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
+                 SourceSummary& summary);
+  static void count_scene(const KnownPath& path, SourceSummary& summary);
+  void add_path(const store::StoredPath& stored, const PathOutcome& outcome, SourceSummary& summary,
+                transfer::TransferSummary& total);
+
+  const store::Store& store_;
+  runtime::RobotRegistry& robots_;
+  const DistributionKey& key_;
+  const runtime::Robot& target_;
+  PathTransfer transfer_;
+  PooledConfigurations pool_;
+  KnownPaths used_;
+  std::uint64_t transferred_ = 0;
+};
+
+/// Adds every source's share of at most `max_paths` paths.
+/// \return how each source fared, in their order.
+/// \throws Failure(Storage)
+std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
+                                            const std::vector<store::ExperienceSummary>& experience,
+                                            std::size_t max_paths, const std::stop_token& stop);
+
+}  // namespace kinship::fitting

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace kinship::runtime {
+
+/// A fixed number of threads and a bounded queue: interactive jobs before background ones, each
+/// kind in the order of arrival. May be shared between threads.
+class WorkerPool {
+ public:
+  struct Options {
+    std::size_t threads = 1;
+    std::size_t queue_limit = 64;  ///< jobs that wait, of both kinds
+    int niceness = 0;              ///< 0 to 19, of each thread; 19 yields most
+  };
+
+  enum class Priority { Interactive, Background };
+
+  /// Exactly one of the two is called, on a worker or in stop(). Neither may throw.
+  struct Job {
+    std::function<void()> run;
+    std::function<void()> abandon;  ///< may be empty
+  };
+
+  /// What stop() does with jobs that nobody has begun.
+  enum class Leftovers { Run, Abandon };
+
+  /// \throws Failure(Internal) if the operating system has no room for that many threads.
+  explicit WorkerPool(const Options& options);
+  ~WorkerPool();  ///< stop(Leftovers::Abandon)
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  /// \return false, with the job untouched, if the queue is full or the pool stops.
+  bool submit(Priority priority, Job job);
+
+  /// Accepts nothing more, deals with the queue, and returns when every thread has ended. Not to
+  /// be called from a job. A second call returns at once.
+  void stop(Leftovers leftovers);
+
+  std::size_t queued() const;  ///< jobs that nobody has begun
+  std::size_t threads() const noexcept { return thread_count_; }
+
+ private:
+  void work(int niceness);
+  bool next_job(Job& job);
+
+  const std::size_t queue_limit_;
+  const std::size_t thread_count_;
+  mutable std::mutex mutex_;  // guards what follows, but for the threads
+  std::condition_variable wake_;
+  std::deque<Job> interactive_, background_;
+  bool stopping_ = false;
+  std::vector<std::thread> threads_;  // changed by the constructor and by the first stop() only
+};
+
+}  // namespace kinship::runtime

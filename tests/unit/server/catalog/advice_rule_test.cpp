@@ -1,0 +1,119 @@
+#include "server/catalog/advice_rule.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "proto/evidence/attempt_window.hpp"
+
+namespace kinship::catalog::advice_rule_test {
+namespace {
+
+constexpr double kProfileShare = 0.9;
+
+/// Attempts as the store sums them up.
+class Ledger {
+ public:
+  Ledger& add(Arm arm, int count, double checks, int solved) {
+    evidence::AttemptWindow window(totals_.recent);
+    store::ArmTotals& totals = arm == Arm::Guided ? totals_.guided : totals_.control;
+    for (int i = 0; i < count; ++i) {
+      ++totals.attempts;
+      totals.solved += i < solved ? 1 : 0;
+      totals.checks += checks;
+      window.add(arm, i < solved, static_cast<std::uint64_t>(checks));
+    }
+    totals_.recent = window.recent();
+    return *this;
+  }
+  Ledger& add(Arm arm, int count, double checks) { return add(arm, count, checks, count); }
+  const store::AttemptTotals& totals() const { return totals_; }
+  Advice advice() const { return advise(totals_, kProfileShare); }
+
+ private:
+  store::AttemptTotals totals_;
+};
+
+TEST(AdviceRule, WithoutAttemptsTheProfileDecides) {
+  const Advice advice = Ledger().advice();
+  EXPECT_EQ(advice.recommended_share, kProfileShare);
+  EXPECT_EQ(advice.guided_share, kProfileShare);
+  EXPECT_FALSE(advice.guided);
+  EXPECT_FALSE(advice.control);
+  EXPECT_TRUE(advice.recent.empty());
+  EXPECT_EQ(advice.evidence,
+            "0 guided and 0 control attempts, compared from 10 of each on: share of the profile");
+}
+
+TEST(AdviceRule, NineAttemptsOfAnArmDecideNothingYet) {
+  EXPECT_EQ(Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 9, 10).advice().recommended_share,
+            kProfileShare);
+  EXPECT_EQ(Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 10, 10).advice().recommended_share,
+            0);
+}
+
+TEST(AdviceRule, WhoSamplesPerQueryGetsTheAttemptsAndTheProfilesShare) {
+  const Ledger ledger = Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 10, 10);
+  EXPECT_EQ(ledger.advice().guided_share, kProfileShare);
+  EXPECT_EQ(ledger.advice().recent, ledger.totals().recent);
+}
+
+TEST(AdviceRule, EvidenceNamesCostsAttemptsRatioAndInterval) {
+  const Advice better = Ledger().add(Arm::Control, 12, 6904).add(Arm::Guided, 40, 2000).advice();
+  EXPECT_EQ(better.recommended_share, kProfileShare);
+  EXPECT_EQ(better.evidence.find("guided 2000 checks per solution in 40 attempts, control 6904 in "
+                                 "12; lately ratio 0."),
+            0U)
+      << better.evidence;
+  EXPECT_NE(better.evidence.find("clearly better: share of the profile"), std::string::npos);
+  EXPECT_EQ(*better.guided, (ArmEvidence{40, 40, 2000}));
+  EXPECT_EQ(*better.control, (ArmEvidence{12, 12, 6904}));
+  const Advice worse = Ledger().add(Arm::Control, 12, 2000).add(Arm::Guided, 40, 6904).advice();
+  EXPECT_EQ(worse.recommended_share, 0);
+  EXPECT_NE(worse.evidence.find("clearly worse: uniform"), std::string::npos) << worse.evidence;
+}
+
+TEST(AdviceRule, AnArmThatSolvedNothingIsNamedAndCostsMore) {
+  const Advice advice = Ledger().add(Arm::Guided, 30, 1000, 0).add(Arm::Control, 30, 1000).advice();
+  EXPECT_EQ(advice.recommended_share, 0);
+  EXPECT_EQ(advice.guided->checks_per_solution, 0);
+  EXPECT_NE(advice.evidence.find("guided none solved in 30"), std::string::npos) << advice.evidence;
+}
+
+TEST(AdviceRule, WithoutChecksThereIsNothingToCompare) {
+  const Advice advice = Ledger().add(Arm::Guided, 30, 0).add(Arm::Control, 30, 1000).advice();
+  EXPECT_EQ(advice.recommended_share, kProfileShare);
+  EXPECT_NE(advice.evidence.find("report collision checks"), std::string::npos) << advice.evidence;
+}
+
+TEST(AdviceRule, ShareMovesWithoutAJumpAndNeverUpAsGuidanceGetsDearer) {
+  double before = kProfileShare;
+  bool was_between = false;
+  for (double checks = 1000; checks < 30'000; checks *= 1.005) {
+    const double share = Ledger()
+                             .add(Arm::Guided, 30, checks)
+                             .add(Arm::Control, 15, 5000)
+                             .advice()
+                             .recommended_share;
+    EXPECT_LE(share, before + 1e-9) << checks;
+    EXPECT_NEAR(share, before, 0.03) << checks;
+    was_between = was_between || (share > 0.3 && share < 0.6);
+    before = share;
+  }
+  EXPECT_TRUE(was_between);
+  EXPECT_EQ(before, 0);
+}
+
+TEST(AdviceRule, WhatWasLongAgoDoesNotDecide) {
+  const double after_long_good = Ledger()
+                                     .add(Arm::Guided, 1000, 100)
+                                     .add(Arm::Control, 30, 1000)
+                                     .add(Arm::Guided, 60, 5000)
+                                     .advice()
+                                     .recommended_share;
+  EXPECT_EQ(after_long_good, 0);
+}
+
+}  // namespace
+}  // namespace kinship::catalog::advice_rule_test

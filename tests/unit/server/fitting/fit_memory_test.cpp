@@ -1,0 +1,60 @@
+#include "server/fitting/fit_memory.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinship::fitting::fit_memory_test {
+namespace {
+
+Digest id_of(int number) {
+  Digest id;
+  id.bytes[0] = static_cast<std::uint8_t>(number);
+  return id;
+}
+
+/// One path with so many configurations of two joints.
+FitMemory::Remains remains(Eigen::Index configurations) {
+  auto path = std::make_shared<transfer::TransferredPath>();
+  path->configurations = Eigen::MatrixXd::Zero(2, configurations);
+  FitRemains remains;
+  remains.paths[1].path = path;
+  return std::make_shared<const FitRemains>(remains);
+}
+
+TEST(FitMemory, DropsWhatWasNotUsedForLongest) {
+  const FitMemory::Remains some = remains(1000);
+  FitMemory memory(3 * size_of(some->paths));
+  for (const int i : {1, 2, 3})
+    memory.put(id_of(i), some);
+  EXPECT_EQ(memory.find(id_of(1)), some);  // 2 is now the oldest
+  memory.put(id_of(4), some);
+  EXPECT_EQ(memory.find(id_of(2)), nullptr);
+  for (const int i : {1, 3, 4})
+    EXPECT_NE(memory.find(id_of(i)), nullptr) << i;
+  EXPECT_EQ(memory.bytes(), 3 * size_of(some->paths));
+}
+
+TEST(FitMemory, ReplacesAndForgets) {
+  FitMemory memory;
+  memory.put(id_of(1), remains(10));
+  const FitMemory::Remains more = remains(1000);
+  memory.put(id_of(1), more);
+  EXPECT_EQ(memory.find(id_of(1)), more);
+  EXPECT_EQ(memory.bytes(), size_of(more->paths));
+  memory.erase(id_of(1));
+  memory.erase(id_of(1));
+  EXPECT_EQ(memory.find(id_of(1)), nullptr);
+  EXPECT_EQ(memory.bytes(), 0U);
+}
+
+TEST(FitMemory, KeepsNothingThatIsLargerThanAll) {
+  const FitMemory::Remains small = remains(10), large = remains(100'000);
+  FitMemory memory(2 * size_of(small->paths));
+  memory.put(id_of(1), small);
+  memory.put(id_of(2), small);
+  memory.put(id_of(1), large);
+  EXPECT_EQ(memory.find(id_of(1)), nullptr);  // what it replaces is outdated
+  EXPECT_EQ(memory.find(id_of(2)), small);
+}
+
+}  // namespace
+}  // namespace kinship::fitting::fit_memory_test

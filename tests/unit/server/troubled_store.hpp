@@ -1,0 +1,97 @@
+#pragma once
+
+#include <utility>
+
+#include "server/store/sqlite/database.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store {
+
+/// Another program wrote to the robot's row behind the store's back.
+inline void damage_robot(const std::filesystem::path& file, const std::string& label) {
+  store::Database database(file, store::Access::ReadWrite);
+  database.execute("UPDATE robot SET dof = dof + 1 WHERE label = '" + label + "'");
+}
+
+/// A store that has no memory left for reports; else the real one.
+class TroubledStore final : public store::Store {
+ public:
+  explicit TroubledStore(Store& store) : store_(store) {}
+
+  void commit_reports(std::vector<Attempt> /*attempts*/, ReportsDone /*done*/) override {
+    throw std::bad_alloc();
+  }
+
+  Uuid epoch() const override { return store_.epoch(); }
+  store::StoreStatus status() const override { return store_.status(); }
+  Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
+    return store_.register_robot(robot);
+  }
+  std::optional<store::RobotRecord> find_robot(const Digest& robot) const override {
+    return store_.find_robot(robot);
+  }
+  std::vector<store::RobotRecord> robots() const override { return store_.robots(); }
+  std::vector<store::ExperienceSummary> experience(std::string_view task) const override {
+    return store_.experience(task);
+  }
+  std::uint64_t generation(const Digest& robot, std::string_view task) const override {
+    return store_.generation(robot, task);
+  }
+  std::vector<store::StoredPath> read_paths(const Digest& robot, std::string_view task,
+                                            const store::PathRange& range) const override {
+    return store_.read_paths(robot, task, range);
+  }
+  std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
+    return store_.read_scene(scene_id);
+  }
+  Result<Retirement> retire_path(const Uuid& report_uuid) override {
+    return store_.retire_path(report_uuid);
+  }
+  Result<Retirement> reset_task(std::string_view task) override { return store_.reset_task(task); }
+  store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
+    return store_.attempt_totals(robot, task);
+  }
+  bool evict_distribution(const Digest& id) override { return store_.evict_distribution(id); }
+  store::Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                       std::string_view cursor, std::size_t limit,
+                                       std::size_t max_bytes) const override {
+    return store_.export_attempts(robot, task, cursor, limit, max_bytes);
+  }
+  Result<bool> backup(const std::filesystem::path& file,
+                      const std::function<bool(double)>& progress) const override {
+    return store_.backup(file, progress);
+  }
+  std::uint64_t put_distribution(const Distribution& distribution) override {
+    return store_.put_distribution(distribution);
+  }
+  std::optional<Distribution> find_distribution(const Digest& id) const override {
+    return store_.find_distribution(id);
+  }
+  store::Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
+    return store_.list_robots(cursor, limit);
+  }
+  store::Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const override {
+    return store_.list_tasks(cursor, limit);
+  }
+  std::optional<TaskSummary> find_task(std::string_view task) const override {
+    return store_.find_task(task);
+  }
+  store::Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
+                                      std::string_view cursor, std::size_t limit) const override {
+    return store_.list_paths(robot, task, cursor, limit);
+  }
+  std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
+    return store_.find_attempt(report_uuid);
+  }
+  store::Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
+                                                      std::string_view task,
+                                                      std::string_view cursor,
+                                                      std::size_t limit) const override {
+    return store_.list_distributions(robot, task, cursor, limit);
+  }
+
+ private:
+  Store& store_;
+};
+
+}  // namespace kinship::store
