@@ -16,7 +16,7 @@ using codec::FetchConversation;
 using codec::RegisterConversation;
 using codec::ReportConversation;
 
-std::string asker_of(const codec::Head& head) {
+std::string request_key_of(const codec::Head& head) {
   return head.client_id.text() + ' ' + std::to_string(head.sequence_number);
 }
 
@@ -24,7 +24,7 @@ std::string asker_of(const codec::Head& head) {
 /// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
-  service.administer(request, asker_of(answer.head()),
+  service.administer(request, request_key_of(answer.head()),
                      [=, &service](const service::AdminPage& page) {
                        AdminReply reply = to_reply(page);
                        if (!fits_page(reply))
@@ -58,7 +58,7 @@ class Endpoints::Implementation {
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              service.fetch(request, asker_of(answer.head()), answer);
+              service.fetch(request, request_key_of(answer.head()), answer);
             }),
         admin_(
             participant, loop,

@@ -6,7 +6,7 @@
 
 #include "proto/types/advice.hpp"
 #include "proto/types/profile.hpp"
-#include "server/catalog/flight.hpp"
+#include "server/catalog/pending_fit.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/fitting/profile_advice.hpp"
 

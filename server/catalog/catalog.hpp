@@ -9,17 +9,12 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/publications.hpp"
 #include "server/catalog/adviser.hpp"
-#include "server/catalog/distribution_cache.hpp"
+#include "server/catalog/catalog_state.hpp"
 #include "server/catalog/distribution_maker.hpp"
-#include "server/catalog/flights.hpp"
-#include "server/catalog/leases.hpp"
-#include "server/catalog/look_up.hpp"
-#include "server/catalog/task_marks.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
@@ -34,22 +29,20 @@ namespace kinship::catalog {
 /// lock is held across the store, a fit, an answer or a call of an option.
 class Catalog {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;
+  using TimePoint = CatalogState::TimePoint;
   using Fit = DistributionMaker::Fit;
 
   /// What the catalog works with; all of it outlives the catalog's last job.
   struct Parts {
     store::Store& store;
     runtime::RobotRegistry& robots;
-    runtime::WorkerPool& desk;     ///< asks the store
-    runtime::WorkerPool& fitters;  ///< transfers and fits
+    runtime::WorkerPool& short_task_pool;  ///< asks the store
+    runtime::WorkerPool& fitters;          ///< transfers and fits
     const runtime::Clock& clock;
   };
 
   struct Options {
-    DistributionCache::Limits memory;
-    std::size_t max_waiters = 4096;
-    std::size_t max_leases = 4096;
+    CatalogState::Limits limits;
     Fit fit;  ///< empty: fit_distribution
     AdviceSource advice;
     /// Called on a worker after each fit, ready or failed.
@@ -71,8 +64,8 @@ class Catalog {
   /// When expire() has something to do next; empty: not before the next fetch or report.
   std::optional<TimePoint> next_deadline() const;
 
-  /// Tells those Pending whose deadline has passed; their fit goes on. Looks where a look is due:
-  /// after the desk had no room for it, and where followed distributions may have fallen behind.
+  /// Tells those Pending whose deadline has passed; their fit goes on. Looks up what is due: after
+  /// there was no room for a look-up, and where followed distributions may have fallen behind.
   void expire(TimePoint now);
 
   /// There are new paths of a task.
@@ -96,40 +89,24 @@ class Catalog {
   std::size_t followed() const;  ///< distributions under a lease
 
  private:
-  /// What is to be done once no lock is held.
-  struct Afterwards {
-    Answers answers;
-    std::vector<Digest> unfollowed;
-    bool wake = false;
-  };
+  using Afterwards = CatalogState::Afterwards;
+
+  /// Changes the state under the lock, then does what follows from that.
+  template <typename Change>
+  void change(Change change);
   void finish(const Afterwards& after) const;
 
   // On workers, without the lock.
-  void look(const Digest& id);
+  void look_up(const Digest& id);
   void run_fit(const Digest& id);
-  void settle(const Digest& id, const LookUp& found, const AdvisedReply& known, const Marks& marks);
-  fitting::FitOutcome fit(const Digest& id, const fitting::DistributionKey& key, Marks& marks);
-  void land(const Digest& id, const fitting::DistributionKey& key, Distribution distribution,
-            const Marks& marks);
-  void end_flight(const Digest& id, const FetchReply& reply, const std::optional<Marks>& marks);
+  fitting::FitOutcome fit(const Digest& id, const fitting::DistributionKey& key,
+                          ExperienceVersion& version);
+  void complete(const Digest& id, const fitting::DistributionKey& key, Distribution distribution,
+                const ExperienceVersion& version);
+  void end(const Digest& id, const FetchReply& reply,
+           const std::optional<ExperienceVersion>& version);
 
-  // With the lock held.
-  AdvisedReply find(const Digest& id, const fitting::DistributionKey& key,
-                    std::uint64_t generation);
-  SharedReply join(const Digest& id, const fitting::DistributionKey& key, Waiter waiter);
-  bool refresh(const Digest& id, const fitting::DistributionKey& key);
-  bool begin_look(const Digest& id, Flight& flight);
-  void look_soon(const Digest& id, Flight& flight, Afterwards& after);
-  bool begin_fit(const Digest& id, Flight& flight, runtime::WorkerPool::Priority priority);
-  void settle_flight(const Digest& id, Flight& flight, const LookUp& found,
-                     const AdvisedReply& known, const Marks& marks, Afterwards& after);
-  void end(const Digest& id, Flight& flight, const FetchReply& reply,
-           const std::optional<Marks>& marks, Afterwards& after);
-  void follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until);
-  void remember(const Digest& id, const AdvisedReply& reply, const Marks& marks, bool behind);
-  void rest(const Digest& id, Flight& flight, const Marks& marks, Afterwards& after);
-  void tend(const Digest& id, Afterwards& after);
-  void look_again(std::string_view task, Afterwards& after);
+  CatalogState::Work work();
   FetchReply busy(const std::string& message) const;
 
   const Parts parts_;
@@ -140,12 +117,8 @@ class Catalog {
   std::atomic<std::uint64_t> fetches_{0}, fetches_from_memory_{0}, fits_{0};
   std::atomic<double> typical_fit_s_{1};  // moving mean, for Busy
 
-  mutable std::mutex mutex_;  // guards what follows
-  Flights flights_;
-  Leases leases_;
-  DistributionCache memory_;
-  TaskMarks marks_;
-  bool stopping_ = false;
+  mutable std::mutex mutex_;
+  CatalogState state_;  // guarded by mutex_
 };
 
 }  // namespace kinship::catalog

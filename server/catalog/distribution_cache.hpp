@@ -5,8 +5,8 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
 #include "server/catalog/adviser.hpp"
-#include "server/catalog/flight.hpp"
-#include "server/catalog/task_marks.hpp"
+#include "server/catalog/experience_versions.hpp"
+#include "server/catalog/pending_fit.hpp"
 #include "server/fitting/last_used.hpp"
 
 namespace kinship::catalog {
@@ -24,7 +24,7 @@ class DistributionCache {
     AdvisedReply reply;  ///< Ready or Failed, with its distribution
     /// Of the task when the distribution was last compared with its experience, and whether it was
     /// found to be behind.
-    Marks marks = {};
+    ExperienceVersion version = {};
     bool behind = false;
   };
 

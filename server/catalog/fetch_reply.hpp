@@ -3,7 +3,7 @@
 #include <string>
 
 #include "proto/types/conversations.hpp"
-#include "server/catalog/flight.hpp"
+#include "server/catalog/pending_fit.hpp"
 #include "server/fitting/distribution_key.hpp"
 
 namespace kinship::catalog {

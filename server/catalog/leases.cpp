@@ -5,8 +5,9 @@
 
 namespace kinship::catalog {
 
-Comparison comparison_of(const Distribution& distribution, const Marks& marks, bool behind) {
-  return {.marks = marks, .behind = behind, .fitted_ms = distribution.fitted_ms};
+Comparison comparison_of(const Distribution& distribution, const ExperienceVersion& version,
+                         bool behind) {
+  return {.version = version, .behind = behind, .fitted_ms = distribution.fitted_ms};
 }
 
 void Leases::take(const Digest& id, const fitting::DistributionKey& key, TimePoint until) {
@@ -16,9 +17,9 @@ void Leases::take(const Digest& id, const fitting::DistributionKey& key, TimePoi
     by_end_.erase({known->until, id});
     known->until = until;
   } else {
-    if (most_ == 0)
+    if (max_leases_ == 0)
       return;
-    while (leases_.size() >= most_)
+    while (leases_.size() >= max_leases_)
       end(by_end_.begin()->second);
     Lease lease;
     lease.key = key;

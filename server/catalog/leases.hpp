@@ -13,19 +13,20 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
-#include "server/catalog/task_marks.hpp"
+#include "server/catalog/experience_versions.hpp"
 #include "server/fitting/distribution_key.hpp"
 
 namespace kinship::catalog {
 
 /// What was found when a distribution was last compared with the experience of its task.
 struct Comparison {
-  Marks marks;
+  ExperienceVersion version;
   bool behind = false;
   std::optional<std::int64_t> fitted_ms;  ///< Unix time, UTC; missing: there was no distribution
 };
 
-Comparison comparison_of(const Distribution& distribution, const Marks& marks, bool behind);
+Comparison comparison_of(const Distribution& distribution, const ExperienceVersion& version,
+                         bool behind);
 
 /// Interest in distributions: whoever follows one holds a lease on it, and as long as it is held
 /// the distribution is kept up with the experience without being fetched. A bounded number; the
@@ -37,12 +38,12 @@ class Leases {
   struct Lease {
     fitting::DistributionKey key;
     TimePoint until;
-    std::optional<Comparison> compared;  ///< missing: not yet, or not any more
-    std::optional<TimePoint> last_look;  ///< when it was compared with the store, or tried to be
-    std::optional<TimePoint> due;        ///< when to look again; set by set_due()
+    std::optional<Comparison> compared;     ///< missing: not yet, or not any more
+    std::optional<TimePoint> last_look_up;  ///< when it was compared with the store, or tried to be
+    std::optional<TimePoint> due;           ///< when to look again; set by set_due()
   };
 
-  explicit Leases(std::size_t most) : most_(most) {}
+  explicit Leases(std::size_t max_leases) : max_leases_(max_leases) {}
 
   /// Takes a lease, or extends the one that is there; never shortens it.
   void take(const Digest& id, const fitting::DistributionKey& key, TimePoint until);
@@ -69,7 +70,7 @@ class Leases {
  private:
   using ByTime = std::set<std::pair<TimePoint, Digest>>;
 
-  std::size_t most_;
+  std::size_t max_leases_;
   std::map<Digest, Lease> leases_;
   ByTime by_end_, by_due_;
   std::map<std::string, std::set<Digest>, std::less<>> by_task_;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/catalog/flight.hpp"
+#include "server/catalog/pending_fit.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/store.hpp"

@@ -30,9 +30,9 @@ Uuid report_of(const std::string& text) {
 
 }  // namespace
 
-AdminPage Administration::answer(const AdminRequest& request, const std::string& asker) {
+AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key) {
   try {
-    return dispatch(request, asker);
+    return dispatch(request, request_key);
   } catch (const Failure& failure) {
     return page_of(failure.error());
   } catch (const std::exception& exception) {
@@ -40,8 +40,8 @@ AdminPage Administration::answer(const AdminRequest& request, const std::string&
   }
 }
 
-AdminPage Administration::dispatch(const AdminRequest& request, const std::string& asker) {
-  if (std::optional<Job> begun = parts_.jobs.begun_by(asker))
+AdminPage Administration::dispatch(const AdminRequest& request, const std::string& request_key) {
+  if (std::optional<Job> begun = parts_.jobs.begun_by(request_key))
     return page_of(std::move(*begun));
   switch (request.verb) {
     case AdminVerb::Status:
@@ -66,7 +66,7 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ExplainDistribution:
       return explain(request.argument);
     case AdminVerb::ExportConfigurations:
-      return export_configurations(request.argument, asker);
+      return export_configurations(request.argument, request_key);
     case AdminVerb::EvictDistribution:
       return evict_distribution(request.argument);
     case AdminVerb::ExportPaths:
@@ -76,7 +76,7 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ResetTask:
       return reset_task(request.argument);
     case AdminVerb::Backup:
-      return begin(backup_job(parts_.store, request.argument, asker));
+      return begin(backup_job(parts_.store, request.argument, request_key));
     case AdminVerb::ListJobs:
       return list_jobs(parts_.jobs, request);
     case AdminVerb::ShowJob:
@@ -144,10 +144,10 @@ AdminPage Administration::explain(const std::string& prefix) {
 }
 
 AdminPage Administration::export_configurations(const std::string& prefix,
-                                                const std::string& asker) {
+                                                const std::string& request_key) {
   const fitting::FitContext context{
       .store = parts_.store, .robots = parts_.robots, .clock = parts_.clock};
-  return begin(export_configurations_job(context, find_distribution(prefix), asker));
+  return begin(export_configurations_job(context, find_distribution(prefix), request_key));
 }
 
 AdminPage Administration::evict_distribution(const std::string& prefix) {

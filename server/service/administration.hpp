@@ -42,12 +42,13 @@ class Administration {
   explicit Administration(Parts parts) : parts_(std::move(parts)) {}
 
   /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
-  /// \param asker  the request's name: sent again, as after a lost reply, it begins no second job.
+  /// \param request_key  the request's name: sent again, as after a lost reply, it begins no second
+  /// job.
   ///               Empty: it is never sent again.
-  AdminPage answer(const AdminRequest& request, const std::string& asker = {});
+  AdminPage answer(const AdminRequest& request, const std::string& request_key = {});
 
  private:
-  AdminPage dispatch(const AdminRequest& request, const std::string& asker);
+  AdminPage dispatch(const AdminRequest& request, const std::string& request_key);
   AdminPage list_robots(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
   AdminPage list_distributions(const AdminRequest& request);
@@ -56,7 +57,7 @@ class Administration {
   AdminPage show_path(const std::string& uuid);
   AdminPage show_distribution(const std::string& prefix);
   AdminPage explain(const std::string& prefix);
-  AdminPage export_configurations(const std::string& prefix, const std::string& asker);
+  AdminPage export_configurations(const std::string& prefix, const std::string& request_key);
   AdminPage evict_distribution(const std::string& prefix);
   AdminPage export_paths(const AdminRequest& request);
   AdminPage retire_path(const std::string& uuid);

@@ -57,13 +57,13 @@ bool run_backup(const store::Store& store, const fs::path& file, JobRun& run) {
 }  // namespace
 
 Result<Jobs::Task> backup_job(const store::Store& store, const std::string& file,
-                              const std::string& asker) {
+                              const std::string& request_key) {
   if (const auto error = check(file, store.status().file))
     return *error;
   return Jobs::Task{
       .verb = "backup",
       .argument = file,
-      .asker = asker,
+      .request_key = request_key,
       .run = [&store, path = fs::path(file)](JobRun& run) { return run_backup(store, path, run); }};
 }
 

@@ -13,9 +13,9 @@ namespace kinship::service {
 /// \param store  outlives the job.
 /// \param file   absolute, in a folder that is there; never a file that is there, nor one that
 ///               belongs to the store.
-/// \param asker  see Jobs::Task.
+/// \param request_key  see Jobs::Task.
 /// \return InvalidInput or Conflict that names the file and what is wrong with it.
 Result<Jobs::Task> backup_job(const store::Store& store, const std::string& file,
-                              const std::string& asker);
+                              const std::string& request_key);
 
 }  // namespace kinship::service

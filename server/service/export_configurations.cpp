@@ -120,7 +120,8 @@ bool run_export(const fitting::FitContext& context, const fitting::DistributionK
 }  // namespace
 
 Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
-                                             Distribution distribution, const std::string& asker) {
+                                             Distribution distribution,
+                                             const std::string& request_key) {
   const Result<fitting::DistributionKey> key = key_of(distribution);
   if (!key)
     return key.error();
@@ -135,7 +136,7 @@ Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
   return Jobs::Task{
       .verb = "configurations export",
       .argument = distribution.id.hex(),
-      .asker = asker,
+      .request_key = request_key,
       .run = [context, key = *key, distribution = std::move(distribution)](JobRun& run) {
         return run_export(context, key, distribution, run);
       }};

@@ -19,11 +19,12 @@ namespace kinship::service {
 /// because a path was found to be damaged meanwhile.
 ///
 /// \param context  what it refers to outlives the job.
-/// \param asker    see Jobs::Task.
+/// \param request_key    see Jobs::Task.
 /// \return Conflict, with what to do, if the distribution was made by other code than this
 /// server's,
 ///         or paths were retired since; InvalidInput if it has no configurations.
 Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
-                                             Distribution distribution, const std::string& asker);
+                                             Distribution distribution,
+                                             const std::string& request_key);
 
 }  // namespace kinship::service

@@ -32,9 +32,12 @@ struct Ingest::Batch {
   Done done;
 };
 
-Ingest::Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& desk,
-               Options options)
-    : store_(store), robots_(robots), desk_(desk), options_(std::move(options)) {}
+Ingest::Ingest(store::Store& store, runtime::RobotRegistry& robots,
+               runtime::WorkerPool& short_task_pool, Options options)
+    : store_(store),
+      robots_(robots),
+      short_task_pool_(short_task_pool),
+      options_(std::move(options)) {}
 
 void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   const auto batch = std::make_shared<Batch>();
@@ -57,7 +60,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
       [this](const Attempt& attempt) { return robots_.find_in_memory(attempt.robot) != nullptr; });
   if (in_memory)
     return check_and_commit(batch);
-  const bool accepted = desk_.submit(
+  const bool accepted = short_task_pool_.submit(
       runtime::WorkerPool::Priority::Interactive,
       {.run = [this, batch] { check_and_commit(batch); },
        .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); }});

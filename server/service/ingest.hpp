@@ -34,9 +34,9 @@ class Ingest {
         [](std::span<const catalog::AttemptCost>, std::span<const Receipt>) {};
   };
 
-  /// \param store, robots, desk  outlive the ingest, which drains on destruction; `desk` reads
-  /// robots that are not in memory.
-  Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& desk,
+  /// \param store, robots, short_task_pool  outlive the ingest, which drains on destruction;
+  /// `short_task_pool` reads robots that are not in memory.
+  Ingest(store::Store& store, runtime::RobotRegistry& robots, runtime::WorkerPool& short_task_pool,
          Options options);
   ~Ingest() { drain(); }
   Ingest(const Ingest&) = delete;
@@ -44,8 +44,8 @@ class Ingest {
 
   using Done = std::function<void(const std::vector<Receipt>&)>;
 
-  /// `done` is called once, on this thread, a worker of `desk` or the store's writer thread; it
-  /// must not throw or block. TryAgain for all of them if too much waits already.
+  /// `done` is called once, on this thread, a worker of `short_task_pool` or the store's writer
+  /// thread; it must not throw or block. TryAgain for all of them if too much waits already.
   void submit(std::vector<Attempt> attempts, Done done);
 
   /// From now on everything is answered TryAgain; returns when everything before is answered.
@@ -70,7 +70,7 @@ class Ingest {
 
   store::Store& store_;
   runtime::RobotRegistry& robots_;
-  runtime::WorkerPool& desk_;
+  runtime::WorkerPool& short_task_pool_;
   const Options options_;
   std::atomic<std::uint64_t> received_{0}, refused_{0};
 

@@ -56,7 +56,7 @@ Jobs::Jobs(const runtime::Clock& clock, Options options)
 Result<Job> Jobs::begin(Task task) {
   const std::lock_guard lock(mutex_);
   forget_old(clock_.now());
-  if (const EntryPointer same = find_begun(task.asker))
+  if (const EntryPointer same = find_begun(task.request_key))
     return same->now();
   if (is_stopping_)
     return Error{ErrorCode::Unavailable, "the server is stopping"};
@@ -146,9 +146,9 @@ void Jobs::make(const Calls& calls) const {
     done(job);
 }
 
-std::optional<Job> Jobs::begun_by(const std::string& asker) const {
+std::optional<Job> Jobs::begun_by(const std::string& request_key) const {
   const std::lock_guard lock(mutex_);
-  const EntryPointer entry = find_begun(asker);
+  const EntryPointer entry = find_begun(request_key);
   return entry ? std::optional<Job>(entry->now()) : std::nullopt;
 }
 
@@ -282,10 +282,11 @@ Jobs::EntryPointer Jobs::find_entry(const std::string& id) const {
   return found == entries_.end() ? nullptr : *found;
 }
 
-Jobs::EntryPointer Jobs::find_begun(const std::string& asker) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&asker](const auto& entry) {
-    return !asker.empty() && entry->task.asker == asker;
-  });
+Jobs::EntryPointer Jobs::find_begun(const std::string& request_key) const {
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&request_key](const auto& entry) {
+        return !request_key.empty() && entry->task.request_key == request_key;
+      });
   return found == entries_.end() ? nullptr : *found;
 }
 

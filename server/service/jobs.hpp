@@ -66,7 +66,7 @@ class Jobs {
     std::string verb, argument;
     /// The request that asks for it. Sent again, as after a lost reply, it begins no second job;
     /// empty: it is never sent again.
-    std::string asker;
+    std::string request_key;
     /// \return false if it ended early because it should stop. What it throws makes it Failed.
     std::function<bool(JobRun&)> run;
   };
@@ -79,7 +79,7 @@ class Jobs {
   /// \return the job as it stands; Unavailable, with the limit, if too many wait or jobs stop.
   Result<Job> begin(Task task);
 
-  std::optional<Job> begun_by(const std::string& asker) const;
+  std::optional<Job> begun_by(const std::string& request_key) const;
   std::vector<Job> list() const;                  ///< in the order in which they were begun
   Result<Job> find(const std::string& id) const;  ///< NotFound
   std::size_t active() const;                     ///< not ended
@@ -131,7 +131,7 @@ class Jobs {
 
   // With the lock held.
   EntryPointer find_entry(const std::string& id) const;
-  EntryPointer find_begun(const std::string& asker) const;
+  EntryPointer find_begun(const std::string& request_key) const;
   std::string new_id() const;
   std::size_t count(JobState state) const;
   void end(Entry& entry, JobState state, const std::string& message, Calls& calls);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "proto/types/profile_text.hpp"
-#include "server/service/told_events.hpp"
+#include "server/service/publish_events.hpp"
 
 namespace kinship::service {
 namespace {
@@ -25,19 +25,20 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       epoch_(store_->epoch()),
       robots_(*store_),
       events_(options_.clock, options_.on_event),
-      desk_({.threads = 1, .queue_limit = options_.desk_queue, .niceness = 0}),
+      short_task_pool_({.threads = 1, .queue_limit = options_.short_task_queue, .niceness = 0}),
       advice_([this](const Digest& robot,
                      const std::string& task) { return store_->attempt_totals(robot, task); },
               [this](std::function<void()> run) {
-                return desk_.submit(runtime::WorkerPool::Priority::Background,
-                                    {.run = std::move(run), .abandon = {}});
+                return short_task_pool_.submit(runtime::WorkerPool::Priority::Background,
+                                               {.run = std::move(run), .abandon = {}});
               }),
       fitters_({.threads = options_.fit_threads,
                 .queue_limit = options_.fit_queue,
                 .niceness = options_.fit_niceness}),
-      catalog_({*store_, robots_, desk_, fitters_, options_.clock}, catalog_options(options_)),
+      catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock},
+               catalog_options(options_)),
       ingest_(
-          *store_, robots_, desk_,
+          *store_, robots_, short_task_pool_,
           {.max_attempts = options_.max_queued_attempts,
            .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); },
            .on_answer = [this](std::span<const catalog::AttemptCost> costs,
@@ -49,11 +50,11 @@ Service::~Service() { shutdown(); }
 
 catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options) {
   catalog::Catalog::Options catalog;
-  catalog.memory = options.memory;
+  catalog.limits.memory = options.memory;
   catalog.fit = options.fit;
   catalog.on_fit = [this](const Distribution& distribution) {
     log_fit(distribution);
-    tell_fit(events_, robots_, distribution);
+    publish_fit(events_, robots_, distribution);
   };
   catalog.announce = options.on_announcement;
   catalog.on_unfollowed = options.on_unfollowed;
@@ -71,7 +72,7 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
 Jobs::Options Service::job_options(const ServiceOptions& options) {
   return {.limits = options.jobs,
           .niceness = options.fit_niceness,
-          .on_end = [this](const Job& job) { tell_job(events_, job); }};
+          .on_end = [this](const Job& job) { publish_job(events_, job); }};
 }
 
 Administration::Parts Service::administration_parts() {
@@ -102,7 +103,7 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
     if (receipts[i].status == ReceiptStatus::Stored ||
         receipts[i].status == ReceiptStatus::Recorded)
       advice_.add(costs[i]);
-  tell_report(events_, robots_, costs, receipts);
+  publish_report(events_, robots_, costs, receipts);
 }
 
 void Service::register_robot(RobotDescription description,
@@ -120,17 +121,17 @@ void Service::register_robot(RobotDescription description,
                   : reply.status == RegisterStatus::Known
                       ? "known as robot " + reply.robot.short_hex()
                       : "refused: " + reply.message));
-    tell_registered(events_, description, reply);
+    publish_registered(events_, description, reply);
     done(reply);
   };
-  if (!desk_.submit(runtime::WorkerPool::Priority::Interactive,
-                    {.run = std::move(run), .abandon = {}}))
+  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
+                               {.run = std::move(run), .abandon = {}}))
     options_.log("register: not answered, busy or stopping");
 }
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done) {
   refused_before_ += request.refused.size();
-  tell_refused(events_, request.refused);
+  publish_refused(events_, request.refused);
   ingest_.submit(std::move(request.attempts),
                  [this, refused = std::move(request.refused),
                   done = std::move(done)](const std::vector<Receipt>& receipts) {
@@ -149,21 +150,21 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
                  [this, robot = request.robot, task = request.task,
                   done = std::move(done)](const FetchReply& reply) {
                    done(reply);
-                   tell_fetch(events_, name_of(robots_, robot), task, reply);
+                   publish_fetch(events_, name_of(robots_, robot), task, reply);
                  });
 }
 
-void Service::administer(AdminRequest request, const std::string& asker,
+void Service::administer(AdminRequest request, const std::string& request_key,
                          const std::function<void(const AdminPage&)>& done) {
   // From memory, and on the thread that then asks for the next deadline.
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
-  auto run = [this, request = std::move(request), asker, done] {
-    done(administration_.answer(request, asker));
+  auto run = [this, request = std::move(request), request_key, done] {
+    done(administration_.answer(request, request_key));
   };
-  if (desk_.submit(runtime::WorkerPool::Priority::Interactive,
-                   {.run = std::move(run), .abandon = {}}))
+  if (short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
+                              {.run = std::move(run), .abandon = {}}))
     return;
   AdminPage page;
   page.message = "the server is busy or stopping";
@@ -240,7 +241,7 @@ void Service::log_fit(const Distribution& distribution) const {
 void Service::shutdown() {
   catalog_.stop();
   jobs_.stop();
-  desk_.stop(runtime::WorkerPool::Leftovers::Run);
+  short_task_pool_.stop(runtime::WorkerPool::Leftovers::Run);
   fitters_.stop(runtime::WorkerPool::Leftovers::Abandon);
   ingest_.drain();
 }

@@ -26,9 +26,9 @@ namespace kinship::service {
 struct ServiceOptions {
   std::string version;
   std::size_t fit_threads = 1;
-  std::size_t fit_queue = 256;    ///< fits that wait; more are answered Busy
-  int fit_niceness = 10;          ///< so that planners on the same machine come first
-  std::size_t desk_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
+  std::size_t fit_queue = 256;          ///< fits that wait; more are answered Busy
+  int fit_niceness = 10;                ///< so that planners on the same machine come first
+  std::size_t short_task_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
   std::size_t max_queued_attempts = 4096;
   catalog::DistributionCache::Limits memory;
   runtime::Clock clock;
@@ -64,8 +64,8 @@ class Service {
   void report(ReportRequest request, std::function<void(const ReportReply&)> done);
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
-  /// \param asker  the request's name; see Administration::answer.
-  void administer(AdminRequest request, const std::string& asker,
+  /// \param request_key  the request's name; see Administration::answer.
+  void administer(AdminRequest request, const std::string& request_key,
                   const std::function<void(const AdminPage&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
@@ -94,7 +94,7 @@ class Service {
   runtime::RobotRegistry robots_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
-  runtime::WorkerPool desk_;
+  runtime::WorkerPool short_task_pool_;
   catalog::AdviceBook advice_;
   runtime::WorkerPool fitters_;
   catalog::Catalog catalog_;

@@ -69,24 +69,24 @@ using Rows = std::vector<std::string>;
 
 TEST(AdminRows, RowsInPiecesComeWhole) {
   const AdminServer server(160, pieces);
-  Client asker = client(160);
-  const auto rows = rows_of(asker, {});
+  Client request_key = client(160);
+  const auto rows = rows_of(request_key, {});
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, (Rows{"a", "bcd", "e", "f"}));
 }
 
 TEST(AdminRows, EndsAtTheLimitOrWhenItsUserHasEnough) {
   const AdminServer server(161, pieces);
-  Client asker = client(161);
+  Client request_key = client(161);
   Rows rows;
   const auto use = [&](const std::string& row) {
     rows.push_back(row);
     return row != "e";
   };
-  EXPECT_FALSE(for_each_row(asker, {}, use, 2));
+  EXPECT_FALSE(for_each_row(request_key, {}, use, 2));
   EXPECT_EQ(rows, (Rows{"a", "bcd"}));
   rows.clear();
-  EXPECT_FALSE(for_each_row(asker, {}, use));
+  EXPECT_FALSE(for_each_row(request_key, {}, use));
   EXPECT_EQ(rows, (Rows{"a", "bcd", "e"}));
 }
 
@@ -97,8 +97,8 @@ TEST(AdminRows, ARefusalIsAnErrorWithTheServersWords) {
     reply.message = "no task 'x'";
     return reply;
   });
-  Client asker = client(162);
-  const auto rows = rows_of(asker, {});
+  Client request_key = client(162);
+  const auto rows = rows_of(request_key, {});
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().code, ErrorCode::NotFound);
   EXPECT_EQ(rows.error().message, "no task 'x'");
@@ -116,9 +116,9 @@ TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
     job.progress = 0.25 * asked;
     return page({json::to_json(job)}, "");
   });
-  Client asker = client(163);
+  Client request_key = client(163);
   std::vector<double> told;
-  const auto job = wait_for_job(asker, "00c0ffee", Clock::now() + 60s,
+  const auto job = wait_for_job(request_key, "00c0ffee", Clock::now() + 60s,
                                 [&](const Job& now) { told.push_back(now.progress); });
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_EQ(job->state, JobState::Done);
@@ -132,8 +132,8 @@ TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
     job.state = JobState::Running;
     return page({json::to_json(job)}, "");
   });
-  Client asker = client(164);
-  const auto job = wait_for_job(asker, "00c0ffee", Clock::now());
+  Client request_key = client(164);
+  const auto job = wait_for_job(request_key, "00c0ffee", Clock::now());
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_FALSE(has_ended(*job));
 }

@@ -57,11 +57,11 @@ TEST(DistributionCache, ANewerOneTakesThePlaceOfTheOlder) {
   cache.put(id(1), entry(1));
   const std::size_t bytes = cache.bytes();
   DistributionCache::Entry newer = entry(1);
-  newer.marks.changes = 5;
+  newer.version.changes = 5;
   cache.put(id(1), newer);
   EXPECT_EQ(cache.size(), 1U);
   EXPECT_EQ(cache.bytes(), bytes);
-  EXPECT_EQ(cache.find(id(1))->marks.changes, 5U);
+  EXPECT_EQ(cache.find(id(1))->version.changes, 5U);
 }
 
 TEST(DistributionCache, ForgetsWhatItIsToldTo) {

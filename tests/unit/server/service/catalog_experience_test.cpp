@@ -42,7 +42,7 @@ TEST_F(CatalogExperienceTest, GrowthOfARobotThatIsNotSelectedIsNone) {
   report(fleet::solved(pupil_, "shelf", 9, 300));
   advance(catalog::kRefitInterval);
   EXPECT_EQ(fetch(request).distribution->revision, 1U);
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_EQ(service_->status().queued_fits, 0U);
   EXPECT_EQ(gate_.calls(), 1);
   // Its own generation is nothing that such a distribution could know.

@@ -26,8 +26,8 @@ class CatalogTest : public ServiceFixture {
     request.minimum_generation = generation;
     return request;
   }
-  /// Returns when the desk has done what it was given before.
-  void wait_for_desk() { administer(fleet::question(AdminVerb::Status)); }
+  /// Returns when the short task pool has done what it was given before.
+  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::Status)); }
 };
 
 }  // namespace kinship::service

@@ -42,10 +42,11 @@ TEST_F(CatalogTest, HoweverManyAskThereIsOneFit) {
   std::vector<std::thread> askers;
   askers.reserve(replies.size());
   for (std::size_t i = 0; i < replies.size(); ++i)
-    askers.emplace_back(
-        [&, i] { replies[i] = begin_fetch(request_for(pupil_), "asker " + std::to_string(i)); });
-  for (std::thread& asker : askers)
-    asker.join();
+    askers.emplace_back([&, i] {
+      replies[i] = begin_fetch(request_for(pupil_), "request_key " + std::to_string(i));
+    });
+  for (std::thread& request_key : askers)
+    request_key.join();
   gate_.open();
   for (std::future<FetchReply>& reply : replies) {
     const FetchReply got = reply.get();
@@ -109,7 +110,7 @@ TEST_F(CatalogTest, AGrownExperienceIsServedAsItWasAndFittedBehind) {
   fetch(request_for(teacher_));
   teach(5, 100);
   EXPECT_EQ(fetch(request_for(teacher_)).distribution->revision, 1U);
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_EQ(gate_.calls(), 1) << "10 s have not passed since the fit";
 
   advance(catalog::kRefitInterval);
@@ -136,7 +137,7 @@ TEST_F(CatalogTest, FourNewPathsAreNoReasonForAFit) {
   teach(4, 100);
   advance(catalog::kRefitInterval);
   fetch(request_for(teacher_));
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_EQ(service_->status().queued_fits, 0U);
   EXPECT_EQ(gate_.calls(), 1);
 }
@@ -155,7 +156,7 @@ TEST_F(CatalogTest, AGenerationThatHasNotArrivedIsWaitedFor) {
   teach(6);
   fetch(request_for(teacher_));
   std::future<FetchReply> reply = begin_fetch(with_generation(request_for(teacher_), 2), "early");
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_NE(reply.wait_for(seconds(0)), std::future_status::ready);
   teach(1, 100);
   EXPECT_EQ(reply.get().distribution->sources[0].generation, 2U);
@@ -251,7 +252,7 @@ TEST_F(CatalogTest, ABackgroundFitThatSomebodyWaitsForGoesFirstAndIsDoneOnce) {
   fetch(at_once(elsewhere(request_for(pupil_), 0.1)));
   gate_.wait_for_calls(3);
   fetch(request_for(teacher_));  // queues the background fit
-  wait_for_desk();
+  wait_for_short_tasks();
   std::future<FetchReply> urgent = begin_fetch(with_generation(request_for(teacher_), 2), "now");
   gate_.let_one_pass();  // that worker begins the fit, now urgent
   gate_.wait_for_calls(4);
@@ -355,12 +356,12 @@ TEST_F(CatalogTest, TheReasonOfAFailureIsCutBetweenCharacters) {
 }
 
 TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
-  desk_queue_ = 2;
+  short_task_queue_ = 2;
   start();
   teach(6);
   fetch(request_for(teacher_));
   std::future<FetchReply> early = begin_fetch(with_generation(request_for(teacher_), 2), "early");
-  wait_for_desk();
+  wait_for_short_tasks();
 
   std::promise<void> release;
   const std::shared_future<void> released = release.get_future().share();
@@ -368,9 +369,9 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   for (bool is_held = false; !is_held;) {  // refused ones are answered on this thread
     std::promise<bool> begun;
     service_->administer(status, "", [&begun, released](const AdminPage& page) {
-      const bool is_on_desk = page.status == AdminStatus::Ok;
-      begun.set_value(is_on_desk);
-      if (is_on_desk)
+      const bool is_short_task = page.status == AdminStatus::Ok;
+      begun.set_value(is_short_task);
+      if (is_short_task)
         released.wait();
     });
     is_held = begun.get_future().get();
@@ -382,13 +383,13 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
     });
     is_full = *refused;
   }
-  teach(1, 100);  // its robot is in memory: no need of the desk
+  teach(1, 100);  // its robot is in memory: no need of the short task pool
   const auto retry = service_->next_deadline();
   ASSERT_TRUE(retry);
   EXPECT_LT(*retry, clock_.now() + seconds(1));
   release.set_value();
   while (early.wait_for(milliseconds(1)) != std::future_status::ready)
-    service_->expire(*retry);  // again if other work of the desk came first
+    service_->expire(*retry);  // again if other work of the short task pool came first
   const FetchReply reply = early.get();
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_EQ(reply.distribution->sources[0].generation, 2U);
@@ -397,7 +398,7 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
 TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
   teach(6);
   const FetchReply before = fetch(request_for(pupil_));
-  wait_for_desk();
+  wait_for_short_tasks();
   std::vector<Attempt> attempts;
   for (int i = 0; i < 24; ++i) {
     attempts.push_back(fleet::unsolved(pupil_.digest, "shelf"));
@@ -407,7 +408,7 @@ TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
   report(attempts);
   FetchReply after = fetch(at_once(request_for(pupil_)));
   while (!after.distribution->advice.control) {  // the sums may still be on their way
-    wait_for_desk();
+    wait_for_short_tasks();
     after = fetch(at_once(request_for(pupil_)));
   }
   EXPECT_EQ(after.distribution->advice.control->attempts, 12U);

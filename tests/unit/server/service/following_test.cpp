@@ -65,8 +65,8 @@ class Following : public ServiceFixture {
     advance(std::chrono::ceil<milliseconds>(std::max(*next - clock_.now(), {})));
     service_->expire(clock_.now());
   }
-  /// Returns when the desk has done what it was given before.
-  void wait_for_desk() { administer(fleet::question(AdminVerb::Status)); }
+  /// Returns when the short task pool has done what it was given before.
+  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::Status)); }
   /// A waiter's fetch with a deadline may be among the deadlines: it must be gone first.
   bool is_anything_due() { return service_->next_deadline().has_value(); }
 
@@ -117,7 +117,7 @@ TEST_F(Following, LittleGrowthIsLookedAtAndLeftAlone) {
   fetch(following(request_for(pupil_)));
   teach(4, 100);
   run_to_next_deadline();
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_FALSE(is_anything_due());
   EXPECT_EQ(gate_.calls(), 1);
   teach(1, 200);  // that makes five
@@ -171,7 +171,7 @@ TEST_F(Following, ReportsThatArriveDuringAFitAreNotForgotten) {
   wait_for_announcement(1);
   ASSERT_TRUE(is_anything_due());
   run_to_next_deadline();
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_FALSE(is_anything_due());
   EXPECT_EQ(fetch(at_once(request_for(pupil_))).distribution->sources[0].paths, 11U);
 }
@@ -192,9 +192,9 @@ TEST_F(Following, AFitThatTheQueueHadNoRoomForIsBegunLater) {
   fetch(elsewhere(0.1));
   gate_.wait_for_calls(2);
   fetch(elsewhere(0.2));
-  wait_for_desk();
+  wait_for_short_tasks();
   run_to_next_deadline();
-  wait_for_desk();
+  wait_for_short_tasks();
   EXPECT_EQ(gate_.calls(), 2);
   gate_.open();
   EXPECT_EQ(begin_fetch(elsewhere(0.2), "two").get().status == FetchStatus::Busy, false);
@@ -210,7 +210,7 @@ TEST_F(Following, ReportsOneByOneAreNotEachAReasonToAskTheStore) {
   advance(catalog::kRefitInterval);
   teach(1, 100);
   run_to_next_deadline();
-  wait_for_desk();
+  wait_for_short_tasks();
   const auto looked = clock_.now();
   teach(1, 101);
   EXPECT_GT(*service_->next_deadline(), looked + milliseconds(500));

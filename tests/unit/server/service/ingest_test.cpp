@@ -36,12 +36,12 @@ class IngestTest : public testing::Test {
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
   runtime::RobotRegistry registry_{*store_};
-  runtime::WorkerPool desk_{{.threads = 1, .queue_limit = 8, .niceness = 0}};
+  runtime::WorkerPool short_task_pool_{{.threads = 1, .queue_limit = 8, .niceness = 0}};
   std::mutex mutex_;
   std::vector<std::string> grown_;  // guarded by mutex_
   Ingest ingest_{*store_,
                  registry_,
-                 desk_,
+                 short_task_pool_,
                  {.max_attempts = 16, .on_new_experience = [this](std::string_view task) {
                     const std::lock_guard lock(mutex_);
                     grown_.emplace_back(task);
@@ -105,7 +105,7 @@ TEST_F(IngestTest, MoreThanItMayHoldIsAskedToTryAgain) {
 
 TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
   runtime::RobotRegistry cold(*store_);
-  Ingest ingest(*store_, cold, desk_, {});
+  Ingest ingest(*store_, cold, short_task_pool_, {});
   std::promise<std::vector<Receipt>> done;
   ingest.submit({fleet::solved(robot_, "shelf", 1)},
                 [&](const std::vector<Receipt>& receipts) { done.set_value(receipts); });
@@ -114,7 +114,7 @@ TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
 }
 
 TEST_F(IngestTest, ABusyDeskIsAReasonToTryAgain) {
-  desk_.stop(runtime::WorkerPool::Leftovers::Run);
+  short_task_pool_.stop(runtime::WorkerPool::Leftovers::Run);
   Attempt unknown = fleet::solved(robot_, "shelf", 1);
   unknown.robot.bytes[0] ^= 1U;
   const std::vector<Receipt> receipts = submit({unknown}).get();
@@ -150,7 +150,7 @@ TEST_F(IngestTest, ADamagedRobotCostsItsOwnAttemptsOnly) {
 
 TEST_F(IngestTest, WhatTheStoreCannotTakeIsAskedForAgainAndDrainingEnds) {
   store::TroubledStore troubled(*store_);
-  Ingest ingest(troubled, registry_, desk_, {});
+  Ingest ingest(troubled, registry_, short_task_pool_, {});
   std::vector<Receipt> receipts;
   ingest.submit({fleet::solved(robot_, "shelf", 1), fleet::unsolved(robot_.digest, "shelf")},
                 [&](const std::vector<Receipt>& answer) { receipts = answer; });

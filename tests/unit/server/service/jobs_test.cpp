@@ -28,7 +28,7 @@ class JobsTest : public testing::Test {
 
   /// Waits for let_go(); then makes one row, whether it was to stop or not.
   Jobs::Task held(const std::string& argument) {
-    return {.verb = "hold", .argument = argument, .asker = {}, .run = [this](JobRun& run) {
+    return {.verb = "hold", .argument = argument, .request_key = {}, .run = [this](JobRun& run) {
               std::unique_lock lock(mutex_);
               ++begun_;
               changed_.notify_all();
@@ -39,7 +39,7 @@ class JobsTest : public testing::Test {
   }
   /// Runs until it is told to stop.
   Jobs::Task endless() {
-    return {.verb = "endless", .argument = "", .asker = {}, .run = [this](JobRun& run) {
+    return {.verb = "endless", .argument = "", .request_key = {}, .run = [this](JobRun& run) {
               run.set_progress(0.25);
               std::promise<void> stopped;
               const std::stop_callback callback(run.stop_token(), [&] { stopped.set_value(); });
@@ -49,11 +49,12 @@ class JobsTest : public testing::Test {
             }};
   }
   static Jobs::Task quick(const std::string& argument, std::size_t row_bytes = 0) {
-    return {.verb = "quick", .argument = argument, .asker = {}, .run = [row_bytes](JobRun& run) {
-              run.message = "made it";
-              run.rows.add(std::string(row_bytes, 'x'));
-              return true;
-            }};
+    return {
+        .verb = "quick", .argument = argument, .request_key = {}, .run = [row_bytes](JobRun& run) {
+          run.message = "made it";
+          run.rows.add(std::string(row_bytes, 'x'));
+          return true;
+        }};
   }
   void count_begun() {
     const std::lock_guard lock(mutex_);
@@ -197,16 +198,16 @@ TEST_F(JobsTest, AJobThatFinishesBeforeItNoticesIsDone) {
 
 TEST_F(JobsTest, ARequestSentAgainGetsTheSameJob) {
   Jobs::Task task = held("a");
-  task.asker = "client 1, request 7";
+  task.request_key = "client 1, request 7";
   const std::string id = begin(task);
   EXPECT_EQ(begin(task), id);
-  task.asker = "client 1, request 8";
+  task.request_key = "client 1, request 8";
   const std::string other = begin(task);
   EXPECT_NE(other, id);
   let_go();
   end_of(other);
   EXPECT_EQ(begin(task), other);  // also when it has ended
-  EXPECT_EQ(jobs_->begun_by(task.asker).value().id, other);
+  EXPECT_EQ(jobs_->begun_by(task.request_key).value().id, other);
   EXPECT_FALSE(jobs_->begun_by(""));
   EXPECT_EQ(begun_, 2);
 }

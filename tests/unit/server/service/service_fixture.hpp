@@ -112,7 +112,7 @@ class ServiceFixture : public testing::Test {
     options.version = "1.2.3";
     options.fit_threads = fit_threads_;
     options.fit_queue = fit_queue_;
-    options.desk_queue = desk_queue_;
+    options.short_task_queue = short_task_queue_;
     options.clock = clock_;
     options.fit = [this](const fitting::DistributionKey& key, const std::stop_token& stop) {
       return gate_(key, *context_, stop);
@@ -195,7 +195,7 @@ class ServiceFixture : public testing::Test {
             return std::chrono::steady_clock::time_point(std::chrono::milliseconds(time_ms_));
           },
       .unix_ms = [this] { return time_ms_.load(); }};
-  std::size_t fit_threads_ = 2, fit_queue_ = 64, desk_queue_ = 1024;
+  std::size_t fit_threads_ = 2, fit_queue_ = 64, short_task_queue_ = 1024;
   std::function<void(ServiceOptions&)> adjust_;  ///< of what start() would use; may be empty
   GatedFit gate_;
   std::mutex log_mutex_;

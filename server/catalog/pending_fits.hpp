@@ -7,20 +7,20 @@
 #include <utility>
 
 #include "proto/types/digest.hpp"
-#include "server/catalog/flight.hpp"
+#include "server/catalog/pending_fit.hpp"
 
 namespace kinship::catalog {
 
-/// The flights under way, at most one per distribution. Not shared between threads.
-class Flights {
+/// The pending fits under way, at most one per distribution. Not shared between threads.
+class PendingFits {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
-  using Map = std::unordered_map<Digest, Flight>;
+  using Map = std::unordered_map<Digest, PendingFit>;
 
-  Flight* find(const Digest& id);
-  /// The flight of this id, made if there is none. \return it, and whether it is new.
-  std::pair<Flight&, bool> open(const Digest& id, const fitting::DistributionKey& key);
-  void close(const Digest& id) { flights_.erase(id); }
+  PendingFit* find(const Digest& id);
+  /// The pending of this id, made if there is none. \return it, and whether it is new.
+  std::pair<PendingFit&, bool> open(const Digest& id, const fitting::DistributionKey& key);
+  void close(const Digest& id) { pending_.erase(id); }
   /// Adds an answer for everybody who waits, and closes all.
   void close_all(const SharedReply& reply, Answers& answers);
 
@@ -31,11 +31,11 @@ class Flights {
   /// When somebody's deadline passes, or a look is due.
   std::optional<TimePoint> next_deadline() const;
 
-  Map::iterator begin() { return flights_.begin(); }
-  Map::iterator end() { return flights_.end(); }
+  Map::iterator begin() { return pending_.begin(); }
+  Map::iterator end() { return pending_.end(); }
 
  private:
-  Map flights_;
+  Map pending_;
 };
 
 }  // namespace kinship::catalog

@@ -1,4 +1,4 @@
-#include "server/catalog/flight.hpp"
+#include "server/catalog/pending_fit.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation) {
   return reply.distribution && own_generation(*reply.distribution) >= minimum_generation;
 }
 
-void Flight::join(Waiter waiter) {
+void PendingFit::join(Waiter waiter) {
   const auto earlier = std::find_if(waiters_.begin(), waiters_.end(),
                                     [&](const Waiter& other) { return other.key == waiter.key; });
   if (earlier == waiters_.end()) {
@@ -28,7 +28,7 @@ void Flight::join(Waiter waiter) {
 }
 
 template <typename Predicate>
-void Flight::answer_if(Predicate predicate, const SharedReply& reply, Answers& answers) {
+void PendingFit::answer_if(Predicate predicate, const SharedReply& reply, Answers& answers) {
   const auto stay = std::stable_partition(waiters_.begin(), waiters_.end(),
                                           [&](const Waiter& waiter) { return !predicate(waiter); });
   for (auto waiter = stay; waiter != waiters_.end(); ++waiter)
@@ -36,21 +36,21 @@ void Flight::answer_if(Predicate predicate, const SharedReply& reply, Answers& a
   waiters_.erase(stay, waiters_.end());
 }
 
-void Flight::answer_all(const SharedReply& reply, Answers& answers) {
+void PendingFit::answer_all(const SharedReply& reply, Answers& answers) {
   answer_if([](const Waiter&) { return true; }, reply, answers);
 }
 
-void Flight::answer_satisfied(const SharedReply& reply, Answers& answers) {
+void PendingFit::answer_satisfied(const SharedReply& reply, Answers& answers) {
   answer_if([&](const Waiter& waiter) { return satisfies(*reply, waiter.minimum_generation); },
             reply, answers);
 }
 
-void Flight::answer_without_deadline(const SharedReply& reply, Answers& answers) {
+void PendingFit::answer_without_deadline(const SharedReply& reply, Answers& answers) {
   answer_if([](const Waiter& waiter) { return !waiter.deadline; }, reply, answers);
 }
 
-void Flight::answer_expired(std::chrono::steady_clock::time_point now, const SharedReply& reply,
-                            Answers& answers) {
+void PendingFit::answer_expired(std::chrono::steady_clock::time_point now, const SharedReply& reply,
+                                Answers& answers) {
   answer_if([now](const Waiter& waiter) { return waiter.deadline && *waiter.deadline <= now; },
             reply, answers);
 }

@@ -1,4 +1,4 @@
-#include "server/service/told_events.hpp"
+#include "server/service/publish_events.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -99,8 +99,8 @@ std::string name_of(const runtime::RobotRegistry& robots, const Digest& robot) {
   return known ? known->label : robot.short_hex();
 }
 
-void tell_registered(EventFeed& feed, const RobotDescription& description,
-                     const RegisterReply& reply) {
+void publish_registered(EventFeed& feed, const RobotDescription& description,
+                        const RegisterReply& reply) {
   if (reply.status == RegisterStatus::Refused)
     return feed.tell(EventKind::Refusal, {}, description.label,
                      [&] { return "registration refused: " + reply.message; });
@@ -110,8 +110,9 @@ void tell_registered(EventFeed& feed, const RobotDescription& description,
   });
 }
 
-void tell_report(EventFeed& feed, const runtime::RobotRegistry& robots,
-                 std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts) {
+void publish_report(EventFeed& feed, const runtime::RobotRegistry& robots,
+                    std::span<const catalog::AttemptCost> costs,
+                    std::span<const Receipt> receipts) {
   std::map<std::pair<std::string, Digest>, Fate> fates;
   for (std::size_t i = 0; i < std::min(costs.size(), receipts.size()); ++i)
     if (receipts[i].status != ReceiptStatus::Refused)
@@ -119,10 +120,10 @@ void tell_report(EventFeed& feed, const runtime::RobotRegistry& robots,
   for (const auto& [whose, fate] : fates)
     feed.tell(EventKind::Report, whose.first, name_of(robots, whose.second),
               [&fate = fate] { return in_words(fate); });
-  tell_refused(feed, receipts);
+  publish_refused(feed, receipts);
 }
 
-void tell_refused(EventFeed& feed, std::span<const Receipt> receipts) {
+void publish_refused(EventFeed& feed, std::span<const Receipt> receipts) {
   const auto is_refused = [](const Receipt& receipt) {
     return receipt.status == ReceiptStatus::Refused;
   };
@@ -135,21 +136,21 @@ void tell_refused(EventFeed& feed, std::span<const Receipt> receipts) {
   });
 }
 
-void tell_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
-                const FetchReply& reply) {
+void publish_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
+                   const FetchReply& reply) {
   const bool is_refused =
       reply.status == FetchStatus::Refused || reply.status == FetchStatus::UnknownRobot;
   feed.tell(is_refused ? EventKind::Refusal : EventKind::Fetch, task, robot,
             [&] { return is_refused ? "fetch: " + in_words(reply) : in_words(reply); });
 }
 
-void tell_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
-              const Distribution& distribution) {
+void publish_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
+                 const Distribution& distribution) {
   feed.tell(EventKind::Fit, distribution.task, name_of(robots, distribution.robot),
             [&] { return in_words(distribution); });
 }
 
-void tell_job(EventFeed& feed, const Job& job) {
+void publish_job(EventFeed& feed, const Job& job) {
   feed.tell(EventKind::Administration, {}, {}, [&] {
     return "job " + job.id + ", " + job.verb + " '" + job.argument +
            "': " + std::string(to_text(job.state)) +

@@ -35,25 +35,25 @@ struct Waiter {
 };
 
 /// One distribution being looked up or fitted, and who waits for it: however many ask, there is
-/// one flight per id. Not shared between threads.
-class Flight {
+/// one pending per id. Not shared between threads.
+class PendingFit {
  public:
   enum class Stage {
-    Idle,     ///< nobody works on it: its waiters ask for experience that has not arrived
-    Looking,  ///< the store is being asked
-    Queued,   ///< for a fit
+    Idle,       ///< nobody works on it: its waiters ask for experience that has not arrived
+    LookingUp,  ///< the store is being asked
+    Queued,     ///< for a fit
     Fitting
   };
 
-  explicit Flight(fitting::DistributionKey key) : key_(std::move(key)) {}
+  explicit PendingFit(fitting::DistributionKey key) : key_(std::move(key)) {}
 
   const fitting::DistributionKey& key() const noexcept { return key_; }
   Stage stage = Stage::Idle;
   bool urgent = false;       ///< while Queued: before the background jobs
   bool is_wanted = false;    ///< somebody asked, and not a lease alone
   bool was_evicted = false;  ///< the distribution, since the look began or the fit was compared
-  /// While Idle: its experience changed, but the desk had no room; when to try again.
-  std::optional<std::chrono::steady_clock::time_point> look_due;
+  /// While Idle: its experience changed, but the short task pool had no room; when to try again.
+  std::optional<std::chrono::steady_clock::time_point> look_up_due;
 
   /// A waiter that takes another's place keeps the earlier deadline of the two.
   void join(Waiter waiter);

@@ -13,24 +13,24 @@
 /// What the service does, told to people who watch.
 namespace kinship::service {
 
-void tell_registered(EventFeed& feed, const RobotDescription& description,
-                     const RegisterReply& reply);
+void publish_registered(EventFeed& feed, const RobotDescription& description,
+                        const RegisterReply& reply);
 
 /// One event per robot and task of a batch, and one for what was refused of it.
 /// \param robots  knows labels.
-void tell_report(EventFeed& feed, const runtime::RobotRegistry& robots,
-                 std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
+void publish_report(EventFeed& feed, const runtime::RobotRegistry& robots,
+                    std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
 
 /// Attempts that broke a rule before anybody knew whose they are.
-void tell_refused(EventFeed& feed, std::span<const Receipt> receipts);
+void publish_refused(EventFeed& feed, std::span<const Receipt> receipts);
 
-void tell_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
-                const FetchReply& reply);
+void publish_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
+                   const FetchReply& reply);
 
-void tell_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
-              const Distribution& distribution);
+void publish_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
+                 const Distribution& distribution);
 
-void tell_job(EventFeed& feed, const Job& job);
+void publish_job(EventFeed& feed, const Job& job);
 
 /// The label of a robot in memory, else its short digest.
 std::string name_of(const runtime::RobotRegistry& robots, const Digest& robot);

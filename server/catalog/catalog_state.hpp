@@ -1,0 +1,125 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "server/catalog/adviser.hpp"
+#include "server/catalog/distribution_cache.hpp"
+#include "server/catalog/experience_versions.hpp"
+#include "server/catalog/leases.hpp"
+#include "server/catalog/look_up.hpp"
+#include "server/catalog/pending_fits.hpp"
+#include "server/runtime/clock.hpp"
+#include "server/runtime/worker_pool.hpp"
+
+namespace kinship::catalog {
+
+/// What a catalog knows and has begun: replies in memory, leases, pending fits, versions of the
+/// experience. It decides who is answered and what is to be looked up or fitted; Catalog does it,
+/// and guards this. Not shared between threads.
+class CatalogState {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  using Priority = runtime::WorkerPool::Priority;
+
+  /// How work is begun. None of them waits or calls back.
+  struct Work {
+    /// False if there is no room for it.
+    std::function<bool(const Digest& id)> look_up;
+    std::function<bool(const Digest& id, Priority priority)> fit;
+    /// The reply to who cannot be served now.
+    std::function<FetchReply(const std::string& message)> busy;
+  };
+
+  struct Limits {
+    DistributionCache::Limits memory;
+    std::size_t max_waiters = 4096;
+    std::size_t max_leases = 4096;
+  };
+
+  /// What is to be done once no lock is held.
+  struct Afterwards {
+    Answers answers;
+    std::vector<Digest> unfollowed;
+    bool wake = false;  ///< next_deadline() is earlier than it was
+  };
+
+  /// \param clock  outlives it.
+  CatalogState(const runtime::Clock& clock, const Limits& limits, Work work);
+
+  /// What memory holds, if that is an answer; else the waiter joins a pending fit or is answered.
+  /// \param follow_until  takes a lease, or extends it.
+  AdvisedReply fetch(const Digest& id, const fitting::DistributionKey& key, Waiter waiter,
+                     std::optional<TimePoint> follow_until, Afterwards& after);
+  /// The same reply with newer advice.
+  void replace(const Digest& id, const SharedReply& reply, const AdvisedReply& advised) {
+    memory_.replace(id, reply, advised);
+  }
+
+  /// When a waiter's deadline passes, or a look-up is due.
+  std::optional<TimePoint> next_deadline() const;
+  void expire(TimePoint now, Afterwards& after);
+  void add_experience(std::string_view task, Afterwards& after);
+  void retire_experience(std::string_view task, Afterwards& after);
+  void evict(const Digest& id, Afterwards& after);
+  void stop(Afterwards& after);
+
+  // For the jobs. Each leaves things as they are if the pending fit is gone: the server stops.
+
+  /// What a look-up begins with.
+  struct LookUpInput {
+    fitting::DistributionKey key;
+    SharedReply in_memory;
+    ExperienceVersion version;
+  };
+  std::optional<LookUpInput> begin_look_up(const Digest& id);
+  /// A look-up found this, at that version.
+  void resolve(const Digest& id, const LookUp& found, const AdvisedReply& known,
+               const ExperienceVersion& version, Afterwards& after);
+  /// Empty if another job has begun it.
+  std::optional<fitting::DistributionKey> begin_fit(const Digest& id);
+  ExperienceVersion version_of(std::string_view task) const { return versions_.of(task); }
+  /// A fit is stored: what is evicted or retired from now on concerns it.
+  void set_stored(const Digest& id, std::string_view task, ExperienceVersion& version);
+  /// A fit is complete. \return whether somebody follows it and is to be told.
+  bool complete(const Digest& id, std::string_view task, const AdvisedReply& reply,
+                const ExperienceVersion& version, Afterwards& after);
+  /// \param version  at which there was found to be nothing to fit; empty if that is not known.
+  void end(const Digest& id, const FetchReply& reply,
+           const std::optional<ExperienceVersion>& version, Afterwards& after);
+
+  std::size_t followed() const { return leases_.count(clock_.now()); }
+
+ private:
+  AdvisedReply find(const Digest& id, const fitting::DistributionKey& key,
+                    std::uint64_t generation);
+  SharedReply join(const Digest& id, const fitting::DistributionKey& key, Waiter waiter);
+  void follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until);
+  bool refresh(const Digest& id, const fitting::DistributionKey& key);
+  bool request_look_up(const Digest& id, PendingFit& pending);
+  void look_up_soon(const Digest& id, PendingFit& pending, Afterwards& after);
+  bool request_fit(const Digest& id, PendingFit& pending, Priority priority);
+  void resolve_pending(const Digest& id, PendingFit& pending, const LookUp& found,
+                       const AdvisedReply& known, const ExperienceVersion& version,
+                       Afterwards& after);
+  void remember(const Digest& id, const AdvisedReply& reply, const ExperienceVersion& version,
+                bool behind);
+  void idle(const Digest& id, PendingFit& pending, const ExperienceVersion& version,
+            Afterwards& after);
+  void schedule(const Digest& id, Afterwards& after);
+  void look_up_again(std::string_view task, Afterwards& after);
+
+  const runtime::Clock& clock_;
+  const Limits limits_;
+  const Work work_;
+  PendingFits pending_;
+  Leases leases_;
+  DistributionCache memory_;
+  ExperienceVersions versions_;
+  bool stopping_ = false;
+};
+
+}  // namespace kinship::catalog

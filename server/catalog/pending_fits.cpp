@@ -1,0 +1,51 @@
+#include "server/catalog/pending_fits.hpp"
+
+namespace kinship::catalog {
+
+PendingFit* PendingFits::find(const Digest& id) {
+  const auto found = pending_.find(id);
+  return found == pending_.end() ? nullptr : &found->second;
+}
+
+std::pair<PendingFit&, bool> PendingFits::open(const Digest& id,
+                                               const fitting::DistributionKey& key) {
+  const auto [pending, is_new] = pending_.try_emplace(id, key);
+  return {pending->second, is_new};
+}
+
+void PendingFits::close_all(const SharedReply& reply, Answers& answers) {
+  for (auto& [id, pending] : pending_)
+    pending.answer_all(reply, answers);
+  pending_.clear();
+}
+
+void PendingFits::answer_expired(TimePoint now, const SharedReply& reply, Answers& answers) {
+  for (auto& [id, pending] : pending_)
+    pending.answer_expired(now, reply, answers);
+  std::erase_if(pending_, [](const auto& entry) {
+    return entry.second.stage == PendingFit::Stage::Idle && entry.second.waiters().empty();
+  });
+}
+
+std::size_t PendingFits::waiters() const {
+  std::size_t count = 0;
+  for (const auto& [id, pending] : pending_)
+    count += pending.waiters().size();
+  return count;
+}
+
+std::optional<PendingFits::TimePoint> PendingFits::next_deadline() const {
+  std::optional<TimePoint> next;
+  const auto consider = [&next](const std::optional<TimePoint>& time) {
+    if (time && (!next || *time < *next))
+      next = time;
+  };
+  for (const auto& [id, pending] : pending_) {
+    consider(pending.look_up_due);
+    for (const Waiter& waiter : pending.waiters())
+      consider(waiter.deadline);
+  }
+  return next;
+}
+
+}  // namespace kinship::catalog
