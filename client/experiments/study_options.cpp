@@ -39,6 +39,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--kinshipd", options.kinshipd,
                      "program of the server that is started (default: beside this program)");
   command
+      .add_option("--analysis", options.analysis,
+                  "program that makes tables and figures of the results")
+      ->capture_default_str();
+  command
       .add_option("--domain", options.domain,
                   "DDS domain of that server (default: KINSHIP_DOMAIN, or 60)")
       ->check(CLI::Range(std::uint32_t{0}, kMostDomain))
@@ -96,6 +100,7 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
 
 void add_study_commands(CLI::App& app, StudyOptions& options) {
   options.run.models = "robots/models";
+  options.run.analysis = "client/experiments/analyse.py";
   options.run.domain = usual_domain();
   for (const Study& study : studies()) {
     CLI::App* const command = app.add_subcommand(study.name, study.purpose);
@@ -116,9 +121,9 @@ void run_study_command(const StudyOptions& options, std::ostream& out, std::ostr
   else if (options.reports)
     report_study(study, options.run, messages);
   else if (options.calibration_instances > 0)
-    calibrate_study(study, options.run, options.calibration_instances, out, messages);
+    calibrate_study(study, options.run, options.calibration_instances, messages);
   else if (options.tunes)
-    tune_study(study, options.run, options.tuning, out, messages);
+    tune_study(study, options.run, options.tuning, messages);
   else
     run_study(study, options.run, messages);
 }

@@ -26,6 +26,7 @@ namespace kinship::study_cell_test {
 namespace {
 
 const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models";
+const std::string kAnalysis = std::string(KINSHIP_SOURCE_DIR) + "/client/experiments/analyse.py";
 const std::string kTarget = "planar_7r_c";
 const std::string kSource = "planar_5r_b";
 
@@ -53,7 +54,8 @@ class StudyCell : public testing::Test {
                                           "--out",      out_,
                                           "--models",   kModels,
                                           "--domain",   domain(),
-                                          "--kinshipd", std::string(KINSHIP_BIN_DIR) + "/kinshipd"};
+                                          "--kinshipd", std::string(KINSHIP_BIN_DIR) + "/kinshipd",
+                                          "--analysis", kAnalysis};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -120,8 +122,11 @@ class StudyCell : public testing::Test {
 
 TEST_F(StudyCell, CanBeRepeatedByHand) {
   run("kinship-experiments", study_arguments({}));
-  EXPECT_NE(test::read_text(folder_ + "/report.html").find("Geometric means"), std::string::npos);
-  EXPECT_TRUE(test::read_text(folder_ + "/checks.svg").starts_with("<svg xmlns="));
+  const std::string report = test::read_text(folder_ + "/RESULTS.md");
+  EXPECT_NE(report.find("\n| own | 3 | "), std::string::npos) << report;
+  EXPECT_NE(report.find("\n20 learning instances per robot"), std::string::npos) << report;
+  EXPECT_NE(test::read_text(folder_ + "/checks.svg").find("<svg "), std::string::npos);
+  EXPECT_FALSE(test::read_text(folder_ + "/clouds.png").empty());
   ASSERT_EQ(experiments::read_query_results(folder_ + "/test.jsonl").size(), 3U * 4 * 6);
   const RepeatedCell cell{"open_table", kTarget, kSource, "0.05"};
   EXPECT_EQ(
@@ -141,8 +146,13 @@ TEST_F(StudyCell, UnderAConstraintCanBeRepeatedByHand) {
   options.kinshipd = KINSHIP_BIN_DIR "/kinshipd";
   options.domain = domain_.number();
   options.quick = true;
+  options.analysis = directory_ / "missing.py";
   std::ostringstream messages, problems;
   experiments::run_study(study, options, messages);
+  EXPECT_NE(messages.str().find("to have it done: /usr/bin/python3 " + options.analysis.string() +
+                                " " + out_),
+            std::string::npos)
+      << messages.str();
   const std::string folder = out_ + "/" + study.name + "-quick";
   const auto results = experiments::read_query_results(folder + "/test.jsonl");
   ASSERT_EQ(results.size(), 2U * 3 * 6) << messages.str();
@@ -152,6 +162,20 @@ TEST_F(StudyCell, UnderAConstraintCanBeRepeatedByHand) {
   }
   experiments::write_test_problems(study, options, "panda", problems);
   EXPECT_EQ(repeat_by_hand({study.name, "panda", "ur10e", "0.1"}, folder, problems.str()), 12);
+}
+
+// Options are tried, and scenes calibrated, by the tables that follow on standard output.
+TEST_F(StudyCell, TuningAndCalibrationEndWithTheirTables) {
+  const std::string tuned = run(
+      "kinship-experiments",
+      study_arguments({"--tuning", "--instances", "2", "--seeds", "1", "--robots", "planar_5r_a",
+                       "--sources", "planar_5r_a,others", "--overshoot", "1.5"}));
+  EXPECT_TRUE(tuned.starts_with("robot ")) << tuned;
+  EXPECT_NE(tuned.find("\nplanar_5r_a    others "), std::string::npos) << tuned;
+  EXPECT_NE(tuned.find("\nown          checks "), std::string::npos) << tuned;
+  const std::string calibrated =
+      run("kinship-experiments", study_arguments({"--resume", "--calibration", "2"}));
+  EXPECT_NE(calibrated.find("| planar_7r_c | "), std::string::npos) << calibrated;
 }
 
 TEST_F(StudyCell, ARunThatIsKilledTakesItsServerAlong) {

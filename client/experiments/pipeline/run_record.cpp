@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "client/files/lines.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
@@ -49,10 +48,10 @@ std::string find_machine() {
 
 }  // namespace
 
-RunRecord begin_run(const std::string& study) {
+RunRecord begin_run(const std::string& study, const std::string& side) {
   using namespace std::chrono;
   const auto now = duration_cast<seconds>(system_clock::now().time_since_epoch());
-  return {now.count(), find_commit(), find_machine(), study, 0, 0};
+  return {now.count(), find_commit(), find_machine(), study, side, 0, 0};
 }
 
 void append_run(const std::filesystem::path& file, const RunRecord& record) {
@@ -61,32 +60,14 @@ void append_run(const std::filesystem::path& file, const RunRecord& record) {
   line["commit"] = record.commit;
   line["machine"] = record.machine;
   line["study"] = record.study;
+  if (!record.side.empty())
+    line["side"] = record.side;
   line["planned"] = record.planned;
   line["duration_s"] = record.duration_s;
   std::ofstream stream(file, std::ios::app);
   stream << line.dump() << std::endl;
   if (!stream)
     throw Failure(ErrorCode::Storage, "'" + file.string() + "' cannot be written");
-}
-
-std::vector<RunRecord> read_runs(const std::filesystem::path& file) {
-  std::vector<RunRecord> runs;
-  if (!std::filesystem::exists(file))
-    return runs;
-  std::ifstream stream = files::open_input(file);
-  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
-    try {
-      const auto run = nlohmann::json::parse(line.text.value());
-      runs.push_back({run.at("begun_s"), run.at("commit"), run.at("machine"), run.at("study"),
-                      run.at("planned"), run.at("duration_s")});
-    } catch (const nlohmann::json::exception& exception) {
-      throw Failure(
-          ErrorCode::InvalidInput,
-          file.string() + " line " + std::to_string(line.number) + ": " + exception.what());
-    }
-    return true;
-  });
-  return runs;
 }
 
 }  // namespace kinship::experiments

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace kinship::experiments {
 
@@ -13,18 +12,15 @@ struct RunRecord {
   std::string commit;        ///< of the working directory; "+" behind it: with changes
   std::string machine;       ///< processor and number of cores
   std::string study;
+  std::string side;           ///< study on the test instances; empty: the test set itself
   std::uint64_t planned = 0;  ///< queries that the log did not have yet
   double duration_s = 0;
 };
 
 /// What is known when a run begins.
-RunRecord begin_run(const std::string& study);
+RunRecord begin_run(const std::string& study, const std::string& side);
 
 /// Adds a line to the file. \throws Failure(Storage) that names it.
 void append_run(const std::filesystem::path& file, const RunRecord& record);
-
-/// \return the runs of the file, none if there is no file.
-/// \throws Failure(InvalidInput) that names file and line.
-std::vector<RunRecord> read_runs(const std::filesystem::path& file);
 
 }  // namespace kinship::experiments

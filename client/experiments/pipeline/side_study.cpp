@@ -147,9 +147,8 @@ std::string cell_name(const std::string& sources, const std::string& variant) {
   return sources + kSeparator + variant;
 }
 
-std::string variant_of(const std::string& cell_name) {
-  const std::size_t separator = cell_name.find(kSeparator);
-  return separator == std::string::npos ? "" : cell_name.substr(separator + 1);
+std::string uniform_name(double overshoot) {
+  return overshoot == 1 ? kUniformly : formatted("%s f%g", kUniformly, overshoot);
 }
 
 std::vector<SideStudy> side_studies(const Study& study) {

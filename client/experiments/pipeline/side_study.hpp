@@ -41,9 +41,11 @@ std::vector<SideStudy> side_studies(const Study& study);
 /// \throws Failure(NotFound) that names the side studies there are.
 SideStudy find_side_study(const Study& study, std::string_view name);
 
-/// The two parts of a cell's name.
+/// Name of a cell of a side study.
 std::string cell_name(const std::string& sources, const std::string& variant);
-std::string variant_of(const std::string& cell_name);
+
+/// Name of a cell of the test set that plans uniformly.
+std::string uniform_name(double overshoot);
 
 inline constexpr const char* kOthers = "the others";  ///< experience of all but the robot itself
 inline constexpr const char* kAll = "all";            ///< and its own

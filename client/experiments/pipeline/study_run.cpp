@@ -2,33 +2,27 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <fstream>
-#include <ostream>
+#include <iostream>
+#include <nlohmann/json.hpp>
 
-#include "client/experiments/analysis/ratio_table.hpp"
+#include "client/experiments/formatted.hpp"
+#include "client/experiments/pipeline/analysis_process.hpp"
 #include "client/experiments/pipeline/compressed_file.hpp"
 #include "client/experiments/pipeline/peer_study.hpp"
 #include "client/experiments/pipeline/run_record.hpp"
 #include "client/experiments/pipeline/side_study.hpp"
+#include "client/experiments/pipeline/study_description.hpp"
 #include "client/experiments/pipeline/study_session.hpp"
-#include "client/experiments/report/study_report.hpp"
-#include "client/files/lines.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
 namespace {
 
 constexpr std::uint32_t kTestSeeds = 4;
 constexpr std::uint32_t kQuickInstances = 6;
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
 
 /// Uniform planning, named after its overshoot.
 Cell uniform_cell(std::size_t robot, plan::PlanSettings settings, double overshoot) {
@@ -95,6 +89,14 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
   return cells;
 }
 
+RunRecord finished(RunRecord record, std::chrono::steady_clock::time_point begin,
+                   std::size_t planned) {
+  record.planned = planned;
+  record.duration_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return record;
+}
+
 QueryPlan test_plan(const Study& study, const RunOptions& options) {
   QueryPlan plan;
   plan.seed = seed_of(InstanceSet::Test, 0);
@@ -103,18 +105,26 @@ QueryPlan test_plan(const Study& study, const RunOptions& options) {
   return plan;
 }
 
-/// Fetched distributions as run_study wrote them.
-std::vector<Distribution> read_distributions(const std::filesystem::path& file) {
-  expand_file(file);
-  std::vector<Distribution> distributions;
-  std::ifstream stream = files::open_input(file);
-  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
-    Result<Distribution> distribution =
-        line.text ? json::distribution_from_json(*line.text) : line.text.error();
-    distributions.push_back(std::move(distribution).value_or_throw());
-    return true;
-  });
-  return distributions;
+/// Has the results of a study analysed. \throws Failure(Internal)
+void analyse(const Study& study, const RunOptions& options, const std::string& option) {
+  const StudyFiles files(study, options);
+  files::OutputFile description(files.description, std::cout);
+  description.stream() << describe_study(study, load_fleet(study, options.models),
+                                         learning_instances(study, options));
+  description.keep();
+  const AnalysisRun run{options.analysis, files.folder, option};
+  if (!run_analysis(run))
+    throw Failure(ErrorCode::Internal,
+                  "the results are not analysed; to have it done: " + run.command());
+}
+
+/// The same when a study was run: its results are there, with or without a report.
+void try_to_report(const Study& study, const RunOptions& options, std::ostream& messages) {
+  try {
+    report_study(study, options, messages);
+  } catch (const Failure& failure) {
+    messages << study.name << ": " << failure.what() << std::endl;
+  }
 }
 
 std::vector<std::size_t> chosen_robots(const std::vector<StudyMember>& fleet,
@@ -161,15 +171,15 @@ std::vector<NamedSources> chosen_sources(const std::vector<StudyMember>& fleet,
 std::string tuning_name(const std::string& source, const TuningOptions& tuning, double overshoot,
                         const Distribution& distribution) {
   return source + " " + tuning.profile + " " + distribution.id.short_hex() + " r" +
-         std::to_string(distribution.revision) + " f" + number_text(overshoot) + " s" +
-         number_text(tuning.share);
+         std::to_string(distribution.revision) + " f" +
+         formatted("%g s%g", overshoot, tuning.share);
 }
 
 }  // namespace
 
 void run_study(const Study& study, const RunOptions& options, std::ostream& messages) {
   const auto begin = std::chrono::steady_clock::now();
-  RunRecord record = begin_run(study.name);
+  RunRecord record = begin_run(study.name, "");
   StudySession session(study, options, messages);
   session.learn();
   files::OutputFile distributions(session.files().distributions, messages);
@@ -178,22 +188,23 @@ void run_study(const Study& study, const RunOptions& options, std::ostream& mess
   QueryLog log(session.files().test);
   const std::size_t known = log.results().size();
   session.run("test", cells, test_plan(study, options), log);
-  record.planned = log.results().size() - known;
-  record.duration_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  append_run(session.files().runs, record);
+  append_run(session.files().runs,
+             finished(std::move(record), begin, log.results().size() - known));
   compress_file(session.files().test);
   compress_file(session.files().distributions);
-  report_study(study, options, messages);
+  try_to_report(study, options, messages);
 }
 
 void run_side_study(const Study& study, const std::string& name, const RunOptions& options,
                     std::ostream& messages) {
   const SideStudy side = find_side_study(study, name);
+  const auto begin = std::chrono::steady_clock::now();
+  RunRecord record = begin_run(study.name, name);
   RunOptions again = options;
   again.resume = true;
   StudySession session(study, again, messages);
   QueryLog log(session.files().side(name));
+  const std::size_t known = log.results().size();
   if (side.is_of_peers) {
     session.record();
     QueryPlan plan = test_plan(study, options);
@@ -203,28 +214,16 @@ void run_side_study(const Study& study, const std::string& name, const RunOption
     const std::vector<Cell> cells = side_cells(study, side, session);
     session.run(name, cells, test_plan(study, options), log);
   }
+  append_run(session.files().runs,
+             finished(std::move(record), begin, log.results().size() - known));
   compress_file(session.files().side(name));
-  report_study(study, again, messages);
+  try_to_report(study, again, messages);
 }
 
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages) {
-  const StudyFiles files(study, options);
-  ReportData data;
-  if (expand_file(files.calibration))
-    data.calibration = read_query_results(files.calibration);
-  data.test = read_query_results(files.test);
-  data.distributions = read_distributions(files.distributions);
-  data.runs = read_runs(files.runs);
-  for (const SideStudy& side : side_studies(study))
-    if (expand_file(files.side(side.name)))
-      data.sides.push_back({side, read_query_results(files.side(side.name))});
-  files::OutputFile page(files.report, messages);
-  write_study_report(study, load_fleet(study, options.models), data, page.stream());
-  page.keep();
-  files::OutputFile figure(files.checks_figure, messages);
-  write_checks_figure(study, data, figure.stream());
-  figure.keep();
-  messages << study.name << ": " << files.report.string() << std::endl;
+  analyse(study, options, "");
+  messages << study.name << ": " << (StudyFiles(study, options).folder / "RESULTS.md").string()
+           << std::endl;
 }
 
 void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
@@ -237,7 +236,7 @@ void write_test_problems(const Study& study, const RunOptions& options, const st
 }
 
 void tune_study(const Study& study, const RunOptions& options, const TuningOptions& tuning,
-                std::ostream& out, std::ostream& messages) {
+                std::ostream& messages) {
   RunOptions again = options;
   again.resume = true;
   StudySession session(study, again, messages);
@@ -245,7 +244,8 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
   plan::PlanSettings settings = study.settings;
   settings.overshoot = tuning.overshoot.value_or(study.settings.overshoot);
   std::vector<Cell> cells;
-  RatioTable table;
+  nlohmann::ordered_json compared{{"uniform", uniform_name(settings.overshoot)},
+                                  {"pairs", nlohmann::ordered_json::array()}};
   for (const std::size_t target : chosen_robots(session.fleet(), tuning.targets)) {
     const std::string& label = session.fleet()[target].label();
     for (Cell& cell : uniform_cells(target, settings))
@@ -256,20 +256,22 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
       const std::string name = tuning_name(sources.name, tuning, settings.overshoot, distribution);
       if (auto cell = guided_cell(target, name, settings, distribution, tuning.share)) {
         cells.push_back(*std::move(cell));
-        table.pairs.push_back({label, sources.name, name, sources.name == label});
+        compared["pairs"].push_back(
+            {{"robot", label}, {"source", sources.name}, {"guidance", name}});
       }
     }
   }
   QueryLog log(session.files().tuning);
   session.run("tuning", cells,
               {seed_of(InstanceSet::Tuning, 0), tuning.instances, tuning.seeds, 1, {}}, log);
-  table.overshoot = settings.overshoot;
-  table.max_checks = settings.max_checks;
-  write_ratio_table(table, log.results(), out);
+  files::OutputFile pairs(session.files().tuning_pairs, std::cout);
+  pairs.stream() << compared.dump(1) << '\n';
+  pairs.keep();
+  analyse(study, again, "--tuning");
 }
 
 void calibrate_study(const Study& study, const RunOptions& options, std::uint32_t instances,
-                     std::ostream& out, std::ostream& messages) {
+                     std::ostream& messages) {
   RunOptions again = options;
   again.resume = true;
   StudySession session(study, again, messages);
@@ -280,7 +282,7 @@ void calibrate_study(const Study& study, const RunOptions& options, std::uint32_
   session.run("calibration", cells, {seed_of(InstanceSet::Calibration, 0), instances, 1, 1, {}},
               log);
   compress_file(session.files().calibration);
-  write_calibration(study, log.results(), out);
+  analyse(study, again, "--calibration");
 }
 
 }  // namespace kinship::experiments

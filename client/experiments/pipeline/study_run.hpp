@@ -16,6 +16,7 @@ struct RunOptions {
   std::filesystem::path folder;    ///< of learning sets, results and the store
   std::filesystem::path models;    ///< of the robots' model folders
   std::filesystem::path kinshipd;  ///< empty: beside this program
+  std::filesystem::path analysis;  ///< client/experiments/analyse.py
   std::uint32_t domain = 0;
   int threads = 2;
   bool resume = false;  ///< go on with what the folder holds
@@ -44,21 +45,25 @@ void run_study(const Study& study, const RunOptions& options, std::ostream& mess
 void run_side_study(const Study& study, const std::string& name, const RunOptions& options,
                     std::ostream& messages);
 
-/// Writes `<folder>/<study>/report.html` and `checks.svg` of the results that the folder holds,
+/// Has tables and figures made of the results that the folder holds, `<folder>/<study>/RESULTS.md`,
 /// without planning.
+/// \throws Failure(Internal) that says how to have them made if that did not succeed.
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages);
 
 /// Writes the test instances of one robot as problems for kinship-plan, one a line.
 void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
                          std::ostream& out);
 
-/// Plans tuning instances, never test instances, and writes what guidance was worth on `out`.
+/// Plans tuning instances, never test instances; what guidance was worth goes to standard output.
 /// Learning sets, store and results of earlier tries in the folder are used again.
+/// \throws Failure as report_study.
 void tune_study(const Study& study, const RunOptions& options, const TuningOptions& tuning,
-                std::ostream& out, std::ostream& messages);
+                std::ostream& messages);
 
-/// Plans calibration instances uniformly and writes what they cost beside the paper's figures.
+/// Plans calibration instances uniformly; what they cost beside the paper's figures goes to
+/// standard output.
+/// \throws Failure as report_study.
 void calibrate_study(const Study& study, const RunOptions& options, std::uint32_t instances,
-                     std::ostream& out, std::ostream& messages);
+                     std::ostream& messages);
 
 }  // namespace kinship::experiments

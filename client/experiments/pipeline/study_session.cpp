@@ -36,8 +36,13 @@ StudyFiles::StudyFiles(const Study& study, const RunOptions& options)
       tuning(folder / "tuning.jsonl"),
       distributions(folder / "distributions.jsonl"),
       runs(folder / "runs.jsonl"),
-      report(folder / "report.html"),
-      checks_figure(folder / "checks.svg") {}
+      description(folder / "study.json"),
+      tuning_pairs(folder / "tuning.json") {}
+
+std::uint32_t learning_instances(const Study& study, const RunOptions& options) {
+  return options.quick ? std::min(kQuickLearning, study.learning_instances)
+                       : study.learning_instances;
+}
 
 StudySession::StudySession(const Study& study, const RunOptions& options, std::ostream& messages)
     : study_(study),
@@ -56,8 +61,7 @@ StudySession::StudySession(const Study& study, const RunOptions& options, std::o
 void StudySession::record() {
   RecordingOptions recording;
   recording.folder = files_.learning;
-  recording.instances = options_.quick ? std::min(kQuickLearning, study_.learning_instances)
-                                       : study_.learning_instances;
+  recording.instances = learning_instances(study_, options_);
   recording.threads = options_.threads;
   RunProgress progress(messages_, study_.name + ": learning sets",
                        fleet_.size() * recording.instances);

@@ -26,11 +26,15 @@ struct StudyFiles {
   std::filesystem::path tuning;         ///< results of tuning queries
   std::filesystem::path distributions;  ///< as they were fetched, one a line
   std::filesystem::path runs;           ///< of the test set
-  std::filesystem::path report, checks_figure;
+  std::filesystem::path description;    ///< of the study, for its analysis
+  std::filesystem::path tuning_pairs;   ///< what the last tuning run compared
 
   /// Results of a side study.
   std::filesystem::path side(const std::string& name) const { return folder / (name + ".jsonl"); }
 };
+
+/// Learning instances of each robot: fewer in a quick run.
+std::uint32_t learning_instances(const Study& study, const RunOptions& options);
 
 /// A study under way: its fleet, its learning sets and its server.
 class StudySession {

@@ -23,24 +23,19 @@ Eigen::Isometry3d on_stand(double height_m, double back_m = 0) {
 std::vector<StudyRobot> placed_cobots() {
   return {{.model = "sara_like",
            .T_task_base = on_stand(0.05),
-           .start = Eigen::VectorXd{{0.1842, 0.7206, 0.4567, -1.9674, -0.5598, 0.5799, -2.1209}},
-           .paper_checks = 5689},
+           .start = Eigen::VectorXd{{0.1842, 0.7206, 0.4567, -1.9674, -0.5598, 0.5799, -2.1209}}},
           {.model = "iiwa14",
            .T_task_base = on_stand(0.1),
-           .start = Eigen::VectorXd{{0.2920, 1.0971, 0.3673, -1.5105, -0.5638, 0.6409, -2.2068}},
-           .paper_checks = 8054},
+           .start = Eigen::VectorXd{{0.2920, 1.0971, 0.3673, -1.5105, -0.5638, 0.6409, -2.2068}}},
           {.model = "ur10e",
            .T_task_base = on_stand(0.6, 0.15),
-           .start = Eigen::VectorXd{{0.1867, -0.1210, 1.3231, 0.3688, 1.5708, 1.7575}},
-           .paper_checks = 11604},
+           .start = Eigen::VectorXd{{0.1867, -0.1210, 1.3231, 0.3688, 1.5708, 1.7575}}},
           {.model = "panda",
            .T_task_base = on_stand(0.25),
-           .start = Eigen::VectorXd{{0.7121, 1.0840, -0.1287, -1.7949, 0.4094, 2.8527, 1.0429}},
-           .paper_checks = 10321},
+           .start = Eigen::VectorXd{{0.7121, 1.0840, -0.1287, -1.7949, 0.4094, 2.8527, 1.0429}}},
           {.model = "sawyer",
            .T_task_base = on_stand(0.2),
-           .start = Eigen::VectorXd{{0.1966, -0.5393, 0.1012, 1.7205, -0.2240, 0.4008, -0.9409}},
-           .paper_checks = 9155}};
+           .start = Eigen::VectorXd{{0.1966, -0.5393, 0.1012, 1.7205, -0.2240, 0.4008, -0.9409}}}};
 }
 
 Study cobot_study(CarryingLayout layout, std::string purpose) {

@@ -17,9 +17,7 @@ Eigen::Isometry3d at(double x, double y) {
 
 /// The three arms of the paper, at the origin of the task frame.
 std::vector<StudyRobot> planar_arms() {
-  return {{.model = "planar_5r_a", .paper_checks = 5176},
-          {.model = "planar_5r_b", .paper_checks = 4695},
-          {.model = "planar_7r_c", .paper_checks = 20354}};
+  return {{.model = "planar_5r_a"}, {.model = "planar_5r_b"}, {.model = "planar_7r_c"}};
 }
 
 /// The same, each where the slot is as hard for it as the paper says, or nearly; starting in the

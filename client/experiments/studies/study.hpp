@@ -25,7 +25,6 @@ struct StudyRobot {
   /// Where its instances start, but for noise, joint units. A constant of a frozen study, so that
   /// it does not depend on the inverse kinematics of the day; empty: searched.
   Eigen::VectorXd start;
-  double paper_checks = 0;  ///< mean collision checks of uniform planning in the paper; 0: none
 };
 
 /// The instances of a study for one robot: equal arguments, equal problems.

@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""Tables and figures of a study, from the results that kinship-experiments left in its folder.
+
+    analyse.py client/experiments/results/cobots     RESULTS.md, checks.svg, time.svg, clouds.png in that folder
+    analyse.py FOLDER --calibration                  calibration beside the paper's figures, on standard output
+    analyse.py FOLDER --tuning                       what guidance was worth in the last tuning run, likewise
+
+Needs python3-numpy, python3-scipy, python3-matplotlib and python3-zstandard of Debian.
+Exit codes: 0 done, 1 failed (a package or a file is missing, or a file holds something else), 2 wrong usage.
+"""
+import argparse
+import pathlib
+import sys
+
+PACKAGES = "python3-numpy python3-scipy python3-matplotlib python3-zstandard"
+
+
+def main() -> int:
+    """Does what the command line says. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, help="of one study: it holds study.json")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--calibration", action="store_true", help="calibration only")
+    what.add_argument("--tuning", action="store_true", help="the last tuning run only")
+    arguments = parser.parse_args()
+    sys.dont_write_bytecode = True  # nothing is left in the source tree
+    try:
+        from analysis import calibration, report, study_folder, tuning
+    except ModuleNotFoundError as error:
+        print(f"analyse.py: {error}; on Debian: apt-get install {PACKAGES}", file=sys.stderr)
+        return 1
+    try:
+        folder = study_folder.StudyFolder(arguments.folder)
+        if arguments.calibration:
+            print(calibration.calibration_text(folder), end="")
+        elif arguments.tuning:
+            print(tuning.tuning_text(folder), end="")
+        else:
+            report.write_report(folder)
+    except (OSError, ValueError) as error:
+        print(f"analyse.py: {error}", file=sys.stderr)
+        return 1
+    except KeyError as error:
+        print(f"analyse.py: '{arguments.folder}' has a file that lacks {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""RESULTS.md of a study and its figures."""
+from collections.abc import Sequence
+
+from . import markdown, tables
+from .bars import write_bars
+from .clouds import POSTURES, write_clouds
+from .statistics import RESAMPLES, Comparison, compare
+from .study_folder import Cells, StudyFolder
+
+_NO_PEERS = ("OMPL's own experience planners, Lightning and Thunder, are not among the side studies: recalled paths "
+             "are joined to start and goal by straight lines in joint space, which do not keep to the constraint.\n\n")
+
+
+def write_report(study: StudyFolder) -> None:
+    """Writes RESULTS.md, checks.svg, time.svg and clouds.png into the folder of the study."""
+    cells = study.cells("test.jsonl")
+    distributions = list(study.lines("distributions.jsonl"))
+    write_bars(study, cells, lambda cell: cell.checks, "collision checks, mean", study.folder / "checks.svg")
+    write_bars(study, cells, lambda cell: cell.cpu_s, "planning time, mean, s", study.folder / "time.svg")
+    write_clouds(study, distributions, study.folder / "clouds.png")
+    (study.folder / "RESULTS.md").write_text(results_text(study), encoding="utf-8")
+
+
+def results_text(study: StudyFolder) -> str:
+    """The whole of RESULTS.md."""
+    cells = study.cells("test.jsonl")
+    distributions = list(study.lines("distributions.jsonl"))
+    pairs = tables.compare_pairs(study, cells)
+    text = (f"# Study {study.study['study']}: {study.study['purpose']}\n\n"
+            "Made by `client/experiments/analyse.py` from the results in this folder; not to be edited. "
+            "How to read it: [client/experiments](../../README.md).\n\n" + _protocol_text(study, cells) +
+            tables.runs_table(study))
+    text += "## What guidance was worth\n\n" + _how_measured(study)
+    text += tables.summary_table(study, pairs)
+    text += "![Mean collision checks by robot and guidance](checks.svg)\n\n"
+    text += ("Pair by pair: checks (mean, median, 90 % quantile over queries), ratios uniform to guided, the share of "
+             "queries that took more than twice the checks of the uniform query of the same instance and seed.\n\n")
+    text += markdown.table(tables.PAIR_HEAD, tables.pair_rows(pairs)) + tables.significance_text(pairs)
+    text += "For each robot the other one whose experience helped least and most, and what the transfer left of it:\n\n"
+    text += tables.loss_table(study, pairs, distributions)
+    text += _side_studies_text(study, cells)
+    text += "## Checks, time and paths\n\n![Mean planning time by robot and guidance](time.svg)\n\n"
+    text += tables.paper_tables(study, cells)
+    if study.has("calibration.jsonl"):
+        text += "## Calibration\n\nUniform planning of the calibration instances beside the paper's mean checks.\n\n"
+        text += tables.calibration_table(study, study.cells("calibration.jsonl"))
+    text += "## Transfer and fit\n\nWhat the server made of the learning sets.\n\n"
+    text += tables.distribution_table(study, distributions)
+    text += (f"`clouds.png`, written beside this file, shows the transfer frame of samples and the arm in {POSTURES} of "
+             "them, in the scene of the first test instance.\n")
+    return text
+
+
+def _protocol_text(study: StudyFolder, cells: Cells) -> str:
+    values = study.study
+    cell = next(iter(cells.values()))
+    return (f"{values['learning_instances']} learning instances per robot, planned uniformly with overshoot 1, solved or "
+            f"not, and reported to a kinshipd; {cell.checks.shape[0]} test instances, {cell.checks.shape[1]} queries each, "
+            "planned uniformly and with the distributions that the server made of one robot's experience. Step "
+            f"{values['resolution']:g}, overshoot {values['overshoot']:g}, guided samples {values['guided_share']:g} of "
+            f"all; a query ends at its first path or at {values['max_checks']} checks, which an unsolved one counts.\n\n")
+
+
+def _how_measured(study: StudyFolder) -> str:
+    return ("Ratios are means of uniform planning by means of guided planning, geometric means over pairs. In brackets: "
+            f"95 % percentile interval of the bootstrap, {RESAMPLES} resamples of the instances with a fixed seed. p: "
+            "Wilcoxon's signed-rank test, two-sided, exact, over means of instances; of success McNemar's exact test over "
+            "queries.\n\n")
+
+
+def _side_studies_text(study: StudyFolder, cells: Cells) -> str:
+    there = [side for side in study.study["side_studies"] if study.has(side["name"] + ".jsonl")]
+    text = ""
+    if there:
+        text += ("## Side studies\n\nFurther cells over the same instances. Uniform planning is that of the test set, "
+                 "another run under another load: checks can be compared, times hardly.\n\n")
+    for side in there:
+        variants = _variants(study, cells, study.cells(side["name"] + ".jsonl"))
+        text += f"### {side['name']}: {side['purpose']}\n\n" + tables.variant_table(variants, study.robots)
+        for variant, pairs in variants:
+            text += f"<details><summary>{variant}, pair by pair</summary>\n\n"
+            text += markdown.table(tables.PAIR_HEAD, tables.pair_rows(pairs)) + "</details>\n\n"
+    return text + (_NO_PEERS if study.study["is_constrained"] else "")
+
+
+def _variants(study: StudyFolder, cells: Cells, further: Cells) -> Sequence[tuple[str, list[Comparison]]]:
+    """Each variant of a side study against the uniform planning of the test set, in the order of the file."""
+    variants: dict[str, list[Comparison]] = {}
+    for robot in study.robots:
+        for (known, guidance), cell in further.items():
+            if known == robot:
+                comparison = compare(cells[robot, study.study["uniform"]], cell)
+                variants.setdefault(guidance.partition("|")[2], []).append(comparison)
+    for pairs in variants.values():
+        order = {source: place for place, source in enumerate(study.robots)}
+        pairs.sort(key=lambda pair: (order[pair.guided.robot], order.get(tables.source_of(pair.guided), len(order))))
+    return list(variants.items())

@@ -1,0 +1,243 @@
+#!/usr/bin/python3
+"""The analysis of studies, with the results of a small one in study/.
+
+expected.json holds what the C++ that did this before had for the same results (commit e4c9d21).
+"""
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+EXPERIMENTS = HERE.parents[4] / "client" / "experiments"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(EXPERIMENTS))
+
+from analysis import calibration, clouds, report, statistics, tables, tuning  # noqa: E402: after the path
+from analysis.study_folder import Cell, StudyFolder  # noqa: E402
+
+
+def cell(guidance: str, checks: list[list[float]], solved: list[list[bool]] | None = None) -> Cell:
+    values = np.array(checks, dtype=float)
+    names = tuple(f"task-{index}" for index in range(len(values)))
+    return Cell("arm", guidance, names, values, values / 1000,
+                np.array(solved) if solved else np.ones(values.shape, dtype=bool), values)
+
+
+class CopiedStudy(unittest.TestCase):
+    """A copy of the small study that a test may change."""
+
+    def setUp(self) -> None:
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.folder = pathlib.Path(directory.name) / "planar"
+        shutil.copytree(HERE / "study", self.folder)
+
+    def analyse(self, *arguments: str, python: tuple[str, ...] = ()) -> subprocess.CompletedProcess:
+        return subprocess.run([sys.executable, *python, str(EXPERIMENTS / "analyse.py"), *arguments],
+                              capture_output=True, text=True, check=False)
+
+
+class TestNumbers(unittest.TestCase):
+    """The same numbers as before. Intervals were drawn with another generator."""
+
+    def assert_estimate(self, ours: statistics.Estimate, expected: dict[str, float]) -> None:
+        self.assertAlmostEqual(ours.value, expected["value"], delta=1e-12 * expected["value"])
+        noise = 0.1 * (expected["high"] - expected["low"])
+        self.assertAlmostEqual(ours.low, expected["low"], delta=noise)
+        self.assertAlmostEqual(ours.high, expected["high"], delta=noise)
+
+    def test_every_pair_and_mean(self) -> None:
+        expected = json.loads((HERE / "expected.json").read_text())
+        study = StudyFolder(HERE / "study")
+        cells = study.cells("test.jsonl")
+        compared = 0
+        for name in ("test", "pooled", "inverse", "peers"):
+            further = study.cells(name + ".jsonl")
+            for wanted in expected[name]:
+                guided = further[wanted["robot"], wanted["guidance"]]
+                ours = statistics.compare(cells[wanted["robot"], "uniform"], guided)
+                with self.subTest(name, robot=wanted["robot"], guidance=wanted["guidance"]):
+                    self.assert_estimate(ours.checks, wanted["checks"])
+                    self.assertAlmostEqual(ours.time.value, wanted["time"], delta=1e-12 * wanted["time"])
+                    for key in ("median_ratio", "p_checks", "p_time", "p_solved"):
+                        self.assertAlmostEqual(getattr(ours, key), wanted[key], delta=1e-9 * wanted[key], msg=key)
+                    self.assertEqual(ours.guided.solved_text(), wanted["solved"])
+                    for key, value in (("mean", ours.guided.checks.mean()), ("median", np.median(ours.guided.checks)),
+                                       ("deviation", ours.guided.checks.std(ddof=1))):
+                        self.assertAlmostEqual(value, wanted[key], delta=1e-12 * value, msg=key)
+                compared += 1
+        self.assertEqual(compared, 9 + 6 + 3 + 6)
+        pairs = tables.compare_pairs(study, cells)
+        for kind, own in (("own", (True,)), ("transferred", (False,)), ("all", (True, False))):
+            chosen = [pair for pair in pairs if (pair.guided.guidance == pair.guided.robot) in own]
+            self.assert_estimate(statistics.mean_of_comparisons(chosen, "checks"), expected["means"][kind]["checks"])
+            self.assert_estimate(statistics.mean_of_comparisons(chosen, "cpu_s"), expected["means"][kind]["time"])
+
+    def test_committed_reports_are_what_the_committed_results_say(self) -> None:
+        studies = sorted(file.parent for file in (EXPERIMENTS / "results").glob("*/study.json"))
+        self.assertGreaterEqual(len(studies), 5)
+        for folder in studies:
+            with self.subTest(folder.name):
+                committed = (folder / "RESULTS.md").read_text(encoding="utf-8")
+                self.assertEqual(report.results_text(StudyFolder(folder)), committed, "run analyse.py")
+
+
+class TestStatistics(unittest.TestCase):
+
+    def test_interval_narrows_with_more_instances(self) -> None:
+        values = np.arange(25.0) % 5  # deviation 1.41, of the mean 0.28
+        few = statistics.mean_estimate(values[:, None])
+        self.assertAlmostEqual(few.low, 2 - 1.96 * 0.283, delta=0.05)
+        self.assertAlmostEqual(few.high, 2 + 1.96 * 0.283, delta=0.05)
+        many = statistics.mean_estimate(np.tile(values, 20)[:, None])
+        self.assertLess(many.high - many.low, 0.5 * (few.high - few.low))
+        equal = statistics.mean_estimate(np.full((3, 2), 7.0))
+        self.assertEqual((equal.value, equal.low, equal.high), (7, 7, 7))
+
+    def test_seeds_are_no_replicates(self) -> None:
+        table = [[100.0 + 10 * index] for index in range(8)]
+        twice = [[value, value] for [value] in table]
+        one = statistics.compare(cell("uniform", [[400 + v] for [v] in table]), cell("panda", table))
+        two = statistics.compare(cell("uniform", [[400 + v] * 2 for [v] in table]), cell("panda", twice))
+        self.assertEqual(one.checks, two.checks)
+        self.assertEqual(one.p_checks, two.p_checks)
+        self.assertEqual(one.p_checks, 2 / 2**8)
+
+    def test_wilcoxon_drops_equal_pairs(self) -> None:
+        first, second = np.array([[5.0], [6], [1], [2], [3]]), np.array([[5.0], [6], [2], [4], [6]])
+        self.assertEqual(statistics.wilcoxon_p(first, second), 2 / 2**3)
+        self.assertEqual(statistics.wilcoxon_p(first, first), 1)
+
+    def test_mcnemar_is_the_two_sided_binomial_test(self) -> None:
+        for first, second, expected in ((0, 0, 1), (3, 3, 1), (5, 0, 2 / 32), (1, 5, 2 * 7 / 64), (5, 1, 2 * 7 / 64)):
+            self.assertAlmostEqual(statistics.mcnemar_p(first, second), expected, delta=1e-12)
+
+    def test_holm_by_hand(self) -> None:
+        np.testing.assert_allclose(statistics.holm([0.04, 0.01, 0.03]), [0.06, 0.03, 0.06])
+        np.testing.assert_allclose(statistics.holm([0.9, 0.8]), [1, 1])
+
+    def test_success_and_tail_are_compared_query_by_query(self) -> None:
+        uniform = cell("uniform", [[1000, 10], [20, 30]], [[False, True], [True, True]])
+        guided = cell("panda", [[5, 25], [40, 1000]], [[True, True], [True, False]])
+        compared = statistics.compare(uniform, guided)
+        self.assertEqual(compared.p_solved, 1)
+        self.assertEqual(compared.much_worse, 0.5)
+
+    def test_different_instances_are_not_compared(self) -> None:
+        with self.assertRaisesRegex(ValueError, "arm guided by 'panda' and 'uniform' have different queries"):
+            statistics.compare(cell("uniform", [[1], [2]]), cell("panda", [[1]]))
+
+
+class TestFiles(CopiedStudy):
+
+    def write_log(self, *changes: dict) -> StudyFolder:
+        row = {"robot": "planar_5r_a", "guidance": "uniform", "instance": "a", "seed": 0, "solved": True, "checks": 7,
+               "cpu_s": 0.5, "length": 3.0}
+        (self.folder / "log.jsonl").write_text("".join(json.dumps(row | change) + "\n" for change in changes))
+        return StudyFolder(self.folder)
+
+    def test_an_unsolved_query_counts_the_limit(self) -> None:
+        [read] = self.write_log({"solved": False}, {"instance": "b"}).cells("log.jsonl").values()
+        self.assertEqual(read.checks.tolist(), [[200000], [7]])
+        self.assertTrue(math.isnan(read.lengths[0, 0]))
+        self.assertEqual(read.solved_text(), "1/2")
+
+    def test_a_query_answered_twice_counts_as_the_last_time(self) -> None:
+        [read] = self.write_log({}, {"checks": 9}).cells("log.jsonl").values()
+        self.assertEqual(read.checks.tolist(), [[9]])
+
+    def test_a_cell_that_lacks_queries_is_refused(self) -> None:
+        with self.assertRaisesRegex(ValueError, "planar_5r_a guided by 'uniform' lacks queries: go on with --resume"):
+            self.write_log({}, {"seed": 1}, {"instance": "b"}).cells("log.jsonl")
+
+    def test_a_damaged_file_is_named(self) -> None:
+        twin = self.folder / "test.jsonl.zst"
+        content = bytearray(twin.read_bytes())
+        content[200:210] = b"\x7f" * 10
+        twin.write_bytes(content)
+        result = self.analyse(str(self.folder))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"analyse.py: '{twin}'", result.stderr)
+        (self.folder / "test.jsonl").write_text('{"robot": \n')
+        self.assertIn("test.jsonl' line 1: ", self.analyse(str(self.folder)).stderr)
+
+
+class TestProgram(CopiedStudy):
+
+    def test_report_and_figures(self) -> None:
+        self.assertEqual(self.analyse(str(self.folder)).returncode, 0)
+        files = {name: (self.folder / name).read_bytes() for name in ("RESULTS.md", "checks.svg", "time.svg")}
+        text = files["RESULTS.md"].decode()
+        for part in ("# Study planar: ", "| test set | eadbaccd3c32 | 2026-11-22 22:36 |", "| pooled | 590c3bb90999 |",
+                     "## Calibration", "### pooled: ", "Lightning: both threads, pair by pair", "| planar_7r_c | planar_7r_c (own) |"):
+            self.assertTrue(part in text, part)
+        svg = xml.etree.ElementTree.fromstring(files["checks.svg"])
+        shown = {element.text for element in svg.iter("{http://www.w3.org/2000/svg}text")}
+        self.assertLessEqual({"uniform", "by planar_5r_a", "planar_7r_c", "collision checks, mean"}, shown)
+        self.assertTrue((self.folder / "clouds.png").read_bytes().startswith(b"\x89PNG"))
+        self.assertEqual(self.analyse(str(self.folder)).returncode, 0)
+        for name, content in files.items():
+            self.assertEqual((self.folder / name).read_bytes(), content, name)
+
+    def test_calibration(self) -> None:
+        text = self.analyse(str(self.folder), "--calibration").stdout
+        self.assertIn("| planar_7r_c |", text)
+        self.assertEqual(text, calibration.calibration_text(StudyFolder(self.folder)))
+
+    def test_tuning(self) -> None:
+        shutil.copy(self.folder / "test.jsonl.zst", self.folder / "tuning.jsonl.zst")
+        pairs = [{"robot": "planar_5r_a", "source": source, "guidance": source}
+                 for source in ("planar_5r_a", "planar_5r_b")]
+        (self.folder / "tuning.json").write_text(json.dumps({"uniform": "uniform", "pairs": pairs}))
+        lines = self.analyse(str(self.folder), "--tuning").stdout.splitlines()
+        self.assertEqual(lines[0].split()[:3], ["robot", "experience", "uniform"])
+        self.assertEqual(len(lines), 5)
+        self.assertRegex(lines[3], r"^own +checks [\d.]+ \[[\d.]+, [\d.]+\], least [\d.]+, time [\d.]+, 1 pairs$")
+        self.assertEqual("\n".join(lines) + "\n", tuning.tuning_text(StudyFolder(self.folder)))
+
+    def test_says_what_to_install(self) -> None:
+        result = self.analyse(str(self.folder), python=("-S",))  # without site packages
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("apt-get install python3-numpy python3-scipy", result.stderr)
+
+    def test_a_folder_of_something_else(self) -> None:
+        result = self.analyse(str(self.folder / "missing"))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("study.json", result.stderr)
+
+
+class TestClouds(unittest.TestCase):
+
+    def setUp(self) -> None:
+        study = StudyFolder(HERE / "study")
+        self.robot = study.study["robots"][1]
+        self.distribution = next(study.lines("distributions.jsonl"))
+
+    def test_a_stretched_arm_and_a_bent_one(self) -> None:
+        q = np.zeros((2, len(self.robot["joints"])))
+        q[1, 0] = math.pi / 2
+        base = np.array(self.robot["T_task_base"][:3])
+        origins = clouds.joint_origins(self.robot, q) - base
+        np.testing.assert_allclose(origins[:, 0], 0, atol=1e-12)
+        np.testing.assert_allclose(origins[0, -1, 1:], 0, atol=1e-12)
+        self.assertAlmostEqual(origins[0, -1, 0], 1.0, delta=0.2)  # arms are 1 m long
+        np.testing.assert_allclose(origins[1, -1], origins[0, -1, [1, 0, 2]], atol=1e-12)
+
+    def test_samples_keep_to_the_limits(self) -> None:
+        narrow = self.distribution | {"limits": [[-0.5, 0.5]] + self.distribution["limits"][1:]}
+        everywhere, within = (clouds.draw_samples(each, 500) for each in (self.distribution, narrow))
+        self.assertGreater(len(everywhere), len(within))
+        self.assertGreater(len(within), 0)
+        self.assertLessEqual(np.abs(within[:, 0]).max(), 0.5)
+
+
+if __name__ == "__main__":
+    unittest.main()
