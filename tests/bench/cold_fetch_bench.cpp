@@ -19,6 +19,7 @@
 
 #include "client/link/client.hpp"
 #include "tests/bench/learning_sets.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 

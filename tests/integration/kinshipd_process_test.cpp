@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "proto/dds/replier.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::link::admin_rows_test {
 namespace {
@@ -68,16 +69,18 @@ AdminReply pieces(const AdminRequest& request) {
 using Rows = std::vector<std::string>;
 
 TEST(AdminRows, RowsInPiecesComeWhole) {
-  const AdminServer server(160, pieces);
-  Client asker = client(160);
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), pieces);
+  Client asker = client(domain.number());
   const auto rows = rows_of(asker, {});
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, (Rows{"a", "bcd", "e", "f"}));
 }
 
 TEST(AdminRows, EndsAtTheLimitOrWhenItsUserHasEnough) {
-  const AdminServer server(161, pieces);
-  Client asker = client(161);
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), pieces);
+  Client asker = client(domain.number());
   Rows rows;
   const auto use = [&](const std::string& row) {
     rows.push_back(row);
@@ -91,13 +94,14 @@ TEST(AdminRows, EndsAtTheLimitOrWhenItsUserHasEnough) {
 }
 
 TEST(AdminRows, ARefusalIsAnErrorWithTheServersWords) {
-  const AdminServer server(162, [](const AdminRequest&) {
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), [](const AdminRequest&) {
     AdminReply reply;
     reply.status = AdminStatus::NotFound;
     reply.message = "no task 'x'";
     return reply;
   });
-  Client asker = client(162);
+  Client asker = client(domain.number());
   const auto rows = rows_of(asker, {});
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().code, ErrorCode::NotFound);
@@ -105,8 +109,9 @@ TEST(AdminRows, ARefusalIsAnErrorWithTheServersWords) {
 }
 
 TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
+  const test::ReservedDomain domain;
   int asked = 0;
-  const AdminServer server(163, [&](const AdminRequest& request) {
+  const AdminServer server(domain.number(), [&](const AdminRequest& request) {
     EXPECT_EQ(request.verb, AdminVerb::ShowJob);
     EXPECT_EQ(request.argument, "00c0ffee");
     Job job;
@@ -116,7 +121,7 @@ TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
     job.progress = 0.25 * asked;
     return page({json::to_json(job)}, "");
   });
-  Client asker = client(163);
+  Client asker = client(domain.number());
   std::vector<double> told;
   const auto job = wait_for_job(asker, "00c0ffee", Clock::now() + 60s,
                                 [&](const Job& now) { told.push_back(now.progress); });
@@ -126,13 +131,14 @@ TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
 }
 
 TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
-  const AdminServer server(164, [](const AdminRequest& request) {
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), [](const AdminRequest& request) {
     Job job;
     job.id = request.argument;
     job.state = JobState::Running;
     return page({json::to_json(job)}, "");
   });
-  Client asker = client(164);
+  Client asker = client(domain.number());
   const auto job = wait_for_job(asker, "00c0ffee", Clock::now());
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_FALSE(has_ended(*job));
