@@ -155,7 +155,7 @@ class Bench {
 
   const int repeats_;
   const test::ReservedDomain domain_;
-  const test::TemporaryDirectory directory_;
+  const test::TemporaryDirectory directory_{test::disk_root()};
   test::ServerProcess server_;
   link::Client client_;
   std::map<std::string, Digest> robots_;

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
                     Digest::from_hex(argv[4]).value());
   const int round_trips = argc > 1 ? std::atoi(argv[1]) : 10'000;
   const test::ReservedDomain domain, bare_domain;
-  const test::TemporaryDirectory directory;
+  const test::TemporaryDirectory directory{test::disk_root()};
   const test::ServerProcess server(
       {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
   link::Client client({.domain = domain.number(), .outbox = directory / "outbox"});
