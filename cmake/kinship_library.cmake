@@ -69,9 +69,23 @@ function(kinship_tell_places)
   endforeach()
 endfunction()
 
+# Tells CTest the suites of a GoogleTest program, one test each, or that the program is not built (NAME_NOT_BUILT).
+function(kinship_discover_suites name timeout label)
+  set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+  add_custom_command(TARGET ${name} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${name}> -DOUTPUT=${suites} -DTIMEOUT=${timeout} -DLABEL=${label}
+      -P ${PROJECT_SOURCE_DIR}/cmake/discover_suites.cmake
+    BYPRODUCTS ${suites} VERBATIM)
+  set(include ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake)
+  file(CONFIGURE OUTPUT ${include} CONTENT
+    "if(EXISTS [=[${suites}]=])\n  include([=[${suites}]=])\nelse()\n  add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include})
+endfunction()
+
 # kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60] [NOT_SANITIZED])
 #
-# One GoogleTest program; every TEST of it is a test of CTest. LABEL: unit, threads (unit tests that
+# One GoogleTest program. Each suite of it is a test of CTest; where a TEST takes seconds (labels property, integration,
+# faults, story) each TEST is, so that they go side by side. LABEL: unit, threads (unit tests that
 # ThreadSanitizer runs too), property, integration, story, faults, golden, architecture. The target
 # tests_LABEL builds all programs of a label; in a sanitizer build without those that are NOT_SANITIZED
 # (OMPL, or the quickstart's length). TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
@@ -96,7 +110,11 @@ function(kinship_test name)
   if(NOT (KINSHIP_SANITIZE AND arg_NOT_SANITIZED))
     add_dependencies(tests_${arg_LABEL} ${name})
   endif()
-  include(GoogleTest)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL})
+  if(arg_LABEL MATCHES "^(property|integration|faults|story)$")
+    include(GoogleTest)
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
+      PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL})
+  else()
+    kinship_discover_suites(${name} ${arg_TIMEOUT} ${arg_LABEL})
+  endif()
 endfunction()

@@ -52,6 +52,11 @@ std::uint16_t discovery_port(std::uint32_t domain) {
   return static_cast<std::uint16_t>(7400 + 250 * domain + 10);
 }
 
+std::array<std::uint16_t, 2> server_ports(std::uint32_t domain) {
+  const std::uint16_t discovery = discovery_port(domain);
+  return {discovery, static_cast<std::uint16_t>(discovery + 1)};
+}
+
 std::string cyclone_configuration(const ParticipantOptions& options) {
   discovery_port(options.domain);  // checks the domain
   return "<CycloneDDS xmlns=\"https://cdds.io/config\"><Domain Id=\"any\"><General>" +

@@ -17,7 +17,7 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   const std::string port = std::to_string(discovery_port(options.domain));
   std::string message = "domain " + std::to_string(options.domain) + ": cannot join";
   if (options.role == Role::Server)
-    message += " as its server at UDP port " + port + ", is another server running?";
+    message += " as its server at UDP port " + port;
   message += " (" + std::string(dds_strretcode(-code));
   if (const std::string line = last_log_line(); !line.empty())
     message += ": " + line;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -26,6 +27,9 @@ inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536
 
 /// UDP port at which the server of a domain is found: 7400 + 250 domain + 10.
 std::uint16_t discovery_port(std::uint32_t domain);
+
+/// UDP ports that the server of a domain needs: discovery_port(), and the next one for data.
+std::array<std::uint16_t, 2> server_ports(std::uint32_t domain);
 
 /// The configuration of Cyclone DDS that a participant is given, as XML: a star over unicast.
 /// \throws Failure(InvalidInput) for a domain or host that cannot be.

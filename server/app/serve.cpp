@@ -15,6 +15,7 @@
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
 #include "server/app/endpoints.hpp"
+#include "server/app/join.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/service/service.hpp"
@@ -52,9 +53,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   hold_termination_signals();
 
   // Before the store: who cannot join the domain leaves no file behind.
-  const dds::Participant participant({.domain = options.domain,
-                                      .role = dds::Role::Server,
-                                      .network_interface = options.network_interface});
+  const dds::Participant participant = join_domain(options);
   const dds::Publisher<codec::EventPublication> events(participant);
   const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
   dds::WaitLoop loop(participant);

@@ -19,6 +19,7 @@
 
 #include "client/link/client.hpp"
 #include "tests/bench/learning_sets.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -154,7 +155,7 @@ class Bench {
 
   const int repeats_;
   const test::ReservedDomain domain_;
-  const test::TemporaryDirectory directory_;
+  const test::TemporaryDirectory directory_{test::disk_root()};
   test::ServerProcess server_;
   link::Client client_;
   std::map<std::string, Digest> robots_;

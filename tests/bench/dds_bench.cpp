@@ -15,6 +15,7 @@
 #include "tests/bench/bare_conversation.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/random_values.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace {
 
@@ -24,7 +25,6 @@ using bench::measure;
 using bench::percentile;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kDomain = 190;
 constexpr std::uint64_t kSeed = 41;
 constexpr int kBlock = 100;
 constexpr std::size_t kComponents = 104;  // x 7 joints: 30 KB
@@ -56,8 +56,8 @@ FetchRequest request_of_size(std::uint64_t size) {
   return request;
 }
 
-int run_server() {
-  const dds::Participant participant({.domain = kDomain, .role = dds::Role::Server});
+int run_server(std::uint32_t domain) {
+  const dds::Participant participant({.domain = domain, .role = dds::Role::Server});
   Bare bare(participant, true);
   std::thread bare_thread([&] { bare.serve({reply_of_size(0), reply_of_size(1)}); });
   dds::WaitLoop loop(participant);
@@ -75,12 +75,13 @@ int run_server() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc > 1 && std::string(argv[1]) == "server")
-    return run_server();
+  if (argc == 3 && std::string(argv[1]) == "server")
+    return run_server(static_cast<std::uint32_t>(std::atoi(argv[2])));
   const int round_trips = argc > 1 ? std::atoi(argv[1]) : 10'000;
-  test::ChildProcess server({argv[0], "server"});
+  const test::ReservedDomain domain;
+  test::ChildProcess server({argv[0], "server", std::to_string(domain.number())});
   server.read_line();
-  const dds::Participant participant({.domain = kDomain});
+  const dds::Participant participant({.domain = domain.number()});
   dds::Requester<codec::FetchConversation> requester(participant, Uuid::random());
   const auto kinship_call = [&](std::uint64_t size) {
     requester.call(request_of_size(size), Clock::now() + std::chrono::seconds(10)).value_or_throw();

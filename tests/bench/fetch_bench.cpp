@@ -13,6 +13,7 @@
 #include "tests/bench/bare_conversation.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -22,7 +23,6 @@ namespace {
 using namespace kinship;
 using std::chrono::seconds;
 
-constexpr std::uint32_t kBareDomain = 191;
 constexpr int kBlock = 100;
 constexpr std::uint64_t kPaths = 100;
 
@@ -35,10 +35,10 @@ FetchRequest request_for(const Digest& robot) {
 }
 
 /// Fetches once from kinshipd and then serves that reply, bare.
-int run_bare(std::uint32_t domain, const Digest& robot) {
+int run_bare(std::uint32_t domain, std::uint32_t bare_domain, const Digest& robot) {
   link::Client client({.domain = domain, .outbox = {}, .has_outbox = false});
   const FetchReply reply = client.fetch(request_for(robot)).value_or_throw();
-  const dds::Participant participant({.domain = kBareDomain, .role = dds::Role::Server});
+  const dds::Participant participant({.domain = bare_domain, .role = dds::Role::Server});
   bench::Bare bare(participant, true);
   std::cout << "ready" << std::endl;
   bare.serve({reply});
@@ -47,12 +47,13 @@ int run_bare(std::uint32_t domain, const Digest& robot) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 4 && std::string(argv[1]) == "bare")
+  if (argc == 5 && std::string(argv[1]) == "bare")
     return run_bare(static_cast<std::uint32_t>(std::atoi(argv[2])),
-                    Digest::from_hex(argv[3]).value());
+                    static_cast<std::uint32_t>(std::atoi(argv[3])),
+                    Digest::from_hex(argv[4]).value());
   const int round_trips = argc > 1 ? std::atoi(argv[1]) : 10'000;
-  const test::ReservedDomain domain;
-  const test::TemporaryDirectory directory;
+  const test::ReservedDomain domain, bare_domain;
+  const test::TemporaryDirectory directory{test::disk_root()};
   const test::ServerProcess server(
       {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
   link::Client client({.domain = domain.number(), .outbox = directory / "outbox"});
@@ -63,9 +64,10 @@ int main(int argc, char** argv) {
   client.flush(seconds(60));
   const FetchRequest request = request_for(panda);
   const FetchReply reply = client.fetch(request).value_or_throw();
-  test::ChildProcess bare_server({argv[0], "bare", std::to_string(domain.number()), panda.hex()});
+  test::ChildProcess bare_server({argv[0], "bare", std::to_string(domain.number()),
+                                  std::to_string(bare_domain.number()), panda.hex()});
   bare_server.read_line();
-  const dds::Participant participant({.domain = kBareDomain});
+  const dds::Participant participant({.domain = bare_domain.number()});
   bench::Bare bare(participant, false);
   bare.call(request);  // connected after it
   std::vector<double> ours, bares;

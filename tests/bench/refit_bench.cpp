@@ -51,7 +51,7 @@ class Fleet {
   const Digest& target() const { return target_; }
 
  private:
-  test::TemporaryDirectory directory_;
+  test::TemporaryDirectory directory_{test::disk_root()};
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
   RobotRegistry registry_{*store_};
   Digest target_, source_;

@@ -53,7 +53,7 @@ class Server {
     return robot.get_future().get();
   }
 
-  test::TemporaryDirectory directory_;
+  test::TemporaryDirectory directory_{test::disk_root()};
   std::unique_ptr<Service> service_;
   Digest panda_;
   FetchRequest request_;

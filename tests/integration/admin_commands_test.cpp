@@ -14,6 +14,7 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

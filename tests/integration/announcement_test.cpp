@@ -11,6 +11,7 @@
 #include "proto/dds/publication.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -11,6 +11,7 @@
 
 #include "proto/json/problem_json.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 

@@ -10,6 +10,7 @@
 #include "client/link/client.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

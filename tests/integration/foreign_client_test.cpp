@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 

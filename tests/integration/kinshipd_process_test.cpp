@@ -1,6 +1,7 @@
 // kinshipd as a process: how it starts, refuses to start, and ends.
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -9,11 +10,34 @@
 #include <cstring>
 #include <fstream>
 
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::kinshipd_process_test {
 namespace {
+
+int discovery_port(std::uint32_t domain) { return static_cast<int>(7400 + 250 * domain + 10); }
+
+/// Other software: has a UDP port, says nothing.
+class PortTaker {
+ public:
+  explicit PortTaker(int port) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    has_it_ = bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  PortTaker(const PortTaker&) = delete;
+  PortTaker& operator=(const PortTaker&) = delete;
+  ~PortTaker() { close(socket_); }
+
+  bool has_it() const noexcept { return has_it_; }
+
+ private:
+  int socket_;
+  bool has_it_ = false;
+};
 
 class KinshipdProcess : public testing::Test {
  protected:
@@ -27,6 +51,10 @@ class KinshipdProcess : public testing::Test {
     const int code = program.wait();
     error_ = test::read_text(directory_ / "error");
     return code;
+  }
+
+  int run_on(std::uint32_t domain) {
+    return run({"--store", (directory_ / "fleet.db").string(), "--domain", std::to_string(domain)});
   }
 
   test::ReservedDomain domain_;
@@ -68,7 +96,58 @@ TEST_F(KinshipdProcess, TheSecondOneOnADomainFailsAndSaysWhy) {
                  std::to_string(domain_.number())}),
             1);
   EXPECT_EQ(output_, "");
-  EXPECT_NE(error_.find("is another server running?"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("domain " + std::to_string(domain_.number()) + ": another kinshipd has it"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(error_.find("process " + std::to_string(server.pid())), std::string::npos) << error_;
+  EXPECT_NE(error_.find("store '" + (directory_ / "fleet.db").string() + "'"), std::string::npos)
+      << error_;
+}
+
+TEST_F(KinshipdProcess, OneThatDoesNotAnswerIsStillAKinshipd) {
+  test::ServerProcess server(options());
+  ASSERT_EQ(kill(server.pid(), SIGSTOP), 0);
+  EXPECT_EQ(run({"--store", (directory_ / "other.db").string(), "--domain",
+                 std::to_string(domain_.number())}),
+            1);
+  EXPECT_NE(error_.find("another kinshipd has it"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("does not answer"), std::string::npos) << error_;
+}
+
+TEST_F(KinshipdProcess, WhoHasAPortOfTheDomainAndIsNoKinshipdIsNamed) {
+  for (const int port : {discovery_port(domain_.number()), discovery_port(domain_.number()) + 1}) {
+    const PortTaker other(port);
+    EXPECT_EQ(run_on(domain_.number()), 1);
+    const std::string taken = "domain " + std::to_string(domain_.number()) + ": UDP port " +
+                              std::to_string(port) + " is taken by 'integration_kin' (process " +
+                              std::to_string(getpid()) + ")";
+    EXPECT_NE(error_.find(taken), std::string::npos) << error_;
+    EXPECT_NE(error_.find("; take another domain (--domain N)"), std::string::npos) << error_;
+    EXPECT_EQ(error_.find("another kinshipd"), std::string::npos) << error_;
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "fleet.db"));
+}
+
+TEST_F(KinshipdProcess, ADomainInTheRangeOfEphemeralPortsIsAdvisedAgainstWhenItsPortIsTaken) {
+  constexpr std::uint32_t kDomain = 119;
+  std::uint32_t first = 0, last = 0;
+  std::ifstream("/proc/sys/net/ipv4/ip_local_port_range") >> first >> last;
+  if (first != 32768 || last < 60999)
+    GTEST_SKIP() << "ephemeral ports from " << first << " to " << last;
+  const PortTaker other(discovery_port(kDomain));  // or somebody else has it already
+  EXPECT_EQ(run_on(kDomain), 1);
+  EXPECT_NE(error_.find("domain 119: UDP port 37160 is taken by "), std::string::npos) << error_;
+  EXPECT_NE(error_.find("take a domain from 0 to 101"), std::string::npos) << error_;
+}
+
+TEST_F(KinshipdProcess, ADomainInTheRangeOfEphemeralPortsIsServedWhileItsPortsAreFree) {
+  std::uint32_t domain = 102;
+  while (domain < 230 && !(PortTaker(discovery_port(domain)).has_it() &&
+                           PortTaker(discovery_port(domain) + 1).has_it()))
+    ++domain;
+  const test::ServerProcess server(
+      {.store = directory_ / "fleet.db", .domain = domain, .arguments = {}});
+  EXPECT_EQ(test::read_text(directory_ / "fleet.db.log").find("ports"), std::string::npos);
 }
 
 TEST_F(KinshipdProcess, WhatIsNoStoreIsRefused) {

@@ -13,6 +13,7 @@
 #include "proto/json/problem_json.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

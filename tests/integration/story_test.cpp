@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/json/problem_json.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 

@@ -9,6 +9,7 @@
 #include "client/link/client.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/raw_conversation.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,15 +1,12 @@
 #include "tests/support/server_process.hpp"
 
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <spawn.h>
-#include <sys/file.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -17,19 +14,6 @@
 
 namespace kinship::test {
 namespace {
-
-constexpr std::uint32_t kFirstDomain = 200;
-constexpr std::uint32_t kDomains = 20;
-
-int open_lock(std::uint32_t domain) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() /
-      ("kinship-test-" + std::to_string(getuid()) + "-domain-" + std::to_string(domain) + ".lock");
-  const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock < 0)
-    throw std::system_error(errno, std::system_category(), file.string());
-  return lock;
-}
 
 void require_ok(int error, const std::string& what) {
   if (error != 0)
@@ -78,19 +62,6 @@ class SpawnSettings {
   posix_spawnattr_t attributes_{};
 };
 
-/// Whether no process holds the port of a domain's server: one that a run before left behind would.
-bool is_server_port_free(std::uint32_t domain) {
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
-  sockaddr generic{};
-  std::memcpy(&generic, &address, sizeof generic);
-  const bool is_free = bind(probe, &generic, sizeof generic) == 0;
-  close(probe);
-  return is_free;
-}
-
 std::vector<std::string> server_arguments(const ServerProcess::Options& options) {
   std::vector<std::string> arguments = {"--store", options.store.string(), "--domain",
                                         std::to_string(options.domain)};
@@ -99,22 +70,6 @@ std::vector<std::string> server_arguments(const ServerProcess::Options& options)
 }
 
 }  // namespace
-
-ReservedDomain::ReservedDomain() {
-  const auto first = static_cast<std::uint32_t>(getpid()) % kDomains;
-  for (std::uint32_t i = 0; i < kDomains; ++i) {
-    number_ = kFirstDomain + (first + i) % kDomains;
-    lock_ = open_lock(number_);
-    if (flock(lock_, LOCK_EX | LOCK_NB) == 0 && is_server_port_free(number_))
-      return;
-    close(lock_);
-  }
-  lock_ = open_lock(number_);
-  if (flock(lock_, LOCK_EX) != 0)
-    throw std::system_error(errno, std::system_category(), "flock");
-}
-
-ReservedDomain::~ReservedDomain() { close(lock_); }
 
 Program::Program(const std::string& name, const std::vector<std::string>& arguments,
                  const std::filesystem::path& error_file) {

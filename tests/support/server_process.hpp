@@ -9,22 +9,6 @@
 
 namespace kinship::test {
 
-/// A DDS domain from 200 to 219 that no other test on this machine has while this object lives:
-/// tests run side by side, each with a server of its own.
-class ReservedDomain {
- public:
-  ReservedDomain();  ///< waits if all are taken
-  ~ReservedDomain();
-  ReservedDomain(const ReservedDomain&) = delete;
-  ReservedDomain& operator=(const ReservedDomain&) = delete;
-
-  std::uint32_t number() const noexcept { return number_; }
-
- private:
-  std::uint32_t number_ = 0;
-  int lock_ = -1;
-};
-
 /// A program of Kinship, from the folder of the build, that runs beside the test: its standard
 /// output is read here, its standard error goes into a file. Killed on destruction.
 class Program {

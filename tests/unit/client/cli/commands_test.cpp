@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "client/cli/exit_code.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::cli::commands_test {
@@ -31,6 +32,14 @@ Answer run_command(const std::vector<std::string>& arguments) {
   std::ostringstream err;
   const int code = run(static_cast<int>(argv.size()), argv.data(), out, err);
   return {code, out.str(), err.str()};
+}
+
+/// A command for a server that is not there.
+Answer run_without_server(std::vector<std::string> command, const char* timeout_s = "0.1") {
+  const test::ReservedDomain domain;
+  command.insert(command.begin(),
+                 {"--domain", std::to_string(domain.number()), "--timeout", timeout_s});
+  return run_command(command);
 }
 
 TEST(Commands, HelpIsAnAnswer) {
@@ -67,9 +76,8 @@ TEST(Commands, NoNumberIsNoTime) {
 
 TEST(Commands, RefusesOptionsThatExcludeEachOther) {
   EXPECT_EQ(run_command({"backup", "copy.db", "--no-wait", "--wait", "3"}).code, kWrongUsage);
-  const Answer samples =
-      run_command({"--domain", "198", "--timeout", "0.1", "distributions", "fetch", "--task",
-                   "pick", "--robot", "panda", "--samples", "3", "--json"});
+  const Answer samples = run_without_server(
+      {"distributions", "fetch", "--task", "pick", "--robot", "panda", "--samples", "3", "--json"});
   EXPECT_EQ(samples.code, kWrongUsage);
 }
 
@@ -77,9 +85,8 @@ TEST(Commands, AFileThatCannotBeWrittenIsNamedBeforeAServerIsAsked) {
   const std::vector<std::vector<std::string>> exports = {
       {"paths", "export"}, {"configurations", "export", "--distribution", "3f9a0c"}};
   for (std::vector<std::string> command : exports) {
-    command.insert(command.begin(), {"--domain", "198", "--timeout", "0.1"});
     command.insert(command.end(), {"--output", "/nowhere/rows"});
-    const Answer answer = run_command(command);
+    const Answer answer = run_without_server(command);
     EXPECT_EQ(answer.code, kFailed) << answer.err;
     EXPECT_NE(answer.err.find("/nowhere/rows"), std::string::npos) << answer.err;
   }
@@ -117,8 +124,7 @@ TEST(Commands, EachHasHelpWithAnExample) {
 }
 
 TEST(Commands, AMissingFileIsNamedBeforeAServerIsAsked) {
-  const Answer answer =
-      run_command({"--domain", "198", "--timeout", "0.1", "paths", "import", "/nowhere/x.jsonl"});
+  const Answer answer = run_without_server({"paths", "import", "/nowhere/x.jsonl"});
   EXPECT_EQ(answer.code, kNotFound);
   EXPECT_NE(answer.err.find("/nowhere/x.jsonl"), std::string::npos) << answer.err;
 }
@@ -138,7 +144,7 @@ TEST(Commands, RefusesNegativeCounts) {
 }
 
 TEST(Commands, WithoutAServerIsCodeFour) {
-  const Answer answer = run_command({"--domain", "198", "--timeout", "0.3", "status"});
+  const Answer answer = run_without_server({"status"}, "0.3");
   EXPECT_EQ(answer.code, kNoServer);
   EXPECT_NE(answer.err.find("status: "), std::string::npos) << answer.err;
 }
@@ -146,7 +152,7 @@ TEST(Commands, WithoutAServerIsCodeFour) {
 TEST(Commands, LookingAtAServerLeavesTheUsersOutboxAlone) {
   const test::TemporaryDirectory state;
   setenv("XDG_STATE_HOME", state.path().c_str(), 1);
-  run_command({"--domain", "198", "--timeout", "0.1", "status"});
+  run_without_server({"status"});
   unsetenv("XDG_STATE_HOME");
   EXPECT_TRUE(std::filesystem::is_empty(state.path()));
 }

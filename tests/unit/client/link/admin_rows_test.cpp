@@ -8,6 +8,7 @@
 
 #include "proto/dds/replier.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::link::admin_rows_test {
 namespace {
@@ -68,45 +69,49 @@ AdminReply pieces(const AdminRequest& request) {
 using Rows = std::vector<std::string>;
 
 TEST(AdminRows, RowsInPiecesComeWhole) {
-  const AdminServer server(160, pieces);
-  Client request_key = client(160);
-  const auto rows = rows_of(request_key, {});
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), pieces);
+  Client asker = client(domain.number());
+  const auto rows = rows_of(asker, {});
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, (Rows{"a", "bcd", "e", "f"}));
 }
 
 TEST(AdminRows, EndsAtTheLimitOrWhenItsUserHasEnough) {
-  const AdminServer server(161, pieces);
-  Client request_key = client(161);
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), pieces);
+  Client asker = client(domain.number());
   Rows rows;
   const auto use = [&](const std::string& row) {
     rows.push_back(row);
     return row != "e";
   };
-  EXPECT_FALSE(for_each_row(request_key, {}, use, 2));
+  EXPECT_FALSE(for_each_row(asker, {}, use, 2));
   EXPECT_EQ(rows, (Rows{"a", "bcd"}));
   rows.clear();
-  EXPECT_FALSE(for_each_row(request_key, {}, use));
+  EXPECT_FALSE(for_each_row(asker, {}, use));
   EXPECT_EQ(rows, (Rows{"a", "bcd", "e"}));
 }
 
 TEST(AdminRows, ARefusalIsAnErrorWithTheServersWords) {
-  const AdminServer server(162, [](const AdminRequest&) {
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), [](const AdminRequest&) {
     AdminReply reply;
     reply.status = AdminStatus::NotFound;
     reply.message = "no task 'x'";
     return reply;
   });
-  Client request_key = client(162);
-  const auto rows = rows_of(request_key, {});
+  Client asker = client(domain.number());
+  const auto rows = rows_of(asker, {});
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().code, ErrorCode::NotFound);
   EXPECT_EQ(rows.error().message, "no task 'x'");
 }
 
 TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
+  const test::ReservedDomain domain;
   int asked = 0;
-  const AdminServer server(163, [&](const AdminRequest& request) {
+  const AdminServer server(domain.number(), [&](const AdminRequest& request) {
     EXPECT_EQ(request.verb, AdminVerb::ShowJob);
     EXPECT_EQ(request.argument, "00c0ffee");
     Job job;
@@ -116,9 +121,9 @@ TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
     job.progress = 0.25 * asked;
     return page({json::to_json(job)}, "");
   });
-  Client request_key = client(163);
+  Client asker = client(domain.number());
   std::vector<double> told;
-  const auto job = wait_for_job(request_key, "00c0ffee", Clock::now() + 60s,
+  const auto job = wait_for_job(asker, "00c0ffee", Clock::now() + 60s,
                                 [&](const Job& now) { told.push_back(now.progress); });
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_EQ(job->state, JobState::Done);
@@ -126,14 +131,15 @@ TEST(AdminRows, AJobIsWaitedForAndItsProgressTold) {
 }
 
 TEST(AdminRows, AJobThatGoesOnIsTheAnswerWhenTheTimeHasCome) {
-  const AdminServer server(164, [](const AdminRequest& request) {
+  const test::ReservedDomain domain;
+  const AdminServer server(domain.number(), [](const AdminRequest& request) {
     Job job;
     job.id = request.argument;
     job.state = JobState::Running;
     return page({json::to_json(job)}, "");
   });
-  Client request_key = client(164);
-  const auto job = wait_for_job(request_key, "00c0ffee", Clock::now());
+  Client asker = client(domain.number());
+  const auto job = wait_for_job(asker, "00c0ffee", Clock::now());
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_FALSE(has_ended(*job));
 }

@@ -10,6 +10,7 @@
 #include "proto/dds/replier.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -69,16 +70,17 @@ class Server {
 
 class ClientTest : public testing::Test {
  protected:
-  ClientOptions options(std::uint32_t domain, std::chrono::milliseconds timeout = 5s) const {
-    return {.domain = domain, .outbox = folder.path(), .timeout = timeout};
+  ClientOptions options(std::chrono::milliseconds timeout = 5s) const {
+    return {.domain = domain_.number(), .outbox = folder.path(), .timeout = timeout};
   }
+  test::ReservedDomain domain_;
   test::TemporaryDirectory folder;
 };
 
 TEST_F(ClientTest, ReportsReachTheServer) {
   test::RandomValues values(kSeed);
-  Server server(130, [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client client(options(130));
+  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client client(options());
   for (int i = 0; i < 20; ++i)
     client.report(values.attempt());
   const auto state = client.flush(10s);
@@ -90,18 +92,18 @@ TEST_F(ClientTest, ReportsReachTheServer) {
 TEST_F(ClientTest, ReportsWaitForAServerAndSurviveTheClient) {
   test::RandomValues values(kSeed);
   {
-    Client client(options(131));
+    Client client(options());
     client.report(values.attempt());
     EXPECT_EQ(client.flush(50ms).pending, 1U);
   }
-  Server server(131, [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client client(options(131));
+  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client client(options());
   EXPECT_EQ(client.flush(10s).pending, 0U);
 }
 
 TEST_F(ClientTest, ReportThatTheServerWouldRefuseIsNotWritten) {
   test::RandomValues values(kSeed);
-  Client client(options(132));
+  Client client(options());
   Attempt attempt = values.attempt();
   attempt.task = "bin to shelf";
   EXPECT_THROW(client.report(attempt), Failure);
@@ -110,20 +112,20 @@ TEST_F(ClientTest, ReportThatTheServerWouldRefuseIsNotWritten) {
 
 TEST_F(ClientTest, FetchAsksAgainAfterBusyAndPending) {
   std::atomic<int> calls = 0;
-  Server server(133, [&](const auto&) {
+  Server server(domain_.number(), [&](const auto&) {
     const int call = ++calls;
     return call == 1   ? status(FetchStatus::Busy, 50ms)
            : call == 2 ? status(FetchStatus::Pending)
                        : status(FetchStatus::NoExperience);
   });
-  Client client(options(133));
+  Client client(options());
   EXPECT_EQ(client.fetch(request(10s))->status, FetchStatus::NoExperience);
   EXPECT_EQ(calls, 3);
 }
 
 TEST_F(ClientTest, BusyForLongerThanTheDeadlineIsTheReply) {
-  Server server(134, [](const auto&) { return status(FetchStatus::Busy, 60s); });
-  Client client(options(134));
+  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::Busy, 60s); });
+  Client client(options());
   const auto start = Clock::now();
   EXPECT_EQ(client.fetch(request(50s))->status, FetchStatus::Busy);
   EXPECT_LT(Clock::now() - start, 40s);
@@ -131,30 +133,30 @@ TEST_F(ClientTest, BusyForLongerThanTheDeadlineIsTheReply) {
 
 TEST_F(ClientTest, FetchWithoutDeadlineTakesTheFirstReply) {
   std::atomic<int> calls = 0;
-  Server server(135, [&](const FetchRequest& wanted) {
+  Server server(domain_.number(), [&](const FetchRequest& wanted) {
     ++calls;
     EXPECT_EQ(wanted.deadline, 0ms);
     return status(FetchStatus::Pending);
   });
-  Client client(options(135));
+  Client client(options());
   EXPECT_EQ(client.fetch(request(0ms))->status, FetchStatus::Pending);
   EXPECT_EQ(calls, 1);
 }
 
 TEST_F(ClientTest, ServerIsGivenLessThanTheDeadline) {
   std::atomic<std::int64_t> given = 0;
-  Server server(136, [&](const FetchRequest& wanted) {
+  Server server(domain_.number(), [&](const FetchRequest& wanted) {
     given = wanted.deadline.count();
     return status(FetchStatus::NoExperience);
   });
-  Client client(options(136));
+  Client client(options());
   ASSERT_TRUE(client.fetch(request(60s)));
   EXPECT_LE(given, 59'800);
   EXPECT_GT(given, 30'000);
 }
 
 TEST_F(ClientTest, WithoutAServerEverythingEndsInTime) {
-  Client client(options(137, 200ms));
+  Client client(options(200ms));
   const auto start = Clock::now();
   EXPECT_EQ(client.fetch(request(200ms)).error().code, ErrorCode::Unavailable);
   EXPECT_EQ(client.admin({}).error().code, ErrorCode::Unavailable);
@@ -164,15 +166,15 @@ TEST_F(ClientTest, WithoutAServerEverythingEndsInTime) {
 }
 
 TEST_F(ClientTest, DescriptionOfARobotIsKeptAlsoWithoutAServer) {
-  Client client(options(139, 50ms));
+  Client client(options(50ms));
   EXPECT_FALSE(client.register_robot(test::model_description("panda")));
   const std::string digest = test::model_chain("panda").digest().hex();
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "robots" / (digest + ".json")));
 }
 
 TEST_F(ClientTest, ClientWithoutOutboxTouchesNoneAndCannotReport) {
-  Server server(140, [](const auto&) { return status(FetchStatus::NoExperience); });
-  ClientOptions looks = options(140);
+  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
+  ClientOptions looks = options();
   looks.outbox = folder.path() / "untouched";
   looks.has_outbox = false;
   Client client(looks);
@@ -184,9 +186,9 @@ TEST_F(ClientTest, ClientWithoutOutboxTouchesNoneAndCannotReport) {
 
 TEST_F(ClientTest, TwoClientsMayShareAnOutbox) {
   test::RandomValues values(kSeed);
-  Server server(138, [](const auto&) { return status(FetchStatus::NoExperience); });
-  Client one(options(138));
-  Client other(options(138));
+  Server server(domain_.number(), [](const auto&) { return status(FetchStatus::NoExperience); });
+  Client one(options());
+  Client other(options());
   for (int i = 0; i < 10; ++i)
     (i % 2 == 0 ? one : other).report(values.attempt());
   EXPECT_EQ(other.flush(15s).pending, 0U);

@@ -9,6 +9,7 @@
 #include "client/link/client.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/random_values.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/unit/client/link/follow_server.hpp"
 
 namespace kinship::link::follower_test {
@@ -31,8 +32,8 @@ class FollowerTest : public testing::Test {
     if (!distribution_.mixture)
       distribution_.mixture = values_.mixture(distribution_.limits.cols());
   }
-  static Client client(std::uint32_t domain) {
-    return Client({.domain = domain, .outbox = {}, .has_outbox = false, .timeout = 5s});
+  Client client() const {
+    return Client({.domain = domain_.number(), .outbox = {}, .has_outbox = false, .timeout = 5s});
   }
   FetchRequest request() const {
     FetchRequest request;
@@ -60,13 +61,14 @@ class FollowerTest : public testing::Test {
     return follower.state().status == status;
   }
 
+  test::ReservedDomain domain_;
   test::RandomValues values_{kSeed};
   Distribution distribution_ = values_.distribution();
 };
 
 TEST_F(FollowerTest, HoldsWhatTheServerHasUnderALeaseOfAMinute) {
-  FollowServer server(141, ready());
-  const auto follower = client(141).follow(request());
+  FollowServer server(domain_.number(), ready());
+  const auto follower = client().follow(request());
   const auto newest = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
   ASSERT_TRUE(newest);
   EXPECT_EQ(newest->revision, 7U);
@@ -76,8 +78,8 @@ TEST_F(FollowerTest, HoldsWhatTheServerHasUnderALeaseOfAMinute) {
 }
 
 TEST_F(FollowerTest, FetchesWhatIsAnnouncedAndKeepsWhatItGaveOut) {
-  FollowServer server(142, ready());
-  const auto follower = client(142).follow(request());
+  FollowServer server(domain_.number(), ready());
+  const auto follower = client().follow(request());
   const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
   ASSERT_TRUE(first);
   distribution_.revision = 8;
@@ -90,8 +92,8 @@ TEST_F(FollowerTest, FetchesWhatIsAnnouncedAndKeepsWhatItGaveOut) {
 }
 
 TEST_F(FollowerTest, ALowerRevisionOfAnotherStoreEpochIsNews) {
-  FollowServer server(143, ready());
-  const auto follower = client(143).follow(request());
+  FollowServer server(domain_.number(), ready());
+  const auto follower = client().follow(request());
   const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
   ASSERT_TRUE(first);
   distribution_.revision = 1;
@@ -104,8 +106,8 @@ TEST_F(FollowerTest, ALowerRevisionOfAnotherStoreEpochIsNews) {
 }
 
 TEST_F(FollowerTest, AnnouncementsOfOthersAndOfWhatItHasAreNoReasonToFetch) {
-  FollowServer server(144, ready());
-  const auto follower = client(144).follow(request());
+  FollowServer server(domain_.number(), ready());
+  const auto follower = client().follow(request());
   ASSERT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
   ASSERT_TRUE(becomes(*follower, FollowStatus::Ready));
   const int before = server.fetches();
@@ -124,18 +126,19 @@ TEST_F(FollowerTest, AnnouncementsOfOthersAndOfWhatItHasAreNoReasonToFetch) {
 }
 
 TEST_F(FollowerTest, RenewsItsLeaseAtAThird) {
-  FollowServer server(145, ready());
+  FollowServer server(domain_.number(), ready());
   FetchRequest wanted = request();
   wanted.follow = 3s;
-  const auto follower = client(145).follow(wanted);
+  const auto follower = client().follow(wanted);
   EXPECT_TRUE(server.wait_for_fetches(4, kEnough));
   EXPECT_EQ(server.last_request().follow, 3s);
 }
 
 TEST_F(FollowerTest, WithoutExperienceItSaysWhyAndHearsOfTheFirstFit) {
-  FollowServer server(146, status(FetchStatus::NoExperience, "no paths of task 'shelf_pick'"));
+  FollowServer server(domain_.number(),
+                      status(FetchStatus::NoExperience, "no paths of task 'shelf_pick'"));
   // So long a pause that only the announcement can end it.
-  const auto follower = client(146).follow(request(), {.longest_pause = 10min});
+  const auto follower = client().follow(request(), {.longest_pause = 10min});
   ASSERT_TRUE(becomes(*follower, FollowStatus::NoExperience));
   EXPECT_EQ(follower->newest(), nullptr);
   EXPECT_EQ(follower->state().reason, "no paths of task 'shelf_pick'");
@@ -145,18 +148,18 @@ TEST_F(FollowerTest, WithoutExperienceItSaysWhyAndHearsOfTheFirstFit) {
 }
 
 TEST_F(FollowerTest, WithoutExperienceItAsksAgain) {
-  FollowServer server(147, status(FetchStatus::NoExperience));
-  const auto follower = client(147).follow(request(), {.longest_pause = 400ms});
+  FollowServer server(domain_.number(), status(FetchStatus::NoExperience));
+  const auto follower = client().follow(request(), {.longest_pause = 400ms});
   ASSERT_TRUE(server.wait_for_fetches(5, kEnough));
   server.set_reply(ready());  // and nobody announces it
   EXPECT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
 }
 
 TEST_F(FollowerTest, WhatTheServerNoLongerStandsForIsDropped) {
-  FollowServer server(148, ready());
+  FollowServer server(domain_.number(), ready());
   FetchRequest wanted = request();
   wanted.follow = 2s;
-  const auto follower = client(148).follow(wanted, {.longest_pause = 100ms});
+  const auto follower = client().follow(wanted, {.longest_pause = 100ms});
   ASSERT_TRUE(follower->wait_for_newer(nullptr, Clock::now() + kEnough));
   server.set_reply(status(FetchStatus::NoExperience));  // all of it was retired
   ASSERT_TRUE(becomes(*follower, FollowStatus::NoExperience));
@@ -164,23 +167,24 @@ TEST_F(FollowerTest, WhatTheServerNoLongerStandsForIsDropped) {
 }
 
 TEST_F(FollowerTest, KeepsWhatItHasWhileNobodyAnswersAndFindsTheNextServer) {
-  std::optional<FollowServer> server(std::in_place, 149U, ready());
-  const auto follower = client(149).follow(request());
+  std::optional<FollowServer> server(std::in_place, domain_.number(), ready());
+  const auto follower = client().follow(request());
   const auto first = follower->wait_for_newer(nullptr, Clock::now() + kEnough);
   ASSERT_TRUE(first);
   server.reset();
   EXPECT_EQ(follower->newest(), first);
   distribution_.revision = 8;
-  server.emplace(149U, ready());  // announces nothing
+  server.emplace(domain_.number(), ready());  // announces nothing
   const auto second = follower->wait_for_newer(first, Clock::now() + 15s);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->revision, 8U);
 }
 
 TEST_F(FollowerTest, WithoutAServerItSaysSoAndEndsAtOnce) {
-  auto follower = client(168).follow(request());
+  auto follower = client().follow(request());
   EXPECT_EQ(follower->state().status, FollowStatus::NoServer);
-  EXPECT_NE(follower->state().reason.find("domain 168"), std::string::npos);
+  EXPECT_NE(follower->state().reason.find("domain " + std::to_string(domain_.number())),
+            std::string::npos);
   EXPECT_EQ(follower->wait_for_newer(nullptr, Clock::now() + 50ms), nullptr);
   const auto start = Clock::now();
   follower.reset();
@@ -190,7 +194,7 @@ TEST_F(FollowerTest, WithoutAServerItSaysSoAndEndsAtOnce) {
 TEST_F(FollowerTest, ARequestThatBreaksARuleIsRefusedAtOnce) {
   FetchRequest wanted = request();
   wanted.task = "two words";
-  EXPECT_THROW(client(168).follow(wanted), Failure);
+  EXPECT_THROW(client().follow(wanted), Failure);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "proto/dds/replier.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::link::robot_names_test {
 namespace {
@@ -66,9 +67,10 @@ ClientOptions options(std::uint32_t domain, std::chrono::milliseconds timeout) {
 }
 
 TEST(ResolveRobots, GivesAscendingDistinctDigests) {
-  const RobotsServer server(171,
+  const test::ReservedDomain domain;
+  const RobotsServer server(domain.number(),
                             {{"panda", digest(9)}, {"iiwa14", digest(3)}, {"0900", digest(9)}});
-  Client client(options(171, 20s));
+  Client client(options(domain.number(), 20s));
   EXPECT_EQ(*resolve_robots(client, {"panda", "iiwa14", "0900"}),
             (std::vector<Digest>{digest(3), digest(9)}));
   EXPECT_TRUE(resolve_robots(client, {})->empty());
@@ -76,8 +78,9 @@ TEST(ResolveRobots, GivesAscendingDistinctDigests) {
 }
 
 TEST(ResolveRobots, NamesTheRobotThatIsNotThere) {
-  const RobotsServer server(172, {{"panda", digest(9)}});
-  Client client(options(172, 20s));
+  const test::ReservedDomain domain;
+  const RobotsServer server(domain.number(), {{"panda", digest(9)}});
+  Client client(options(domain.number(), 20s));
   const auto robots = resolve_robots(client, {"panda", "sawyer"});
   ASSERT_FALSE(robots);
   EXPECT_EQ(robots.error().code, ErrorCode::NotFound);
@@ -85,7 +88,8 @@ TEST(ResolveRobots, NamesTheRobotThatIsNotThere) {
 }
 
 TEST(ResolveRobots, WithoutAServerIsUnavailable) {
-  Client client(options(173, 200ms));
+  const test::ReservedDomain domain;
+  Client client(options(domain.number(), 200ms));
   const auto robots = resolve_robots(client, {"panda"});
   ASSERT_FALSE(robots);
   EXPECT_EQ(robots.error().code, ErrorCode::Unavailable);

@@ -13,6 +13,7 @@
 
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/reserved_domain.hpp"
 #include "tests/unit/client/plan/planar_problem.hpp"
 
 namespace kinship::plan::plan_run_test {
@@ -164,11 +165,14 @@ class PlanRunWithoutServer : public PlanRun {
  protected:
   PlanRunWithoutServer() {
     options_.task = "wall";
-    options_.domain = 187;
+    options_.domain = domain_.number();
     options_.timeout = std::chrono::milliseconds(200);
     options_.outbox = folder_ / "outbox";
     options_.guidance = GuidanceMode::Uniform;
   }
+
+ private:
+  test::ReservedDomain domain_;
 };
 
 TEST_F(PlanRunWithoutServer, RequiredGuidanceEndsTheRunBeforePlanning) {

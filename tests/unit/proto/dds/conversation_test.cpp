@@ -11,6 +11,7 @@
 
 #include "proto/dds/replier.hpp"
 #include "proto/dds/requester.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::dds::conversation_test {
 namespace {
@@ -33,14 +34,14 @@ AdminReply row(const std::string& text) {
   return reply;
 }
 
-/// A server with a handler on a thread, and a requester on the same domain.
+/// A server with a handler on a thread, and a requester, on a domain of their own.
 class Pair {
  public:
-  Pair(std::uint32_t domain, Replier<Conversation>::Handler handler)
-      : server_({.domain = domain, .role = Role::Server}),
+  explicit Pair(Replier<Conversation>::Handler handler)
+      : server_({.domain = domain_.number(), .role = Role::Server}),
         loop_(server_),
         replier_(server_, loop_, std::move(handler)),
-        client_({.domain = domain, .role = Role::Client}),
+        client_({.domain = domain_.number(), .role = Role::Client}),
         requester_(client_, Uuid::random()),
         thread_([this] { loop_.run([] { return Clock::time_point::max(); }); }) {}
   ~Pair() {
@@ -54,6 +55,7 @@ class Pair {
   void cancel() { requester_.cancel(); }
 
  private:
+  test::ReservedDomain domain_;
   Participant server_;
   WaitLoop loop_;
   Replier<Conversation> replier_;
@@ -90,7 +92,7 @@ class Held {
 
 TEST(Conversation, AnswerMayComeLaterFromAnotherThreadAndResendsAreDropped) {
   Held held;
-  Pair pair(110, [&](const AdminRequest&, const AdminAnswer& answer) { held.hold(answer); });
+  Pair pair([&](const AdminRequest&, const AdminAnswer& answer) { held.hold(answer); });
   auto reply = std::async(std::launch::async, [&] { return pair.call("x"); });
   held.wait_for_first();
   EXPECT_EQ(reply.wait_for(600ms), std::future_status::timeout);  // resent after 100 and 400 ms
@@ -101,7 +103,7 @@ TEST(Conversation, AnswerMayComeLaterFromAnotherThreadAndResendsAreDropped) {
 
 TEST(Conversation, RequestWhoseAnswerWasDroppedIsHandledAnew) {
   std::atomic<int> calls = 0;
-  Pair pair(111, [&](const AdminRequest&, const AdminAnswer& answer) {
+  Pair pair([&](const AdminRequest&, const AdminAnswer& answer) {
     if (++calls > 1)
       answer(row("second time"));
   });
@@ -109,7 +111,7 @@ TEST(Conversation, RequestWhoseAnswerWasDroppedIsHandledAnew) {
 }
 
 TEST(Conversation, OnlyTheFirstAnswerCounts) {
-  Pair pair(112, [](const AdminRequest& request, const AdminAnswer& answer) {
+  Pair pair([](const AdminRequest& request, const AdminAnswer& answer) {
     answer(row("first " + request.argument));
     answer(row("second " + request.argument));
   });
@@ -119,7 +121,7 @@ TEST(Conversation, OnlyTheFirstAnswerCounts) {
 
 TEST(Conversation, CallsOfSeveralThreadsRunSideBySide) {
   Held held;
-  Pair pair(113, [&](const AdminRequest& request, const AdminAnswer& answer) {
+  Pair pair([&](const AdminRequest& request, const AdminAnswer& answer) {
     if (request.argument == "slow")
       held.hold(answer);
     else
@@ -146,7 +148,7 @@ TEST(Conversation, CallsOfSeveralThreadsRunSideBySide) {
 }
 
 TEST(Conversation, FailureOfTheHandlerIsTheReply) {
-  Pair pair(114, [](const AdminRequest&, const AdminAnswer&) {
+  Pair pair([](const AdminRequest&, const AdminAnswer&) {
     throw Failure(ErrorCode::NotFound, "no robot 'x'");
   });
   const auto reply = pair.call("x");
@@ -157,7 +159,7 @@ TEST(Conversation, FailureOfTheHandlerIsTheReply) {
 
 TEST(Conversation, CancelEndsACallAtOnce) {
   Held held;
-  Pair pair(115, [&](const AdminRequest&, const AdminAnswer& answer) { held.hold(answer); });
+  Pair pair([&](const AdminRequest&, const AdminAnswer& answer) { held.hold(answer); });
   auto reply = std::async(std::launch::async, [&] { return pair.call("x", 60s); });
   held.wait_for_first();
   pair.cancel();
@@ -166,7 +168,8 @@ TEST(Conversation, CancelEndsACallAtOnce) {
 }
 
 TEST(Conversation, WithoutAServerACallEndsAtItsDeadline) {
-  const Participant participant({.domain = 116});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   Requester<Conversation> requester(participant, Uuid::random());
   const auto start = Clock::now();
   const auto reply = requester.call(echo("x"), start + 300ms);
@@ -179,7 +182,8 @@ TEST(Conversation, WithoutAServerACallEndsAtItsDeadline) {
 }
 
 TEST(Conversation, RequestThatBreaksARuleIsNotSent) {
-  const Participant participant({.domain = 117});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   Requester<Conversation> requester(participant, Uuid::random());
   AdminRequest request;
   request.limit = 0;
@@ -190,7 +194,7 @@ TEST(Conversation, AnswerAfterTheReplierIsGoneDoesNothing) {
   std::optional<AdminAnswer> kept;
   {
     std::promise<void> arrived;
-    Pair pair(118, [&](const AdminRequest&, const AdminAnswer& answer) {
+    Pair pair([&](const AdminRequest&, const AdminAnswer& answer) {
       kept = answer;
       arrived.set_value();
     });
@@ -203,7 +207,8 @@ TEST(Conversation, AnswerAfterTheReplierIsGoneDoesNothing) {
 }
 
 TEST(WaitLoop, WakesWhenItIsToldToAndWhenItIsTime) {
-  const Participant participant({.domain = 119, .role = Role::Server});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number(), .role = Role::Server});
   WaitLoop loop(participant);
   std::promise<void> begun;
   int calls = 0;
@@ -225,7 +230,8 @@ TEST(WaitLoop, WakesWhenItIsToldToAndWhenItIsTime) {
 }
 
 TEST(WaitLoop, DoesNotRunAfterStop) {
-  const Participant participant({.domain = 120, .role = Role::Server});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number(), .role = Role::Server});
   WaitLoop loop(participant);
   loop.stop();
   loop.run([]() -> Clock::time_point { throw std::logic_error("not expected"); });

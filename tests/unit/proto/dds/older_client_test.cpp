@@ -7,13 +7,14 @@
 
 #include "proto/dds/replier.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::dds::older_client_test {
 namespace {
 
 TEST(OlderClient, AttemptWithoutARecordIsRefusedByName) {
-  constexpr std::uint32_t kDomain = 160;
-  const Participant participant({.domain = kDomain, .role = Role::Server});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number(), .role = Role::Server});
   WaitLoop loop(participant);
   std::optional<ReportRequest> received;
   const Replier<codec::ReportConversation> replier(
@@ -23,8 +24,8 @@ TEST(OlderClient, AttemptWithoutARecordIsRefusedByName) {
         answer({});
         loop.stop();
       });
-  const test::ChildProcess client(
-      {KINSHIP_OLDER_CLIENT, std::to_string(kDomain), cyclone_configuration({.domain = kDomain})});
+  const test::ChildProcess client({KINSHIP_OLDER_CLIENT, std::to_string(domain.number()),
+                                   cyclone_configuration({.domain = domain.number()})});
   const auto end = WaitLoop::Clock::now() + std::chrono::seconds(30);
   loop.run([&] {
     if (WaitLoop::Clock::now() >= end)

@@ -1,4 +1,4 @@
-// Client and server in processes of their own, over loopback. Each test has a domain of its own.
+// Client and server in processes of their own, over loopback.
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "proto/dds/request_line.hpp"
 #include "proto/dds/requester.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::dds::processes_test {
 namespace {
@@ -37,46 +38,50 @@ std::string text_of(const Result<AdminReply>& reply) {
 }
 
 TEST(Processes, RequestIsAnswered) {
-  const Participant participant({.domain = 100});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess server = start_server(100);
+  test::ChildProcess server = start_server(domain.number());
   ASSERT_EQ(server.read_line(), "ready");
   EXPECT_EQ(text_of(requester.call(echo("hello"), in(10s))), "hello");
   EXPECT_EQ(text_of(requester.call(echo("again"), in(10s))), "again");
 }
 
 TEST(Processes, CallWaitsForAServerThatStartsLater) {
-  const Participant participant({.domain = 101});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester(participant, Uuid::random());
   auto reply =
       std::async(std::launch::async, [&] { return requester.call(echo("late"), in(20s)); });
   EXPECT_EQ(reply.wait_for(200ms), std::future_status::timeout);
-  test::ChildProcess server = start_server(101);
+  test::ChildProcess server = start_server(domain.number());
   EXPECT_EQ(text_of(reply.get()), "late");
 }
 
 TEST(Processes, CallIsAnsweredByTheServerAfterOneThatWasKilled) {
-  const Participant participant({.domain = 102});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess first = start_server(102);
+  test::ChildProcess first = start_server(domain.number());
   ASSERT_EQ(first.read_line(), "ready");
   ASSERT_EQ(text_of(requester.call(echo("first"), in(10s))), "first");
   first.kill();
   auto reply =
       std::async(std::launch::async, [&] { return requester.call(echo("second"), in(20s)); });
-  test::ChildProcess second = start_server(102);
+  test::ChildProcess second = start_server(domain.number());
   EXPECT_EQ(text_of(reply.get()), "second");
 }
 
 TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {
+  const test::ReservedDomain domain;
   const Uuid one = Uuid::random();
   Uuid other = Uuid::random();
   while (reply_partition_of(one) != reply_partition_of(other))
     other = Uuid::random();
-  const Participant participant({.domain = 103});
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester_one(participant, one);  // both count from 1
   AdminRequester requester_other(participant, other);
-  test::ChildProcess server = start_server(103);
+  test::ChildProcess server = start_server(domain.number());
   ASSERT_EQ(server.read_line(), "ready");
   for (int i = 0; i < 20; ++i) {
     auto reply =
@@ -87,9 +92,10 @@ TEST(Processes, ClientsOfOnePartitionGetTheirOwnReplies) {
 }
 
 TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
-  const Participant participant({.domain = 104});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   RequestLine line(participant, Uuid::random(), Wire<codec::AdminConversation>::topics());
-  test::ChildProcess server = start_server(104);
+  test::ChildProcess server = start_server(domain.number());
   const codec::Head head = line.next_head();
   codec::Message<kinship_wire_AdminRequest> message(head);  // by hand: encode() would refuse it
   char empty[] = "";
@@ -105,19 +111,24 @@ TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
 }
 
 TEST(Processes, SecondServerOfADomainIsRefusedByName) {
-  test::ChildProcess first = start_server(105);
+  const test::ReservedDomain domain;
+  test::ChildProcess first = start_server(domain.number());
   ASSERT_EQ(first.read_line(), "ready");
-  test::ChildProcess second = start_server(105);
+  test::ChildProcess second = start_server(domain.number());
   const std::string line = second.read_line();
-  EXPECT_EQ(line.find("error: domain 105: cannot join as its server at UDP port 33660"), 0U)
+  const std::string name = std::to_string(domain.number());
+  const std::string port = std::to_string(discovery_port(domain.number()));
+  EXPECT_EQ(line.find("error: domain " + name + ": cannot join as its server at UDP port " + port),
+            0U)
       << line;
   EXPECT_EQ(second.wait(), 1);
 }
 
 TEST(Processes, LargeReplyArrivesWhole) {
-  const Participant participant({.domain = 106});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess server = start_server(106);
+  test::ChildProcess server = start_server(domain.number());
   AdminRequest request;
   request.verb = AdminVerb::ListPaths;
   request.limit = 300;
@@ -125,9 +136,10 @@ TEST(Processes, LargeReplyArrivesWhole) {
 }
 
 TEST(Processes, ReplyThatIsTooLargeBecomesARefusal) {
-  const Participant participant({.domain = 107});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   AdminRequester requester(participant, Uuid::random());
-  test::ChildProcess server = start_server(107);
+  test::ChildProcess server = start_server(domain.number());
   AdminRequest request;
   request.verb = AdminVerb::ListPaths;
   request.limit = 600;

@@ -1,5 +1,4 @@
-// A publishing server and its subscribers, in processes of their own. Each test has a domain of its
-// own.
+// A publishing server and its subscribers, in processes of their own.
 
 #include "proto/dds/publication.hpp"
 
@@ -19,6 +18,7 @@
 #include "proto/dds/wire.hpp"
 #include "proto/types/limits.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/reserved_domain.hpp"
 
 namespace kinship::dds::publication_test {
 namespace {
@@ -30,8 +30,8 @@ constexpr std::chrono::seconds kPatience{60};
 /// A server process that publishes what it is told.
 class PublishingServer {
  public:
-  PublishingServer(const Participant& participant, std::uint32_t domain)
-      : process_({KINSHIP_PUBLICATION_SERVER, std::to_string(domain)}),
+  explicit PublishingServer(const Participant& participant)
+      : process_({KINSHIP_PUBLICATION_SERVER, std::to_string(participant.options().domain)}),
         requester_(participant, Uuid::random()) {
     EXPECT_EQ(process_.read_line(), "ready");
   }
@@ -113,9 +113,10 @@ class Announcements : public Heard<Announcement> {
 };
 
 TEST(Publication, AnnouncementReachesWhoListens) {
-  const Participant participant({.domain = 150});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   Announcements heard(participant);
-  PublishingServer server(participant, 150);
+  PublishingServer server(participant);
   ASSERT_TRUE(heard.wait_for_servers(1));
   server.tell("announce 1 5");
   server.tell("announce 1 6");
@@ -124,8 +125,9 @@ TEST(Publication, AnnouncementReachesWhoListens) {
 }
 
 TEST(Publication, LateJoinerHearsTheNewestOfEachDistributionOnce) {
-  const Participant participant({.domain = 151});
-  PublishingServer server(participant, 151);
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  PublishingServer server(participant);
   for (const char* command : {"announce 1 5", "announce 2 8", "announce 1 6", "announce 1 7"})
     server.tell(command);
   Announcements late(participant);
@@ -137,8 +139,9 @@ TEST(Publication, LateJoinerHearsTheNewestOfEachDistributionOnce) {
 }
 
 TEST(Publication, WithdrawnDistributionIsNotAnnouncedToALateJoiner) {
-  const Participant participant({.domain = 152});
-  PublishingServer server(participant, 152);
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  PublishingServer server(participant);
   for (const char* command : {"announce 1 5", "announce 2 8", "withdraw 1"})
     server.tell(command);
   Announcements late(participant);
@@ -151,23 +154,25 @@ TEST(Publication, WithdrawnDistributionIsNotAnnouncedToALateJoiner) {
 }
 
 TEST(Publication, SubscriberHearsTheServerAfterOneThatWasKilled) {
-  const Participant participant({.domain = 153});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
   Announcements heard(participant);
   {
-    PublishingServer first(participant, 153);
+    PublishingServer first(participant);
     first.tell("announce 1 5");
     EXPECT_TRUE(heard.wait_for_revision(1, 5));
     first.kill();
   }
-  PublishingServer second(participant, 153);
+  PublishingServer second(participant);
   EXPECT_TRUE(heard.wait_for_servers(2));
   second.tell("announce 1 2");  // an older store: told as it is, epoch and revision say so
   EXPECT_TRUE(heard.wait_for_revision(1, 2));
 }
 
 TEST(Publication, EventReachesWhoListensButNotWhoComesLater) {
-  const Participant participant({.domain = 154});
-  PublishingServer server(participant, 154);
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  PublishingServer server(participant);
   server.tell("event before");
   Heard<Event> heard;
   const Subscriber<codec::EventPublication> subscriber(
@@ -185,8 +190,9 @@ TEST(Publication, EventReachesWhoListensButNotWhoComesLater) {
 }
 
 TEST(Publication, NoHandlerRunsAfterTheSubscriberIsGone) {
-  const Participant participant({.domain = 155});
-  PublishingServer server(participant, 155);
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  PublishingServer server(participant);
   auto flood = std::async(std::launch::async, [&] { return server.tell("flood 5000"); });
   std::atomic<int> calls = 0;
   while (flood.wait_for(0ms) != std::future_status::ready) {
@@ -208,10 +214,11 @@ TEST(Publication, NoHandlerRunsAfterTheSubscriberIsGone) {
 }
 
 TEST(Publication, StoppedSubscriberHoldsNobodyUpAndHearsTheNewestWhenItGoesOn) {
-  const Participant participant({.domain = 156});
-  PublishingServer server(participant, 156);
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  PublishingServer server(participant);
   server.tell("announce 1 5");
-  test::ChildProcess listener({KINSHIP_PUBLICATION_LISTENER, "156"});
+  test::ChildProcess listener({KINSHIP_PUBLICATION_LISTENER, std::to_string(domain.number())});
   ASSERT_EQ(listener.read_line(), "announcement 1 5");
   listener.signal(SIGSTOP);
   const std::string slow = server.tell("flood 16000");
@@ -245,7 +252,8 @@ std::size_t size_of(const Participant& participant, const typename Publication::
 }
 
 TEST(Publication, IsShortOnTheWire) {
-  const Participant participant({.domain = 157, .role = Role::Server});
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number(), .role = Role::Server});
   Announcement announcement;
   announcement.task = "bin_to_shelf";
   EXPECT_EQ(size_of<codec::AnnouncementPublication>(participant, announcement), 116U);
