@@ -7,7 +7,7 @@
 
 struct dds_qos;
 
-/// The QoS of every entity; proto/README.md says the same for other languages.
+/// The QoS of every entity; proto/CONTRACT.md says the same for other languages.
 namespace kinship::dds {
 
 struct DeleteQos {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// Limits on everything that comes from outside; proto/README.md lists them for other languages.
+/// Limits on everything that comes from outside; proto/CONTRACT.md lists them for other languages.
 namespace kinship {
 
 inline constexpr std::size_t kMaxDof = 32;

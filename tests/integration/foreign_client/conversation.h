@@ -1,4 +1,4 @@
-/* What every conversation with kinshipd needs: domain, partition, retries. From proto/README.md,
+/* What every conversation with kinshipd needs: domain, partition, retries. From proto/CONTRACT.md,
  * whose headings are in quotation marks here. */
 #ifndef FOREIGN_CLIENT_CONVERSATION_H
 #define FOREIGN_CLIENT_CONVERSATION_H

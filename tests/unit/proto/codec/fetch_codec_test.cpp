@@ -58,7 +58,7 @@ TEST(FetchCodec, NegativeDeadlineIsRefused) {
 }
 
 TEST(FetchCodec, AProfileHas256BytesAtMostOnBothSides) {
-  EXPECT_EQ(kMaxProfileBytes, 256U) << "proto/README.md says so to other languages";
+  EXPECT_EQ(kMaxProfileBytes, 256U) << "proto/CONTRACT.md says so to other languages";
   FetchRequest request;
   request.task = "t";
   request.profile = std::string(kMaxProfileBytes, 'p');
