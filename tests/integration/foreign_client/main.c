@@ -1,6 +1,7 @@
-/* A client of kinshipd in C11 that was written from proto/CONTRACT.md and the IDL alone; it includes
- * no source of Kinship. It registers a planar arm, reports paths and fetches the distribution; with
- * a second argument it reports more and waits for the announcement of the newer revision.
+/* A client of kinshipd in C11 that was written from proto/CONTRACT.md and the IDL alone; it
+ * includes no source of Kinship. It registers a planar arm, reports paths and fetches the
+ * distribution; with a second argument it reports more and waits for the announcement of the newer
+ * revision.
  *
  *   foreign_client DOMAIN [follow]
  *
