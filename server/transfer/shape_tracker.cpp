@@ -7,7 +7,6 @@
 
 #include "robots/inverse/solver.hpp"
 #include "server/transfer/shape_lanes.hpp"
-#include "server/transfer/walk_pool.hpp"
 
 namespace kinship::transfer {
 namespace {
@@ -35,11 +34,6 @@ ShapeTracker::ShapeTracker(const ArmPair& pair, const PathPoses& poses,
       generator_(generator_of(poses, seed)),
       candidates_(poses.T_base_transfer.size()) {}
 
-const std::vector<Track>& ShapeTracker::find_tracks() {
-  WalkPool(pair_).run({this});
-  return tracks_;
-}
-
 std::vector<Walk> ShapeTracker::begin_round() {
   std::vector<Walk> walks;
   while (walks.empty()) {
@@ -53,7 +47,7 @@ std::vector<Walk> ShapeTracker::begin_round() {
       round_.push_back(make_try());
       const Try& made = round_.back();
       if (made.along.size() > 0)
-        walks.push_back({this, round_.size() - 1, 0, made.start, made.along.col(made.start)});
+        walks.push_back({round_.size() - 1, 0, made.start, made.along.col(made.start)});
     }
   }
   walks_left_ = walks.size();
@@ -105,8 +99,8 @@ std::vector<Walk> ShapeTracker::end(const Walk& walk) {
   if (walk.direction == 0) {
     const Try& made = round_[walk.of_round];
     walks_left_ += 2;
-    return {{this, walk.of_round, 1, made.start, made.along.col(made.start)},
-            {this, walk.of_round, -1, made.start, made.along.col(made.start)}};
+    return {{walk.of_round, 1, made.start, made.along.col(made.start)},
+            {walk.of_round, -1, made.start, made.along.col(made.start)}};
   }
   if (walks_left_ > 0)
     return {};

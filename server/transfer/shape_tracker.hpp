@@ -7,9 +7,9 @@
 
 #include "proto/types/profile.hpp"
 #include "robots/inverse/counter_generator.hpp"
+#include "robots/inverse/descent.hpp"
 #include "server/transfer/filters.hpp"
 #include "server/transfer/path_poses.hpp"
-#include "server/transfer/walk.hpp"
 
 namespace kinship::transfer {
 
@@ -17,6 +17,15 @@ namespace kinship::transfer {
 struct Track {
   Eigen::Index first_pose = 0;
   Eigen::MatrixXd configurations;  ///< dof x n, n >= 1, each as `inverse` would give it
+};
+
+/// What is walked for a try of a tracker: the pull where the try starts, or the way from there to
+/// one end of the path, pose by pose.
+struct Walk {
+  std::size_t of_round = 0;    ///< the try, by its place in the tracker's round
+  Eigen::Index direction = 0;  ///< 1 or -1: to an end of the path; 0: the pull at the start
+  Eigen::Index pose = 0;       ///< where it is
+  inverse::JointVector q;      ///< there, as the lanes have it: a joint may be turns away
 };
 
 /// Follows a path of the source robot with the target robot: a random pose of the path, there the
@@ -29,8 +38,8 @@ struct Track {
 /// says no. Deterministic: depends on the seed and on what it is given. Not shared between threads.
 ///
 /// Tries are made in rounds: as many as would be made one after the other whatever comes of them.
-/// The tracker draws where they start and judges what came of them; their walks are run by a
-/// WalkPool, together with those of other paths.
+/// The tracker draws where they start and judges what came of them; who runs their walks (WalkPool,
+/// together with those of other paths) tells it where they came to and when they ended.
 class ShapeTracker {
  public:
   static constexpr double kMostMotion = 3;
@@ -40,20 +49,18 @@ class ShapeTracker {
   /// \param pair, poses, parameters, filters  outlive it.
   ShapeTracker(const ArmPair& pair, const PathPoses& poses, const TransferParameters& parameters,
                std::uint64_t seed, CountedFilters& filters);
-  ShapeTracker(const ShapeTracker&) = delete;  // walks point to it
+  ShapeTracker(const ShapeTracker&) = delete;  // a pool points to it
   ShapeTracker& operator=(const ShapeTracker&) = delete;
 
-  /// Up to parameters.tracks tracks that cover at least parameters.least_coverage of the poses.
-  /// Gives up after kTriesPerTrack tries in a row that brought none. Alone, by a pool of its own.
-  const std::vector<Track>& find_tracks();
-
-  /// What the pool found so far.
+  /// What the walks brought so far: up to parameters.tracks tracks that cover at least
+  /// parameters.least_coverage of the poses. After kTriesPerTrack tries in a row that brought none
+  /// there are no more.
   const std::vector<Track>& tracks() const noexcept { return tracks_; }
   std::uint64_t tried() const noexcept { return tried_; }
   /// Tries whose track came through the whole path.
   std::uint64_t came_through() const noexcept { return came_through_; }
 
-  /// For the pool: the walks with which the next tries begin. None: there is nothing left to try.
+  /// The walks with which the next tries begin. None: there is nothing left to try.
   std::vector<Walk> begin_round();
   /// Moves a walk on to where it found `found` (`q` as the lanes have it), unless filters say no.
   bool take(Walk& walk, const inverse::JointVector& q,

@@ -22,8 +22,8 @@ namespace {
 void check_tracking(const TransferParameters& parameters) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
     if (!holds)
-      throw std::invalid_argument(std::string("transfer_path: ") + name + " " +
-                                  std::to_string(value) + " is not " + rule);
+      throw std::invalid_argument(std::string("transfer: ") + name + " " + std::to_string(value) +
+                                  " is not " + rule);
   };
   const double coverage = parameters.least_coverage;
   require(parameters.tracks >= 0, "tracks", parameters.tracks, "0 or more");
@@ -138,7 +138,7 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const Path& path = paths[i].path;
     if (path.dof() != pair.source().dof())
-      throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
+      throw std::invalid_argument("transfer: a path of " + std::to_string(path.dof()) +
                                   " joints for a source robot of " +
                                   std::to_string(pair.source().dof()));
     const Eigen::MatrixXd waypoints = resample(path, parameters);
@@ -153,14 +153,6 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
   for (PathUnderWay& path : under_way)
     results[path.index] = with_random_solutions(path, pair, parameters, seed);
   return results;
-}
-
-TransferredPath transfer_path(const Path& path, const ArmPair& pair,
-                              const Eigen::Isometry3d& T_target_source,
-                              const TransferParameters& parameters, std::uint64_t seed,
-                              const Filters& filters) {
-  const PathToTransfer alone{path, T_target_source, filters};
-  return std::move(transfer_paths({&alone, 1}, pair, parameters, seed).front());
 }
 
 }  // namespace kinship::transfer

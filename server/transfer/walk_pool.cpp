@@ -1,11 +1,9 @@
 #include "server/transfer/walk_pool.hpp"
 
 #include <cstddef>
-
-#include "server/transfer/shape_tracker.hpp"
+#include <utility>
 
 namespace kinship::transfer {
-namespace {}  // namespace
 
 WalkPool::WalkPool(const ArmPair& pair)
     : lanes_(pair),
@@ -14,26 +12,29 @@ WalkPool::WalkPool(const ArmPair& pair)
 
 void WalkPool::run(const std::vector<ShapeTracker*>& trackers) {
   for (ShapeTracker* tracker : trackers)
-    for (Walk& walk : tracker->begin_round())
-      waiting_.push_back(std::move(walk));
-  for (fill(); walking_ != 0; fill())
-    look_at(lanes_.run());
+    enqueue(*tracker, tracker->begin_round());
+  for (fill(); lanes_.run(); fill())
+    hand_over();
+}
+
+void WalkPool::enqueue(ShapeTracker& tracker, std::vector<Walk> walks) {
+  for (Walk& walk : walks)
+    waiting_.push_back({&tracker, std::move(walk)});
 }
 
 void WalkPool::fill() {
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane)
-    while (!has_lane(walking_, lane) && !waiting_.empty()) {
-      walks_[static_cast<std::size_t>(lane)] = std::move(waiting_.front());
+    while (lanes_.is_idle(lane) && !waiting_.empty()) {
+      errand(lane) = std::move(waiting_.front());
       waiting_.pop_front();
-      walking_ |= lane_bit(lane);
       if (!go_on(lane))
         end_walk(lane);
     }
 }
 
 bool WalkPool::go_on(int lane) {
-  const Walk& walk = walks_[static_cast<std::size_t>(lane)];
-  const ShapeTracker& tracker = *walk.tracker;
+  const Walk& walk = errand(lane).walk;
+  const ShapeTracker& tracker = *errand(lane).tracker;
   const Eigen::Index to = walk.pose + walk.direction;
   if (to < 0 || to >= tracker.poses().size())
     return false;
@@ -47,32 +48,31 @@ bool WalkPool::go_on(int lane) {
   return true;
 }
 
-void WalkPool::look_at(const ShapeLanes::Ended& ended) {
-  unsigned right = 0;
+void WalkPool::hand_over() {
+  std::array<bool, ShapeLanes::kCount> within{};
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
-    if (!has_lane(ended.arrived, lane))
+    if (lanes_.state(lane) != ShapeLanes::State::Arrived)
       continue;
     found_.col(lane) = lanes_.at(lane);
-    if (space_.normalize(found_.col(lane).data()))
-      right |= lane_bit(lane);
+    within[static_cast<std::size_t>(lane)] = space_.normalize(found_.col(lane).data());
   }
-  right = lanes_.verified(right, found_);
+  const std::array<bool, ShapeLanes::kCount> right = lanes_.verified(found_);
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
-    if (!has_lane(ended.arrived | ended.failed, lane))
+    if (!lanes_.has_ended(lane))
       continue;
-    Walk& walk = walks_[static_cast<std::size_t>(lane)];
+    const auto i = static_cast<std::size_t>(lane);
+    auto& [tracker, walk] = errand(lane);
     const bool taken =
-        has_lane(right, lane) && walk.tracker->take(walk, lanes_.at(lane), found_.col(lane));
+        within[i] && right[i] && tracker->take(walk, lanes_.at(lane), found_.col(lane));
     if (!taken || walk.direction == 0 || !go_on(lane))
       end_walk(lane);
   }
 }
 
 void WalkPool::end_walk(int lane) {
-  const Walk& walk = walks_[static_cast<std::size_t>(lane)];
-  walking_ &= ~lane_bit(lane);
-  for (Walk& next : walk.tracker->end(walk))
-    waiting_.push_back(std::move(next));
+  lanes_.rest(lane);
+  auto& [tracker, walk] = errand(lane);
+  enqueue(*tracker, tracker->end(walk));
 }
 
 }  // namespace kinship::transfer

@@ -7,7 +7,7 @@
 
 #include "robots/inverse/joint_space.hpp"
 #include "server/transfer/shape_lanes.hpp"
-#include "server/transfer/walk.hpp"
+#include "server/transfer/shape_tracker.hpp"
 
 namespace kinship::transfer {
 
@@ -24,20 +24,27 @@ class WalkPool {
   void run(const std::vector<ShapeTracker*>& trackers);
 
  private:
+  /// A walk and whose it is.
+  struct Errand {
+    ShapeTracker* tracker = nullptr;
+    Walk walk;
+  };
+
+  void enqueue(ShapeTracker& tracker, std::vector<Walk> walks);
+  Errand& errand(int lane) { return errands_[static_cast<std::size_t>(lane)]; }
   /// Gives lanes without a walk those that wait.
   void fill();
   /// Lets a lane make the next step of its walk. \return false: it is at the end of the path.
   bool go_on(int lane);
   /// Hands over to the trackers what lanes found.
-  void look_at(const ShapeLanes::Ended& ended);
+  void hand_over();
   void end_walk(int lane);
 
   ShapeLanes lanes_;
   inverse::JointSpace space_;
-  std::array<Walk, ShapeLanes::kCount> walks_;
-  unsigned walking_ = 0;      // lanes that have one
-  std::deque<Walk> waiting_;  // to be walked
-  Eigen::MatrixXd found_;     // dof x kCount, in the copies that stand for all
+  std::array<Errand, ShapeLanes::kCount> errands_;  // of lanes that are not idle
+  std::deque<Errand> waiting_;
+  Eigen::MatrixXd found_;  // dof x kCount, in the copies that stand for all
 };
 
 }  // namespace kinship::transfer

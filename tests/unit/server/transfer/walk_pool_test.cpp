@@ -10,9 +10,12 @@
 
 #include "server/transfer/transfer.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::transfer::walk_pool_test {
 namespace {
+
+using test::transfer_path;
 
 constexpr std::uint64_t kSeed = 8;
 constexpr int kPaths = 9;
