@@ -9,6 +9,7 @@
 
 #include "client/planning/planning_bounds.hpp"
 #include "proto/mixture/cholesky.hpp"
+#include "proto/types/turn.hpp"
 
 namespace kinship::planning {
 
@@ -36,7 +37,7 @@ class Ruler {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
       for (Eigen::Index i = 0; i < offset.size(); ++i)
         if (turning_[static_cast<std::size_t>(i)])
-          offset[i] = std::remainder(offset[i], 2 * M_PI);
+          offset[i] = wrapped(offset[i]);
       factors_[mixture_.covariance_index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
       nearest = std::min(nearest, offset.squaredNorm());
     }

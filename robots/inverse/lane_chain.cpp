@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/turn.hpp"
 #include "robots/inverse/lane_sets.hpp"
 
 namespace kinship::inverse {
@@ -15,7 +15,6 @@ using kinematics::JointType;
 
 static_assert(kLaneJoints == kMaxDof);
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kParallel = 1e-12;        // sine between axes
 constexpr double kRightAngle = 1e-15;      // rounding of a zero
 constexpr double kShortestReach_m = 1e-3;  // an arm without lengths still has a unit
