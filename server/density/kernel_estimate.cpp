@@ -12,9 +12,7 @@
 
 #include "proto/mixture/cholesky.hpp"
 #include "proto/types/limits.hpp"
-#include "proto/types/rounded_inward.hpp"
 #include "server/density/block_points.hpp"
-#include "server/density/distinct_points.hpp"
 #include "server/density/em_run.hpp"
 #include "server/density/fit_input.hpp"
 #include "server/density/hold_out.hpp"
@@ -110,6 +108,24 @@ Mixture mixture_of(const Kernels& kernels, const Eigen::MatrixXd& pooled, double
   return {kernels.weights, kernels.centres, {std::move(covariance)}};
 }
 
+/// A number to be kept in half the bytes: the nearest f32, or, where that lies beyond a limit that
+/// the number keeps, the next one on this side of it. Where no f32 lies within the limits the
+/// nearest one stands.
+/// \param lower, upper  or infinite; a number outside them is only rounded.
+float rounded_inward(double number, double lower, double upper) noexcept {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto nearest = static_cast<float>(number);
+  if (number <= upper && static_cast<double>(nearest) > upper) {
+    const float below = std::nextafter(nearest, -kInfinity);
+    return static_cast<double>(below) < lower ? nearest : below;
+  }
+  if (number >= lower && static_cast<double>(nearest) < lower) {
+    const float above = std::nextafter(nearest, kInfinity);
+    return static_cast<double>(above) > upper ? nearest : above;
+  }
+  return nearest;
+}
+
 /// Rounded to f32; what is within limits stays there.
 void round_inward(Eigen::MatrixXd& centres, const Eigen::Matrix2Xd& limits) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -127,16 +143,14 @@ class Estimate {
  public:
   Estimate(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
            const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options)
-      : configurations_(configurations),
-        weights_(weights),
+      : dimension_(configurations.rows()),
+        data_(configurations, weights, options.path_of_configuration),
         options_(options),
         log_uniform_(log_uniform(configurations, options.limits)) {}
 
   KernelEstimate run(DistinctPoints all) const {
-    const std::vector<std::uint32_t>& path_of = options_.path_of_configuration;
-    const std::uint32_t paths = 1 + *std::max_element(path_of.begin(), path_of.end());
-    const Choice choice = choose(folds_of(paths));
-    const BlockPoints points = blocks_of(std::move(all));
+    const Choice choice = choose(folds());
+    const BlockPoints points = data_.blocks_of(std::move(all));
     const Eigen::MatrixXd pooled =
         pooled_covariance(points, choice.bandwidth.clusters, options_.seed, options_.computation);
     Kernels kernels = kernels_of(points, options_.seed);
@@ -145,7 +159,7 @@ class Estimate {
         mixture_of(kernels, pooled, choice.bandwidth.scale, options_.floors_of_joints),
         choice.bandwidth};
     mixture::cholesky_factors(estimate.mixture);  // throws if there is none
-    if (paths >= kLeastPathsToScore)
+    if (data_.paths() >= kLeastPathsToScore)
       estimate.held_out_score = choice.score_of_first;
     return estimate;
   }
@@ -163,12 +177,8 @@ class Estimate {
     std::optional<double> score_of_first = {};  // of them
   };
 
-  BlockPoints blocks_of(DistinctPoints distinct) const {
-    const Eigen::VectorXd mean = mean_of(configurations_, distinct);
-    return {configurations_, std::move(distinct), mean};
-  }
-
-  std::vector<Fold> folds_of(std::uint32_t paths) const {
+  std::vector<Fold> folds() const {
+    const std::uint32_t paths = data_.paths();
     std::vector<Fold> folds;
     if (paths >= kLeastPathsToScore) {
       const std::uint32_t count = paths <= kFewPaths ? kFolds : 1;
@@ -190,27 +200,17 @@ class Estimate {
   /// Unless there is too little on either side.
   void add_fold(const std::vector<std::uint8_t>& held_out, Eigen::Index most_scored,
                 std::vector<Fold>& folds) const {
-    DistinctPoints training = part(held_out, false);
-    DistinctPoints scored = part(held_out, true);
-    const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
-    if (training.columns.size() < least || scored.columns.empty())
+    auto split = data_.split(held_out);
+    if (!split)
       return;
-    BlockPoints points = blocks_of(std::move(training));
+    BlockPoints points = data_.blocks_of(std::move(split->training));
     Kernels kernels = kernels_of(points, options_.seed);
     folds.push_back({std::move(points), std::move(kernels),
-                     thinned(blocks_of(std::move(scored)), most_scored)});
-  }
-
-  DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const {
-    std::vector<std::uint8_t> wanted;
-    wanted.reserve(options_.path_of_configuration.size());
-    for (const std::uint32_t path : options_.path_of_configuration)
-      wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
-    return distinct_points(configurations_, weights_, wanted);
+                     thinned(data_.blocks_of(std::move(split->held_out)), most_scored)});
   }
 
   Choice choose(const std::vector<Fold>& folds) const {
-    Choice best{{1, scale_of_one_path(configurations_.rows())}};
+    Choice best{{1, scale_of_one_path(dimension_)}};
     for (const int clusters : kClusters) {
       if (folds.empty() || !can_have(folds, clusters))
         break;
@@ -235,7 +235,7 @@ class Estimate {
 
   /// Whether each cluster of each training part can have 2 (d + 1) points.
   bool can_have(const std::vector<Fold>& folds, int clusters) const {
-    const Eigen::Index least = clusters == 1 ? 1 : 2 * (configurations_.rows() + 1) * clusters;
+    const Eigen::Index least = clusters == 1 ? 1 : 2 * (dimension_ + 1) * clusters;
     return std::all_of(folds.begin(), folds.end(),
                        [&](const Fold& fold) { return fold.training.size() >= least; });
   }
@@ -251,8 +251,8 @@ class Estimate {
     return scores;
   }
 
-  const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
-  const Eigen::Ref<const Eigen::VectorXd>& weights_;
+  const Eigen::Index dimension_;
+  const WeightedConfigurations data_;
   const KernelOptions& options_;
   const double log_uniform_;
 };

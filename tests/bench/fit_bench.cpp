@@ -2,7 +2,6 @@
 
 #include <random>
 
-#include "proto/mixture/density.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "server/density/block_points.hpp"
 #include "server/density/expectation_maximisation.hpp"
@@ -109,15 +108,6 @@ void sample(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(sample);
-
-void log_density_of_all(benchmark::State& state) {
-  const Eigen::MatrixXd configurations = bundles(15'000);
-  const Mixture mixture = fit(configurations, 10).mixture;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(mixture::log_density(mixture, configurations));
-  state.SetItemsProcessed(state.iterations() * configurations.cols());
-}
-BENCHMARK(log_density_of_all)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace kinship

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "proto/mixture/density.hpp"
 #include "proto/types/limits.hpp"
 #include "server/density/hold_out.hpp"
+#include "tests/support/log_density.hpp"
 
 namespace kinship::density::kernel_estimate_test {
 namespace {
@@ -53,7 +53,7 @@ TEST(KernelEstimate, IntegratesToOne) {
   for (Eigen::Index i = 0; i < kCells; ++i) {
     row.row(0).setConstant(-8 + static_cast<double>(i) * step);
     row.row(1).setLinSpaced(-8, 8 - step);
-    sum += mixture::log_density(mixture, row).array().exp().sum() * step * step;
+    sum += kinship::test::log_density(mixture, row).array().exp().sum() * step * step;
   }
   EXPECT_NEAR(sum, 1, 1e-6);
 }
@@ -75,7 +75,8 @@ double loss_of(const Mixture& mixture, double distance) {
   means(0, 1) = distance;
   const Mixture truth(Eigen::Vector2d(0.5, 0.5), means, {Eigen::Matrix2d::Identity()});
   const Eigen::MatrixXd others = draws_around(distance, 300, kSeed + 100);
-  return (mixture::log_density(truth, others) - mixture::log_density(mixture, others)).mean();
+  return (kinship::test::log_density(truth, others) - kinship::test::log_density(mixture, others))
+      .mean();
 }
 
 /// The least loss of kernels at these points whose covariance is a multiple of the points' own.
@@ -225,10 +226,10 @@ TEST(KernelEstimate, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
                         {all.mixture.covariance(0)});
   const double log_uniform =
       -(points.rowwise().maxCoeff() - points.rowwise().minCoeff()).array().log().sum();
-  const double score =
-      (0.99 * mixture::log_density(mixture, scored).array().exp() + 0.01 * std::exp(log_uniform))
-          .log()
-          .mean();
+  const double score = (0.99 * kinship::test::log_density(mixture, scored).array().exp() +
+                        0.01 * std::exp(log_uniform))
+                           .log()
+                           .mean();
   EXPECT_NEAR(*all.held_out_score, score, 0.1);
 }
 
@@ -256,6 +257,25 @@ TEST(KernelEstimate, CentresStayWithinLimitsAsF32) {
   EXPECT_GT(centres.maxCoeff(), kUpper - 1e-6);
 }
 
+TEST(KernelEstimate, CentresOutsideLimitsOrBetweenThoseWithoutAFloatAreOnlyRounded) {
+  Eigen::MatrixXd points = normal_points(2, 50);
+  points.row(1).setConstant(0.7);
+  KernelOptions options = options_for(points);
+  options.limits.resize(2, 2);
+  options.limits << -0.1, 0.7, 0.1, 0.7;
+  const Eigen::MatrixXd centres = estimate(points, options).mixture.means();
+  EXPECT_EQ(centres.row(1), Eigen::RowVectorXd::Constant(50, 0.7F));
+  int outside = 0;
+  for (const double value : centres.row(0)) {
+    outside += std::abs(value) > 0.1 ? 1 : 0;
+    const auto nearest = [&](double x) {
+      return static_cast<double>(static_cast<float>(x)) == value;
+    };
+    EXPECT_TRUE(std::any_of(points.row(0).begin(), points.row(0).end(), nearest)) << value;
+  }
+  EXPECT_GT(outside, 30);
+}
+
 TEST(KernelEstimate, ConstantJointGetsTheFloor) {
   Eigen::MatrixXd points = normal_points(3, 50);
   points.row(1).setConstant(0.75);
@@ -267,12 +287,12 @@ TEST(KernelEstimate, ConstantJointGetsTheFloor) {
 TEST(KernelEstimate, OnePointFarAwayIsOneKernel) {
   Eigen::MatrixXd points = normal_points(2, 400);
   const Eigen::VectorXd near =
-      mixture::log_density(estimate(points, options_for(points)).mixture, points);
+      kinship::test::log_density(estimate(points, options_for(points)).mixture, points);
   points.col(399).setConstant(1000);
   const Mixture mixture = estimate(points, options_for(points)).mixture;
   EXPECT_EQ(mixture.size(), 400);
   EXPECT_NEAR(mixture.means().maxCoeff(), 1000, 1e-3);
-  const Eigen::VectorXd with = mixture::log_density(mixture, points);
+  const Eigen::VectorXd with = kinship::test::log_density(mixture, points);
   EXPECT_TRUE(with.allFinite());
   EXPECT_GT(with.head(300).mean(), near.head(300).mean() - 1);
 }

@@ -1,4 +1,4 @@
-#include "proto/mixture/density.hpp"
+#include "proto/mixture/cholesky.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <stdexcept>
 
-#include "proto/mixture/component_densities.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/log_density.hpp"
 
-namespace kinship::mixture::density_test {
+namespace kinship::mixture::cholesky_test {
 namespace {
+
+using test::log_density;
 
 constexpr std::uint64_t kSeed = 3;
 
@@ -38,26 +39,6 @@ Mixture random_mixture(Eigen::Index components, Eigen::Index dimension) {
           covariances};
 }
 
-TEST(LogDensity, IntegratesToOneInOneDimension) {
-  Eigen::MatrixXd means(1, 2);
-  means << -1, 2;
-  const Mixture mixture(
-      Eigen::Vector2d(0.25, 0.75), means,
-      {Eigen::MatrixXd::Constant(1, 1, 0.04), Eigen::MatrixXd::Constant(1, 1, 1.5)});
-  constexpr Eigen::Index kCells = 20'000;
-  const Eigen::RowVectorXd grid = Eigen::RowVectorXd::LinSpaced(kCells, -15, 15);
-  const double step = 30.0 / static_cast<double>(kCells - 1);
-  EXPECT_NEAR(log_density(mixture, grid).array().exp().sum() * step, 1, 1e-9);
-}
-
-TEST(LogDensity, SharedCovarianceIsOneForEach) {
-  const Mixture apart = two_components_2d();
-  const Eigen::MatrixXd covariance = apart.covariance(0);
-  const Eigen::MatrixXd points = random_mixture(50, 2).means();
-  EXPECT_EQ(log_density({apart.weights(), apart.means(), {covariance}}, points),
-            log_density({apart.weights(), apart.means(), {covariance, covariance}}, points));
-}
-
 TEST(LogDensity, IntegratesToOneInTwoDimensions) {
   constexpr Eigen::Index kCells = 400;
   const double step = 12.0 / static_cast<double>(kCells);
@@ -71,7 +52,7 @@ TEST(LogDensity, IntegratesToOneInTwoDimensions) {
 
 TEST(LogDensity, EqualsTheFormulaWrittenOut) {
   const Mixture mixture = random_mixture(4, 3);
-  const Eigen::MatrixXd points = 2 * Eigen::MatrixXd::Random(3, 600);  // more than two blocks
+  const Eigen::MatrixXd points = 2 * Eigen::MatrixXd::Random(3, 600);
   const Eigen::VectorXd computed = log_density(mixture, points);
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
     double density = 0;
@@ -86,36 +67,13 @@ TEST(LogDensity, EqualsTheFormulaWrittenOut) {
   }
 }
 
-TEST(LogDensity, IsFiniteHoweverFarAway) {
-  Eigen::MatrixXd points(2, 5);
-  points << 1e3, 1e8, 1e200, -1e308, 1e308,  //
-      0, -1e8, 1e200, 1e308, 1e308;
-  const Eigen::VectorXd densities = log_density(two_components_2d(), points);
-  EXPECT_TRUE(densities.allFinite());
-  EXPECT_LT(densities[1], densities[0]);
-}
-
-TEST(LogDensity, ComponentWithoutWeightAddsNothing) {
-  const Mixture both = two_components_2d();
-  const Mixture second_only(Eigen::Vector2d(0, 1), both.means(), both.covariances());
-  const Mixture alone(Eigen::VectorXd::Ones(1), both.means().col(1), {both.covariances()[1]});
-  const Eigen::MatrixXd points = Eigen::MatrixXd::Random(2, 10);
-  EXPECT_TRUE(log_density(second_only, points).isApprox(log_density(alone, points), 1e-14));
-}
-
-TEST(LogDensity, RefusesWhatDoesNotFit) {
-  EXPECT_THROW(log_density(two_components_2d(), Eigen::MatrixXd::Zero(3, 1)),
-               std::invalid_argument);
-  EXPECT_EQ(log_density(two_components_2d(), Eigen::MatrixXd::Zero(2, 0)).size(), 0);
-}
-
-TEST(LogDensity, CovarianceThatIsNotPositiveDefiniteIsNamed) {
+TEST(CholeskyFactors, NameACovarianceThatIsNotPositiveDefinite) {
   Eigen::Matrix2d indefinite;
   indefinite << 1, 2, 2, 1;
   const Mixture mixture(Eigen::Vector2d(0.5, 0.5), Eigen::MatrixXd::Zero(2, 2),
                         {Eigen::Matrix2d::Identity(), indefinite});
   try {
-    log_density(mixture, Eigen::MatrixXd::Zero(2, 1));
+    cholesky_factors(mixture);
     FAIL() << "accepted";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ErrorCode::Internal);
@@ -123,14 +81,5 @@ TEST(LogDensity, CovarianceThatIsNotPositiveDefiniteIsNamed) {
   }
 }
 
-TEST(LogSumExp, NeitherOverflowsNorUnderflows) {
-  Eigen::MatrixXd terms(3, 2);
-  terms << 1e4, 1e4, -1e4, -1e4, 0, -std::numeric_limits<double>::infinity();
-  const Eigen::VectorXd sums = log_sum_exp_of_rows(terms);
-  EXPECT_DOUBLE_EQ(sums[0], 1e4 + std::log(2));
-  EXPECT_DOUBLE_EQ(sums[1], -1e4 + std::log(2));
-  EXPECT_DOUBLE_EQ(sums[2], 0);
-}
-
 }  // namespace
-}  // namespace kinship::mixture::density_test
+}  // namespace kinship::mixture::cholesky_test
