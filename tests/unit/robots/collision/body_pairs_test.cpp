@@ -1,10 +1,10 @@
-#include "robots/collision/link_pairs.hpp"
+#include "robots/collision/body_pairs.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
-namespace kinship::collision::link_pairs_test {
+namespace kinship::collision::body_pairs_test {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
@@ -55,4 +55,4 @@ TEST(NeighbouringLinks, MeetThroughAShapelessRoot) {
 }
 
 }  // namespace
-}  // namespace kinship::collision::link_pairs_test
+}  // namespace kinship::collision::body_pairs_test
