@@ -33,8 +33,11 @@ struct Group {
             middle + 0.1 * (1 + i) * (test::random_configuration(source, generator) - middle) / 2;
       paths.emplace_back(waypoints);
       const double most = 0.3 * i;
-      filters.push_back({i % 3 == 1 ? Keep([most](const auto& q) { return q[1] < most; }) : Keep(),
-                         i % 4 == 2 ? Keep([](const auto& q) { return q[2] > -0.5; }) : Keep()});
+      filters.push_back({i % 3 == 1
+                             ? ConfigurationFilter([most](const auto& q) { return q[1] < most; })
+                             : ConfigurationFilter(),
+                         i % 4 == 2 ? ConfigurationFilter([](const auto& q) { return q[2] > -0.5; })
+                                    : ConfigurationFilter()});
     }
   }
 
