@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "server/transfer/extension_pool.hpp"
 #include "server/transfer/path_poses.hpp"
 #include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/take_over.hpp"
 #include "server/transfer/uncovered_poses.hpp"
-#include "server/transfer/walk_pool.hpp"
 
 namespace kinship::transfer {
 namespace {
@@ -149,7 +149,7 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
     under_way.emplace_back(i, waypoints, paths[i], pair, parameters, seed);
     trackers.push_back(&under_way.back().tracker);
   }
-  WalkPool(pair).run(trackers);
+  ExtensionPool(pair).run(trackers);
   for (PathUnderWay& path : under_way)
     results[path.index] = with_random_solutions(path, pair, parameters, seed);
   return results;

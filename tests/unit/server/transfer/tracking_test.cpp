@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "server/transfer/extension_pool.hpp"
 #include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/transfer.hpp"
-#include "server/transfer/walk_pool.hpp"
 #include "tests/support/joint_distance.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/transfer_path.hpp"
@@ -41,7 +41,7 @@ Path bent_path() {
 
 /// The tracks of one path alone.
 const std::vector<Track>& found_tracks(const ArmPair& pair, ShapeTracker& tracker) {
-  WalkPool(pair).run({&tracker});
+  ExtensionPool(pair).run({&tracker});
   return tracker.tracks();
 }
 

@@ -1,4 +1,4 @@
-#include "server/transfer/walk_pool.hpp"
+#include "server/transfer/extension_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "tests/support/robots.hpp"
 #include "tests/support/transfer_path.hpp"
 
-namespace kinship::transfer::walk_pool_test {
+namespace kinship::transfer::extension_pool_test {
 namespace {
 
 using test::transfer_path;
@@ -66,9 +66,9 @@ struct Group {
   std::vector<Filters> filters;
 };
 
-class WalkPoolBetween : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+class ExtensionPoolBetween : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(WalkPoolBetween, APathBecomesTheSameAloneAndInAnyGroup) {
+TEST_P(ExtensionPoolBetween, APathBecomesTheSameAloneAndInAnyGroup) {
   const Group group(GetParam().first, GetParam().second);
   std::vector<TransferredPath> alone;
   std::uint64_t kept = 0, tried = 0;
@@ -94,7 +94,7 @@ TEST_P(WalkPoolBetween, APathBecomesTheSameAloneAndInAnyGroup) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, WalkPoolBetween,
+INSTANTIATE_TEST_SUITE_P(Pairs, ExtensionPoolBetween,
                          testing::Values(std::pair("ur10e", "panda"), std::pair("panda", "ur10e"),
                                          std::pair("planar_5r_a", "planar_7r_c")),
                          [](const auto& instance) {
@@ -127,4 +127,4 @@ TEST(TransferPaths, OfAnEmptyGroupNothingComes) {
 }
 
 }  // namespace
-}  // namespace kinship::transfer::walk_pool_test
+}  // namespace kinship::transfer::extension_pool_test

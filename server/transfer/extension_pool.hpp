@@ -11,34 +11,35 @@
 
 namespace kinship::transfer {
 
-/// Runs the walks of several trackers of one pair side by side: a lane whose walk has ended takes
-/// the next one that waits, whichever path it belongs to. What a walk does depends on itself only,
-/// so each tracker's tracks are those that it would find alone. Not shared between threads.
-class WalkPool {
+/// Runs the extensions of several trackers of one pair side by side: a lane whose extension has
+/// ended takes the next one that waits, whichever path it belongs to. What an extension does
+/// depends on itself only, so each tracker's tracks are those that it would find alone. Not shared
+/// between threads.
+class ExtensionPool {
  public:
   /// \param pair  outlives it.
-  explicit WalkPool(const ArmPair& pair);
+  explicit ExtensionPool(const ArmPair& pair);
 
   /// Until no tracker has anything left to try.
   /// \param trackers  of the pair.
   void run(const std::vector<ShapeTracker*>& trackers);
 
  private:
-  /// A walk and whose it is.
+  /// An extension and whose it is.
   struct Errand {
     ShapeTracker* tracker = nullptr;
-    Walk walk;
+    TrackExtension extension;
   };
 
-  void enqueue(ShapeTracker& tracker, std::vector<Walk> walks);
+  void enqueue(ShapeTracker& tracker, std::vector<TrackExtension> extensions);
   Errand& errand(int lane) { return errands_[static_cast<std::size_t>(lane)]; }
-  /// Gives lanes without a walk those that wait.
+  /// Gives lanes without an extension those that wait.
   void fill();
-  /// Lets a lane make the next step of its walk. \return false: it is at the end of the path.
+  /// Lets a lane make the next step of its extension. \return false: it is at the end of the path.
   bool go_on(int lane);
   /// Hands over to the trackers what lanes found.
   void hand_over();
-  void end_walk(int lane);
+  void end_extension(int lane);
 
   ShapeLanes lanes_;
   inverse::JointSpace space_;

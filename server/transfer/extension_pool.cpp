@@ -1,54 +1,54 @@
-#include "server/transfer/walk_pool.hpp"
+#include "server/transfer/extension_pool.hpp"
 
 #include <cstddef>
 #include <utility>
 
 namespace kinship::transfer {
 
-WalkPool::WalkPool(const ArmPair& pair)
+ExtensionPool::ExtensionPool(const ArmPair& pair)
     : lanes_(pair),
       space_(pair.target()),
       found_(Eigen::MatrixXd::Zero(pair.target().dof(), ShapeLanes::kCount)) {}
 
-void WalkPool::run(const std::vector<ShapeTracker*>& trackers) {
+void ExtensionPool::run(const std::vector<ShapeTracker*>& trackers) {
   for (ShapeTracker* tracker : trackers)
     enqueue(*tracker, tracker->begin_round());
   for (fill(); lanes_.run(); fill())
     hand_over();
 }
 
-void WalkPool::enqueue(ShapeTracker& tracker, std::vector<Walk> walks) {
-  for (Walk& walk : walks)
-    waiting_.push_back({&tracker, std::move(walk)});
+void ExtensionPool::enqueue(ShapeTracker& tracker, std::vector<TrackExtension> extensions) {
+  for (TrackExtension& extension : extensions)
+    waiting_.push_back({&tracker, std::move(extension)});
 }
 
-void WalkPool::fill() {
+void ExtensionPool::fill() {
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane)
     while (lanes_.is_idle(lane) && !waiting_.empty()) {
       errand(lane) = std::move(waiting_.front());
       waiting_.pop_front();
       if (!go_on(lane))
-        end_walk(lane);
+        end_extension(lane);
     }
 }
 
-bool WalkPool::go_on(int lane) {
-  const Walk& walk = errand(lane).walk;
+bool ExtensionPool::go_on(int lane) {
+  const TrackExtension& extension = errand(lane).extension;
   const ShapeTracker& tracker = *errand(lane).tracker;
-  const Eigen::Index to = walk.pose + walk.direction;
+  const Eigen::Index to = extension.pose + extension.direction;
   if (to < 0 || to >= tracker.poses().size())
     return false;
   lanes_.aim(lane, tracker.poses().T_base_transfer[static_cast<std::size_t>(to)],
              tracker.poses().source_shapes[static_cast<std::size_t>(to)]);
-  lanes_.put(lane, walk.q);
-  if (walk.direction == 0)
+  lanes_.put(lane, extension.q);
+  if (extension.direction == 0)
     lanes_.begin_pull(lane, tracker.start_steps());
   else
-    lanes_.begin_step(lane, tracker.most_motion(walk), tracker.steps());
+    lanes_.begin_step(lane, tracker.most_motion(extension), tracker.steps());
   return true;
 }
 
-void WalkPool::hand_over() {
+void ExtensionPool::hand_over() {
   std::array<bool, ShapeLanes::kCount> within{};
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane) {
     if (lanes_.state(lane) != ShapeLanes::State::Arrived)
@@ -61,18 +61,18 @@ void WalkPool::hand_over() {
     if (!lanes_.has_ended(lane))
       continue;
     const auto i = static_cast<std::size_t>(lane);
-    auto& [tracker, walk] = errand(lane);
+    auto& [tracker, extension] = errand(lane);
     const bool taken =
-        within[i] && right[i] && tracker->take(walk, lanes_.at(lane), found_.col(lane));
-    if (!taken || walk.direction == 0 || !go_on(lane))
-      end_walk(lane);
+        within[i] && right[i] && tracker->take(extension, lanes_.at(lane), found_.col(lane));
+    if (!taken || extension.direction == 0 || !go_on(lane))
+      end_extension(lane);
   }
 }
 
-void WalkPool::end_walk(int lane) {
+void ExtensionPool::end_extension(int lane) {
   lanes_.rest(lane);
-  auto& [tracker, walk] = errand(lane);
-  enqueue(*tracker, tracker->end(walk));
+  auto& [tracker, extension] = errand(lane);
+  enqueue(*tracker, tracker->end(extension));
 }
 
 }  // namespace kinship::transfer
