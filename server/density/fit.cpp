@@ -92,12 +92,12 @@ class Fit {
       return run_warm(std::move(all), *options_.warm_start);
     if (options_.components > 0)
       return run_fixed(std::move(all), options_.components);
-    const std::optional<Ladder> ladder = climb();
-    if (!ladder)
+    const std::optional<ComponentSearch> search = search_components();
+    if (!search)
       return run_fixed(std::move(all), components_of_few_paths(data_.paths()));
-    FitSummary summary = refined(ladder->best, data_.blocks_of(std::move(all)), em_);
-    summary.curve = ladder->curve;
-    summary.held_out_score = ladder->best_score;
+    FitSummary summary = refined(search->best, data_.blocks_of(std::move(all)), em_);
+    summary.curve = search->curve;
+    summary.held_out_score = search->best_score;
     return summary;
   }
 
@@ -132,7 +132,7 @@ class Fit {
   }
 
   /// \return nothing if there is too little to hold a part of it out.
-  std::optional<Ladder> climb() const {
+  std::optional<ComponentSearch> search_components() const {
     if (data_.paths() < kLeastPathsToScore)
       return std::nullopt;
     auto split = data_.split(held_out_paths(data_.paths(), options_.seed));
@@ -140,9 +140,9 @@ class Fit {
       return std::nullopt;
     const Eigen::Index most =
         components_for(split->training, configurations_.rows(), kMostComponents);
-    return climb_down(sample_of(data_.blocks_of(std::move(split->training)), most),
-                      sample_of(data_.blocks_of(std::move(split->held_out)), most), most,
-                      log_uniform(configurations_, options_.limits), options_.seed, em_);
+    return prune_components(sample_of(data_.blocks_of(std::move(split->training)), most),
+                            sample_of(data_.blocks_of(std::move(split->held_out)), most), most,
+                            log_uniform(configurations_, options_.limits), options_.seed, em_);
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;

@@ -13,10 +13,10 @@
 #include "proto/mixture/cholesky.hpp"
 #include "proto/types/limits.hpp"
 #include "server/density/block_points.hpp"
+#include "server/density/component_search.hpp"
 #include "server/density/em_run.hpp"
 #include "server/density/fit_input.hpp"
 #include "server/density/hold_out.hpp"
-#include "server/density/ladder.hpp"
 
 namespace kinship::density {
 namespace {

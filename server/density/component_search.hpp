@@ -11,7 +11,7 @@
 namespace kinship::density {
 
 /// What is tried, from too many components down.
-struct Ladder {
+struct ComponentSearch {
   std::vector<ComponentScore> curve;  ///< falling number of components
   Mixture best;                       ///< of the highest score, fitted to the training points
   double best_score = 0;
@@ -24,7 +24,8 @@ inline constexpr double kBackgroundShare = 0.01;
 /// step on the held-out points. Ends early where scores are low or merging fails.
 /// \param most  components to begin with, at least 1.
 /// \param log_uniform  u as above, logarithm.
-Ladder climb_down(const BlockPoints& training, const BlockPoints& held_out, Eigen::Index most,
-                  double log_uniform, std::uint64_t seed, const EmOptions& options);
+ComponentSearch prune_components(const BlockPoints& training, const BlockPoints& held_out,
+                                 Eigen::Index most, double log_uniform, std::uint64_t seed,
+                                 const EmOptions& options);
 
 }  // namespace kinship::density
