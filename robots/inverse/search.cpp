@@ -61,7 +61,7 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
                                                                : std::max(most_, kMostFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
-      patient_(options.patient),
+      exhaustive_(options.exhaustive),
       pairs_(come_in_pairs(solver.lanes())),
       generator_(options.seed, T_base_tip),
       found_(solver.space().dof()),
@@ -102,7 +102,7 @@ void Search::find() {
     if (found_.empty() && least_squared_error_ > kNear * kNear)
       return;
   }
-  if (found_.empty() && !patient_)
+  if (found_.empty() && !exhaustive_)
     return;
   descend({starts - kFirstStarts, kIterations, steer, patience});
   if (found_.empty()) {

@@ -76,7 +76,7 @@ class Search {
   const std::size_t wanted_;   // to be found before the choice
   const double apart_;         // between those found
   const bool all_;             // as many as there are
-  const bool patient_;         // also where the first starts found nothing
+  const bool exhaustive_;      // goes on where the first starts found nothing
   const bool pairs_;           // branches come in pairs
   const CounterGenerator generator_;
 

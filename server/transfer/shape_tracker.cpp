@@ -127,7 +127,7 @@ const ShapeTracker::Candidates& ShapeTracker::candidates(Eigen::Index pose) {
                    {.max_solutions = parameters_.track_candidates,
                     .min_distance = kCandidateDistance,
                     .seed = seed_,
-                    .patient = false})
+                    .exhaustive = false})
             .configurations;
     known.emplace();
     known->configurations = passed(std::move(found), filters_);

@@ -30,12 +30,12 @@ void append_distinct(const Eigen::MatrixXd& more, const inverse::JointSpace& tar
 RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
-                                 CountedFilters& filters, bool patient) {
+                                 CountedFilters& filters, bool exhaustive) {
   const Eigen::Isometry3d T_base_tip = T_base_transfer * target.T_tip_transfer().inverse();
   inverse::InverseOptions options{.max_solutions = parameters.max_solutions,
                                   .min_distance = parameters.min_distance,
                                   .seed = seed,
-                                  .patient = patient};
+                                  .exhaustive = exhaustive};
   inverse::InverseSolutions first = target.solve(T_base_tip, options);
   const Eigen::Index found = first.configurations.cols();
   RandomSolutions result{passed(std::move(first.configurations), filters), first.reason, false};
@@ -56,9 +56,9 @@ std::vector<RandomSolutions> solve_uncovered(const ArmPair& pair, const PathPose
                                              std::uint64_t seed, CountedFilters& filters) {
   const std::size_t count = covered.size();
   std::vector<RandomSolutions> found(count);
-  const auto look = [&](std::size_t pose, bool patient) {
+  const auto look = [&](std::size_t pose, bool exhaustive) {
     found[pose] = random_solutions(pair.target_solver(), poses.T_base_transfer[pose], parameters,
-                                   seed, filters, patient);
+                                   seed, filters, exhaustive);
   };
   const auto is_reached = [&](std::size_t pose) {
     return found[pose].reason == inverse::NoSolution::None;

@@ -23,12 +23,13 @@ struct RandomSolutions {
 /// Up to parameters.max_solutions configurations at least parameters.min_distance apart, a random
 /// choice among those that the filters keep. Where they leave some out, others are looked for once.
 /// \param T_base_transfer  pose of the transfer frame in the target's base link.
-/// \param patient          InverseOptions::patient: whether to go on where the first starts found
+/// \param exhaustive          InverseOptions::exhaustive: whether to go on where the first starts
+/// found
 ///                         nothing.
 RandomSolutions random_solutions(const inverse::Solver& target,
                                  const Eigen::Isometry3d& T_base_transfer,
                                  const TransferParameters& parameters, std::uint64_t seed,
-                                 CountedFilters& filters, bool patient = true);
+                                 CountedFilters& filters, bool exhaustive = true);
 
 /// Random solutions of the poses of a path that no track covers.
 ///

@@ -20,9 +20,9 @@ constexpr int kMostDraws = 10'000;
 /// their limits); f, out of reach by a few centimetres, as patience finds out.
 class UncoveredPoses : public testing::Test {
  protected:
-  RandomSolutions look(const Eigen::Isometry3d& T_base_transfer, bool patient) {
+  RandomSolutions look(const Eigen::Isometry3d& T_base_transfer, bool exhaustive) {
     return random_solutions(pair_.target_solver(), T_base_transfer, parameters_, kSeed, counted_,
-                            patient);
+                            exhaustive);
   }
 
   Eigen::Isometry3d pose(char kind) {
