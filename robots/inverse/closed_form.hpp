@@ -57,7 +57,7 @@ class ClosedForm {
   std::span<const int> locks() const noexcept { return locks_; }
 
   /// At most as many configurations per pose and values of the locked joints.
-  int branches() const noexcept { return planar_ ? 2 : kMostBranches; }
+  int branches() const noexcept { return planar_ ? 2 : kMaxBranches; }
 
   /// Whether the axes have the structure exactly. If not, what `append` gives is a solution of the
   /// nominal chain, off by about `deviation()`, and has to be polished.

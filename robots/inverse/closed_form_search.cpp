@@ -20,7 +20,7 @@ constexpr double kNearlyRecovered_rad = 0.3;  // before the polish
 constexpr double kRecoveredShare = 0.9;
 constexpr double kNearlyRecoveredShare = 0.5;
 constexpr std::uint64_t kSeed = 0x6b696e;
-constexpr int kMostPlanarChoices = 60;
+constexpr int kMaxPlanarChoices = 60;
 constexpr double kBetter = 1.15;  // less than that is chance, and the first choice stands
 
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
@@ -78,7 +78,7 @@ std::vector<std::vector<int>> planar_choices(int dof, int count) {
       for (int c = b + 1; c < dof && count == 3; ++c)
         result.push_back({a, b, c});
     }
-  if (result.size() > kMostPlanarChoices)
+  if (result.size() > kMaxPlanarChoices)
     std::erase_if(result, [](const std::vector<int>& free) {
       return free.back() - free.front() >= static_cast<int>(free.size());
     });

@@ -10,17 +10,17 @@ namespace kinship::inverse {
 namespace {
 
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
-constexpr std::size_t kMostSolutions = 1000;
-constexpr std::size_t kMostFound = 64;  // of an arm that is not redundant, before the choice
-constexpr int kIterations = 10;         // measured: a new start is worth more than an eleventh,
-constexpr int kMoreIterations = 5;      // unless the error is below the first of these; then,
+constexpr std::size_t kMaxSolutions = 1000;
+constexpr std::size_t kMaxFound = 64;  // of an arm that is not redundant, before the choice
+constexpr int kIterations = 10;        // measured: a new start is worth more than an eleventh,
+constexpr int kMoreIterations = 5;     // unless the error is below the first of these; then,
 constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
 constexpr int kPatientIterations = 40;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kHoldingStarts = 32;
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
-constexpr int kMostStarts = 4000;
+constexpr int kMaxStarts = 4000;
 constexpr int kFirstStarts = 16;
 constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;        // ended descents in a row without a new solution
@@ -54,11 +54,11 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
     : solver_(solver),
       T_base_transfer_(T_base_tip * solver.T_tip_transfer()),
       most_(options.max_solutions == 0
-                ? kMostSolutions
-                : std::min(static_cast<std::size_t>(options.max_solutions), kMostSolutions)),
+                ? kMaxSolutions
+                : std::min(static_cast<std::size_t>(options.max_solutions), kMaxSolutions)),
       min_distance_(std::max(options.min_distance, kSamePoint)),
       wanted_(solver.redundant() || options.max_solutions == 0 ? most_
-                                                               : std::max(most_, kMostFound)),
+                                                               : std::max(most_, kMaxFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
       exhaustive_(options.exhaustive),
@@ -92,7 +92,7 @@ void Search::find() {
   }
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
   const int starts =
-      all_ ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
+      all_ ? kMaxStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
   const int patience = all_ ? kSaturated : solver_.redundant() ? starts : kBranchPatience;
   descend({kFirstStarts, kIterations, steer, kFirstStarts});
   if (enough())

@@ -13,7 +13,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr int kMostChunks = 32;
+constexpr int kMaxChunks = 32;
 
 /// What a mixture says about the points of one block at a time. Memory of one thread's work.
 class BlockPosterior {
@@ -110,7 +110,7 @@ void BlockPosterior::evaluate(const BlockPoints& points, int block) {
 int chunks(const BlockPoints& points, int numbers_per_chunk) {
   const double numbers = static_cast<double>(points.blocks()) * kBlockPoints * points.dimension();
   return static_cast<int>(std::clamp(numbers / numbers_per_chunk, 1.0,
-                                     static_cast<double>(std::min(kMostChunks, points.blocks()))));
+                                     static_cast<double>(std::min(kMaxChunks, points.blocks()))));
 }
 
 int begin_of_chunk(const BlockPoints& points, int chunk, int count) {

@@ -14,7 +14,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr Eigen::Index kMostComponents = 128;  // where K is chosen
+constexpr Eigen::Index kMaxTriedComponents = 128;  // where K is chosen
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
@@ -139,7 +139,7 @@ class Fit {
     if (!split)
       return std::nullopt;
     const Eigen::Index most =
-        components_for(split->training, configurations_.rows(), kMostComponents);
+        components_for(split->training, configurations_.rows(), kMaxTriedComponents);
     return prune_components(sample_of(data_.blocks_of(std::move(split->training)), most),
                             sample_of(data_.blocks_of(std::move(split->held_out)), most), most,
                             log_uniform(configurations_, options_.limits), options_.seed, em_);

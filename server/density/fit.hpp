@@ -52,7 +52,7 @@ struct FitSummary {
 /// prune_components) when the others are fitted; the mixture of that K is then refitted to all.
 /// Below kLeastPathsToScore paths it is components_of_few_paths, without a curve.
 ///
-/// A warm start adds at most kMostNewComponents, runs EM on a sample (kIterationsBeforeMerging),
+/// A warm start adds at most kMaxNewComponents, runs EM on a sample (kIterationsBeforeMerging),
 /// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there
 /// is: cheaper than a full fit, and what comes out depends on the mixture it began with. It leaves
 /// curve and held_out_score empty.

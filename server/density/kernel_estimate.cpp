@@ -85,8 +85,8 @@ Kernels sample_of(const BlockPoints& points, Eigen::Index count, std::uint64_t s
 }
 
 Kernels kernels_of(const BlockPoints& points, std::uint64_t seed) {
-  constexpr auto kMost = static_cast<Eigen::Index>(kMaxKernels);
-  return points.size() > kMost ? sample_of(points, kMost, seed) : all_of(points);
+  constexpr auto kMaxCount = static_cast<Eigen::Index>(kMaxKernels);
+  return points.size() > kMaxCount ? sample_of(points, kMaxCount, seed) : all_of(points);
 }
 
 /// The mean covariance of clusters of points.

@@ -109,7 +109,7 @@ std::vector<TrackExtension> ShapeTracker::end(const TrackExtension& extension) {
 
 double ShapeTracker::most_motion(const TrackExtension& extension) const {
   const Eigen::Index before = std::min(extension.pose, extension.pose + extension.direction);
-  return kMostMotion * poses_.source_motion[before] + kSpareMotion;
+  return kMaxMotion * poses_.source_motion[before] + kSpareMotion;
 }
 
 int ShapeTracker::start_steps() const noexcept {

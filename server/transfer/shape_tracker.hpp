@@ -34,7 +34,7 @@ struct TrackExtension {
 /// redundant arm so takes the path in one posture, the source's, instead of one per pose.
 ///
 /// A step ends the track if the pose is not reached within the limits, if the target would move
-/// more than kMostMotion times as far as the source and kSpareMotion (joint units), or if a filter
+/// more than kMaxMotion times as far as the source and kSpareMotion (joint units), or if a filter
 /// says no. Deterministic: depends on the seed and on what it is given. Not shared between threads.
 ///
 /// Tries are made in rounds: as many as would be made one after the other whatever comes of them.
@@ -43,7 +43,7 @@ struct TrackExtension {
 /// ended.
 class ShapeTracker {
  public:
-  static constexpr double kMostMotion = 3;
+  static constexpr double kMaxMotion = 3;
   static constexpr double kSpareMotion = 0.3;
   static constexpr int kTriesPerTrack = 6;
 

@@ -80,7 +80,7 @@ TEST(WarmStart, MoreOfTheSameAddsNoComponent) {
   const Grown far(clouds({9}, 2));
   const Mixture longer = start_of(far);
   EXPECT_GT(longer.size(), far.warm.mixture.size());
-  EXPECT_LE(longer.size(), far.warm.mixture.size() + kMostNewComponents);
+  EXPECT_LE(longer.size(), far.warm.mixture.size() + kMaxNewComponents);
   EXPECT_NEAR(longer.weights().sum(), 1, 1e-12);
 }
 

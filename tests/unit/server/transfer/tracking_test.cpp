@@ -83,7 +83,7 @@ void expect_lawful(const Tracking& run, double least_coverage) {
       if (i == 0)
         continue;
       const double most =
-          ShapeTracker::kMostMotion * run.poses.source_motion[track.first_pose + i - 1] +
+          ShapeTracker::kMaxMotion * run.poses.source_motion[track.first_pose + i - 1] +
           ShapeTracker::kSpareMotion;
       EXPECT_LE(test::distance(run.target, q, track.configurations.col(i - 1)), most + 1e-9);
     }
@@ -118,7 +118,7 @@ TEST(ShapeTracker, FollowsAcrossPiOfContinuousJoints) {
       if (i > 0) {
         EXPECT_LE(
             test::distance(target, track.configurations.col(i), track.configurations.col(i - 1)),
-            ShapeTracker::kMostMotion * 0.3 + ShapeTracker::kSpareMotion + 1e-9);
+            ShapeTracker::kMaxMotion * 0.3 + ShapeTracker::kSpareMotion + 1e-9);
       }
     }
 }

@@ -14,7 +14,7 @@ namespace kinship::transfer::uncovered_poses_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
-constexpr int kMostDraws = 10'000;
+constexpr int kMaxDraws = 10'000;
 
 /// Poses of a Panda by what they cost: e, found at once; h, found with patience only (joints at
 /// their limits); f, out of reach by a few centimetres, as patience finds out.
@@ -26,7 +26,7 @@ class UncoveredPoses : public testing::Test {
   }
 
   Eigen::Isometry3d pose(char kind) {
-    for (int i = 0; i < kMostDraws; ++i) {
+    for (int i = 0; i < kMaxDraws; ++i) {
       Eigen::VectorXd q = test::random_configuration(arm_, generator_);
       for (Eigen::Index j = 0; kind == 'h' && j < q.size(); ++j)
         q[j] = generator_() % 2 == 0 ? arm_.lower()[j] : arm_.upper()[j];
