@@ -11,12 +11,12 @@
 #include "proto/types/names.hpp"
 #include "server/density/fit.hpp"
 #include "server/density/kernel_estimate.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/fitting/profile_advice.hpp"
 #include "server/fitting/selected_experience.hpp"
 #include "server/fitting/source_transfer.hpp"
 #include "server/fitting/source_words.hpp"
-#include "server/fitting/turn_cuts.hpp"
 #include "server/fitting/warm_refit.hpp"
 
 namespace kinship::fitting {

@@ -14,9 +14,9 @@
 #include <string>
 
 #include "proto/types/profile_text.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/fit_distribution.hpp"
 #include "server/fitting/source_transfer.hpp"
-#include "server/fitting/turn_cuts.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/bench/learning_sets.hpp"
 #include "tests/support/log_density.hpp"

@@ -1,4 +1,4 @@
-#include "server/fitting/turn_cuts.hpp"
+#include "server/fitting/branch_cuts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,8 +56,8 @@ double width_of_gap_at(double cut, const std::vector<double>& angles) {
 
 }  // namespace
 
-TurnCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& configurations) {
-  TurnCuts cuts(static_cast<std::size_t>(chain.dof()));
+BranchCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& configurations) {
+  BranchCuts cuts(static_cast<std::size_t>(chain.dof()));
   bool has_cut = false;
   for (Eigen::Index joint = 0; joint < chain.dof(); ++joint) {
     const auto index = static_cast<std::size_t>(joint);
@@ -66,10 +66,10 @@ TurnCuts find_cuts(const kinematics::Chain& chain, const Eigen::MatrixXd& config
     cuts[index] = middle_of_largest_gap(angles_of(configurations, joint));
     has_cut = true;
   }
-  return has_cut ? cuts : TurnCuts{};
+  return has_cut ? cuts : BranchCuts{};
 }
 
-bool still_cuts(const TurnCuts& cuts, const kinematics::Chain& chain,
+bool still_cuts(const BranchCuts& cuts, const kinematics::Chain& chain,
                 const Eigen::MatrixXd& configurations) {
   for (Eigen::Index joint = 0; joint < chain.dof(); ++joint) {
     const auto index = static_cast<std::size_t>(joint);
@@ -84,14 +84,14 @@ bool still_cuts(const TurnCuts& cuts, const kinematics::Chain& chain,
   return true;
 }
 
-void wrap(const TurnCuts& cuts, Eigen::MatrixXd& configurations) {
+void wrap(const BranchCuts& cuts, Eigen::MatrixXd& configurations) {
   for (std::size_t joint = 0; joint < cuts.size(); ++joint)
     if (cuts[joint])
       for (double& angle : configurations.row(static_cast<Eigen::Index>(joint)))
         angle = wrapped(angle, *cuts[joint]);
 }
 
-Eigen::Matrix2Xd limits_with(const TurnCuts& cuts, const kinematics::Chain& chain) {
+Eigen::Matrix2Xd limits_with(const BranchCuts& cuts, const kinematics::Chain& chain) {
   Eigen::Matrix2Xd limits(2, chain.dof());
   limits.row(0) = chain.lower().transpose();
   limits.row(1) = chain.upper().transpose();

@@ -1,4 +1,4 @@
-#include "server/fitting/turn_cuts.hpp"
+#include "server/fitting/branch_cuts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "server/density/fit.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace kinship::fitting::turn_cuts_test {
+namespace kinship::fitting::branch_cuts_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -33,23 +33,23 @@ Eigen::MatrixXd straddling(Eigen::Index count) {
   return configurations;
 }
 
-TEST(TurnCuts, LieInTheLargestGap) {
-  const TurnCuts cuts = find_cuts(turning_arm(), straddling(400));
+TEST(BranchCuts, LieInTheLargestGap) {
+  const BranchCuts cuts = find_cuts(turning_arm(), straddling(400));
   ASSERT_EQ(cuts.size(), 2U);
   EXPECT_NEAR(*cuts[0], -0.8, 0.2);  // the gap from pi back to 1.5 the long way round
   EXPECT_GE(*cuts[1], -std::numbers::pi);
   EXPECT_LT(*cuts[1], std::numbers::pi);
 }
 
-TEST(TurnCuts, OfJointsWithLimitsAreNone) {
+TEST(BranchCuts, OfJointsWithLimitsAreNone) {
   const kinematics::Chain arm = test::PlanarArm{.lengths_m = {0.4, 0.3}}.chain();
   EXPECT_TRUE(find_cuts(arm, straddling(10)).empty());
   EXPECT_EQ(limits_with({}, arm)(0, 1), arm.lower()[1]);
 }
 
-TEST(TurnCuts, WrappedAnglesLieBehindTheCutAndAreTheSame) {
+TEST(BranchCuts, WrappedAnglesLieBehindTheCutAndAreTheSame) {
   const Eigen::MatrixXd before = straddling(400);
-  const TurnCuts cuts = find_cuts(turning_arm(), before);
+  const BranchCuts cuts = find_cuts(turning_arm(), before);
   Eigen::MatrixXd after = before;
   wrap(cuts, after);
   const Eigen::Matrix2Xd limits = limits_with(cuts, turning_arm());
@@ -64,7 +64,7 @@ TEST(TurnCuts, WrappedAnglesLieBehindTheCutAndAreTheSame) {
   EXPECT_LT(after.row(0).maxCoeff(), 4);
 }
 
-TEST(TurnCuts, OnePlaceIsCutOppositeOfIt) {
+TEST(BranchCuts, OnePlaceIsCutOppositeOfIt) {
   for (const double place : {0.0, 1.0, 3.1, -3.1}) {
     const Eigen::MatrixXd same = Eigen::MatrixXd::Constant(2, 3, place);
     EXPECT_NEAR(std::abs(std::remainder(*find_cuts(turning_arm(), same)[0] - place, kTurn)),
@@ -72,10 +72,10 @@ TEST(TurnCuts, OnePlaceIsCutOppositeOfIt) {
   }
 }
 
-TEST(TurnCuts, AnEarlierCutHoldsWhileItsGapIsWide) {
+TEST(BranchCuts, AnEarlierCutHoldsWhileItsGapIsWide) {
   Eigen::MatrixXd angles = Eigen::MatrixXd::Zero(2, 3);
   angles.row(0) << -0.5, 0, 0.5;
-  const TurnCuts cuts = find_cuts(turning_arm(), angles);  // opposite of 0
+  const BranchCuts cuts = find_cuts(turning_arm(), angles);  // opposite of 0
   EXPECT_TRUE(still_cuts(cuts, turning_arm(), angles));
   angles.row(0) << -0.5, 0, 2;  // the gap around pi is smaller now, and still the largest
   EXPECT_TRUE(still_cuts(cuts, turning_arm(), angles));
@@ -86,11 +86,11 @@ TEST(TurnCuts, AnEarlierCutHoldsWhileItsGapIsWide) {
   EXPECT_FALSE(still_cuts({}, turning_arm(), angles));
 }
 
-TEST(TurnCuts, FullTurnsChangeNothing) {
+TEST(BranchCuts, FullTurnsChangeNothing) {
   const Eigen::MatrixXd configurations = straddling(600);
   const Eigen::MatrixXd turned = configurations.array() + kTurn;
   const auto fitted = [](Eigen::MatrixXd angles) {
-    const TurnCuts cuts = find_cuts(turning_arm(), angles);
+    const BranchCuts cuts = find_cuts(turning_arm(), angles);
     wrap(cuts, angles);
     density::FitOptions options;
     options.components = 4;
@@ -106,4 +106,4 @@ TEST(TurnCuts, FullTurnsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace kinship::fitting::turn_cuts_test
+}  // namespace kinship::fitting::branch_cuts_test
