@@ -1,4 +1,4 @@
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "server/density/hold_out.hpp"
 #include "tests/support/log_density.hpp"
 
-namespace kinship::density::kernel_estimate_test {
+namespace kinship::density::kernel_density_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 41;
@@ -23,16 +23,17 @@ Eigen::MatrixXd normal_points(Eigen::Index dimension, Eigen::Index count) {
 }
 
 /// Paths of `length` configurations each, one after the other.
-KernelOptions options_for(const Eigen::MatrixXd& points, Eigen::Index length = 10) {
-  KernelOptions options;
+KernelDensityOptions options_for(const Eigen::MatrixXd& points, Eigen::Index length = 10) {
+  KernelDensityOptions options;
   options.floors_of_joints = Eigen::VectorXd::Constant(points.rows(), 1e-4);
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     options.path_of_configuration.push_back(static_cast<std::uint32_t>(i / length));
   return options;
 }
 
-KernelEstimate estimate(const Eigen::MatrixXd& points, const KernelOptions& options) {
-  return estimate_kernels(points, Eigen::VectorXd::Ones(points.cols()), options).value_or_throw();
+KernelDensity estimate(const Eigen::MatrixXd& points, const KernelDensityOptions& options) {
+  return estimate_kernel_density(points, Eigen::VectorXd::Ones(points.cols()), options)
+      .value_or_throw();
 }
 
 Eigen::Index kernel_at(const Mixture& mixture, const Eigen::VectorXd& q) {
@@ -41,7 +42,7 @@ Eigen::Index kernel_at(const Mixture& mixture, const Eigen::VectorXd& q) {
   return nearest;
 }
 
-TEST(KernelEstimate, IntegratesToOne) {
+TEST(KernelDensity, IntegratesToOne) {
   const Eigen::MatrixXd points = normal_points(2, 60);
   const Mixture mixture = estimate(points, options_for(points)).mixture;
   EXPECT_EQ(mixture.size(), 60);
@@ -93,7 +94,7 @@ double least_loss(const Eigen::MatrixXd& points) {
   return least;
 }
 
-TEST(KernelEstimate, RecoversADensityAboutAsWellAsKernelsCan) {
+TEST(KernelDensity, RecoversADensityAboutAsWellAsKernelsCan) {
   // In two dimensions the loss of the best bandwidth falls about as count^(-2/3).
   constexpr int kDraws = 4;
   double few = 0, many = 0, least_of_many = 0;
@@ -109,70 +110,71 @@ TEST(KernelEstimate, RecoversADensityAboutAsWellAsKernelsCan) {
   EXPECT_LT(many, 0.06);
 }
 
-TEST(KernelEstimate, PlacesFarFromEachOtherDoNotWidenTheKernels) {
+TEST(KernelDensity, PlacesFarFromEachOtherDoNotWidenTheKernels) {
   constexpr double kDistance = 40;
   const Eigen::MatrixXd points = draws_around(kDistance, 500, kSeed);
-  const KernelEstimate made = estimate(points, options_for(points, 1));
+  const KernelDensity made = estimate(points, options_for(points, 1));
   EXPECT_GT(made.bandwidth.clusters, 1);
   EXPECT_LT(loss_of(made.mixture, kDistance), 0.12);
 }
 
-TEST(KernelEstimate, WeighsItsKernelsAsTheConfigurations) {
+TEST(KernelDensity, WeighsItsKernelsAsTheConfigurations) {
   const Eigen::MatrixXd points = normal_points(3, 40);
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(40);
   weights[7] = 5;
   weights[8] = 0;
   const Mixture mixture =
-      estimate_kernels(points, weights, options_for(points)).value_or_throw().mixture;
+      estimate_kernel_density(points, weights, options_for(points)).value_or_throw().mixture;
   EXPECT_EQ(mixture.size(), 39);
   const double one = mixture.weights()[kernel_at(mixture, points.col(3))];
   EXPECT_NEAR(mixture.weights()[kernel_at(mixture, points.col(7))], 5 * one, 1e-12);
   EXPECT_NEAR(mixture.weights().sum(), 1, 1e-12);
 }
 
-TEST(KernelEstimate, RepetitionIsWeightAndOrderIsNothing) {
+TEST(KernelDensity, RepetitionIsWeightAndOrderIsNothing) {
   const Eigen::MatrixXd points = normal_points(3, 60);
-  const KernelOptions options = options_for(points);
+  const KernelDensityOptions options = options_for(points);
   Eigen::VectorXd doubled = Eigen::VectorXd::Ones(60);
   doubled[11] = 2;
-  const KernelEstimate weighted = estimate_kernels(points, doubled, options).value_or_throw();
+  const KernelDensity weighted = estimate_kernel_density(points, doubled, options).value_or_throw();
 
   Eigen::MatrixXd repeated(3, 61);
   repeated << points.col(11), points;
-  KernelOptions of_repeated = options;
+  KernelDensityOptions of_repeated = options;
   of_repeated.path_of_configuration.insert(of_repeated.path_of_configuration.begin(), 1);
-  const KernelEstimate again = estimate(repeated, of_repeated);
+  const KernelDensity again = estimate(repeated, of_repeated);
   EXPECT_EQ(again.bandwidth, weighted.bandwidth);
   EXPECT_EQ(again.mixture.means(), weighted.mixture.means());
   EXPECT_TRUE(again.mixture.weights().isApprox(weighted.mixture.weights(), 1e-14));
   EXPECT_TRUE(again.mixture.covariance(0).isApprox(weighted.mixture.covariance(0), 1e-12));
 }
 
-TEST(KernelEstimate, ManyConfigurationsAreSampledByWeight) {
+TEST(KernelDensity, ManyConfigurationsAreSampledByWeight) {
   const Eigen::MatrixXd points = normal_points(3, 9000);
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(9000);
-  weights[4321] = 900;                                      // a tenth of all but itself
-  const KernelOptions options = options_for(points, 9000);  // one path: nothing to score
-  const Mixture mixture = estimate_kernels(points, weights, options).value_or_throw().mixture;
+  weights[4321] = 900;                                             // a tenth of all but itself
+  const KernelDensityOptions options = options_for(points, 9000);  // one path: nothing to score
+  const Mixture mixture =
+      estimate_kernel_density(points, weights, options).value_or_throw().mixture;
   EXPECT_LE(mixture.size(), static_cast<Eigen::Index>(kMaxKernels));
   EXPECT_GT(mixture.size(), 3000);
   EXPECT_NEAR(mixture.weights()[kernel_at(mixture, points.col(4321))], 900.0 / 9899, 1e-3);
   const Eigen::Vector3d mean = points * weights / weights.sum();
   EXPECT_LT((mixture.means() * mixture.weights() - mean).norm(), 0.02);
 
-  KernelOptions other_seed = options;
+  KernelDensityOptions other_seed = options;
   other_seed.seed = 1;
-  EXPECT_EQ(estimate_kernels(points, weights, options)->mixture.means(), mixture.means());
-  EXPECT_NE(estimate_kernels(points, weights, other_seed)->mixture.means(), mixture.means());
+  EXPECT_EQ(estimate_kernel_density(points, weights, options)->mixture.means(), mixture.means());
+  EXPECT_NE(estimate_kernel_density(points, weights, other_seed)->mixture.means(), mixture.means());
 }
 
-TEST(KernelEstimate, BytesDoNotDependOnThreads) {
+TEST(KernelDensity, BytesDoNotDependOnThreads) {
   const Eigen::MatrixXd points = normal_points(4, 800);
-  KernelOptions options = options_for(points, 20);
-  const KernelEstimate one = estimate(points, options);
+  KernelDensityOptions options = options_for(points, 20);
+  const KernelDensity one = estimate(points, options);
   for (const int threads : {2, 3}) {
     options.computation.threads = threads;
-    const KernelEstimate several = estimate(points, options);
+    const KernelDensity several = estimate(points, options);
     EXPECT_EQ(several.held_out_score, one.held_out_score);
     EXPECT_EQ(several.bandwidth, one.bandwidth);
     EXPECT_EQ(several.mixture.means(), one.mixture.means());
@@ -180,15 +182,15 @@ TEST(KernelEstimate, BytesDoNotDependOnThreads) {
   }
 }
 
-TEST(KernelEstimate, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {
+TEST(KernelDensity, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {
   const Eigen::MatrixXd points = normal_points(2, 40);
-  const KernelEstimate one = estimate(points, options_for(points, 40));
+  const KernelDensity one = estimate(points, options_for(points, 40));
   EXPECT_EQ(one.bandwidth, (Bandwidth{1, scale_of_one_path(2)}));
   EXPECT_FALSE(one.held_out_score);
   // two paths that are one and the same: nothing is as good as narrow kernels
   Eigen::MatrixXd twice(2, 80);
   twice << points, points + 1e-3 * normal_points(2, 40);
-  const KernelEstimate two = estimate(twice, options_for(twice, 40));
+  const KernelDensity two = estimate(twice, options_for(twice, 40));
   EXPECT_LT(two.bandwidth.scale, 0.2);
   EXPECT_FALSE(two.held_out_score);
   // two paths far from each other: wide ones
@@ -196,7 +198,7 @@ TEST(KernelEstimate, WithAPathTheBandwidthIsARuleAndWithTwoItIsMeasured) {
   EXPECT_GT(estimate(twice, options_for(twice, 40)).bandwidth.scale, 0.4);
 }
 
-TEST(KernelEstimate, WithFewPathsTheBandwidthIsNotTheLuckOfOneFifth) {
+TEST(KernelDensity, WithFewPathsTheBandwidthIsNotTheLuckOfOneFifth) {
   // One fifth of 20 paths loses 0.25 more than each in turn, and up to 3.8 in a draw.
   constexpr int kDraws = 16;
   double mean = 0, worst = 0;
@@ -210,10 +212,10 @@ TEST(KernelEstimate, WithFewPathsTheBandwidthIsNotTheLuckOfOneFifth) {
   EXPECT_LT(worst, 1.2);
 }
 
-TEST(KernelEstimate, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
+TEST(KernelDensity, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
   const Eigen::MatrixXd points = normal_points(2, 200);
-  const KernelOptions options = options_for(points, 10);
-  const KernelEstimate all = estimate(points, options);
+  const KernelDensityOptions options = options_for(points, 10);
+  const KernelDensity all = estimate(points, options);
   const std::vector<std::uint8_t> held_out = held_out_paths(20, options.seed);
   Eigen::MatrixXd others(2, 160), scored(2, 40);
   for (Eigen::Index i = 0, other = 0, mine = 0; i < 200; ++i)
@@ -233,13 +235,13 @@ TEST(KernelEstimate, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
   EXPECT_NEAR(*all.held_out_score, score, 0.1);
 }
 
-TEST(KernelEstimate, HasAScoreFromTenPathsOn) {
+TEST(KernelDensity, HasAScoreFromTenPathsOn) {
   const Eigen::MatrixXd points = normal_points(2, 100);
   EXPECT_TRUE(estimate(points, options_for(points, 10)).held_out_score);
   EXPECT_FALSE(estimate(points, options_for(points, 12)).held_out_score);
 }
 
-TEST(KernelEstimate, CentresStayWithinLimitsAsF32) {
+TEST(KernelDensity, CentresStayWithinLimitsAsF32) {
   constexpr double kLower = -1.0000000001;  // between two f32, as is the upper one
   constexpr double kUpper = 2.0943951023931953;
   Eigen::MatrixXd points = normal_points(2, 50);
@@ -247,7 +249,7 @@ TEST(KernelEstimate, CentresStayWithinLimitsAsF32) {
   points(0, 0) = points(1, 1) = kUpper;
   points(0, 2) = points(1, 3) = kLower;
   ASSERT_GT(static_cast<double>(static_cast<float>(kUpper)), kUpper);
-  KernelOptions options = options_for(points);
+  KernelDensityOptions options = options_for(points);
   options.limits.resize(2, 2);
   options.limits << kLower, kLower, kUpper, kUpper;
   const Eigen::MatrixXd centres = estimate(points, options).mixture.means();
@@ -257,10 +259,10 @@ TEST(KernelEstimate, CentresStayWithinLimitsAsF32) {
   EXPECT_GT(centres.maxCoeff(), kUpper - 1e-6);
 }
 
-TEST(KernelEstimate, CentresOutsideLimitsOrBetweenThoseWithoutAFloatAreOnlyRounded) {
+TEST(KernelDensity, CentresOutsideLimitsOrBetweenThoseWithoutAFloatAreOnlyRounded) {
   Eigen::MatrixXd points = normal_points(2, 50);
   points.row(1).setConstant(0.7);
-  KernelOptions options = options_for(points);
+  KernelDensityOptions options = options_for(points);
   options.limits.resize(2, 2);
   options.limits << -0.1, 0.7, 0.1, 0.7;
   const Eigen::MatrixXd centres = estimate(points, options).mixture.means();
@@ -276,7 +278,7 @@ TEST(KernelEstimate, CentresOutsideLimitsOrBetweenThoseWithoutAFloatAreOnlyRound
   EXPECT_GT(outside, 30);
 }
 
-TEST(KernelEstimate, ConstantJointGetsTheFloor) {
+TEST(KernelDensity, ConstantJointGetsTheFloor) {
   Eigen::MatrixXd points = normal_points(3, 50);
   points.row(1).setConstant(0.75);
   const Mixture mixture = estimate(points, options_for(points)).mixture;
@@ -284,7 +286,7 @@ TEST(KernelEstimate, ConstantJointGetsTheFloor) {
   EXPECT_TRUE((mixture.means().row(1).array() == 0.75).all());
 }
 
-TEST(KernelEstimate, OnePointFarAwayIsOneKernel) {
+TEST(KernelDensity, OnePointFarAwayIsOneKernel) {
   Eigen::MatrixXd points = normal_points(2, 400);
   const Eigen::VectorXd near =
       kinship::test::log_density(estimate(points, options_for(points)).mixture, points);
@@ -297,11 +299,12 @@ TEST(KernelEstimate, OnePointFarAwayIsOneKernel) {
   EXPECT_GT(with.head(300).mean(), near.head(300).mean() - 1);
 }
 
-TEST(KernelEstimate, RefusesWhatNoMixtureIsMadeOfEither) {
+TEST(KernelDensity, RefusesWhatNoMixtureIsMadeOfEither) {
   const auto refusal = [](const Eigen::MatrixXd& points, double floor) {
-    KernelOptions options = options_for(points);
+    KernelDensityOptions options = options_for(points);
     options.floors_of_joints.setConstant(floor);
-    const auto made = estimate_kernels(points, Eigen::VectorXd::Ones(points.cols()), options);
+    const auto made =
+        estimate_kernel_density(points, Eigen::VectorXd::Ones(points.cols()), options);
     return made ? "accepted" : made.error().message;
   };
   EXPECT_EQ(refusal(Eigen::MatrixXd::Constant(3, 1, 0.5), 1e-4),
@@ -314,21 +317,22 @@ TEST(KernelEstimate, RefusesWhatNoMixtureIsMadeOfEither) {
             "kernels: mixture: covariance of component 0 is not positive definite; "
             "covariance_floor 0 is too small for this data");
   {
-    KernelOptions one_path = options_for(points, 20);  // no other path that would show it
+    KernelDensityOptions one_path = options_for(points, 20);  // no other path that would show it
     one_path.floors_of_joints.setZero();
-    EXPECT_FALSE(estimate_kernels(points, Eigen::VectorXd::Ones(20), one_path));
+    EXPECT_FALSE(estimate_kernel_density(points, Eigen::VectorXd::Ones(20), one_path));
   }
   points(1, 5) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(refusal(points, 1e-4).find("configuration 5 is not finite"), std::string::npos);
-  EXPECT_THROW(static_cast<void>(estimate_kernels(normal_points(3, 20), Eigen::VectorXd::Ones(19),
-                                                  options_for(normal_points(3, 20)))),
-               std::invalid_argument);
-  KernelOptions gap = options_for(normal_points(3, 20));
-  gap.path_of_configuration.back() = 20;
   EXPECT_THROW(
-      static_cast<void>(estimate_kernels(normal_points(3, 20), Eigen::VectorXd::Ones(20), gap)),
+      static_cast<void>(estimate_kernel_density(normal_points(3, 20), Eigen::VectorXd::Ones(19),
+                                                options_for(normal_points(3, 20)))),
       std::invalid_argument);
+  KernelDensityOptions gap = options_for(normal_points(3, 20));
+  gap.path_of_configuration.back() = 20;
+  EXPECT_THROW(static_cast<void>(
+                   estimate_kernel_density(normal_points(3, 20), Eigen::VectorXd::Ones(20), gap)),
+               std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace kinship::density::kernel_estimate_test
+}  // namespace kinship::density::kernel_density_test

@@ -11,7 +11,7 @@
 
 namespace kinship::density {
 
-struct KernelOptions {
+struct KernelDensityOptions {
   Eigen::VectorXd floors_of_joints;  ///< d, added to each variance, squared joint units
   std::uint64_t seed = 0;
   Computation computation = {};
@@ -31,7 +31,7 @@ struct Bandwidth {
   bool operator==(const Bandwidth&) const = default;
 };
 
-struct KernelEstimate {
+struct KernelDensity {
   Mixture mixture;  ///< at most kMaxKernels components, one covariance, means that f32 can hold
   Bandwidth bandwidth;
   /// On the first fifth of the paths (held_out_paths), of kernels of the others with the bandwidth
@@ -56,9 +56,9 @@ struct KernelEstimate {
 /// (likelihood cross-validation) and 4.2; Iversen and Ellekilde, Kernel density estimation based
 /// self-learning sampling strategy for motion planning of repetitive tasks (2016), for the use in
 /// planning.
-Result<KernelEstimate> estimate_kernels(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                                        const Eigen::Ref<const Eigen::VectorXd>& weights,
-                                        const KernelOptions& options);
+Result<KernelDensity> estimate_kernel_density(
+    const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+    const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options);
 
 /// Silverman's rule (1986, section 4.3.2) for a sample of one: how far another path may be is a
 /// matter of paths, not of their configurations.

@@ -1,4 +1,4 @@
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,14 +31,16 @@ constexpr double kLowClusterScore_nats =
     0.25;  // below the best of the clusters: narrower is no better
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                   const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options) {
-  check_sizes(configurations, weights, options.limits, "estimate_kernels");
+                   const Eigen::Ref<const Eigen::VectorXd>& weights,
+                   const KernelDensityOptions& options) {
+  check_sizes(configurations, weights, options.limits, "estimate_kernel_density");
   if (!are_paths_of(options.path_of_configuration, configurations.cols()))
     throw std::invalid_argument(
-        "estimate_kernels: need the path of each configuration, counted from 0 without gaps");
+        "estimate_kernel_density: need the path of each configuration, counted from 0 without "
+        "gaps");
   const Eigen::VectorXd& floors = options.floors_of_joints;
   if (floors.size() != configurations.rows() || !floors.allFinite() || floors.minCoeff() < 0)
-    throw std::invalid_argument("estimate_kernels: need one finite floor >= 0 per joint");
+    throw std::invalid_argument("estimate_kernel_density: need one finite floor >= 0 per joint");
 }
 
 /// Centres of kernels and what each weighs.
@@ -142,20 +144,20 @@ void round_inward(Eigen::MatrixXd& centres, const Eigen::Matrix2Xd& limits) {
 class Estimate {
  public:
   Estimate(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-           const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelOptions& options)
+           const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options)
       : dimension_(configurations.rows()),
         data_(configurations, weights, options.path_of_configuration),
         options_(options),
         log_uniform_(log_uniform(configurations, options.limits)) {}
 
-  KernelEstimate run(DistinctPoints all) const {
+  KernelDensity run(DistinctPoints all) const {
     const Choice choice = choose(folds());
     const BlockPoints points = data_.blocks_of(std::move(all));
     const Eigen::MatrixXd pooled =
         pooled_covariance(points, choice.bandwidth.clusters, options_.seed, options_.computation);
     Kernels kernels = kernels_of(points, options_.seed);
     round_inward(kernels.centres, options_.limits);
-    KernelEstimate estimate{
+    KernelDensity estimate{
         mixture_of(kernels, pooled, choice.bandwidth.scale, options_.floors_of_joints),
         choice.bandwidth};
     mixture::cholesky_factors(estimate.mixture);  // throws if there is none
@@ -253,7 +255,7 @@ class Estimate {
 
   const Eigen::Index dimension_;
   const WeightedConfigurations data_;
-  const KernelOptions& options_;
+  const KernelDensityOptions& options_;
   const double log_uniform_;
 };
 
@@ -264,9 +266,9 @@ double scale_of_one_path(Eigen::Index dimension) {
   return std::pow(4 / (d + 2), 1 / (d + 4));
 }
 
-Result<KernelEstimate> estimate_kernels(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                                        const Eigen::Ref<const Eigen::VectorXd>& weights,
-                                        const KernelOptions& options) {
+Result<KernelDensity> estimate_kernel_density(
+    const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+    const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options) {
   check_options(configurations, weights, options);
   return estimate_of(configurations, weights, options.floors_of_joints, "kernels",
                      [&](DistinctPoints distinct) {
