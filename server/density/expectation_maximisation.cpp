@@ -19,7 +19,7 @@ constexpr int kMaxChunks = 32;
 class BlockPosterior {
  public:
   /// \param mixture, kernels  outlive it.
-  BlockPosterior(const PackedMixture& mixture, const BlockKernels& kernels, bool prune);
+  BlockPosterior(const PackedMixture& mixture, const SimdKernels& kernels, bool prune);
 
   void evaluate(const BlockPoints& points, int block);
 
@@ -41,7 +41,7 @@ class BlockPosterior {
   double upper_bound(int component) const { return bounds_[static_cast<std::size_t>(component)]; }
 
   const PackedMixture& mixture_;
-  const BlockKernels& kernels_;
+  const SimdKernels& kernels_;
   const bool prune_;
   AlignedNumbers bounds_;  // 3 x stride: upper, lower, at the centre
   AlignedNumbers terms_;   // K x kBlockPoints
@@ -53,8 +53,7 @@ class BlockPosterior {
   alignas(64) double log_densities_[kBlockPoints] = {};
 };
 
-BlockPosterior::BlockPosterior(const PackedMixture& mixture, const BlockKernels& kernels,
-                               bool prune)
+BlockPosterior::BlockPosterior(const PackedMixture& mixture, const SimdKernels& kernels, bool prune)
     : mixture_(mixture), kernels_(kernels), prune_(prune) {
   const auto size = static_cast<std::size_t>(mixture.size());
   bounds_.resize(3 * static_cast<std::size_t>(mixture.stride()));

@@ -34,7 +34,8 @@ void em_iteration(benchmark::State& state) {
   const Mixture start = fit(configurations, 3, static_cast<int>(state.range(1))).mixture;
   const Eigen::VectorXd floors = Eigen::VectorXd::Constant(state.range(0), 1e-4);
   density::Computation computation{.prune = state.range(3) != 0};
-  computation.kernels = density::find_kernels(static_cast<density::InstructionSet>(state.range(2)));
+  computation.kernels =
+      density::find_simd_kernels(static_cast<density::InstructionSet>(state.range(2)));
   if (computation.kernels == nullptr)
     return state.SkipWithError("this machine does not have it");
   state.SetLabel(computation.kernels->name);

@@ -144,9 +144,9 @@ TEST(Expectation, InstructionSetsDifferByRoundingOnly) {
   const Example example = random_points(7, 3000);
   const Mixture start = uneven_start(example, 30);
   const Expectation baseline =
-      expectation(start, example.points, {.kernels = find_kernels(InstructionSet::Baseline)});
+      expectation(start, example.points, {.kernels = find_simd_kernels(InstructionSet::Baseline)});
   for (const InstructionSet set : {InstructionSet::Avx2, InstructionSet::Avx512}) {
-    const BlockKernels* kernels = find_kernels(set);
+    const SimdKernels* kernels = find_simd_kernels(set);
     if (kernels == nullptr)
       continue;
     const Expectation other = expectation(start, example.points, {.kernels = kernels});

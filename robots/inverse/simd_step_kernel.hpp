@@ -1,6 +1,6 @@
 // The kernels, for the instruction set that the including unit is compiled for.
 
-#include "robots/inverse/lane_vector.hpp"
+#include "robots/inverse/simd_vector.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -16,7 +16,7 @@ struct WideColumn {
 };
 
 /// On to the frame of the next joint.
-KINSHIP_LANE_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
+KINSHIP_SIMD_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
   const double c = joint.tilt_cosine, s = joint.tilt_sine;
 #pragma GCC unroll 3
   for (int row = 0; row < 3; ++row) {
@@ -28,7 +28,7 @@ KINSHIP_LANE_INLINE void follow(const LaneJoint& joint, WideFrame& frame) {
 }
 
 /// Poses of the last joint: where each joint is and its axis go into columns for now.
-KINSHIP_LANE_INLINE WideFrame forward(const LaneChain& chain, const Wide* q, WideColumn* columns) {
+KINSHIP_SIMD_INLINE WideFrame forward(const LaneChain& chain, const Wide* q, WideColumn* columns) {
   WideTurns turns;
   for (int j = 0; j < chain.dof; ++j)
     sine_cosine(chain.joints[j].slides ? all(chain.joints[j].twist) : q[j], turns.sine[j],
@@ -56,7 +56,7 @@ KINSHIP_LANE_INLINE WideFrame forward(const LaneChain& chain, const Wide* q, Wid
 }
 
 /// Makes a column of the Jacobian of a joint's origin and axis.
-KINSHIP_LANE_INLINE void differentiate(bool slides, const Wide (&p)[3], WideColumn& column) {
+KINSHIP_SIMD_INLINE void differentiate(bool slides, const Wide (&p)[3], WideColumn& column) {
   const Wide x = column.rows[3], y = column.rows[4], z = column.rows[5];
   if (slides) {
     for (int i = 0; i < 3; ++i) {
@@ -72,7 +72,7 @@ KINSHIP_LANE_INLINE void differentiate(bool slides, const Wide (&p)[3], WideColu
 }
 
 /// Pull of a joint towards mid-range: 0 within its limits.
-KINSHIP_LANE_INLINE Wide pull_of(const LaneJoint& joint, Wide q, Wide& outside) {
+KINSHIP_SIMD_INLINE Wide pull_of(const LaneJoint& joint, Wide q, Wide& outside) {
   if (!joint.bounded)
     return Wide{};
   Wide off_middle = q - joint.middle;
@@ -85,7 +85,7 @@ KINSHIP_LANE_INLINE Wide pull_of(const LaneJoint& joint, Wide q, Wide& outside) 
 
 /// The joints at a limit that the error pushes across are left out.
 template <int kRows>
-KINSHIP_LANE_INLINE void hold(const LaneJoint& joint, Wide q, const Wide (&error)[kRows],
+KINSHIP_SIMD_INLINE void hold(const LaneJoint& joint, Wide q, const Wide (&error)[kRows],
                               const int* row_of, WideColumn& column) {
   if (!joint.bounded)
     return;
@@ -102,7 +102,7 @@ KINSHIP_LANE_INLINE void hold(const LaneJoint& joint, Wide q, const Wide (&error
 /// the right side, in `system` the factors replace the matrix. Column by column both ways: the
 /// steps wait for each other, not the operations of one step.
 template <int kRows>
-KINSHIP_LANE_INLINE void solve(Wide (&system)[kRows][kRows], Wide (&wanted)[kRows]) {
+KINSHIP_SIMD_INLINE void solve(Wide (&system)[kRows][kRows], Wide (&wanted)[kRows]) {
 #pragma GCC unroll 6
   for (int c = 0; c < kRows; ++c) {
     const Wide inverse = 1.0 / system[c][c];
@@ -146,7 +146,7 @@ struct WideIteration {
 
 /// Error of the task, and the frame of the last joint.
 template <int kRows>
-KINSHIP_LANE_INLINE WideFrame evaluate(const Wide (&target)[12], WideIteration<kRows>& now) {
+KINSHIP_SIMD_INLINE WideFrame evaluate(const Wide (&target)[12], WideIteration<kRows>& now) {
   const WideFrame frame = forward(now.chain, now.q, now.columns);
   Wide full[7];
   task_error(target, frame, reinterpret_cast<Wide(&)[6]>(full));
@@ -162,7 +162,7 @@ KINSHIP_LANE_INLINE WideFrame evaluate(const Wide (&target)[12], WideIteration<k
 
 /// J J^T, damped, and what is wanted of it.
 template <int kRows>
-KINSHIP_LANE_INLINE void linearize(const WideFrame& frame, WideIteration<kRows>& now) {
+KINSHIP_SIMD_INLINE void linearize(const WideFrame& frame, WideIteration<kRows>& now) {
 #pragma GCC unroll 6
   for (int r = 0; r < kRows; ++r) {
     now.wanted[r] = now.error[r];
@@ -199,7 +199,7 @@ KINSHIP_LANE_INLINE void linearize(const WideFrame& frame, WideIteration<kRows>&
 
 /// One step on with the solution in `wanted`. \return the squared length of the step.
 template <int kRows>
-KINSHIP_LANE_INLINE Wide advance(WideIteration<kRows>& now) {
+KINSHIP_SIMD_INLINE Wide advance(WideIteration<kRows>& now) {
   Wide moved = Wide{};
   for (int j = 0; j < now.chain.dof; ++j) {
     const LaneJoint& joint = now.chain.joints[j];
@@ -219,7 +219,7 @@ KINSHIP_LANE_INLINE Wide advance(WideIteration<kRows>& now) {
 
 /// One iteration of the lanes from `lane` on. kMapped: not every task axis matters.
 template <int kRows, bool kMapped>
-KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, int lane,
+KINSHIP_SIMD_INLINE void step_from(const LaneChain& chain, LaneLimits limits, int lane,
                                    LaneBatch& batch) {
   static constexpr int kAllRows[6] = {0, 1, 2, 3, 4, 5};
   WideIteration<kRows> now(chain, limits, kMapped ? chain.row_of : kAllRows);
@@ -238,7 +238,7 @@ KINSHIP_LANE_INLINE void step_from(const LaneChain& chain, LaneLimits limits, in
 }
 
 void step(const LaneChain& chain, LaneLimits limits, LaneBatch& batch) {
-  for (int lane = 0; lane < kLanes; lane += KINSHIP_LANE_WIDTH) {
+  for (int lane = 0; lane < kLanes; lane += KINSHIP_SIMD_WIDTH) {
     if (chain.rows == 6)
       step_from<6, false>(chain, limits, lane, batch);
     else if (chain.rows > 3)
@@ -249,7 +249,7 @@ void step(const LaneChain& chain, LaneLimits limits, LaneBatch& batch) {
 }
 
 /// Turned about any axis. Source: Rodrigues' formula; Siciliano et al., Robotics (2009), eq. 2.25.
-KINSHIP_LANE_INLINE void turn_about(const double (&axis)[3], Wide s, Wide c, WideFrame& frame) {
+KINSHIP_SIMD_INLINE void turn_about(const double (&axis)[3], Wide s, Wide c, WideFrame& frame) {
   const Wide v = 1.0 - c;
   const double x = axis[0], y = axis[1], z = axis[2];
   const Wide R[9] = {x * x * v + c,     x * y * v - z * s, x * z * v + y * s,
@@ -265,7 +265,7 @@ KINSHIP_LANE_INLINE void turn_about(const double (&axis)[3], Wide s, Wide c, Wid
 }
 
 void check(const LaneArm& arm, LaneCheck& check) {
-  for (int lane = 0; lane < kLanes; lane += KINSHIP_LANE_WIDTH) {
+  for (int lane = 0; lane < kLanes; lane += KINSHIP_SIMD_WIDTH) {
     WideTurns turns;
     for (int j = 0; j < arm.dof; ++j)
       sine_cosine(load(check.q[j] + lane), turns.sine[j], turns.cosine[j]);

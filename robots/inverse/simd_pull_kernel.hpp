@@ -1,6 +1,6 @@
 // The kernel that moves postures, for the instruction set that the including unit is compiled for.
 
-#include "robots/inverse/lane_kernel.hpp"
+#include "robots/inverse/simd_step_kernel.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -17,10 +17,10 @@ struct WidePullColumn {
 };
 
 /// Index in the lower half of a symmetric matrix, row by row.
-KINSHIP_LANE_INLINE constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
+KINSHIP_SIMD_INLINE constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
 
 /// Where the marks are: on the line from a joint to the next one, or to the transfer frame.
-KINSHIP_LANE_INLINE void place(const LaneChain& chain, const LaneMarks& marks,
+KINSHIP_SIMD_INLINE void place(const LaneChain& chain, const LaneMarks& marks,
                                const WideColumn* columns, const WideFrame& frame,
                                Wide (&p)[kMarkRows]) {
   for (int mark = 0; mark < kLaneMarks; ++mark) {
@@ -33,7 +33,7 @@ KINSHIP_LANE_INLINE void place(const LaneChain& chain, const LaneMarks& marks,
 }
 
 /// Velocity of a point by a turning joint, m.
-KINSHIP_LANE_INLINE void velocity(const WideColumn& joint, const Wide* p, double scale, Wide* v) {
+KINSHIP_SIMD_INLINE void velocity(const WideColumn& joint, const Wide* p, double scale, Wide* v) {
   const Wide x = joint.rows[3], y = joint.rows[4], z = joint.rows[5];
   const Wide a = p[0] - joint.rows[0], b = p[1] - joint.rows[1], c = p[2] - joint.rows[2];
   v[0] = scale * (y * c - z * b);
@@ -41,7 +41,7 @@ KINSHIP_LANE_INLINE void velocity(const WideColumn& joint, const Wide* p, double
   v[2] = scale * (x * b - y * a);
 }
 
-KINSHIP_LANE_INLINE WidePullColumn pull_column(const LaneChain& chain, const LaneMarks& marks,
+KINSHIP_SIMD_INLINE WidePullColumn pull_column(const LaneChain& chain, const LaneMarks& marks,
                                                int j, const WideColumn& joint,
                                                const Wide (&p)[kMarkRows], const WideFrame& frame) {
   WidePullColumn column;
@@ -63,7 +63,7 @@ KINSHIP_LANE_INLINE WidePullColumn pull_column(const LaneChain& chain, const Lan
 }
 
 /// Solves a symmetric system of `size` rows, given by its lower half, by L D L^T in place.
-KINSHIP_LANE_INLINE void solve(int size, Wide* system, Wide* wanted) {
+KINSHIP_SIMD_INLINE void solve(int size, Wide* system, Wide* wanted) {
   for (int c = 0; c < size; ++c) {
     const Wide inverse = 1.0 / system[at(c, c)];
     for (int r = c + 1; r < size; ++r) {
@@ -115,7 +115,7 @@ void pull_from(const LaneChain& chain, const LaneMarks& marks, int lane, LanePul
 }
 
 void pull(const LaneChain& chain, const LaneMarks& marks, LanePull& pull) {
-  for (int lane = 0; lane < kLanes; lane += KINSHIP_LANE_WIDTH)
+  for (int lane = 0; lane < kLanes; lane += KINSHIP_SIMD_WIDTH)
     pull_from(chain, marks, lane, pull);
 }
 

@@ -5,8 +5,8 @@
 namespace kinship::inverse {
 
 // One unit each; to be called only where the machine knows the instructions.
-LaneKernels sse2_kernels();  ///< the compiler's baseline, which on x86-64 is SSE2
-LaneKernels avx2_kernels();
-LaneKernels avx512_kernels();
+SimdKernels sse2_simd_kernels();  ///< the compiler's baseline, which on x86-64 is SSE2
+SimdKernels avx2_simd_kernels();
+SimdKernels avx512_simd_kernels();
 
 }  // namespace kinship::inverse

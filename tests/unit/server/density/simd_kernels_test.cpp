@@ -1,4 +1,4 @@
-#include "server/density/block_kernels.hpp"
+#include "server/density/simd_kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "server/density/instruction_set.hpp"
 
-namespace kinship::density::block_kernels_test {
+namespace kinship::density::simd_kernels_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -21,7 +21,7 @@ using Block = std::array<double, kBlockPoints>;
 class Kernels : public testing::TestWithParam<InstructionSet> {
  protected:
   void SetUp() override {
-    kernels_ = find_kernels(GetParam());
+    kernels_ = find_simd_kernels(GetParam());
     if (kernels_ == nullptr)
       GTEST_SKIP() << "this machine does not have it";
   }
@@ -29,14 +29,14 @@ class Kernels : public testing::TestWithParam<InstructionSet> {
     return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal_(generator_); });
   }
 
-  const BlockKernels* kernels_ = nullptr;
+  const SimdKernels* kernels_ = nullptr;
   std::mt19937_64 generator_{kSeed};
   std::normal_distribution<double> normal_;
 };
 
 constexpr std::array kDimensions = {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 32};
 
-/// The log density of a packed component as block_kernels.hpp defines it.
+/// The log density of a packed component as simd_kernels.hpp defines it.
 double log_term(const Eigen::VectorXd& component, const Eigen::VectorXd& point) {
   double term = component[0];
   Eigen::Index entry = 1;
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets, Kernels,
                                          InstructionSet::Avx512));
 
 }  // namespace
-}  // namespace kinship::density::block_kernels_test
+}  // namespace kinship::density::simd_kernels_test

@@ -386,7 +386,7 @@ void nearest(int dimension, const double* points, int count, const double* centr
   }
 }
 
-constexpr BlockKernels kernels(const char* name) {
+constexpr SimdKernels kernels(const char* name) {
   return {name, bounds, log_terms, responsibilities, add_moments, nearer, nearest};
 }
 

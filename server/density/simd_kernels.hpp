@@ -15,7 +15,7 @@ constexpr int packed_size(int dimension) { return (dimension + 1) * (dimension +
 /// A block is d rows of kBlockPoints numbers: row i holds joint i of its points. A *packed*
 /// component is its log scale c, then for each row i of its whitening W the offset b_i and
 /// W_i0 ... W_ii; its log density at x, with its weight, is c - |W x - b|^2.
-struct BlockKernels {
+struct SimdKernels {
   const char* name;
 
   /// Upper and lower bounds of that log density over boxes, and its value at their centre, for

@@ -1,7 +1,7 @@
-// Vectors of KINSHIP_LANE_WIDTH doubles. Included only by the units that are compiled for one
+// Vectors of KINSHIP_SIMD_WIDTH doubles. Included only by the units that are compiled for one
 // instruction set, which define the width: everything has internal linkage.
-#ifndef KINSHIP_LANE_WIDTH
-#error "define KINSHIP_LANE_WIDTH"
+#ifndef KINSHIP_SIMD_WIDTH
+#error "define KINSHIP_SIMD_WIDTH"
 #endif
 
 #if defined(__SSE2__)
@@ -10,46 +10,46 @@
 
 #include "robots/inverse/lanes.hpp"
 
-#define KINSHIP_LANE_INLINE inline __attribute__((always_inline))
+#define KINSHIP_SIMD_INLINE inline __attribute__((always_inline))
 
 namespace kinship::inverse {
 namespace {
 
-typedef double Wide __attribute__((vector_size(8 * KINSHIP_LANE_WIDTH)));
-typedef long long WideMask __attribute__((vector_size(8 * KINSHIP_LANE_WIDTH)));
+typedef double Wide __attribute__((vector_size(8 * KINSHIP_SIMD_WIDTH)));
+typedef long long WideMask __attribute__((vector_size(8 * KINSHIP_SIMD_WIDTH)));
 
-KINSHIP_LANE_INLINE Wide all(double value) { return value - Wide{}; }
+KINSHIP_SIMD_INLINE Wide all(double value) { return value - Wide{}; }
 
-KINSHIP_LANE_INLINE Wide load(const double* from) {
+KINSHIP_SIMD_INLINE Wide load(const double* from) {
   Wide value;
   __builtin_memcpy(&value, from, sizeof value);
   return value;
 }
 
-KINSHIP_LANE_INLINE void store(double* to, Wide value) {
+KINSHIP_SIMD_INLINE void store(double* to, Wide value) {
   __builtin_memcpy(to, &value, sizeof value);
 }
 
-KINSHIP_LANE_INLINE Wide root(Wide value) {
-#if KINSHIP_LANE_WIDTH == 8
+KINSHIP_SIMD_INLINE Wide root(Wide value) {
+#if KINSHIP_SIMD_WIDTH == 8
   return Wide(_mm512_maskz_sqrt_pd(0xff, __m512d(value)));
-#elif KINSHIP_LANE_WIDTH == 4
+#elif KINSHIP_SIMD_WIDTH == 4
   return Wide(_mm256_sqrt_pd(__m256d(value)));
 #elif defined(__SSE2__)
   return Wide(_mm_sqrt_pd(__m128d(value)));
 #else
-  for (int lane = 0; lane < KINSHIP_LANE_WIDTH; ++lane)
+  for (int lane = 0; lane < KINSHIP_SIMD_WIDTH; ++lane)
     value[lane] = __builtin_sqrt(value[lane]);
   return value;
 #endif
 }
 
-KINSHIP_LANE_INLINE Wide clamped(Wide value, Wide lower, Wide upper) {
+KINSHIP_SIMD_INLINE Wide clamped(Wide value, Wide lower, Wide upper) {
   value = value < lower ? lower : value;
   return value > upper ? upper : value;
 }
 
-KINSHIP_LANE_INLINE Wide absolute(Wide value) { return value < 0.0 ? -value : value; }
+KINSHIP_SIMD_INLINE Wide absolute(Wide value) { return value < 0.0 ? -value : value; }
 
 // Adding and taking away 1.5 * 2^52 rounds to the nearest integer (for values below 2^51).
 constexpr double kRounder = 6755399441055744.0;
@@ -57,7 +57,7 @@ constexpr double kRounder = 6755399441055744.0;
 constexpr double kTurnOf = 6.283185307179586477;
 
 /// The angle moved by whole turns into [-pi, pi].
-KINSHIP_LANE_INLINE Wide wrapped(Wide angle) {
+KINSHIP_SIMD_INLINE Wide wrapped(Wide angle) {
   const Wide turns = (angle * (1 / kTurnOf) + kRounder) - kRounder;
   return angle - turns * kTurnOf;
 }
@@ -65,7 +65,7 @@ KINSHIP_LANE_INLINE Wide wrapped(Wide angle) {
 /// Sine and cosine, to about 1e-16 for angles below 1e5.
 /// Source: reduction by quarter turns in two parts, W. J. Cody and W. Waite, Software Manual for
 /// the Elementary Functions (1980); coefficients of FreeBSD's k_sin.c and k_cos.c.
-KINSHIP_LANE_INLINE void sine_cosine(Wide angle, Wide& sine, Wide& cosine) {
+KINSHIP_SIMD_INLINE void sine_cosine(Wide angle, Wide& sine, Wide& cosine) {
   const Wide shifted = angle * 0.63661977236758134308 + kRounder;
   const WideMask quarter = WideMask(shifted);  // its lowest bits count the quarter turns
   const Wide quarters = shifted - kRounder;
@@ -106,7 +106,7 @@ struct WideFrame {
   Wide p[3];
 };
 
-KINSHIP_LANE_INLINE WideFrame frame_of(const double* R, const double* p) {
+KINSHIP_SIMD_INLINE WideFrame frame_of(const double* R, const double* p) {
   WideFrame frame;
   for (int i = 0; i < 9; ++i)
     frame.R[i] = all(R[i]);
@@ -116,7 +116,7 @@ KINSHIP_LANE_INLINE WideFrame frame_of(const double* R, const double* p) {
 }
 
 /// frame * (R, p)
-KINSHIP_LANE_INLINE void follow(const double* R, const double* p, WideFrame& frame) {
+KINSHIP_SIMD_INLINE void follow(const double* R, const double* p, WideFrame& frame) {
 #pragma GCC unroll 3
   for (int row = 0; row < 3; ++row) {
     const Wide a = frame.R[3 * row], b = frame.R[3 * row + 1], c = frame.R[3 * row + 2];
@@ -128,7 +128,7 @@ KINSHIP_LANE_INLINE void follow(const double* R, const double* p, WideFrame& fra
 }
 
 /// Turned about its own z axis.
-KINSHIP_LANE_INLINE void turn(Wide s, Wide c, WideFrame& frame) {
+KINSHIP_SIMD_INLINE void turn(Wide s, Wide c, WideFrame& frame) {
 #pragma GCC unroll 3
   for (int row = 0; row < 3; ++row) {
     const Wide x = frame.R[3 * row], y = frame.R[3 * row + 1];
@@ -138,7 +138,7 @@ KINSHIP_LANE_INLINE void turn(Wide s, Wide c, WideFrame& frame) {
 }
 
 /// From the frame to the target: x, y, z, then 2 sin(angle / 2) times the axis, in the base.
-KINSHIP_LANE_INLINE void task_error(const Wide (&target)[12], const WideFrame& frame,
+KINSHIP_SIMD_INLINE void task_error(const Wide (&target)[12], const WideFrame& frame,
                                     Wide (&error)[6]) {
   Wide D[9];  // target * frame^T
 #pragma GCC unroll 9
