@@ -7,35 +7,21 @@
 
 #include "proto/evidence/cost_ratio.hpp"
 #include "proto/types/pose.hpp"
+#include "proto/types/split_mix.hpp"
 
 namespace kinship::planning {
 namespace {
 
-/// A bijection of 64 bits in which every bit of the input reaches every bit of the output.
-/// Source: Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators (2014), fig. 16.
-std::uint64_t mixed(std::uint64_t bits) {
-  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
-  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
-  return bits ^ (bits >> 31U);
-}
-
 /// Numbers one after another become one number.
 class Fingerprint {
  public:
-  void add(std::uint64_t bits) { state_ = mixed(state_ + kGolden) ^ mixed(bits); }
+  void add(std::uint64_t bits) { state_ = split_mixed(state_ + kSplitMixStep) ^ split_mixed(bits); }
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  std::uint64_t value() const { return mixed(state_ + kGolden); }
+  std::uint64_t value() const { return split_mixed(state_ + kSplitMixStep); }
 
  private:
-  static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio, odd
   std::uint64_t state_ = 0;
 };
-
-/// From 0 to below 1, a multiple of 2^-53.
-double unit_interval(std::uint64_t bits) {
-  constexpr double kStep = 0x1p-53;
-  return static_cast<double>(bits >> 11U) * kStep;
-}
 
 void require_part(const char* what, double value) {
   if (!(value >= 0 && value <= 1))
@@ -70,7 +56,7 @@ Arm ArmChooser::choose(std::uint64_t seed) const {
   // Under Thompson sampling each query draws anew, also a problem that is planned again and again;
   // under a fixed part the same queries are control in every run.
   const std::uint64_t known = is_sampling() ? guided_ + control_ : 0;
-  const double drawn = unit_interval(mixed(seed + mixed(known)));
+  const double drawn = unit_interval(split_mixed(seed + split_mixed(known)));
   return drawn < 1 - guided_part() ? Arm::Control : Arm::Guided;
 }
 

@@ -1,6 +1,7 @@
 #include "client/planning/goal_configurations.hpp"
 
 #include "client/planning/planning_bounds.hpp"
+#include "proto/types/split_mix.hpp"
 #include "robots/inverse/solver.hpp"
 
 namespace kinship::planning {
@@ -19,8 +20,6 @@ std::string in_words(inverse::NoSolution reason) {
 
 /// How often an arm is asked for further solutions as long as none of them is free.
 constexpr int kMostSearches = 10;
-/// Far from the seeds of other queries: 2^64 over the golden ratio.
-constexpr std::uint64_t kNextSearch = 0x9e3779b97f4a7c15;
 
 std::string reason_of(const GoalConfigurations& goals, inverse::NoSolution why_none) {
   if (goals.found == 0)
@@ -44,7 +43,7 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
 
   const inverse::Solver solver(chain);
   GoalConfigurations goals;
-  for (int searches = 1;; ++searches, search.seed += kNextSearch) {
+  for (int searches = 1;; ++searches, search.seed += kSplitMixStep) {
     const inverse::InverseSolutions solutions = solver.solve(T_base_tip, search);
     const Eigen::Index found = solutions.configurations.cols();
     goals.found += static_cast<int>(found);

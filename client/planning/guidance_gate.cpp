@@ -9,6 +9,7 @@
 
 #include "client/planning/planning_bounds.hpp"
 #include "proto/mixture/cholesky.hpp"
+#include "proto/types/turn.hpp"
 
 namespace kinship::planning {
 
@@ -22,21 +23,21 @@ Mixture widened(const Mixture& mixture) {
 namespace {
 
 /// Measures many configurations against one mixture.
-class Ruler {
+class MahalanobisDistance {
  public:
-  Ruler(const kinematics::Chain& chain, const Mixture& mixture)
+  MahalanobisDistance(const kinematics::Chain& chain, const Mixture& mixture)
       : mixture_(mixture),
         factors_(mixture::cholesky_factors(widened(mixture))),
         turning_(turning_joints(chain)) {}
 
-  /// Squared, to the nearest component.
-  double distance(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  /// To the nearest component.
+  double squared(const Eigen::Ref<const Eigen::VectorXd>& q) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (Eigen::Index k = 0; k < mixture_.size(); ++k) {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
       for (Eigen::Index i = 0; i < offset.size(); ++i)
         if (turning_[static_cast<std::size_t>(i)])
-          offset[i] = std::remainder(offset[i], 2 * M_PI);
+          offset[i] = wrapped(offset[i]);
       factors_[mixture_.covariance_index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
       nearest = std::min(nearest, offset.squaredNorm());
     }
@@ -57,10 +58,10 @@ QueryDistance query_distance(const kinematics::Chain& chain, const Mixture& mixt
   if (mixture.dimension() != chain.dof() || start.size() != chain.dof() ||
       goals.rows() != chain.dof())
     throw std::invalid_argument("query_distance: chain, mixture, start and goals differ in size");
-  const Ruler ruler(chain, mixture);
-  QueryDistance distance{ruler.distance(start), std::numeric_limits<double>::infinity()};
+  const MahalanobisDistance to_mixture(chain, mixture);
+  QueryDistance distance{to_mixture.squared(start), std::numeric_limits<double>::infinity()};
   for (const auto& goal : goals.colwise())
-    distance.goal = std::min(distance.goal, ruler.distance(goal));
+    distance.goal = std::min(distance.goal, to_mixture.squared(goal));
   return distance;
 }
 

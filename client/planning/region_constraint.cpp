@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "proto/types/turn.hpp"
+
 namespace kinship::planning {
 namespace {
 
@@ -25,7 +27,7 @@ Eigen::Matrix<double, 2, 6> with_angles_in_a_turn(Eigen::Matrix<double, 2, 6> bo
   for (Eigen::Index i = 3; i < 6; ++i) {
     if (std::isfinite(bounds(0, i)) != std::isfinite(bounds(1, i)))
       bounds.col(i) << std::max(bounds(0, i), -M_PI), std::min(bounds(1, i), M_PI);
-    if (bounds(1, i) - bounds(0, i) >= 2 * M_PI)
+    if (bounds(1, i) - bounds(0, i) >= kTurn)
       bounds.col(i) << -kInfinity, kInfinity;
   }
   return bounds;
@@ -39,7 +41,7 @@ double angle_beyond(double angle, double lower, double upper) {
   if (std::isinf(lower))
     return 0;
   const double middle = (lower + upper) / 2;
-  return beyond(middle + std::remainder(angle - middle, 2 * M_PI), lower, upper);
+  return beyond(middle + wrapped(angle - middle), lower, upper);
 }
 
 Eigen::Vector3d angles_beyond(const Eigen::Vector3d& angles,

@@ -1,9 +1,9 @@
 #include "proto/mixture/distribution_sampler.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
+
+#include "proto/types/turn.hpp"
 
 namespace kinship::mixture {
 namespace {
@@ -35,7 +35,7 @@ std::optional<Eigen::VectorXd> DistributionSampler::sample(std::mt19937_64& gene
   std::optional<Eigen::VectorXd> q = sampler_.sample(generator);
   if (q)
     for (const Eigen::Index joint : continuous_)
-      (*q)[joint] = std::remainder((*q)[joint], 2 * std::numbers::pi);
+      (*q)[joint] = wrapped((*q)[joint]);
   return q;
 }
 

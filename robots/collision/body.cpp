@@ -4,6 +4,7 @@
 
 #include "proto/types/failure.hpp"
 #include "robots/geometry/fitted_shape.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::collision {
 namespace {
@@ -112,6 +113,23 @@ std::vector<Body> link_bodies(const kinematics::Chain& chain, const geometry::Ro
                       {}});
   }
   return bodies;
+}
+
+void place_bodies(const kinematics::Chain& chain, const std::vector<Body>& bodies,
+                  const Eigen::Ref<const Eigen::VectorXd>& q,
+                  std::vector<Eigen::Isometry3d>& T_base_bodies) {
+  const std::vector<Eigen::Isometry3d> T_base_joints = kinematics::joint_poses(chain, q);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].joint >= 0)
+      T_base_bodies[i] =
+          T_base_joints[static_cast<std::size_t>(bodies[i].joint)] * bodies[i].T_joint_body;
+}
+
+std::vector<Eigen::Isometry3d> standing_poses(const std::vector<Body>& bodies) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Body& body : bodies)
+    poses.push_back(body.T_joint_body);
+  return poses;
 }
 
 void add_surroundings(const kinematics::Chain& chain, const Surroundings& surroundings,

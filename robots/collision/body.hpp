@@ -2,12 +2,23 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "robots/collision/collision_world.hpp"
+#include "proto/types/scene.hpp"
 #include "robots/collision/solid.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/kinematics/chain.hpp"
 
 namespace kinship::collision {
+
+/// What surrounds a robot: scene and attached objects, and pairs of names that may touch.
+struct Surroundings {
+  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  Scene scene;  ///< in the task frame
+  std::vector<AttachedObject> attached;
+  std::vector<std::pair<std::string, std::string>> allowed_collisions;
+};
 
 enum class BodyKind { Link, Attached, Obstacle };
 
@@ -25,6 +36,15 @@ struct Body {
 /// Every solid of a robot's links.
 /// \throws Failure(InvalidInput) as RobotSolids' constructor says.
 std::vector<Body> link_bodies(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
+
+/// Puts every body that a joint moves where it is at q.
+/// \param T_base_bodies  one per body; those that stand still are left as they are.
+void place_bodies(const kinematics::Chain& chain, const std::vector<Body>& bodies,
+                  const Eigen::Ref<const Eigen::VectorXd>& q,
+                  std::vector<Eigen::Isometry3d>& T_base_bodies);
+
+/// Poses of the bodies that stand still; those that move are not placed yet.
+std::vector<Eigen::Isometry3d> standing_poses(const std::vector<Body>& bodies);
 
 /// Adds attachments, then obstacles, the latter moved from the task frame into the base frame.
 /// \throws Failure(InvalidInput) as CollisionWorld's constructor says.

@@ -2,27 +2,17 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "proto/types/scene.hpp"
+#include "robots/collision/body.hpp"
+#include "robots/collision/body_pairs.hpp"
 #include "robots/collision/robot_solids.hpp"
-#include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
 
 namespace kinship::collision {
-
-/// What surrounds a robot: scene and attached objects, and pairs of names that may touch.
-struct Surroundings {
-  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
-  Scene scene;  ///< in the task frame
-  std::vector<AttachedObject> attached;
-  std::vector<std::pair<std::string, std::string>> allowed_collisions;
-};
 
 /// A robot among obstacles that answers whether a configuration collides, and counts how often
 /// it was asked. Not shared between threads.
@@ -35,9 +25,11 @@ class CollisionWorld {
   /// \throws Failure(InvalidInput) as above, and as RobotSolids says.
   CollisionWorld(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
                  const Surroundings& surroundings);
-  CollisionWorld(CollisionWorld&&) noexcept;
-  CollisionWorld& operator=(CollisionWorld&&) noexcept;
-  ~CollisionWorld();
+  CollisionWorld(const CollisionWorld&) = delete;  // it counts, and is asked by one at a time
+  CollisionWorld& operator=(const CollisionWorld&) = delete;
+  CollisionWorld(CollisionWorld&&) noexcept = default;
+  CollisionWorld& operator=(CollisionWorld&&) noexcept = default;
+  ~CollisionWorld() = default;
 
   /// Counts one check, whatever answers it.
   /// \param q  dof, joint units; limits are not checked.
@@ -52,11 +44,21 @@ class CollisionWorld {
   std::set<std::pair<std::string, std::string>> find_contacts(
       const Eigen::Ref<const Eigen::VectorXd>& q);
 
-  std::uint64_t checks() const noexcept;
+  std::uint64_t checks() const noexcept { return checks_; }
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  /// Moves the bodies to q.
+  void place(const Eigen::Ref<const Eigen::VectorXd>& q);
+  std::optional<BodyPair> first_contact(const Eigen::Ref<const Eigen::VectorXd>& q);
+  bool touching(const BodyPair& pair) const;
+  std::pair<std::string, std::string> names(const BodyPair& pair) const;
+
+  RobotSolids robot_;
+  std::vector<Body> bodies_;
+  std::vector<Eigen::Isometry3d> T_base_bodies_;  // one per body; moving ones change per check
+  std::vector<BodyPair> pairs_;
+  std::vector<BodyPair> standing_contacts_;  // each makes every configuration collide
+  std::uint64_t checks_ = 0;
 };
 
 }  // namespace kinship::collision

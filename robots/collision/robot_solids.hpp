@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/collision/body.hpp"
+#include "robots/collision/body_pairs.hpp"
 
 namespace kinship::collision {
 
@@ -18,7 +19,11 @@ class RobotSolids {
   /// \throws Failure(InvalidInput) if a shape is not finite and positive, or a pose not finite.
   RobotSolids(const kinematics::Chain& chain, const geometry::RobotShapes& shapes);
 
-  struct Parts;  ///< of this library only
+  struct Parts {
+    kinematics::Chain chain;
+    std::vector<Body> bodies;  ///< of the links
+    LinkPairs unchecked;
+  };
   const Parts& parts() const noexcept { return *parts_; }
 
  private:

@@ -46,7 +46,7 @@ void ClosedForm::append(const Eigen::Isometry3d& T_base_transfer, std::span<cons
 
 void ClosedForm::append_six(const Displacement& T, std::span<const double> locked,
                             Branches& branches) const {
-  std::array<double, kMostLocked> values{};
+  std::array<double, kMaxLocked> values{};
   for (std::size_t i = 0; i < locks_.size(); ++i)
     values[i] = prismatic_[i] ? locked[i] / scale_m_ : locked[i];
   SixJointTask task;

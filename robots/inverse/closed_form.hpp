@@ -46,10 +46,8 @@ class Branches {
 /// by threads; its calls take neither heap nor locks.
 class ClosedForm {
  public:
-  /// The closed form of a chain, if there is one that pays: at a pose that the arm reaches and
-  /// random values of its locked joints, it has to give kWorthwhile configurations within limits
-  /// on average. Tries it on random poses first (same chain, same answer).
-  static std::optional<ClosedForm> of(const kinematics::Chain& chain);
+  /// So many configurations within limits it has to give on average to pay, at a pose that the arm
+  /// reaches and random values of its locked joints.
   static constexpr double kWorthwhile = 0.5;
 
   static constexpr double kExactMargin_rad = 1e-5;
@@ -59,7 +57,7 @@ class ClosedForm {
   std::span<const int> locks() const noexcept { return locks_; }
 
   /// At most as many configurations per pose and values of the locked joints.
-  int branches() const noexcept { return planar_ ? 2 : kMostBranches; }
+  int branches() const noexcept { return planar_ ? 2 : kMaxBranches; }
 
   /// Whether the axes have the structure exactly. If not, what `append` gives is a solution of the
   /// nominal chain, off by about `deviation()`, and has to be polished.
@@ -103,11 +101,12 @@ class ClosedForm {
 
 /// What is known about the closed form of a chain.
 struct ClosedFormFinding {
-  std::optional<ClosedForm> form;
+  std::optional<ClosedForm> form;  ///< one that pays
   /// A structure that is there but does not pay, for want of configurations within limits.
   std::optional<ClosedForm> left_out;
 };
 
+/// Tries what the structure of a chain offers on random poses (same chain, same answer).
 ClosedFormFinding find_closed_form(const kinematics::Chain& chain);
 
 /// How a chain's inverse kinematics are solved, in words, e.g. "spherical wrist 5-6-7; lock q3;

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "proto/types/turn.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/counter_generator.hpp"
 #include "robots/inverse/joint_space.hpp"
@@ -19,7 +20,7 @@ constexpr double kNearlyRecovered_rad = 0.3;  // before the polish
 constexpr double kRecoveredShare = 0.9;
 constexpr double kNearlyRecoveredShare = 0.5;
 constexpr std::uint64_t kSeed = 0x6b696e;
-constexpr int kMostPlanarChoices = 60;
+constexpr int kMaxPlanarChoices = 60;
 constexpr double kBetter = 1.15;  // less than that is chance, and the first choice stands
 
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMaxDof), 1>;
@@ -53,8 +54,7 @@ double largest_difference(const kinematics::Chain& chain, const double* a, const
     const bool turns =
         chain.joints()[static_cast<std::size_t>(j)].type != kinematics::JointType::Prismatic;
     const double difference = a[j] - b[j];
-    largest = std::max(
-        largest, std::abs(turns ? std::remainder(difference, 2 * std::numbers::pi) : difference));
+    largest = std::max(largest, std::abs(turns ? wrapped(difference) : difference));
   }
   return largest;
 }
@@ -78,7 +78,7 @@ std::vector<std::vector<int>> planar_choices(int dof, int count) {
       for (int c = b + 1; c < dof && count == 3; ++c)
         result.push_back({a, b, c});
     }
-  if (result.size() > kMostPlanarChoices)
+  if (result.size() > kMaxPlanarChoices)
     std::erase_if(result, [](const std::vector<int>& free) {
       return free.back() - free.front() >= static_cast<int>(free.size());
     });
@@ -163,6 +163,7 @@ struct ClosedFormSearch {
     int within = 0;
     Branches branches;
     Configuration q(chain.dof());
+    const JointSpace space(chain);
     for (const Eigen::Isometry3d& T : samples.poses) {
       const Configuration random = random_configuration(chain, generator);
       std::array<double, kMaxDof> locked;
@@ -172,7 +173,7 @@ struct ClosedFormSearch {
       form.append(T, {locked.data(), form.locks_.size()}, branches);
       for (int b = 0; b < branches.size(); ++b) {
         std::copy_n(branches[b], q.size(), q.data());
-        within += normalize(chain, q) ? 1 : 0;
+        within += space.normalize(q.data()) ? 1 : 0;
       }
     }
     return static_cast<double>(within) / kTrials;
@@ -203,10 +204,6 @@ struct ClosedFormSearch {
 
 ClosedFormFinding find_closed_form(const kinematics::Chain& chain) {
   return ClosedFormSearch{chain}.run();
-}
-
-std::optional<ClosedForm> ClosedForm::of(const kinematics::Chain& chain) {
-  return find_closed_form(chain).form;
 }
 
 }  // namespace kinship::inverse

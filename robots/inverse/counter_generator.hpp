@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "proto/types/split_mix.hpp"
+
 namespace kinship::inverse {
 
 /// Random numbers that are a pure function of a key and a counter, so that results depend neither
@@ -16,34 +18,26 @@ class CounterGenerator {
 
   /// Keyed by a seed and the exact bits of a pose.
   CounterGenerator(std::uint64_t seed, const Eigen::Isometry3d& pose) noexcept
-      : state_(mixed(seed)) {
+      : state_(split_mixed(seed)) {
     for (Eigen::Index row = 0; row < 3; ++row)
       for (Eigen::Index column = 0; column < 4; ++column)  // adding 0 turns -0 into 0
-        state_ = mixed(state_ ^ std::bit_cast<std::uint64_t>(pose(row, column) + 0.0));
+        state_ = split_mixed(state_ ^ std::bit_cast<std::uint64_t>(pose(row, column) + 0.0));
   }
 
   /// A generator of its own for one of many attempts; this one stays as it is.
   CounterGenerator of_attempt(std::uint64_t attempt) const noexcept {
-    return CounterGenerator(mixed(state_ ^ mixed(attempt + kStep)));
+    return CounterGenerator(split_mixed(state_ ^ split_mixed(attempt + kSplitMixStep)));
   }
 
   std::uint64_t next() noexcept {
-    state_ += kStep;
-    return mixed(state_);
+    state_ += kSplitMixStep;
+    return split_mixed(state_);
   }
 
   /// Uniform in [0, 1).
-  double uniform() noexcept { return static_cast<double>(next() >> 11U) * 0x1p-53; }
+  double uniform() noexcept { return unit_interval(next()); }
 
  private:
-  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
-
-  static std::uint64_t mixed(std::uint64_t z) noexcept {
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111eb;
-    return z ^ (z >> 31U);
-  }
-
   std::uint64_t state_;
 };
 

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "proto/types/turn.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::inverse {
@@ -59,13 +59,9 @@ Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
     step.p = T_previous_turned.translation();
     step.prismatic = joint.type == kinematics::JointType::Prismatic;
     step.bounded = step.prismatic || (joint.type == kinematics::JointType::Revolute &&
-                                      joint.upper - joint.lower < 2 * std::numbers::pi);
+                                      joint.upper - joint.lower < kTurn);
     step.lower = joint.lower;
     step.upper = joint.upper;
-    if (!steps_.empty())
-      reach_m_ += step.p.norm();
-    if (step.prismatic)
-      reach_m_ += std::max(std::abs(step.lower), std::abs(step.upper));
     steps_.push_back(step);
     T_turned_moving = T_joint_turned.inverse();
   }
@@ -73,8 +69,6 @@ Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
       T_turned_moving * chain.T_last_tip() * chain.T_tip_transfer();
   R_last_transfer_ = T_last_transfer.linear();
   p_last_transfer_ = T_last_transfer.translation();
-  reach_m_ += p_last_transfer_.norm();
-  p_base_first_joint_ = steps_.front().p;
   redundant_ = chain.dof() > std::ranges::count(axes_.matters, true);
 }
 
@@ -130,7 +124,7 @@ bool Descent::steer(const JointVector& q, JointVector& pull) const {
     const double half = 0.5 * (step.upper - step.lower);
     double off_middle = q[j] - 0.5 * (step.lower + step.upper);
     if (!step.prismatic && std::abs(off_middle) > half)
-      off_middle = std::remainder(off_middle, 2 * std::numbers::pi);
+      off_middle = wrapped(off_middle);
     const bool pulled = step.bounded && std::abs(off_middle) > half;
     pull[j] = pulled ? -kSteeringGain * off_middle : 0;
     outside = outside || pulled;

@@ -49,10 +49,6 @@ class Descent {
   double run(const Eigen::Isometry3d& T_base_transfer, Limits limits, int max_iterations,
              JointVector& q) const;
 
-  /// No configuration puts the transfer frame farther than this from the first joint's origin.
-  double reach_m() const noexcept { return reach_m_; }
-  const Eigen::Vector3d& p_base_first_joint() const noexcept { return p_base_first_joint_; }
-
  private:
   using TaskJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, static_cast<int>(kMaxDof)>;
 
@@ -78,8 +74,6 @@ class Descent {
   Eigen::Vector3d p_last_transfer_;
   TaskAxes axes_;
   bool redundant_ = false;
-  double reach_m_ = 0;
-  Eigen::Vector3d p_base_first_joint_;
 };
 
 }  // namespace kinship::inverse

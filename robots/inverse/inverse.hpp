@@ -14,7 +14,7 @@ struct InverseOptions {
   std::uint64_t seed = 0;     ///< equal seed and pose: equal solutions
   /// Whether to go on where the first starts found nothing, which costs ten times as much and
   /// seldom helps. What is found without patience is found with it.
-  bool patient = true;
+  bool exhaustive = true;
 };
 
 /// Why a set of solutions is empty.

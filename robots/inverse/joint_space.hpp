@@ -19,12 +19,15 @@ class JointSpace {
 
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(joints_.size()); }
 
-  /// See the free function.
-  /// \param q       dof values.
+  /// Replaces each joint's value by the one that stands for all its +-2 pi copies: continuous
+  /// joints in (-pi, pi], revolute joints nearest mid-range, prismatic joints as they are.
+  /// \param q       dof, joint units.
   /// \param margin  by which a value may lie outside a limit before it is moved onto it.
+  /// \return        whether every joint is then within its limits.
   bool normalize(double* q, double margin = kLimitRounding) const noexcept;
 
-  /// See the free function; squared.
+  /// Euclidean, squared, 1 m = 1 rad; wrapped for continuous joints only, since a joint with limits
+  /// cannot take the short way across them.
   double squared_distance(const double* a, const double* b) const noexcept;
 
   /// The value of a joint for a number in [0, 1): uniform within its limits; within a turn around
@@ -51,16 +54,5 @@ class JointSpace {
   };
   std::vector<Range> joints_;
 };
-
-/// Replaces each joint's value by the one that stands for all its +-2 pi copies: continuous joints
-/// in (-pi, pi], revolute joints nearest mid-range, prismatic joints as they are.
-/// \param q  dof, joint units; values outside a limit by kLimitRounding are moved onto it.
-/// \return   whether every joint is then within its limits.
-bool normalize(const kinematics::Chain& chain, Eigen::Ref<Eigen::VectorXd> q);
-
-/// Euclidean distance, 1 m = 1 rad; wrapped for continuous joints only, since a joint with limits
-/// cannot take the short way across them.
-double distance(const kinematics::Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& a,
-                const Eigen::Ref<const Eigen::VectorXd>& b);
 
 }  // namespace kinship::inverse

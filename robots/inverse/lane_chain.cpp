@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "proto/types/limits.hpp"
-#include "robots/inverse/lane_sets.hpp"
+#include "proto/types/turn.hpp"
+#include "robots/inverse/simd_sets.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -15,7 +15,6 @@ using kinematics::JointType;
 
 static_assert(kLaneJoints == kMaxDof);
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kParallel = 1e-12;        // sine between axes
 constexpr double kRightAngle = 1e-15;      // rounding of a zero
 constexpr double kShortestReach_m = 1e-3;  // an arm without lengths still has a unit
@@ -86,13 +85,13 @@ struct KnownSets {
 
 KnownSets known_sets() {
   KnownSets known;
-  known.sets[known.count++] = {"sse2", sse2_kernels()};
-#ifdef KINSHIP_LANES_X86
+  known.sets[known.count++] = {"sse2", sse2_simd_kernels()};
+#ifdef KINSHIP_SIMD_X86
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    known.sets[known.count++] = {"avx2", avx2_kernels()};
+    known.sets[known.count++] = {"avx2", avx2_simd_kernels()};
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    known.sets[known.count++] = {"avx512", avx512_kernels()};
+    known.sets[known.count++] = {"avx512", avx512_simd_kernels()};
 #endif
   return known;
 }

@@ -82,7 +82,7 @@ struct alignas(64) LanePull {
 };
 
 /// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
-struct LaneKernels {
+struct SimdKernels {
   /// One iteration of damped Levenberg-Marquardt in every lane.
   /// Source: Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
   /// method, IEEE T-RO 27 (2011), eq. 14, 23.

@@ -10,17 +10,17 @@ namespace kinship::inverse {
 namespace {
 
 constexpr double kSamePoint = 1e-3;  // joint units: closer ones are the same solution
-constexpr std::size_t kMostSolutions = 1000;
-constexpr std::size_t kMostFound = 64;  // of an arm that is not redundant, before the choice
-constexpr int kIterations = 10;         // measured: a new start is worth more than an eleventh,
-constexpr int kMoreIterations = 5;      // unless the error is below the first of these; then,
+constexpr std::size_t kMaxSolutions = 1000;
+constexpr std::size_t kMaxFound = 64;  // of an arm that is not redundant, before the choice
+constexpr int kIterations = 10;        // measured: a new start is worth more than an eleventh,
+constexpr int kMoreIterations = 5;     // unless the error is below the first of these; then,
 constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the second (squared)
 constexpr int kPatientIterations = 40;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kHoldingStarts = 32;
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
-constexpr int kMostStarts = 4000;
+constexpr int kMaxStarts = 4000;
 constexpr int kFirstStarts = 16;
 constexpr int kDiagnosticStarts = 8;
 constexpr int kSaturated = 96;        // ended descents in a row without a new solution
@@ -54,14 +54,14 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
     : solver_(solver),
       T_base_transfer_(T_base_tip * solver.T_tip_transfer()),
       most_(options.max_solutions == 0
-                ? kMostSolutions
-                : std::min(static_cast<std::size_t>(options.max_solutions), kMostSolutions)),
+                ? kMaxSolutions
+                : std::min(static_cast<std::size_t>(options.max_solutions), kMaxSolutions)),
       min_distance_(std::max(options.min_distance, kSamePoint)),
       wanted_(solver.redundant() || options.max_solutions == 0 ? most_
-                                                               : std::max(most_, kMostFound)),
+                                                               : std::max(most_, kMaxFound)),
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
-      patient_(options.patient),
+      exhaustive_(options.exhaustive),
       pairs_(come_in_pairs(solver.lanes())),
       generator_(options.seed, T_base_tip),
       found_(solver.space().dof()),
@@ -92,7 +92,7 @@ void Search::find() {
   }
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
   const int starts =
-      all_ ? kMostStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
+      all_ ? kMaxStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
   const int patience = all_ ? kSaturated : solver_.redundant() ? starts : kBranchPatience;
   descend({kFirstStarts, kIterations, steer, kFirstStarts});
   if (enough())
@@ -102,7 +102,7 @@ void Search::find() {
     if (found_.empty() && least_squared_error_ > kNear * kNear)
       return;
   }
-  if (found_.empty() && !patient_)
+  if (found_.empty() && !exhaustive_)
     return;
   descend({starts - kFirstStarts, kIterations, steer, patience});
   if (found_.empty()) {
@@ -127,7 +127,6 @@ bool Search::knows_all(const ClosedForm& form) const {
 void Search::append_branches(const ClosedForm& form) {
   const auto locks = form.locks();
   const int attempts = locks.empty() ? 1 : std::max(kFewestLocks, 2 * static_cast<int>(wanted_));
-  checking_ = form.exact();
   std::array<double, kLaneJoints> locked;
   Branches branches;
   std::size_t known = 0;
@@ -141,20 +140,22 @@ void Search::append_branches(const ClosedForm& form) {
     form.append(T_base_transfer_, {locked.data(), locks.size()}, branches);
     outside_limits_ = outside_limits_ || branches.outside_limits();
     for (int i = 0; i < branches.size(); ++i)
-      propose(branches[i]);
+      form.exact() ? propose_exact(branches[i]) : propose_near(branches[i]);
   }
-  verify();
-  polish();
-  checking_ = false;
+  form.exact() ? verify_or_polish() : polish();
 }
 
-void Search::propose(const double* q) {
+void Search::propose_exact(const double* q) {
   std::array<double, kLaneJoints> candidate;
   std::copy_n(q, solver_.lanes().dof, candidate.data());
-  if (checking_) {
-    offer(candidate);
-    return;
-  }
+  hand_over(candidate);
+  if (is_full())
+    verify_or_polish();
+}
+
+void Search::propose_near(const double* q) {
+  std::array<double, kLaneJoints> candidate;
+  std::copy_n(q, solver_.lanes().dof, candidate.data());
   if (!solver_.space().normalize(candidate.data(), ClosedForm::kNearMargin_rad))
     return;
   put(candidate.data(), proposed_);
@@ -168,6 +169,24 @@ void Search::put(const double* q, int lane) {
     batch_.q[j][lane] = q[j] * chain.joints[j].scale + chain.joints[j].offset;
 }
 
+void Search::verify_or_polish() {
+  if (handed_over_ == 0)
+    return;
+  solver_.kernels().check(solver_.arm(), check_);
+  std::array<double, kLaneJoints> q;
+  for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
+    if (is_within(lane, kPolished)) {
+      keep(lane);
+      continue;
+    }
+    for (int j = 0; j < solver_.lanes().dof; ++j)
+      q[static_cast<std::size_t>(j)] = check_.q[j][lane];
+    put(q.data(), proposed_++);
+  }
+  handed_over_ = 0;
+  polish();
+}
+
 void Search::polish() {
   if (proposed_ == 0)
     return;
@@ -178,7 +197,7 @@ void Search::polish() {
       const bool last = i + 1 == kPolishSteps && batch_.squared[lane] < kConverged;
       if ((busy >> static_cast<unsigned>(lane) & 1U) == 0 || !(converged(lane) || last))
         continue;
-      hand_over(lane);
+      hand_over(configuration(lane));
       busy &= ~(1U << static_cast<unsigned>(lane));
     }
   }
@@ -204,8 +223,11 @@ void Search::descend(const Effort& effort) {
       if (ended == Ended::No)
         continue;
       ++idle_;
-      if (ended == Ended::Converged)
-        hand_over(lane);
+      if (ended == Ended::Converged) {
+        hand_over(configuration(lane));
+        if (is_full())
+          verify();
+      }
       if (waiting > 0) {
         --waiting;
         start(effort, lane);
@@ -298,12 +320,7 @@ bool Search::is_known(int lane) const {
          !is_apart(solver_.space(), outside_, q.data(), kKnown);
 }
 
-void Search::hand_over(int lane) {
-  std::array<double, kLaneJoints> q = configuration(lane);
-  offer(q);
-}
-
-void Search::offer(std::array<double, kLaneJoints>& q) {
+void Search::hand_over(std::array<double, kLaneJoints> q) {
   if (!solver_.space().normalize(q.data())) {
     outside_limits_ = true;
     if (!solver_.redundant() && is_apart(solver_.space(), outside_, q.data(), kSamePoint)) {
@@ -316,38 +333,31 @@ void Search::offer(std::array<double, kLaneJoints>& q) {
     return;
   for (int j = 0; j < solver_.lanes().dof; ++j)
     check_.q[j][handed_over_] = q[static_cast<std::size_t>(j)];
-  if (++handed_over_ == kLanes)
-    verify();
+  ++handed_over_;
+}
+
+bool Search::is_within(int lane, double tolerance) const noexcept {
+  return check_.distance_m[lane] <= tolerance && check_.angle_rad[lane] <= tolerance;
+}
+
+void Search::keep(int lane) {
+  std::array<double, kLaneJoints> q;
+  for (int j = 0; j < solver_.lanes().dof; ++j)
+    q[static_cast<std::size_t>(j)] = check_.q[j][lane];
+  if (!is_apart(solver_.space(), found_, q.data(), apart_))
+    return;
+  found_.add(q.data());
+  idle_ = 0;
 }
 
 void Search::verify() {
   if (handed_over_ == 0)
     return;
   solver_.kernels().check(solver_.arm(), check_);
-  std::array<double, kLaneJoints> q;
-  for (int lane = 0; lane < handed_over_ && !enough(); ++lane) {
-    for (int j = 0; j < solver_.lanes().dof; ++j)
-      q[static_cast<std::size_t>(j)] = check_.q[j][lane];
-    const auto within = [&](double tolerance) {
-      return check_.distance_m[lane] <= tolerance && check_.angle_rad[lane] <= tolerance;
-    };
-    if (checking_ && !within(kPolished)) {
-      put(q.data(), proposed_++);
-      continue;
-    }
-    if (!within(kPoseTolerance))
-      continue;
-    if (!is_apart(solver_.space(), found_, q.data(), apart_))
-      continue;
-    found_.add(q.data());
-    idle_ = 0;
-  }
+  for (int lane = 0; lane < handed_over_ && !enough(); ++lane)
+    if (is_within(lane, kPoseTolerance))
+      keep(lane);
   handed_over_ = 0;
-  if (checking_) {
-    checking_ = false;  // what comes from the polish is as good as it gets
-    polish();
-    checking_ = true;
-  }
 }
 
 InverseSolutions Search::solutions() {

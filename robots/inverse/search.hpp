@@ -32,12 +32,17 @@ class Search {
   };
   enum class Ended { No, Converged, Known, Failed };
 
-  /// Candidates of the closed form. Those of an exact structure are verified as they are, others
-  /// polished together first.
+  /// Candidates of the closed form.
   void append_branches(const ClosedForm& form);
   /// Whether the closed form leaves nothing to be found.
   bool knows_all(const ClosedForm& form) const;
-  void propose(const double* q);
+  /// A candidate of an exact structure is verified as it is,
+  void propose_exact(const double* q);
+  /// one of another structure polished first.
+  void propose_near(const double* q);
+  /// Verifies what was handed over as it is; what is off by more than rounding is polished.
+  void verify_or_polish();
+  /// Moves the lanes that were proposed to the pose, and verifies what got there.
   void polish();
   /// Makes a configuration, joint units, the start of a lane.
   void put(const double* q, int lane);
@@ -49,9 +54,13 @@ class Search {
   std::array<double, kLaneJoints> configuration(int lane) const;  // joint units
   /// Whether a lane is about to end at a branch that was found before.
   bool is_known(int lane) const;
-  /// Hands a converged lane over to verification if it is within limits and new.
-  void hand_over(int lane);
-  void offer(std::array<double, kLaneJoints>& q);
+  /// Hands a configuration over to verification if it is within limits and new.
+  void hand_over(std::array<double, kLaneJoints> q);
+  bool is_full() const noexcept { return handed_over_ == kLanes; }
+  /// Whether a lane of check_ is so near to the pose, m and rad.
+  bool is_within(int lane, double tolerance) const noexcept;
+  /// Keeps the configuration of a lane of check_ unless another one was found there meanwhile.
+  void keep(int lane);
   /// Verifies what was handed over, and keeps what is right.
   void verify();
   bool enough() const noexcept { return found_.size() >= wanted_; }
@@ -67,7 +76,7 @@ class Search {
   const std::size_t wanted_;   // to be found before the choice
   const double apart_;         // between those found
   const bool all_;             // as many as there are
-  const bool patient_;         // also where the first starts found nothing
+  const bool exhaustive_;      // goes on where the first starts found nothing
   const bool pairs_;           // branches come in pairs
   const CounterGenerator generator_;
 
@@ -76,12 +85,11 @@ class Search {
   std::array<int, kLanes> iterations_{};
   bool near_[kLanes];  // of a solution, once
   std::uint64_t next_start_ = 0;
-  int proposed_ = 0;       // lanes of batch_ that wait for the polish
-  int lost_ = 0;           // of those, such as no polish made a solution
-  bool checking_ = false;  // candidates go to verification without a polish
-  int handed_over_ = 0;    // lanes of check_ that wait
-  int idle_ = 0;           // ended descents since the last new solution
-  int stationary_ = 0;     // descents that ended where the error has a minimum above 0
+  int proposed_ = 0;     // lanes of batch_ that wait for the polish
+  int lost_ = 0;         // of those, such as no polish made a solution
+  int handed_over_ = 0;  // lanes of check_ that wait
+  int idle_ = 0;         // ended descents since the last new solution
+  int stationary_ = 0;   // descents that ended where the error has a minimum above 0
   Configurations found_;
   Configurations outside_;  // branches outside the limits, of an arm that is not redundant
   bool outside_limits_ = false;

@@ -25,16 +25,16 @@ struct SixJointRule {
   bool operator==(const SixJointRule&) const = default;
 };
 
-inline constexpr int kMostBranches = 8;  ///< of six joints by these rules
+inline constexpr int kMaxBranches = 8;  ///< of six joints by these rules
 
 /// What six joints come to: one column of angles (rad, any turn) per branch.
 struct SixJointBranches {
-  std::array<std::array<double, 6>, kMostBranches> angles;
+  std::array<std::array<double, 6>, kMaxBranches> angles;
   int count = 0;
   bool outside = false;  ///< whether a joint would have left its window on the way to a branch
 
   void add(const std::array<double, 6>& q) {
-    if (count < kMostBranches)
+    if (count < kMaxBranches)
       angles[static_cast<std::size_t>(count++)] = q;
   }
 };

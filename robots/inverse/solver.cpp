@@ -10,7 +10,7 @@ namespace kinship::inverse {
 
 Solver::Solver(const kinematics::Chain& chain) : Solver(chain, instruction_sets().back().kernels) {}
 
-Solver::Solver(const kinematics::Chain& chain, const LaneKernels& kernels, Engines engines)
+Solver::Solver(const kinematics::Chain& chain, const SimdKernels& kernels, Engines engines)
     : kernels_(kernels),
       lanes_(lane_chain(chain)),
       arm_(lane_arm(chain)),

@@ -25,7 +25,7 @@ class Solver {
 
   /// With the kernels given; solutions differ between instruction sets by rounding only, and in a
   /// pose of thousands by a start that rounding sent another way.
-  Solver(const kinematics::Chain& chain, const LaneKernels& kernels,
+  Solver(const kinematics::Chain& chain, const SimdKernels& kernels,
          Engines engines = Engines::Best);
 
   /// Distinct configurations that put the tip link at a pose; see `inverse`.
@@ -36,7 +36,7 @@ class Solver {
   /// In words, e.g. "multi-start Levenberg-Marquardt".
   std::string name() const;
 
-  const LaneKernels& kernels() const noexcept { return kernels_; }
+  const SimdKernels& kernels() const noexcept { return kernels_; }
   const LaneChain& lanes() const noexcept { return lanes_; }
   const LaneArm& arm() const noexcept { return arm_; }
   const JointSpace& space() const noexcept { return space_; }
@@ -48,7 +48,7 @@ class Solver {
   bool beyond_reach(const Eigen::Isometry3d& T_base_transfer) const;
 
  private:
-  LaneKernels kernels_;
+  SimdKernels kernels_;
   LaneChain lanes_;
   LaneArm arm_;
   JointSpace space_;

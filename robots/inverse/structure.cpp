@@ -146,7 +146,7 @@ std::vector<SixJointRule> all_rules() {
 }
 
 /// Values for locks that no two axes are aligned at by chance.
-std::array<double, kMostLocked> lock_values(int trial) {
+std::array<double, kMaxLocked> lock_values(int trial) {
   return {0.37 + 1.31 * trial, -1.13 + 0.83 * trial};
 }
 
@@ -216,7 +216,7 @@ std::vector<std::vector<int>> choices(int dof, int count) {
 std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain) {
   std::vector<SixJointStructure> structures;
   const int dof = static_cast<int>(chain.axes.size());
-  if (dof < static_cast<int>(kFreeJoints) || dof > static_cast<int>(kFreeJoints) + kMostLocked)
+  if (dof < static_cast<int>(kFreeJoints) || dof > static_cast<int>(kFreeJoints) + kMaxLocked)
     return structures;
   static const std::vector<SixJointRule> kRules = all_rules();
   for (std::vector<int>& locks : choices(dof, dof - static_cast<int>(kFreeJoints))) {

@@ -27,9 +27,9 @@ struct SixJointStructure {
 };
 
 /// Every choice of locks under which the chain has a structure, each with the rule it fits best.
-/// None for chains of fewer than six joints, or of more than kMostLocked beyond six.
+/// None for chains of fewer than six joints, or of more than kMaxLocked beyond six.
 std::vector<SixJointStructure> six_joint_structures(const AxisChain& chain);
-inline constexpr int kMostLocked = 2;
+inline constexpr int kMaxLocked = 2;
 
 /// Writes the axes that are left free while others are locked into a task, and takes from its
 /// wanted displacement what the locked ones do.

@@ -14,13 +14,18 @@ void check_size(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) 
                                 std::to_string(chain.dof()) + " joints");
 }
 
-Eigen::Isometry3d T_base_last(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
+/// \param visit  called with the pose of each joint's moving frame, from base to tip.
+/// \return       the last of them.
+template <typename Visit>
+Eigen::Isometry3d visit_joints(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
+                               const Visit& visit) {
   check_size(chain, q);
   Eigen::Isometry3d T_base_joint = Eigen::Isometry3d::Identity();
   Eigen::Index i = 0;
   for (const Joint& joint : chain.joints()) {
     follow(joint.T_previous_joint, T_base_joint);
     move(joint, q[i++], T_base_joint);
+    visit(T_base_joint);
   }
   return T_base_joint;
 }
@@ -28,7 +33,7 @@ Eigen::Isometry3d T_base_last(const Chain& chain, const Eigen::Ref<const Eigen::
 }  // namespace
 
 Eigen::Isometry3d T_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q) {
-  Eigen::Isometry3d T = T_base_last(chain, q);
+  Eigen::Isometry3d T = visit_joints(chain, q, [](const Eigen::Isometry3d&) {});
   follow(chain.T_last_tip(), T);
   return T;
 }
@@ -41,16 +46,10 @@ Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eig
 
 std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
                                            const Eigen::Ref<const Eigen::VectorXd>& q) {
-  check_size(chain, q);
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(chain.joints().size());
-  Eigen::Isometry3d T_base_joint = Eigen::Isometry3d::Identity();
-  Eigen::Index i = 0;
-  for (const Joint& joint : chain.joints()) {
-    follow(joint.T_previous_joint, T_base_joint);
-    move(joint, q[i++], T_base_joint);
-    poses.push_back(T_base_joint);
-  }
+  visit_joints(chain, q,
+               [&](const Eigen::Isometry3d& T_base_joint) { poses.push_back(T_base_joint); });
   return poses;
 }
 

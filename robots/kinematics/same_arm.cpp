@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/split_mix.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::kinematics {
@@ -16,14 +17,10 @@ bool moves_alike(const Joint& a, const Joint& b) {
 }
 
 /// A number in [0, 1) that is fixed by the index of a configuration and of a joint.
-/// Source: Steele, Lea and Flood, Fast splittable pseudorandom number generators (2014), fig. 17.
 double fraction(int configuration, Eigen::Index joint) {
-  std::uint64_t z = 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(configuration) * kMaxDof +
-                                           static_cast<std::uint64_t>(joint) + 1);
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-  z ^= z >> 31U;
-  return std::ldexp(static_cast<double>(z >> 11U), -53);
+  return unit_interval(
+      split_mixed(kSplitMixStep * (static_cast<std::uint64_t>(configuration) * kMaxDof +
+                                   static_cast<std::uint64_t>(joint) + 1)));
 }
 
 /// The angle by which two orientations differ, also where its cosine rounds to 1.

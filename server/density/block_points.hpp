@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "server/density/aligned_numbers.hpp"
-#include "server/density/block_kernels.hpp"
 #include "server/density/distinct_points.hpp"
+#include "server/density/simd_kernels.hpp"
 
 namespace kinship::density {
 

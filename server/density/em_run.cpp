@@ -15,7 +15,7 @@ constexpr int kLloydIterations = 10;
 Mixture start_mixture(const BlockPoints& all_points, Eigen::Index components, std::uint64_t seed,
                       const EmOptions& options) {
   const BlockPoints points = thinned(all_points, kSamplePoints);
-  const BlockKernels& kernels = *options.computation.kernels;
+  const SimdKernels& kernels = *options.computation.kernels;
   std::mt19937_64 generator(seed);
   const Eigen::MatrixXd centres = move_centres(
       points, choose_centres(points, components, kernels, generator), kLloydIterations, kernels);

@@ -2,23 +2,114 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <vector>
 
-#include "server/density/block_posterior.hpp"
+#include "server/density/aligned_numbers.hpp"
 #include "server/density/packed_mixture.hpp"
 #include "server/density/parallel.hpp"
 
 namespace kinship::density {
 namespace {
 
-constexpr int kMostChunks = 32;
+constexpr int kMaxChunks = 32;
+
+/// What a mixture says about the points of one block at a time. Memory of one thread's work.
+class BlockPosterior {
+ public:
+  /// \param mixture, kernels  outlive it.
+  BlockPosterior(const PackedMixture& mixture, const SimdKernels& kernels, bool prune);
+
+  void evaluate(const BlockPoints& points, int block);
+
+  /// Of the last block: the components that count there, and per component a row.
+  int count() const noexcept { return count_; }
+  int component(int row) const { return candidates_[static_cast<std::size_t>(row)]; }
+  const double* responsibilities(int row) const noexcept {
+    return terms_.data() + static_cast<std::ptrdiff_t>(row) * kBlockPoints;
+  }
+  /// The greatest responsibility of a row.
+  double peak(int row) const { return peaks_[static_cast<std::size_t>(row)]; }
+  const double* log_densities() const noexcept { return log_densities_; }  ///< kBlockPoints
+
+  /// What lies so far below the largest term of a point is nothing beside it, nats.
+  static constexpr double kNegligible = 42;
+
+ private:
+  void choose_candidates(const BlockPoints& points, int block);
+  double upper_bound(int component) const { return bounds_[static_cast<std::size_t>(component)]; }
+
+  const PackedMixture& mixture_;
+  const SimdKernels& kernels_;
+  const bool prune_;
+  AlignedNumbers bounds_;  // 3 x stride: upper, lower, at the centre
+  AlignedNumbers terms_;   // K x kBlockPoints
+  std::vector<int> candidates_;
+  double best_lower_bound_ = 0;
+  int count_ = 0;
+  std::vector<double> peaks_;
+  alignas(64) double largest_[kBlockPoints] = {};
+  alignas(64) double log_densities_[kBlockPoints] = {};
+};
+
+BlockPosterior::BlockPosterior(const PackedMixture& mixture, const SimdKernels& kernels, bool prune)
+    : mixture_(mixture), kernels_(kernels), prune_(prune) {
+  const auto size = static_cast<std::size_t>(mixture.size());
+  bounds_.resize(3 * static_cast<std::size_t>(mixture.stride()));
+  terms_.resize(size * kBlockPoints);
+  peaks_.resize(size);
+  candidates_.reserve(size);
+}
+
+/// Those that may count somewhere in the block's box, the likeliest first.
+void BlockPosterior::choose_candidates(const BlockPoints& points, int block) {
+  kernels_.bounds(mixture_.dimension(), mixture_.interleaved(), mixture_.stride(),
+                  points.centre(block), points.half_widths(block), bounds_.data());
+  const double* lower = bounds_.data() + mixture_.stride();
+  const double* at_centre = lower + mixture_.stride();
+  best_lower_bound_ = *std::max_element(lower, lower + mixture_.size());
+  for (int k = 0; k < mixture_.size(); ++k)
+    if (upper_bound(k) >= best_lower_bound_ - kNegligible)
+      candidates_.push_back(k);
+  std::sort(candidates_.begin(), candidates_.end(), [at_centre](int a, int b) {
+    return at_centre[a] != at_centre[b] ? at_centre[a] > at_centre[b] : a < b;
+  });
+}
+
+void BlockPosterior::evaluate(const BlockPoints& points, int block) {
+  candidates_.clear();
+  if (prune_) {
+    choose_candidates(points, block);
+  } else {
+    candidates_.resize(static_cast<std::size_t>(mixture_.size()));
+    std::iota(candidates_.begin(), candidates_.end(), 0);
+  }
+  std::fill_n(largest_, kBlockPoints, std::numeric_limits<double>::lowest());
+  double floor = prune_ ? best_lower_bound_ : 0;  // no point's largest term is below it
+  std::size_t count = 0;
+  for (const int k : candidates_) {
+    if (prune_ && upper_bound(k) < floor - kNegligible)
+      continue;
+    double least_largest = 0;
+    const double excess =
+        kernels_.log_terms(mixture_.dimension(), points.points(block), mixture_.component(k),
+                           terms_.data() + count * kBlockPoints, largest_, &least_largest);
+    if (prune_ && excess < -kNegligible)
+      continue;
+    floor = std::max(floor, least_largest);
+    candidates_[count++] = k;
+  }
+  count_ = static_cast<int>(count);
+  kernels_.responsibilities(count_, terms_.data(), largest_, peaks_.data(), log_densities_);
+}
 
 /// How many parts a sum over blocks has: a function of the sizes alone, so that its value does not
 /// depend on the threads; few enough that their sums take no more memory than the points.
 int chunks(const BlockPoints& points, int numbers_per_chunk) {
   const double numbers = static_cast<double>(points.blocks()) * kBlockPoints * points.dimension();
   return static_cast<int>(std::clamp(numbers / numbers_per_chunk, 1.0,
-                                     static_cast<double>(std::min(kMostChunks, points.blocks()))));
+                                     static_cast<double>(std::min(kMaxChunks, points.blocks()))));
 }
 
 int begin_of_chunk(const BlockPoints& points, int chunk, int count) {

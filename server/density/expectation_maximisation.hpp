@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 #include "proto/types/mixture.hpp"
-#include "server/density/block_kernels.hpp"
 #include "server/density/block_points.hpp"
 #include "server/density/instruction_set.hpp"
+#include "server/density/simd_kernels.hpp"
 
 namespace kinship::density {
 
@@ -14,7 +14,7 @@ namespace kinship::density {
 struct Computation {
   int threads = 1;
   bool prune = true;  ///< leave out what no digit of the result shows
-  const BlockKernels* kernels = &widest_kernels();
+  const SimdKernels* kernels = &widest_simd_kernels();
 };
 
 /// What the points say about each component: sums over the points, weighted by point weight and

@@ -14,7 +14,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr Eigen::Index kMostComponents = 128;  // where K is chosen
+constexpr Eigen::Index kMaxTriedComponents = 128;  // where K is chosen
 
 void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options) {
@@ -83,7 +83,7 @@ class Fit {
   Fit(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
       const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options)
       : configurations_(configurations),
-        weights_(weights),
+        data_(configurations, weights, options.path_of_configuration),
         options_(options),
         em_(em_options(configurations.rows(), options)) {}
 
@@ -92,26 +92,19 @@ class Fit {
       return run_warm(std::move(all), *options_.warm_start);
     if (options_.components > 0)
       return run_fixed(std::move(all), options_.components);
-    const std::vector<std::uint32_t>& path_of = options_.path_of_configuration;
-    const std::uint32_t paths = 1 + *std::max_element(path_of.begin(), path_of.end());
-    const std::optional<Ladder> ladder = climb(paths);
-    if (!ladder)
-      return run_fixed(std::move(all), components_of_few_paths(paths));
-    FitSummary summary = refined(ladder->best, blocks_of(std::move(all)), em_);
-    summary.curve = ladder->curve;
-    summary.held_out_score = ladder->best_score;
+    const std::optional<ComponentSearch> search = search_components();
+    if (!search)
+      return run_fixed(std::move(all), components_of_few_paths(data_.paths()));
+    FitSummary summary = refined(search->best, data_.blocks_of(std::move(all)), em_);
+    summary.curve = search->curve;
+    summary.held_out_score = search->best_score;
     return summary;
   }
 
  private:
-  BlockPoints blocks_of(DistinctPoints distinct) const {
-    const Eigen::VectorXd mean = mean_of(configurations_, distinct);
-    return {configurations_, std::move(distinct), mean};
-  }
-
   FitSummary run_fixed(DistinctPoints all, int wanted) const {
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
-    const BlockPoints points = blocks_of(std::move(all));
+    const BlockPoints points = data_.blocks_of(std::move(all));
     Mixture start = start_mixture(points, components, options_.seed, em_);
     if (is_large(points, components))
       start = run_em(std::move(start), sample_of(points, components), em_).mixture;
@@ -124,7 +117,7 @@ class Fit {
     const Eigen::Index wanted = options_.components > 0 ? options_.components : warm.mixture.size();
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
     Mixture start = with_components_for_new(configurations_, all, warm, options_.seed, em_);
-    const BlockPoints points = blocks_of(std::move(all));
+    const BlockPoints points = data_.blocks_of(std::move(all));
     EmOptions few = em_;
     if (start.size() > components) {
       few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
@@ -138,33 +131,22 @@ class Fit {
     return {std::move(run.mixture), std::move(run.log_likelihoods)};
   }
 
-  /// The distinct configurations of the paths that are held out, or of the others.
-  DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const {
-    std::vector<std::uint8_t> wanted;
-    wanted.reserve(options_.path_of_configuration.size());
-    for (const std::uint32_t path : options_.path_of_configuration)
-      wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
-    return distinct_points(configurations_, weights_, wanted);
-  }
-
   /// \return nothing if there is too little to hold a part of it out.
-  std::optional<Ladder> climb(std::uint32_t paths) const {
-    if (paths < kLeastPathsToScore)
+  std::optional<ComponentSearch> search_components() const {
+    if (data_.paths() < kLeastPathsToScore)
       return std::nullopt;
-    const std::vector<std::uint8_t> held_out = held_out_paths(paths, options_.seed);
-    DistinctPoints training = part(held_out, false);
-    DistinctPoints scored = part(held_out, true);
-    const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
-    if (training.columns.size() < least || scored.columns.empty())
+    auto split = data_.split(held_out_paths(data_.paths(), options_.seed));
+    if (!split)
       return std::nullopt;
-    const Eigen::Index most = components_for(training, configurations_.rows(), kMostComponents);
-    return climb_down(sample_of(blocks_of(std::move(training)), most),
-                      sample_of(blocks_of(std::move(scored)), most), most,
-                      log_uniform(configurations_, options_.limits), options_.seed, em_);
+    const Eigen::Index most =
+        components_for(split->training, configurations_.rows(), kMaxTriedComponents);
+    return prune_components(sample_of(data_.blocks_of(std::move(split->training)), most),
+                            sample_of(data_.blocks_of(std::move(split->held_out)), most), most,
+                            log_uniform(configurations_, options_.limits), options_.seed, em_);
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
-  const Eigen::Ref<const Eigen::VectorXd>& weights_;
+  const WeightedConfigurations data_;
   const FitOptions& options_;
   const EmOptions em_;
 };

@@ -8,9 +8,9 @@
 #include "proto/types/mixture.hpp"
 #include "proto/types/profile.hpp"
 #include "proto/types/result.hpp"
+#include "server/density/component_search.hpp"
 #include "server/density/expectation_maximisation.hpp"
 #include "server/density/hold_out.hpp"
-#include "server/density/ladder.hpp"
 #include "server/density/warm_start.hpp"
 
 namespace kinship::density {
@@ -49,10 +49,10 @@ struct FitSummary {
 /// Fits a Gaussian mixture with full covariances: k-means++ start, Lloyd iterations, EM.
 ///
 /// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
-/// climb_down) when the others are fitted; the mixture of that K is then refitted to all. Below
-/// kLeastPathsToScore paths it is components_of_few_paths, without a curve.
+/// prune_components) when the others are fitted; the mixture of that K is then refitted to all.
+/// Below kLeastPathsToScore paths it is components_of_few_paths, without a curve.
 ///
-/// A warm start adds at most kMostNewComponents, runs EM on a sample (kIterationsBeforeMerging),
+/// A warm start adds at most kMaxNewComponents, runs EM on a sample (kIterationsBeforeMerging),
 /// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there
 /// is: cheaper than a full fit, and what comes out depends on the mixture it began with. It leaves
 /// curve and held_out_score empty.

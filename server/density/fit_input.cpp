@@ -72,6 +72,33 @@ bool are_paths_of(const std::vector<std::uint32_t>& path_of_configuration,
                    false) == is_there.begin() + static_cast<std::ptrdiff_t>(paths);
 }
 
+std::uint32_t WeightedConfigurations::paths() const {
+  return 1 + *std::max_element(path_of_configuration_.begin(), path_of_configuration_.end());
+}
+
+BlockPoints WeightedConfigurations::blocks_of(DistinctPoints distinct) const {
+  const Eigen::VectorXd mean = mean_of(configurations_, distinct);
+  return {configurations_, std::move(distinct), mean};
+}
+
+std::optional<WeightedConfigurations::Split> WeightedConfigurations::split(
+    const std::vector<std::uint8_t>& held_out) const {
+  Split split{part(held_out, false), part(held_out, true)};
+  const auto least = static_cast<std::size_t>(configurations_.rows() + 1);
+  if (split.training.columns.size() < least || split.held_out.columns.empty())
+    return std::nullopt;
+  return split;
+}
+
+DistinctPoints WeightedConfigurations::part(const std::vector<std::uint8_t>& held_out,
+                                            bool of_held_out) const {
+  std::vector<std::uint8_t> wanted;
+  wanted.reserve(path_of_configuration_.size());
+  for (const std::uint32_t path : path_of_configuration_)
+    wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
+  return distinct_points(configurations_, weights_, wanted);
+}
+
 double log_uniform(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Matrix2Xd& limits) {
   constexpr double kLeastWidth = 1e-6;  // of a joint that does not move

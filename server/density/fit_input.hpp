@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "proto/types/failure.hpp"
 #include "proto/types/result.hpp"
+#include "server/density/block_points.hpp"
 #include "server/density/distinct_points.hpp"
 
 /// What every estimator asks of its input.
@@ -55,6 +57,40 @@ void check_sizes(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
 /// Whether each configuration has a path, and each path from 0 to the last one a configuration.
 bool are_paths_of(const std::vector<std::uint32_t>& path_of_configuration,
                   Eigen::Index configurations);
+
+/// Configurations, what each weighs and which path it comes from: all of them, or the parts that
+/// are fitted and scored where some paths are held out. The arguments outlive it.
+class WeightedConfigurations {
+ public:
+  /// \param configurations         d x N.
+  /// \param weights                N.
+  /// \param path_of_configuration  N, or empty where nobody asks for paths.
+  WeightedConfigurations(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
+                         const Eigen::Ref<const Eigen::VectorXd>& weights,
+                         const std::vector<std::uint32_t>& path_of_configuration)
+      : configurations_(configurations),
+        weights_(weights),
+        path_of_configuration_(path_of_configuration) {}
+
+  std::uint32_t paths() const;  ///< how many
+  /// Relative to their mean.
+  BlockPoints blocks_of(DistinctPoints distinct) const;
+
+  struct Split {
+    DistinctPoints training;
+    DistinctPoints held_out;
+  };
+  /// \param held_out  one flag per path.
+  /// \return nothing if there is too little on either side.
+  std::optional<Split> split(const std::vector<std::uint8_t>& held_out) const;
+
+ private:
+  DistinctPoints part(const std::vector<std::uint8_t>& held_out, bool of_held_out) const;
+
+  const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
+  const Eigen::Ref<const Eigen::VectorXd>& weights_;
+  const std::vector<std::uint32_t>& path_of_configuration_;
+};
 
 /// Logarithm of the density of the uniform distribution within limits.
 /// \param configurations  d x N, N >= 1.

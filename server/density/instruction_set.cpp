@@ -4,31 +4,31 @@
 
 namespace kinship::density {
 
-extern const BlockKernels kBaselineKernels;
+extern const SimdKernels kBaselineSimdKernels;
 #if defined(__x86_64__)
-extern const BlockKernels kAvx2Kernels;
-extern const BlockKernels kAvx512Kernels;
+extern const SimdKernels kAvx2SimdKernels;
+extern const SimdKernels kAvx512SimdKernels;
 #endif
 
-const BlockKernels* find_kernels(InstructionSet set) {
+const SimdKernels* find_simd_kernels(InstructionSet set) {
   if (set == InstructionSet::Baseline)
-    return &kBaselineKernels;
+    return &kBaselineSimdKernels;
 #if defined(__x86_64__)
   if (set == InstructionSet::Avx2 && __builtin_cpu_supports("avx2") &&
       __builtin_cpu_supports("fma"))
-    return &kAvx2Kernels;
+    return &kAvx2SimdKernels;
   if (set == InstructionSet::Avx512 && __builtin_cpu_supports("avx512f") &&
       __builtin_cpu_supports("avx512dq"))
-    return &kAvx512Kernels;
+    return &kAvx512SimdKernels;
 #endif
   return nullptr;
 }
 
-const BlockKernels& widest_kernels() {
+const SimdKernels& widest_simd_kernels() {
   for (const InstructionSet set : {InstructionSet::Avx512, InstructionSet::Avx2})
-    if (const BlockKernels* kernels = find_kernels(set))
+    if (const SimdKernels* kernels = find_simd_kernels(set))
       return *kernels;
-  return kBaselineKernels;
+  return kBaselineSimdKernels;
 }
 
 }  // namespace kinship::density

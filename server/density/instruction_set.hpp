@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/density/block_kernels.hpp"
+#include "server/density/simd_kernels.hpp"
 
 namespace kinship::density {
 
@@ -9,9 +9,9 @@ enum class InstructionSet { Baseline, Avx2, Avx512 };
 
 /// The kernels of an instruction set, or null if this machine or build does not have it.
 /// Baseline is always there.
-const BlockKernels* find_kernels(InstructionSet set);
+const SimdKernels* find_simd_kernels(InstructionSet set);
 
 /// Those of the widest vectors that this machine has.
-const BlockKernels& widest_kernels();
+const SimdKernels& widest_simd_kernels();
 
 }  // namespace kinship::density

@@ -33,7 +33,7 @@ double furthest_in_box(const BlockPoints& points, int block, const double* place
 /// How far each point is from the nearest centre chosen so far.
 class Distances {
  public:
-  Distances(const BlockPoints& points, const BlockKernels& kernels)
+  Distances(const BlockPoints& points, const SimdKernels& kernels)
       : points_(points),
         kernels_(kernels),
         squared_(static_cast<std::size_t>(points.blocks()) * kBlockPoints,
@@ -105,7 +105,7 @@ class Distances {
 
  private:
   const BlockPoints& points_;
-  const BlockKernels& kernels_;
+  const SimdKernels& kernels_;
   AlignedNumbers squared_;
   std::vector<double> sums_, furthest_;  // per block
   double total_ = 0;
@@ -136,7 +136,7 @@ void find_candidates(const BlockPoints& points, int block,
 }  // namespace
 
 Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
-                               const BlockKernels& kernels, std::mt19937_64& generator) {
+                               const SimdKernels& kernels, std::mt19937_64& generator) {
   const int tries = 2 + static_cast<int>(std::log(static_cast<double>(count)));
   Eigen::MatrixXd centres(points.dimension(), count);
   Distances distances(points, kernels);
@@ -162,7 +162,7 @@ Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
 
 std::vector<int> nearest_centres(const BlockPoints& points,
                                  const Eigen::Ref<const Eigen::MatrixXd>& centres,
-                                 const BlockKernels& kernels) {
+                                 const SimdKernels& kernels) {
   std::vector<int> nearest(static_cast<std::size_t>(points.size()));
   std::vector<int> candidates;
   Eigen::MatrixXd near(centres.rows(), centres.cols());
@@ -181,7 +181,7 @@ std::vector<int> nearest_centres(const BlockPoints& points,
 }
 
 Eigen::MatrixXd move_centres(const BlockPoints& points, Eigen::MatrixXd centres, int max_iterations,
-                             const BlockKernels& kernels) {
+                             const SimdKernels& kernels) {
   std::vector<int> previous;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     std::vector<int> nearest = nearest_centres(points, centres, kernels);

@@ -16,19 +16,19 @@ namespace kinship::density {
 ///               distinct points.
 /// Source: Arthur and Vassilvitskii, k-means++: the advantages of careful seeding (2007).
 Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
-                               const BlockKernels& kernels, std::mt19937_64& generator);
+                               const SimdKernels& kernels, std::mt19937_64& generator);
 
 /// For each point, in block order, the index of the nearest centre, the lowest of equally near
 /// ones.
 /// \param centres  d x K, relative to the points' offset.
 std::vector<int> nearest_centres(const BlockPoints& points,
                                  const Eigen::Ref<const Eigen::MatrixXd>& centres,
-                                 const BlockKernels& kernels);
+                                 const SimdKernels& kernels);
 
 /// Lloyd's iterations: each centre moves to the weighted mean of the points nearest to it, until
 /// no point changes sides or `max_iterations` are done. A centre without points stays.
 Eigen::MatrixXd move_centres(const BlockPoints& points, Eigen::MatrixXd centres, int max_iterations,
-                             const BlockKernels& kernels);
+                             const SimdKernels& kernels);
 
 /// The moments if each point belongs to one component entirely.
 /// \param component_of_point  one index below `components` per point, in block order.

@@ -8,7 +8,7 @@
 
 #include "proto/mixture/cholesky.hpp"
 #include "proto/types/failure.hpp"
-#include "server/density/block_kernels.hpp"
+#include "server/density/simd_kernels.hpp"
 
 namespace kinship::density {
 namespace {

@@ -7,7 +7,7 @@
 
 namespace kinship::density {
 
-/// The components of a mixture as the kernels read them (block_kernels.hpp).
+/// The components of a mixture as the kernels read them (simd_kernels.hpp).
 class PackedMixture {
  public:
   /// \param offset  d: what the points are relative to.

@@ -115,7 +115,7 @@ Mixture with_components_for_new(const Eigen::Ref<const Eigen::MatrixXd>& configu
   Poor poor = poor_of(added, log_densities(warm.mixture, added, options.computation), limit);
   const auto count = static_cast<Eigen::Index>(poor.points.columns.size());
   const Eigen::Index clusters =
-      std::min(count / (2 * (configurations.rows() + 1)), kMostNewComponents);
+      std::min(count / (2 * (configurations.rows() + 1)), kMaxNewComponents);
   if (clusters == 0)
     return warm.mixture;
 

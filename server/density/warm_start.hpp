@@ -27,7 +27,7 @@ Mixture with_components_for_new(const Eigen::Ref<const Eigen::MatrixXd>& configu
                                 std::uint64_t seed, const EmOptions& options);
 
 /// Most clusters that are added.
-inline constexpr Eigen::Index kMostNewComponents = 16;
+inline constexpr Eigen::Index kMaxNewComponents = 16;
 
 /// EM with them on a sample, before components are merged down again.
 inline constexpr int kIterationsBeforeMerging = 10;

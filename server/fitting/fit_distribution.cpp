@@ -10,13 +10,13 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "server/density/fit.hpp"
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/fitting/profile_advice.hpp"
 #include "server/fitting/selected_experience.hpp"
 #include "server/fitting/source_transfer.hpp"
 #include "server/fitting/source_words.hpp"
-#include "server/fitting/turn_cuts.hpp"
 #include "server/fitting/warm_refit.hpp"
 
 namespace kinship::fitting {
@@ -63,12 +63,12 @@ Eigen::VectorXd covariance_floors(const kinematics::Chain& chain,
 /// The same summary of the other estimator.
 Result<density::FitSummary> fit_kernels(const Eigen::MatrixXd& configurations,
                                         const Eigen::VectorXd& weights,
-                                        const density::KernelOptions& options) {
-  Result<density::KernelEstimate> estimate =
-      density::estimate_kernels(configurations, weights, options);
+                                        const density::KernelDensityOptions& options) {
+  Result<density::KernelDensity> estimate =
+      density::estimate_kernel_density(configurations, weights, options);
   if (!estimate)
     return estimate.error();
-  density::KernelEstimate made = std::move(estimate).value();
+  density::KernelDensity made = std::move(estimate).value();
   return density::FitSummary{std::move(made.mixture), {}, {}, made.held_out_score};
 }
 

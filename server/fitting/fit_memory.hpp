@@ -10,9 +10,9 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/mixture.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/known_paths.hpp"
 #include "server/fitting/last_used.hpp"
-#include "server/fitting/turn_cuts.hpp"
 
 namespace kinship::fitting {
 
@@ -31,7 +31,7 @@ struct FitRemains {
   std::vector<Digest> sources;     ///< of which it used a path, ascending
   std::optional<Mixture> mixture;  ///< none: the next fit is a full one
   std::uint64_t revision = 0;      ///< of that mixture
-  TurnCuts cuts;                   ///< it was fitted with
+  BranchCuts cuts;                 ///< it was fitted with
   FullFit full;                    ///< itself, or the one it goes back to
 };
 

@@ -44,7 +44,7 @@ class PathTransfer {
  private:
   /// What one thread needs for itself: worlds of collisions are asked by one at a time.
   struct Lane {
-    transfer::Keep self;
+    transfer::ConfigurationFilter self;
     SceneFilters scenes;
   };
   /// A path that can be transferred, and what is known of it before.

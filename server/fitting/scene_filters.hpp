@@ -14,7 +14,7 @@ namespace kinship::fitting {
 
 /// What a recorded scene says about the configurations of a target.
 struct PathScene {
-  transfer::Keep keep;  ///< empty: nothing is left out
+  transfer::ConfigurationFilter keep;  ///< empty: nothing is left out
   /// An object that a moving link of the target touches wherever it goes, and that is therefore not
   /// looked at, in words; empty if there is none. (That a base touches the table it stands on is no
   /// news.)

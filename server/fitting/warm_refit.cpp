@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "server/density/hold_out.hpp"
-#include "server/fitting/turn_cuts.hpp"
+#include "server/fitting/branch_cuts.hpp"
 
 namespace kinship::fitting {
 namespace {

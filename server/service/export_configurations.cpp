@@ -5,8 +5,8 @@
 #include "proto/types/number_text.hpp"
 #include "server/catalog/freshness.hpp"
 #include "server/density/hold_out.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/source_transfer.hpp"
-#include "server/fitting/turn_cuts.hpp"
 
 namespace kinship::service {
 namespace {

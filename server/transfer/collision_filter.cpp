@@ -4,8 +4,9 @@
 
 namespace kinship::transfer {
 
-Keep collision_filter(const kinematics::Chain& robot, const geometry::RobotShapes& shapes,
-                      const collision::Surroundings& surroundings) {
+ConfigurationFilter collision_filter(const kinematics::Chain& robot,
+                                     const geometry::RobotShapes& shapes,
+                                     const collision::Surroundings& surroundings) {
   if (shapes.shapes.empty())
     return {};
   // Copies of the function share the world: it cannot be copied, and it is asked by one at a time.

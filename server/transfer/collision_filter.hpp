@@ -12,7 +12,8 @@ namespace kinship::transfer {
 /// A standing part of the robot that touches an obstacle makes every configuration collide
 /// (CollisionWorld); who gives a scene allows such pairs.
 /// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
-Keep collision_filter(const kinematics::Chain& robot, const geometry::RobotShapes& shapes,
-                      const collision::Surroundings& surroundings = {});
+ConfigurationFilter collision_filter(const kinematics::Chain& robot,
+                                     const geometry::RobotShapes& shapes,
+                                     const collision::Surroundings& surroundings = {});
 
 }  // namespace kinship::transfer

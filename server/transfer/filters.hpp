@@ -8,12 +8,12 @@ namespace kinship::transfer {
 
 /// Whether a configuration of the target robot (dof, joint units, within limits) may be used. The
 /// answer may depend on the configuration only.
-using Keep = std::function<bool(const Eigen::Ref<const Eigen::VectorXd>& q)>;
+using ConfigurationFilter = std::function<bool(const Eigen::Ref<const Eigen::VectorXd>& q)>;
 
 /// What the configurations of a path have to pass, in this order. An empty one passes everything.
 struct Filters {
-  Keep self;   ///< false: the target touches itself
-  Keep scene;  ///< false: it touches the scene that was recorded with this path
+  ConfigurationFilter self;   ///< false: the target touches itself
+  ConfigurationFilter scene;  ///< false: it touches the scene that was recorded with this path
 };
 
 /// Filters, how often they were asked, and how often they said no.

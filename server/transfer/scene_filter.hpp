@@ -14,7 +14,8 @@ namespace kinship::transfer {
 
 /// A filter made of a recorded scene for one robot.
 struct SceneFilter {
-  Keep keep;  ///< empty if there is nothing to touch: no shapes of the robot, or no object
+  /// Empty if there is nothing to touch: no shapes of the robot, or no object.
+  ConfigurationFilter keep;
   /// Names of two things that touch wherever the robot goes, as a base and the table below it, or
   /// a wrist and what is held: they say nothing about a configuration and are not looked at.
   std::vector<std::pair<std::string, std::string>> always_touching;

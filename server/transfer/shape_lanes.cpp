@@ -1,7 +1,6 @@
 #include "server/transfer/shape_lanes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "server/transfer/shape_pull.hpp"
@@ -71,7 +70,7 @@ void ShapeLanes::begin_step(int lane, double most_motion, int steps) {
   now.iterations = 0;
   now.steps_left = steps;
   write(solver_.lanes(), at(lane), lane, batch_.q);
-  reaching_ |= lane_bit(lane);
+  set(lane, State::Reaching);
 }
 
 void ShapeLanes::begin_pull(int lane, int steps) {
@@ -83,62 +82,55 @@ void ShapeLanes::begin_pull(int lane, int steps) {
 
 void ShapeLanes::start_pull(int lane, int steps) {
   const auto i = static_cast<std::size_t>(lane);
+  if (!pair_.target_marks()) {
+    pull_alone(pair_, T_base_transfer_[i], wanted_[i], steps, q_[i]);
+    return end_pull(lane);
+  }
+  if (!solver_.redundant())  // no self-motion
+    return end_pull(lane);
   work_[i].steps_left = steps;
   work_[i].distance_m = std::numeric_limits<double>::infinity();  // not measured yet
-  if (!pair_.target_marks()) {
-    work_[i].distance_m = pull_alone(pair_, T_base_transfer_[i], wanted_[i], steps, q_[i]);
-    pulled_ |= lane_bit(lane);
-  } else if (!solver_.redundant()) {  // no self-motion
-    pulled_ |= lane_bit(lane);
-  } else {
-    work_[i].settled = at(lane);
-    write(solver_.lanes(), at(lane), lane, pull_.q);
-    measuring_ |= lane_bit(lane);
-  }
+  work_[i].settled = at(lane);
+  write(solver_.lanes(), at(lane), lane, pull_.q);
+  set(lane, State::Measuring);
 }
 
-ShapeLanes::Ended ShapeLanes::run() {
-  Ended ended;
+bool ShapeLanes::run() {
   for (;;) {
-    end_pulls(ended);
-    const int descending = std::popcount(reaching_ | settling_);
-    const int measuring = std::popcount(measuring_);
-    if (kEndedShare * std::popcount(ended.arrived | ended.failed) >= descending + measuring)
-      return ended;
+    const int descending = count(State::Reaching) + count(State::Settling);
+    const int measuring = count(State::Measuring);
+    const int ended = count(State::Arrived) + count(State::Failed);
+    if (kEndedShare * ended >= descending + measuring)
+      return ended > 0;
     if (measuring >= kMeasuringShare * descending)
       measure();
     else
-      descend(ended);
+      descend();
   }
 }
 
 /// All lanes of the batch move, those that do not descend for nothing.
-void ShapeLanes::descend(Ended& ended) {
+void ShapeLanes::descend() {
   solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
-  const unsigned reaching = reaching_;
-  const unsigned descending = reaching_ | settling_;
   for (int lane = 0; lane < kCount; ++lane) {
-    if (!has_lane(descending, lane))
+    const bool reaching = state(lane) == State::Reaching;
+    if (!reaching && state(lane) != State::Settling)
       continue;
     const bool arrived = batch_.squared[lane] < kArrived;
     if (!arrived && ++work(lane).iterations <= kDescentIterations)
       continue;
-    reaching_ &= ~lane_bit(lane);
-    settling_ &= ~lane_bit(lane);
-    if (!arrived)
-      (has_lane(reaching, lane) ? ended.failed : pulled_) |= lane_bit(lane);
-    else if (has_lane(reaching, lane))
-      reached(lane, ended);
+    if (reaching)
+      arrived ? reached(lane) : set(lane, State::Failed);
     else
-      settled(lane);
+      arrived ? settled(lane) : end_pull(lane);
   }
 }
 
-void ShapeLanes::reached(int lane, Ended& ended) {
+void ShapeLanes::reached(int lane) {
   Work& now = work(lane);
   now.reached = read(solver_.lanes(), batch_.q, lane);
   if (!((now.reached - now.start).norm() <= now.most_motion)) {
-    ended.failed |= lane_bit(lane);
+    set(lane, State::Failed);
     return;
   }
   put(lane, now.reached);
@@ -148,13 +140,13 @@ void ShapeLanes::reached(int lane, Ended& ended) {
 void ShapeLanes::settled(int lane) {
   work(lane).settled = read(solver_.lanes(), batch_.q, lane);
   copy_lane(solver_.lanes(), lane, batch_.q, pull_.q);
-  measuring_ |= lane_bit(lane);
+  set(lane, State::Measuring);
 }
 
 void ShapeLanes::measure() {
   solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), pull_);
   for (int lane = 0; lane < kCount; ++lane) {
-    if (!has_lane(measuring_, lane))
+    if (state(lane) != State::Measuring)
       continue;
     Work& now = work(lane);
     const double reached_m = pull_.distance_m[lane];
@@ -164,44 +156,31 @@ void ShapeLanes::measure() {
       now.distance_m = reached_m;
     }
     if (!gains || now.steps_left == 0) {
-      pulled_ |= lane_bit(lane);
+      end_pull(lane);
       continue;
     }
     --now.steps_left;
     now.iterations = 0;
     copy_lane(solver_.lanes(), lane, pull_.q, batch_.q);
-    settling_ |= lane_bit(lane);
+    set(lane, State::Settling);
   }
-  measuring_ = 0;
 }
 
-void ShapeLanes::end_pulls(Ended& ended) {
-  for (int lane = 0; lane < kCount; ++lane)
-    if (has_lane(pulled_, lane) &&
-        !((at(lane) - work(lane).start).norm() <= work(lane).most_motion))
-      put(lane, work(lane).reached);
-  ended.arrived |= pulled_;
-  pulled_ = 0;
+void ShapeLanes::end_pull(int lane) {
+  if (!((at(lane) - work(lane).start).norm() <= work(lane).most_motion))
+    put(lane, work(lane).reached);
+  set(lane, State::Arrived);
 }
 
-void ShapeLanes::pull(unsigned lanes, int steps) {
-  for (int lane = 0; lane < kCount; ++lane)
-    if (has_lane(lanes, lane))
-      begin_pull(lane, steps);
-  while ((reaching_ | settling_ | measuring_ | pulled_) != 0)
-    run();
-}
-
-unsigned ShapeLanes::verified(unsigned lanes, const Eigen::MatrixXd& configurations) {
+std::array<bool, ShapeLanes::kCount> ShapeLanes::verified(const Eigen::MatrixXd& configurations) {
   for (int lane = 0; lane < kCount; ++lane)
     for (int j = 0; j < solver_.lanes().dof; ++j)
       check_.q[j][lane] = configurations(j, lane);
   solver_.kernels().check(solver_.arm(), check_);
-  unsigned right = 0;
+  std::array<bool, kCount> right{};
   for (int lane = 0; lane < kCount; ++lane)
-    if (has_lane(lanes, lane) && check_.distance_m[lane] <= inverse::kPoseTolerance &&
-        check_.angle_rad[lane] <= inverse::kPoseTolerance)
-      right |= lane_bit(lane);
+    right[static_cast<std::size_t>(lane)] = check_.distance_m[lane] <= inverse::kPoseTolerance &&
+                                            check_.angle_rad[lane] <= inverse::kPoseTolerance;
   return right;
 }
 

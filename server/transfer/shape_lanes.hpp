@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/lanes.hpp"
@@ -10,17 +12,22 @@
 
 namespace kinship::transfer {
 
-/// Sets of lanes are bits.
-inline unsigned lane_bit(int lane) { return 1U << static_cast<unsigned>(lane); }
-inline bool has_lane(unsigned lanes, int lane) { return (lanes & lane_bit(lane)) != 0; }
-
 /// Configurations of a pair's target, moved side by side: each lane has a pose to be at, a shape to
 /// look like and a configuration, and is given something to do of its own, at any time. What
-/// becomes of it does not depend on the other lanes. Sets of lanes are bits. Not shared between
-/// threads.
+/// becomes of it does not depend on the other lanes. Not shared between threads.
 class ShapeLanes {
  public:
   static constexpr int kCount = inverse::kLanes;
+
+  /// What a lane is at.
+  enum class State : std::uint8_t {
+    Idle,       ///< nothing
+    Reaching,   ///< descends to its pose from the one before
+    Measuring,  ///< is at its pose and waits for the kernel that pulls
+    Settling,   ///< descends back to its pose, pulled
+    Arrived,    ///< has done what it was to do
+    Failed,     ///< could not, and stayed where it was
+  };
 
   /// \param pair  outlives it.
   explicit ShapeLanes(const ArmPair& pair);
@@ -33,33 +40,31 @@ class ShapeLanes {
 
   /// What a lane is to do: descend to its pose, which fails if a joint would have to leave its
   /// limits or the lane to move by more than `most_motion` (joint units), and then as begin_pull,
-  /// where that leads no farther. A lane that fails stays where it was.
+  /// where that leads no farther.
   void begin_step(int lane, double most_motion, int steps);
 
   /// What a lane is to do that is at its pose: move through the self-motion towards its shape, in
-  /// at most `steps`; see pull_to_shape.
+  /// at most `steps`; see pull_alone.
   void begin_pull(int lane, int steps);
 
-  /// Lanes that have done what they were to do, or could not.
-  struct Ended {
-    unsigned arrived = 0, failed = 0;
-  };
-
   /// Works until a share of the lanes at work have ended, so that others can take their place.
-  Ended run();
+  /// \return false: every lane is idle.
+  bool run();
 
-  /// begin_pull for some lanes, with all that follows from it.
-  void pull(unsigned lanes, int steps);
+  State state(int lane) const { return states_[static_cast<std::size_t>(lane)]; }
+  bool is_idle(int lane) const { return state(lane) == State::Idle; }
+  bool has_ended(int lane) const {
+    return state(lane) == State::Arrived || state(lane) == State::Failed;
+  }
+  /// Leaves a lane that has ended without anything to do.
+  void rest(int lane) { set(lane, State::Idle); }
 
-  /// How far the shape of a redundant arm was from the wanted one at the end of the last pull, m.
-  double distance_m(int lane) const { return work_[static_cast<std::size_t>(lane)].distance_m; }
-
-  /// Those of the lanes at whose poses `configurations` (one column per lane) put the transfer
-  /// frame, by forward kinematics of the target within kPoseTolerance.
-  unsigned verified(unsigned lanes, const Eigen::MatrixXd& configurations);
+  /// Of each lane whether `configurations` (one column per lane) put the transfer frame at its
+  /// pose, by forward kinematics of the target within kPoseTolerance.
+  std::array<bool, kCount> verified(const Eigen::MatrixXd& configurations);
 
  private:
-  /// What a lane is at.
+  /// How far a lane has come with it.
   struct Work {
     double most_motion = 0;
     inverse::JointVector start;    ///< before the step
@@ -67,18 +72,27 @@ class ShapeLanes {
     inverse::JointVector settled;  ///< where the pull came back to it
     int iterations = 0;            ///< of the descent
     int steps_left = 0;            ///< of the pull
-    double distance_m = 0;
+    double distance_m = 0;         ///< of the shapes
   };
 
   Work& work(int lane) { return work_[static_cast<std::size_t>(lane)]; }
+  void set(int lane, State state) {
+    State& before = states_[static_cast<std::size_t>(lane)];
+    --counts_[static_cast<std::size_t>(before)];
+    ++counts_[static_cast<std::size_t>(state)];
+    before = state;
+  }
+  /// Lanes in a state.
+  int count(State state) const { return counts_[static_cast<std::size_t>(state)]; }
   /// One iteration of the lanes that descend.
-  void descend(Ended& ended);
-  void reached(int lane, Ended& ended);
+  void descend();
+  void reached(int lane);
   void settled(int lane);
   void start_pull(int lane, int steps);
   /// One step of the lanes that are pulled: measures their shapes and moves on from there.
   void measure();
-  void end_pulls(Ended& ended);
+  /// A lane that was pulled too far goes back to where it came to its pose.
+  void end_pull(int lane);
 
   const ArmPair& pair_;
   const inverse::Solver& solver_;
@@ -89,10 +103,8 @@ class ShapeLanes {
   std::array<ArmShape, kCount> wanted_;
   std::array<inverse::JointVector, kCount> q_;
   std::array<Work, kCount> work_;
-  unsigned reaching_ = 0;   // descend to a pose from the one before
-  unsigned settling_ = 0;   // descend back to it, pulled
-  unsigned measuring_ = 0;  // wait for the kernel that pulls
-  unsigned pulled_ = 0;     // wait for end_pulls
+  std::array<State, kCount> states_{};
+  std::array<int, static_cast<std::size_t>(State::Failed) + 1> counts_ = {kCount};  // per state
 };
 
 /// How far the shapes of configurations (one per column) of a pair's target are from a wanted one,

@@ -3,8 +3,6 @@
 #include <Eigen/Cholesky>
 #include <cstddef>
 
-#include "server/transfer/shape_lanes.hpp"
-
 namespace kinship::transfer {
 namespace {
 
@@ -34,16 +32,6 @@ inverse::JointVector step_towards(const ArmShape& wanted, const TaskAxes& axes,
 }
 
 }  // namespace
-
-double pull_to_shape(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
-                     const ArmShape& wanted, int steps, inverse::JointVector& q) {
-  ShapeLanes lanes(pair);
-  lanes.aim(0, T_base_transfer, wanted);
-  lanes.put(0, q);
-  lanes.pull(1, steps);
-  q = lanes.at(0);
-  return shape_distance(arm_shape(pair.target(), q), wanted);
-}
 
 double pull_alone(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
                   const ArmShape& wanted, int steps, inverse::JointVector& q) {

@@ -7,7 +7,6 @@
 
 #include "robots/inverse/solver.hpp"
 #include "server/transfer/shape_lanes.hpp"
-#include "server/transfer/walk_pool.hpp"
 
 namespace kinship::transfer {
 namespace {
@@ -35,14 +34,9 @@ ShapeTracker::ShapeTracker(const ArmPair& pair, const PathPoses& poses,
       generator_(generator_of(poses, seed)),
       candidates_(poses.T_base_transfer.size()) {}
 
-const std::vector<Track>& ShapeTracker::find_tracks() {
-  WalkPool(pair_).run({this});
-  return tracks_;
-}
-
-std::vector<Walk> ShapeTracker::begin_round() {
-  std::vector<Walk> walks;
-  while (walks.empty()) {
+std::vector<TrackExtension> ShapeTracker::begin_round() {
+  std::vector<TrackExtension> extensions;
+  while (extensions.empty()) {
     judge();
     const int left = parameters_.tracks - static_cast<int>(tracks_.size());
     // No more than would have been made one after the other.
@@ -53,11 +47,11 @@ std::vector<Walk> ShapeTracker::begin_round() {
       round_.push_back(make_try());
       const Try& made = round_.back();
       if (made.along.size() > 0)
-        walks.push_back({this, round_.size() - 1, 0, made.start, made.along.col(made.start)});
+        extensions.push_back({round_.size() - 1, 0, made.start, made.along.col(made.start)});
     }
   }
-  walks_left_ = walks.size();
-  return walks;
+  extensions_left_ = extensions.size();
+  return extensions;
 }
 
 void ShapeTracker::judge() {
@@ -87,35 +81,35 @@ ShapeTracker::Try ShapeTracker::make_try() {
   return made;
 }
 
-bool ShapeTracker::take(Walk& walk, const inverse::JointVector& q,
+bool ShapeTracker::take(TrackExtension& extension, const inverse::JointVector& q,
                         const Eigen::Ref<const Eigen::VectorXd>& found) {
   if (!filters_.keep(found))
     return false;
-  Try& made = round_[walk.of_round];
-  walk.q = q;
-  walk.pose += walk.direction;
-  made.along.col(walk.pose) = found;
-  made.first = std::min(made.first, walk.pose);
-  made.last = std::max(made.last, walk.pose);
+  Try& made = round_[extension.of_round];
+  extension.q = q;
+  extension.pose += extension.direction;
+  made.along.col(extension.pose) = found;
+  made.first = std::min(made.first, extension.pose);
+  made.last = std::max(made.last, extension.pose);
   return true;
 }
 
-std::vector<Walk> ShapeTracker::end(const Walk& walk) {
-  --walks_left_;
-  if (walk.direction == 0) {
-    const Try& made = round_[walk.of_round];
-    walks_left_ += 2;
-    return {{this, walk.of_round, 1, made.start, made.along.col(made.start)},
-            {this, walk.of_round, -1, made.start, made.along.col(made.start)}};
+std::vector<TrackExtension> ShapeTracker::end(const TrackExtension& extension) {
+  --extensions_left_;
+  if (extension.direction == 0) {
+    const Try& made = round_[extension.of_round];
+    extensions_left_ += 2;
+    return {{extension.of_round, 1, made.start, made.along.col(made.start)},
+            {extension.of_round, -1, made.start, made.along.col(made.start)}};
   }
-  if (walks_left_ > 0)
+  if (extensions_left_ > 0)
     return {};
   return begin_round();
 }
 
-double ShapeTracker::most_motion(const Walk& walk) const {
-  const Eigen::Index before = std::min(walk.pose, walk.pose + walk.direction);
-  return kMostMotion * poses_.source_motion[before] + kSpareMotion;
+double ShapeTracker::most_motion(const TrackExtension& extension) const {
+  const Eigen::Index before = std::min(extension.pose, extension.pose + extension.direction);
+  return kMaxMotion * poses_.source_motion[before] + kSpareMotion;
 }
 
 int ShapeTracker::start_steps() const noexcept {
@@ -133,7 +127,7 @@ const ShapeTracker::Candidates& ShapeTracker::candidates(Eigen::Index pose) {
                    {.max_solutions = parameters_.track_candidates,
                     .min_distance = kCandidateDistance,
                     .seed = seed_,
-                    .patient = false})
+                    .exhaustive = false})
             .configurations;
     known.emplace();
     known->configurations = passed(std::move(found), filters_);

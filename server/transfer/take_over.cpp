@@ -1,9 +1,9 @@
 #include "server/transfer/take_over.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "proto/types/turn.hpp"
+#include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::transfer {
@@ -12,7 +12,6 @@ namespace {
 using inverse::NoSolution;
 using kinematics::JointType;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kIterations = 15;
 
 /// Moves `q` to where the target's transfer frame is exactly where the source's was.
@@ -33,13 +32,14 @@ bool bring_within(const kinematics::Chain& robot, Eigen::Ref<Eigen::VectorXd> q)
   for (Eigen::Index j = 0; j < robot.dof(); ++j) {
     const kinematics::Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
     const auto outside = [&joint](double value) {
-      return value < joint.lower - kLimitRounding || value > joint.upper + kLimitRounding;
+      return value < joint.lower - inverse::kLimitRounding ||
+             value > joint.upper + inverse::kLimitRounding;
     };
     const double middle = 0.5 * (joint.lower + joint.upper);
     if (joint.type == JointType::Continuous)
-      q[j] = std::remainder(q[j], kTurn);
+      q[j] = wrapped(q[j]);
     else if (joint.type == JointType::Revolute && outside(q[j]))
-      q[j] = middle + std::remainder(q[j] - middle, kTurn);
+      q[j] = middle + wrapped(q[j] - middle);
     if (outside(q[j]))
       return false;
     q[j] = std::clamp(q[j], joint.lower, joint.upper);

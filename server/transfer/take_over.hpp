@@ -7,15 +7,12 @@
 
 namespace kinship::transfer {
 
-/// How far a waypoint may lie outside a limit and still be moved onto it, joint units: rounding.
-inline constexpr double kLimitRounding = 1e-6;
-
 /// How far the polish may move a waypoint, Euclidean, 1 m = 1 rad.
 inline constexpr double kFarthestPolish = 0.2;
 
 /// Turns continuous joints into [-pi, pi]; a revolute joint outside its limits by whole turns into
-/// them. What lies within is left as it is, but for rounding.
-/// \return whether every joint is then within its limits.
+/// them. What lies within is left as it is; what is outside by inverse::kLimitRounding is moved
+/// onto the limit. \return whether every joint is then within its limits.
 bool bring_within(const kinematics::Chain& robot, Eigen::Ref<Eigen::VectorXd> q);
 
 /// Waypoints of the same arm at the same place become configurations of the target robot, one each

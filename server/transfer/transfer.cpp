@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "server/transfer/extension_pool.hpp"
 #include "server/transfer/path_poses.hpp"
 #include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/take_over.hpp"
 #include "server/transfer/uncovered_poses.hpp"
-#include "server/transfer/walk_pool.hpp"
 
 namespace kinship::transfer {
 namespace {
@@ -22,8 +22,8 @@ namespace {
 void check_tracking(const TransferParameters& parameters) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
     if (!holds)
-      throw std::invalid_argument(std::string("transfer_path: ") + name + " " +
-                                  std::to_string(value) + " is not " + rule);
+      throw std::invalid_argument(std::string("transfer: ") + name + " " + std::to_string(value) +
+                                  " is not " + rule);
   };
   const double coverage = parameters.least_coverage;
   require(parameters.tracks >= 0, "tracks", parameters.tracks, "0 or more");
@@ -138,7 +138,7 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const Path& path = paths[i].path;
     if (path.dof() != pair.source().dof())
-      throw std::invalid_argument("transfer_path: a path of " + std::to_string(path.dof()) +
+      throw std::invalid_argument("transfer: a path of " + std::to_string(path.dof()) +
                                   " joints for a source robot of " +
                                   std::to_string(pair.source().dof()));
     const Eigen::MatrixXd waypoints = resample(path, parameters);
@@ -149,18 +149,10 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
     under_way.emplace_back(i, waypoints, paths[i], pair, parameters, seed);
     trackers.push_back(&under_way.back().tracker);
   }
-  WalkPool(pair).run(trackers);
+  ExtensionPool(pair).run(trackers);
   for (PathUnderWay& path : under_way)
     results[path.index] = with_random_solutions(path, pair, parameters, seed);
   return results;
-}
-
-TransferredPath transfer_path(const Path& path, const ArmPair& pair,
-                              const Eigen::Isometry3d& T_target_source,
-                              const TransferParameters& parameters, std::uint64_t seed,
-                              const Filters& filters) {
-  const PathToTransfer alone{path, T_target_source, filters};
-  return std::move(transfer_paths({&alone, 1}, pair, parameters, seed).front());
 }
 
 }  // namespace kinship::transfer

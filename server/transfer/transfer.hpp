@@ -13,39 +13,31 @@
 
 namespace kinship::transfer {
 
-/// Moves one path of the source robot into the configuration space of the target robot: forward
+/// One of a group of paths of a source robot.
+struct PathToTransfer {
+  const Path& path;
+  /// Pose of the source robot's base in the target robot's base: T_task_target^-1 * T_task_source.
+  Eigen::Isometry3d T_target_source;
+  /// Asked about every configuration that inverse kinematics found; what they reject is left out
+  /// and counted. Waypoints that are taken over were free on their robot and are not asked about.
+  const Filters& filters;
+};
+
+/// Moves paths of the source robot into the configuration space of the target robot: forward
 /// kinematics to the transfer frame, then up to L inverse solutions a pose at least d apart. The
 /// resampled waypoints of the same arm at the same place are taken over instead (take_over.hpp),
 /// unless `parameters.take_over` is false: at most one configuration a pose, with solution_index 0.
 /// The task axes that matter are the target robot's.
 ///
-/// \param T_target_source  pose of the source robot's base in the target robot's base:
-///                         T_task_target^-1 * T_task_source.
-/// \param seed             equal input and seed: equal bytes. A pose's solutions depend on the seed
-///                         and that pose only; whether it is searched with patience depends on the
-///                         poses beside it (uncovered_poses.hpp).
-/// \param filters          asked about every configuration that inverse kinematics found; what they
-///                         reject is left out and counted. Waypoints that are taken over were free
-///                         on their robot and are not asked about.
+/// Each path becomes what it becomes alone, but sooner: the kernels of inverse kinematics work on
+/// several paths at once. A group of 16 keeps them busy.
+/// \param seed  equal input and seed: equal bytes. A pose's solutions depend on the seed and that
+///              pose only; whether it is searched with patience depends on the poses beside it
+///              (uncovered_poses.hpp).
+/// \return      one per path, in their order.
 /// \throws std::invalid_argument if path.dof() is not that of the pair's source, or `parameters`
 ///         break the rules of `resample` or of `inverse::InverseOptions`.
 /// Source: Lehner et al., ICRA 2022, section IV A.
-TransferredPath transfer_path(const Path& path, const ArmPair& pair,
-                              const Eigen::Isometry3d& T_target_source,
-                              const TransferParameters& parameters, std::uint64_t seed,
-                              const Filters& filters = {});
-
-/// One of a group of paths.
-struct PathToTransfer {
-  const Path& path;
-  Eigen::Isometry3d T_target_source;
-  const Filters& filters;
-};
-
-/// The same for paths of one source robot, in their order. Each becomes what it becomes alone, but
-/// sooner: the kernels of inverse kinematics work on several paths at once. A group of 16 keeps
-/// them busy.
-/// \throws as transfer_path, for one of the paths that give a reason.
 std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,

@@ -5,7 +5,7 @@
 
 #include "robots/inverse/inverse.hpp"
 #include "server/transfer/filters.hpp"
-#include "server/transfer/random_solutions.hpp"
+#include "server/transfer/uncovered_poses.hpp"
 
 namespace kinship::transfer {
 

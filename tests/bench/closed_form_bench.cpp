@@ -76,7 +76,7 @@ Quality quality(const kinematics::Chain& chain, const ClosedForm& form,
 
 void print(const std::string& name, const kinematics::Chain& chain, int count) {
   const double start_s = thread_cpu_s();
-  const auto form = ClosedForm::of(chain);
+  const auto form = inverse::find_closed_form(chain).form;
   const double built_us = 1e6 * (thread_cpu_s() - start_s);
   std::cout << "| " << name << " | " << inverse::describe_structure(chain) << " | ";
   if (!form) {

@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
          "pose | within limits | recovered | worst error |\n|---|---|---|---|---|---|---|---|\n";
   for (const char* model : {"ur10e", "iiwa14", "panda"}) {
     const kinematics::Chain chain = test::model_chain(model);
-    const auto form = inverse::ClosedForm::of(chain);
+    const auto form = inverse::find_closed_form(chain).form;
     if (!form)
       continue;
     const std::vector<LockedPose> poses = locked_poses(chain, form->locks(), count);

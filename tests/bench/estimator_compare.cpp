@@ -18,7 +18,7 @@
 
 #include "server/density/block_points.hpp"
 #include "server/density/fit.hpp"
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
 #include "tests/bench/bundles.hpp"
 
 namespace kinship {
@@ -103,12 +103,12 @@ void compare(const Eigen::MatrixXd& all, const Judge& judge, std::uint32_t paths
         return fitted;
       });
     add(lines[3], judge, [&](std::string& note) {
-      density::KernelEstimate made =
-          density::estimate_kernels(points, weights,
-                                    {.floors_of_joints = Eigen::VectorXd::Constant(kDof, 1e-4),
-                                     .path_of_configuration = options.path_of_configuration,
-                                     .limits = judge.limits()})
-              .value_or_throw();
+      density::KernelDensity made = density::estimate_kernel_density(
+                                        points, weights,
+                                        {.floors_of_joints = Eigen::VectorXd::Constant(kDof, 1e-4),
+                                         .path_of_configuration = options.path_of_configuration,
+                                         .limits = judge.limits()})
+                                        .value_or_throw();
       note += ' ' + std::to_string(made.bandwidth.clusters) + ':' +
               std::to_string(made.bandwidth.scale).substr(0, 5);
       return made;

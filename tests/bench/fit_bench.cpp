@@ -2,7 +2,6 @@
 
 #include <random>
 
-#include "proto/mixture/density.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "server/density/block_points.hpp"
 #include "server/density/expectation_maximisation.hpp"
@@ -35,7 +34,8 @@ void em_iteration(benchmark::State& state) {
   const Mixture start = fit(configurations, 3, static_cast<int>(state.range(1))).mixture;
   const Eigen::VectorXd floors = Eigen::VectorXd::Constant(state.range(0), 1e-4);
   density::Computation computation{.prune = state.range(3) != 0};
-  computation.kernels = density::find_kernels(static_cast<density::InstructionSet>(state.range(2)));
+  computation.kernels =
+      density::find_simd_kernels(static_cast<density::InstructionSet>(state.range(2)));
   if (computation.kernels == nullptr)
     return state.SkipWithError("this machine does not have it");
   state.SetLabel(computation.kernels->name);
@@ -109,15 +109,6 @@ void sample(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(sample);
-
-void log_density_of_all(benchmark::State& state) {
-  const Eigen::MatrixXd configurations = bundles(15'000);
-  const Mixture mixture = fit(configurations, 10).mixture;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(mixture::log_density(mixture, configurations));
-  state.SetItemsProcessed(state.iterations() * configurations.cols());
-}
-BENCHMARK(log_density_of_all)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace kinship

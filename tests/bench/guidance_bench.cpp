@@ -14,8 +14,8 @@
 #include "client/planning/shortcut.hpp"
 #include "server/density/fit.hpp"
 #include "server/transfer/collision_filter.hpp"
-#include "server/transfer/transfer.hpp"
 #include "tests/bench/planar_cell.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::bench {
 namespace {
@@ -103,8 +103,8 @@ std::optional<Mixture> learn(const std::vector<Recorded>& paths, const PlanarRob
       surroundings.scene = make_planar_cell(source.chain, recorded.seed).surroundings.scene;
       filters.scene = transfer::collision_filter(target.chain, target.shapes, surroundings);
     }
-    moved.push_back(transfer::transfer_path(recorded.path, pair, Eigen::Isometry3d::Identity(),
-                                            parameters, 0, filters));
+    moved.push_back(test::transfer_path(recorded.path, pair, Eigen::Isometry3d::Identity(),
+                                        parameters, 0, filters));
     summary.add(moved.back().summary);
     total += moved.back().configurations.cols();
   }

@@ -13,13 +13,13 @@
 #include <future>
 #include <string>
 
-#include "proto/mixture/density.hpp"
 #include "proto/types/profile_text.hpp"
+#include "server/fitting/branch_cuts.hpp"
 #include "server/fitting/fit_distribution.hpp"
 #include "server/fitting/source_transfer.hpp"
-#include "server/fitting/turn_cuts.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/bench/learning_sets.hpp"
+#include "tests/support/log_density.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace {
@@ -78,7 +78,7 @@ double score_of(const Distribution& distribution, Eigen::MatrixXd others) {
   wrap(distribution.cuts, others);
   const double log_uniform =
       -(distribution.limits.row(1) - distribution.limits.row(0)).array().log().sum();
-  const Eigen::ArrayXd densities = mixture::log_density(*distribution.mixture, others);
+  const Eigen::ArrayXd densities = test::log_density(*distribution.mixture, others);
   return ((1 - kBackground) * densities.exp() + kBackground * std::exp(log_uniform)).log().mean();
 }
 

@@ -12,7 +12,7 @@
 #include "client/planning/planning_bounds.hpp"
 #include "client/planning/shortcut.hpp"
 #include "server/density/fit.hpp"
-#include "server/transfer/transfer.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::bench {
 namespace {
@@ -78,8 +78,8 @@ Mixture fit(const SeasonTask& task, const std::vector<Path>& paths, Spoil spoil)
   Eigen::MatrixXd configurations(task.chain.dof(), 0);
   Eigen::VectorXd weights;
   for (const Path& path : paths) {
-    transfer::TransferredPath moved = transfer::transfer_path(
-        path, pair, Eigen::Isometry3d::Identity(), profile.transfer, profile.seed);
+    transfer::TransferredPath moved = test::transfer_path(path, pair, Eigen::Isometry3d::Identity(),
+                                                          profile.transfer, profile.seed);
     const Eigen::Index count = moved.configurations.cols(), before = configurations.cols();
     if (count == 0)
       continue;

@@ -10,11 +10,15 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/joint_motion.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
 namespace kinship::inverse::closed_form_test {
 namespace {
+
+using test::distance;
+using test::normalize;
 
 constexpr std::uint64_t kSeed = 72;
 constexpr double kSameBranch = 0.02;  // joint units
@@ -91,7 +95,7 @@ class BranchCount : public testing::TestWithParam<Subject> {};
 
 TEST_P(BranchCount, IsThatOfManyDescents) {
   const kinematics::Chain chain = GetParam().chain();
-  const auto form = ClosedForm::of(chain);
+  const auto form = find_closed_form(chain).form;
   ASSERT_TRUE(form);
   ASSERT_LE(form->locks().size(), 1U);
   std::mt19937_64 generator(kSeed);
@@ -143,7 +147,7 @@ TEST(ClosedFormLimits, LeaveTheOneBranchThatTheyAllow) {
     }
     const kinematics::Chain narrow(parts);
     Branches branches;
-    const auto form = ClosedForm::of(narrow);
+    const auto form = find_closed_form(narrow).form;
     ASSERT_TRUE(form);
     form->append(kinematics::T_base_transfer(chain, q), {}, branches);
     ASSERT_EQ(branches.size(), 1);

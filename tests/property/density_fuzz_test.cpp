@@ -17,7 +17,7 @@
 
 #include "proto/types/limits.hpp"
 #include "server/density/fit.hpp"
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
 
 namespace kinship::density::density_fuzz_test {
 namespace {
@@ -306,7 +306,7 @@ TEST(DensityFuzz, EstimateKernelsAnswersRefusesOrNamesTheBug) {
     const Paths paths = paths_of(draws, points.cols());
     const Limits limits = limits_of(draws, points.rows());
     const Floor floor = floor_of(draws);
-    KernelOptions options;
+    KernelDensityOptions options;
     options.floors_of_joints =
         Eigen::VectorXd::Constant(points.rows() + (draws.one_in(40) ? 1 : 0), floor.value);
     options.seed = draws.bits();
@@ -319,7 +319,7 @@ TEST(DensityFuzz, EstimateKernelsAnswersRefusesOrNamesTheBug) {
                         options.floors_of_joints.size() != points.rows();
     expect_contract(
         points, weights, floor.value, is_bug,
-        [&] { return estimate_kernels(points, weights, options); }, tally);
+        [&] { return estimate_kernel_density(points, weights, options); }, tally);
   }
   tally.expect_some_of_each();
 }

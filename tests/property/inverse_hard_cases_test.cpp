@@ -13,6 +13,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/chain_parts.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/twins.hpp"
@@ -23,6 +24,7 @@ namespace {
 using kinematics::Chain;
 using kinematics::ChainParts;
 using kinematics::JointType;
+using test::distance;
 
 constexpr std::uint64_t kSeed = 23;
 constexpr double kPi = std::numbers::pi;

@@ -7,10 +7,14 @@
 
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/robots.hpp"
 
 namespace kinship::inverse::inverse_test {
 namespace {
+
+using test::distance;
+using test::normalize;
 
 constexpr std::uint64_t kSeed = 71;
 constexpr int kPoses = 400;

@@ -13,6 +13,7 @@
 #include "server/transfer/resample.hpp"
 #include "server/transfer/take_over.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/transfer_path.hpp"
 #include "tests/support/twins.hpp"
 
 namespace kinship::transfer::transfer_test {
@@ -43,7 +44,7 @@ TEST_P(TransferBetweenModels, KeepsThePoseOfTheTransferFrameInTheCommonFrame) {
   TransferSummary sum;
   for (int i = 0; i < kPaths; ++i) {
     const Path path = random_path(source, generator);
-    const auto transferred = transfer_path(path, pair, T_target_source, parameters, kSeed);
+    const auto transferred = test::transfer_path(path, pair, T_target_source, parameters, kSeed);
     const Eigen::MatrixXd resampled = resample(path, parameters);
     for (Eigen::Index c = 0; c < transferred.configurations.cols(); ++c) {
       const Eigen::VectorXd q = transferred.configurations.col(c);
@@ -82,7 +83,7 @@ class TransferToATwin : public testing::Test {
     for (int i = 0; i < kTwinPaths; ++i) {
       const Path path = random_path(source_, generator);
       const Eigen::MatrixXd resampled = resample(path, {});
-      const auto moved = transfer_path(path, pair, Eigen::Isometry3d::Identity(), {}, kSeed);
+      const auto moved = test::transfer_path(path, pair, Eigen::Isometry3d::Identity(), {}, kSeed);
       sum_.add(moved.summary);
       EXPECT_TRUE((moved.solution_index.array() == 0).all());
       for (Eigen::Index c = 0; c < moved.configurations.cols(); ++c)

@@ -12,11 +12,14 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/support/chain_parts.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
 
 namespace kinship::inverse::closed_form_test {
 namespace {
+
+using test::normalize;
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::uint64_t kSeed = 20;
@@ -189,8 +192,8 @@ TEST(ClosedForm, IsTheSameWhereverJointsHaveTheirOriginsOnTheirLines) {
   q << 0.3, -0.5, 0.7, 1.1, -0.8, 0.2;
   const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, q);
   ASSERT_LT(pose_error(moved, q, T), 1e-12);
-  EXPECT_EQ(branches_at(*ClosedForm::of(moved), T, q).size(),
-            branches_at(*ClosedForm::of(chain), T, q).size());
+  EXPECT_EQ(branches_at(*find_closed_form(moved).form, T, q).size(),
+            branches_at(*find_closed_form(chain).form, T, q).size());
 }
 
 TEST(ClosedForm, IsTheSameForArmsOfEverySize) {
@@ -202,7 +205,7 @@ TEST(ClosedForm, IsTheSameForArmsOfEverySize) {
     parts.T_tip_transfer.translation() *= size;
     const kinematics::Chain scaled(parts);
     EXPECT_EQ(describe_structure(scaled), "parallel axes 2-3-4; closed form, 8 branches");
-    const auto form = ClosedForm::of(scaled);
+    const auto form = find_closed_form(scaled).form;
     ASSERT_TRUE(form);
     std::mt19937_64 generator(kSeed);
     const Eigen::VectorXd q = test::random_configuration(scaled, generator);
@@ -223,19 +226,20 @@ TEST(ClosedForm, ALongToolChangesNothing) {
   parts.T_last_tip = chain.T_last_tip();
   parts.T_tip_transfer.translation() << 0.7, -1.1, 1.4;
   const kinematics::Chain with_tool(parts);
-  const auto form = ClosedForm::of(with_tool);
+  const auto form = find_closed_form(with_tool).form;
   ASSERT_TRUE(form);
   EXPECT_TRUE(form->exact());
   std::mt19937_64 generator(kSeed);
   const Eigen::VectorXd q = test::random_configuration(with_tool, generator);
   const Eigen::Isometry3d T = kinematics::T_base_transfer(with_tool, q);
-  EXPECT_EQ(branches_at(*form, T, q).size(),
-            branches_at(*ClosedForm::of(chain), kinematics::T_base_transfer(chain, q), q).size());
+  EXPECT_EQ(
+      branches_at(*form, T, q).size(),
+      branches_at(*find_closed_form(chain).form, kinematics::T_base_transfer(chain, q), q).size());
 }
 
 TEST(ClosedForm, OneMillimetreOutOfReachIsOutOfReach) {
   const kinematics::Chain chain = test::model_chain("iiwa14");
-  const auto form = ClosedForm::of(chain);
+  const auto form = find_closed_form(chain).form;
   ASSERT_TRUE(form);
   const Eigen::VectorXd upright = Eigen::VectorXd::Zero(7);
   Eigen::Isometry3d T = kinematics::T_base_transfer(chain, upright);
@@ -262,7 +266,7 @@ TEST(ClosedForm, OfAPerturbedRobotIsAPolishAwayFromIt) {
     constexpr int kPoses = 60;
     for (int unit = 0; unit < kUnits; ++unit) {
       const kinematics::Chain chain = test::perturbed(test::model_chain("ur10e"), sigma, generator);
-      const auto form = ClosedForm::of(chain);
+      const auto form = find_closed_form(chain).form;
       ASSERT_TRUE(form) << sigma << ": " << describe_structure(chain);
       EXPECT_FALSE(form->exact());
       EXPECT_NEAR(form->deviation(), sigma, 3 * sigma);

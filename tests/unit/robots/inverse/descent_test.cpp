@@ -84,10 +84,5 @@ TEST(Descent, SteeringUsesRedundancyToReturnBetweenTheLimits) {
   EXPECT_TRUE(chain.within_limits(q));
 }
 
-TEST(Descent, ReachBoundsTheArm) {
-  const auto chain = PlanarArm{.lengths_m = {0.5, 0.4, 0.2}}.chain();
-  EXPECT_NEAR(Descent(chain).reach_m(), 1.1, 1e-12);
-}
-
 }  // namespace
 }  // namespace kinship::inverse::descent_test

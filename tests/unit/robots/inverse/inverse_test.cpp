@@ -9,6 +9,7 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
@@ -17,6 +18,7 @@ namespace kinship::inverse::inverse_test {
 namespace {
 
 using kinematics::JointType;
+using test::distance;
 using test::planar_axes;
 using test::planar_pose;
 using test::PlanarArm;

@@ -4,12 +4,15 @@
 
 #include "robots/inverse/choice.hpp"
 
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/planar_arm.hpp"
 
 namespace kinship::inverse::joint_space_test {
 namespace {
 
 using kinematics::JointType;
+using test::distance;
+using test::normalize;
 using test::PlanarArm;
 constexpr double kPi = std::numbers::pi;
 

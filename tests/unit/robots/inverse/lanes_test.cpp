@@ -8,6 +8,7 @@
 
 #include "robots/inverse/descent.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/planar_arm.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace kinship::inverse::lanes_test {
@@ -166,6 +167,10 @@ TEST(Lanes, HalfATurnIsLeftAndIsNoSolution) {
   for (int i = 0; i < 40; ++i)
     instruction_sets().back().kernels.step(lanes, LaneLimits::Ignore, batch);
   EXPECT_LT(batch.squared[0], 1e-16);
+}
+
+TEST(LaneChain, ReachBoundsTheArm) {
+  EXPECT_NEAR(reach_m(test::PlanarArm{.lengths_m = {0.5, 0.4, 0.2}}.chain()), 1.1, 1e-12);
 }
 
 }  // namespace

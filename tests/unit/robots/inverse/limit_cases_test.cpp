@@ -3,9 +3,9 @@
 #include <functional>
 #include <string>
 
-#include "proto/types/rounded_inward.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/joint_space.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/screw_arm.hpp"
@@ -17,6 +17,7 @@ namespace {
 using kinematics::Chain;
 using kinematics::JointType;
 using kinematics::T_base_tip;
+using test::distance;
 constexpr double kPi = std::numbers::pi;
 constexpr std::uint64_t kSeed = 37;
 
@@ -144,40 +145,6 @@ INSTANTIATE_TEST_SUITE_P(Arms, LimitsOf,
                                          Subject{"calibrated", calibrated, 0.9},
                                          Subject{"general", test::arms::general, 0.9}),
                          [](const auto& instance) { return instance.param.name; });
-
-Eigen::VectorXd rounded(const Chain& chain, Eigen::VectorXd q) {
-  for (Eigen::Index joint = 0; joint < q.size(); ++joint)
-    q[joint] = rounded_inward(q[joint], chain.lower()[joint], chain.upper()[joint]);
-  return q;
-}
-
-/// Half the bytes of a solution: within the limits as they are, 1e-5 from the pose.
-TEST(LimitCases, FloatsOfSolutionsStayInsideAndReachThePose) {
-  for (const std::string name : {"panda", "iiwa14", "ur10e", "sawyer"}) {
-    std::mt19937_64 generator(kSeed);
-    std::uniform_real_distribution<double> off(-0.3, 0);
-    for (int i = 0; i < 5; ++i) {
-      const Chain model = test::model_chain(name);
-      const Eigen::VectorXd lower =
-          model.lower().unaryExpr([&](double x) { return x - off(generator); });
-      const Eigen::VectorXd upper =
-          model.upper().unaryExpr([&](double x) { return x + off(generator); });
-      const Chain chain = with_limits(model, lower, upper);
-      for (const Eigen::VectorXd& q : {chain.lower(), chain.upper()}) {
-        const Eigen::VectorXd kept = rounded(chain, q);
-        EXPECT_TRUE(chain.within_limits(kept));
-        EXPECT_LT(pose_gap(chain, T_base_tip(chain, q), kept), 1e-5);
-      }
-      const Eigen::Isometry3d T = T_base_tip(chain, test::random_configuration(chain, generator));
-      const auto found = checked(chain, Solver(chain), T, {});
-      for (const auto& solution : found.configurations.colwise()) {
-        const Eigen::VectorXd kept = rounded(chain, solution);
-        EXPECT_TRUE(chain.within_limits(kept));
-        EXPECT_LT(pose_gap(chain, T, kept), 1e-5);
-      }
-    }
-  }
-}
 
 TEST(LimitCases, ASlidingJointCountsAMetreAsARadian) {
   const Chain chain = test::arms::on_track();

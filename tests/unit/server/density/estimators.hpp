@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/density/fit.hpp"
-#include "server/density/kernel_estimate.hpp"
+#include "server/density/kernel_density.hpp"
 
 /// The ways from configurations to a mixture, behind one call, for laws that all of them keep.
 namespace kinship::density::test {
@@ -89,11 +89,11 @@ inline FitOptions fit_options(Way way, const Sample& sample, const Computation& 
 /// \param sample  for a warm start with the mixture before.
 inline Result<Mixture> try_estimate(Way way, const Sample& sample, const Computation& computation) {
   if (way == Way::Kernels) {
-    KernelOptions options;
+    KernelDensityOptions options;
     options.floors_of_joints = Eigen::VectorXd::Constant(sample.points.rows(), kFloor);
     options.computation = computation;
     options.path_of_configuration = sample.path_of;
-    const auto made = estimate_kernels(sample.points, sample.weights, options);
+    const auto made = estimate_kernel_density(sample.points, sample.weights, options);
     return made ? Result<Mixture>(made->mixture) : Result<Mixture>(made.error());
   }
   const auto fitted =

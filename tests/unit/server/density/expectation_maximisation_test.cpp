@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "proto/mixture/density.hpp"
 #include "proto/types/failure.hpp"
 #include "server/density/em_run.hpp"
+#include "tests/support/log_density.hpp"
 
 namespace kinship::density::expectation_maximisation_test {
 namespace {
@@ -60,7 +60,7 @@ TEST(Expectation, MassesSumToTheWeightsAndTheLikelihoodIsTheMixtures) {
     const Expectation result = expectation(mixture, example.points, {});
     EXPECT_NEAR(result.moments.sums.row(0).sum(), 700, 1e-9);
     EXPECT_NEAR(result.mean_log_likelihood,
-                example.weights.dot(mixture::log_density(mixture, example.columns)) / 700,
+                example.weights.dot(kinship::test::log_density(mixture, example.columns)) / 700,
                 1e-13 * std::abs(result.mean_log_likelihood));
   }
 }
@@ -68,7 +68,8 @@ TEST(Expectation, MassesSumToTheWeightsAndTheLikelihoodIsTheMixtures) {
 TEST(MeanLogDensity, IsThatOfTheMixtureWithItsBackground) {
   const Example example = random_points(3, 500);
   const Mixture mixture = start_of(3, 4);
-  const Eigen::ArrayXd densities = mixture::log_density(mixture, example.columns).array().exp();
+  const Eigen::ArrayXd densities =
+      kinship::test::log_density(mixture, example.columns).array().exp();
   EXPECT_NEAR(mean_log_density(mixture, example.points, 0, 0, {}),
               expectation(mixture, example.points, {}).mean_log_likelihood, 1e-13);
   const double expected =
@@ -96,7 +97,7 @@ TEST(LogDensities, AreTheMixturesPointByPoint) {
   ASSERT_EQ(densities.size(), example.points.size());
   for (Eigen::Index i = 0; i < densities.size(); ++i) {
     const Eigen::VectorXd point = example.points.point(i) + example.points.offset();
-    EXPECT_NEAR(densities[i], mixture::log_density(mixture, point)[0], 1e-11) << i;
+    EXPECT_NEAR(densities[i], kinship::test::log_density(mixture, point)[0], 1e-11) << i;
   }
 }
 
@@ -143,9 +144,9 @@ TEST(Expectation, InstructionSetsDifferByRoundingOnly) {
   const Example example = random_points(7, 3000);
   const Mixture start = uneven_start(example, 30);
   const Expectation baseline =
-      expectation(start, example.points, {.kernels = find_kernels(InstructionSet::Baseline)});
+      expectation(start, example.points, {.kernels = find_simd_kernels(InstructionSet::Baseline)});
   for (const InstructionSet set : {InstructionSet::Avx2, InstructionSet::Avx512}) {
-    const BlockKernels* kernels = find_kernels(set);
+    const SimdKernels* kernels = find_simd_kernels(set);
     if (kernels == nullptr)
       continue;
     const Expectation other = expectation(start, example.points, {.kernels = kernels});
@@ -196,7 +197,8 @@ TEST(Maximisation, EqualsTheFormulasWrittenOut) {
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Mixture alone(Eigen::VectorXd::Ones(1), start.means().col(k),
                         {start.covariances()[static_cast<std::size_t>(k)]});
-    r.col(k) = start.weights()[k] * mixture::log_density(alone, example.columns).array().exp();
+    r.col(k) =
+        start.weights()[k] * kinship::test::log_density(alone, example.columns).array().exp();
   }
   r.array().colwise() *= example.weights.array() / r.rowwise().sum().array();
   for (Eigen::Index k = 0; k < 3; ++k) {

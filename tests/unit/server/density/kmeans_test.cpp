@@ -41,8 +41,8 @@ TEST(ChooseCentres, FindsOneCentreInEachSeparateGroup) {
       0, 0, 10;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     std::mt19937_64 generator(seed);
-    const Eigen::MatrixXd centres = choose_centres(points, 3, widest_kernels(), generator);
-    std::vector<int> groups = nearest_centres(blocks_of(centres), middles, widest_kernels());
+    const Eigen::MatrixXd centres = choose_centres(points, 3, widest_simd_kernels(), generator);
+    std::vector<int> groups = nearest_centres(blocks_of(centres), middles, widest_simd_kernels());
     std::sort(groups.begin(), groups.end());
     EXPECT_EQ(groups, (std::vector<int>{0, 1, 2})) << "seed " << seed;
   }
@@ -52,7 +52,7 @@ TEST(ChooseCentres, AreNoMoreThanTheDistinctPoints) {
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(2, 50);
   points.rightCols(10).setOnes();
   std::mt19937_64 generator(kSeed);
-  EXPECT_EQ(choose_centres(blocks_of(points), 5, widest_kernels(), generator).cols(), 2);
+  EXPECT_EQ(choose_centres(blocks_of(points), 5, widest_simd_kernels(), generator).cols(), 2);
 }
 
 TEST(ChooseCentres, FollowTheWeights) {
@@ -62,7 +62,7 @@ TEST(ChooseCentres, FollowTheWeights) {
   int middle_first = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     std::mt19937_64 generator(seed);
-    if (choose_centres(weighted, 1, widest_kernels(), generator)(0, 0) == 1)
+    if (choose_centres(weighted, 1, widest_simd_kernels(), generator)(0, 0) == 1)
       ++middle_first;
   }
   EXPECT_EQ(middle_first, 200);
@@ -72,7 +72,7 @@ TEST(NearestCentres, AgreeWithDistancesWrittenOut) {
   const BlockPoints blocks = blocks_of(5 * Eigen::MatrixXd::Random(3, 700));
   const Eigen::MatrixXd points = columns_of(blocks);
   const Eigen::MatrixXd centres = 5 * Eigen::MatrixXd::Random(3, 13);
-  const std::vector<int> nearest = nearest_centres(blocks, centres, widest_kernels());
+  const std::vector<int> nearest = nearest_centres(blocks, centres, widest_simd_kernels());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     Eigen::Index expected = 0;
     (centres.colwise() - points.col(i)).colwise().squaredNorm().minCoeff(&expected);
@@ -87,7 +87,7 @@ TEST(MoveCentres, EndInTheWeightedMeansOfTheirPoints) {
   Eigen::MatrixXd start(2, 3);
   start << 1, 8, 1, 1, 1, 8;
   const Eigen::MatrixXd centres =
-      move_centres(blocks_of(points, weights), start, 10, widest_kernels());
+      move_centres(blocks_of(points, weights), start, 10, widest_simd_kernels());
   const Eigen::Vector2d heavy = points.leftCols(100) * weights.head(100) / weights.head(100).sum();
   EXPECT_LT((centres.col(0) - heavy).norm(), 1e-12);
   EXPECT_LT((centres.col(1) - points.middleCols(100, 100).rowwise().mean()).norm(), 1e-12);
@@ -97,7 +97,7 @@ TEST(MoveCentres, CentreWithoutPointsStays) {
   Eigen::MatrixXd start(2, 2);
   start << 0, 1000, 0, 1000;
   const Eigen::MatrixXd centres =
-      move_centres(blocks_of(three_groups()), start, 10, widest_kernels());
+      move_centres(blocks_of(three_groups()), start, 10, widest_simd_kernels());
   EXPECT_EQ(centres.col(1), start.col(1));
 }
 
@@ -106,7 +106,7 @@ TEST(ChooseCentres, ABlockThatIsLeftOutWouldNotHaveChanged) {
   // must be a point, and no point far from all of them.
   const BlockPoints points = blocks_of(Eigen::MatrixXd::Random(2, 3000));
   std::mt19937_64 generator(kSeed);
-  const Eigen::MatrixXd centres = choose_centres(points, 40, widest_kernels(), generator);
+  const Eigen::MatrixXd centres = choose_centres(points, 40, widest_simd_kernels(), generator);
   const Eigen::MatrixXd columns = columns_of(points);
   double total = 0;
   for (Eigen::Index i = 0; i < columns.cols(); ++i)

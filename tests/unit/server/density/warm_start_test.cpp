@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <random>
 
-#include "proto/mixture/density.hpp"
 #include "server/density/fit.hpp"
+#include "tests/support/log_density.hpp"
 
 namespace kinship::density::warm_start_test {
 namespace {
@@ -53,7 +53,7 @@ struct Grown {
 };
 
 double mean_score(const Mixture& mixture, const Eigen::MatrixXd& points) {
-  return mixture::log_density(mixture, points).mean();
+  return kinship::test::log_density(mixture, points).mean();
 }
 
 TEST(WarmStart, ANewCloudFarAwayGetsComponentsOfItsOwn) {
@@ -80,7 +80,7 @@ TEST(WarmStart, MoreOfTheSameAddsNoComponent) {
   const Grown far(clouds({9}, 2));
   const Mixture longer = start_of(far);
   EXPECT_GT(longer.size(), far.warm.mixture.size());
-  EXPECT_LE(longer.size(), far.warm.mixture.size() + kMostNewComponents);
+  EXPECT_LE(longer.size(), far.warm.mixture.size() + kMaxNewComponents);
   EXPECT_NEAR(longer.weights().sum(), 1, 1e-12);
 }
 

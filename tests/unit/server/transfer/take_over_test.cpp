@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "server/transfer/resample.hpp"
-#include "server/transfer/transfer.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::transfer::take_over_test {
 namespace {
@@ -15,6 +15,7 @@ using kinematics::ArmLikeness;
 using kinematics::JointType;
 using test::planar_pose;
 using test::PlanarArm;
+using test::transfer_path;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::uint64_t kSeed = 3;

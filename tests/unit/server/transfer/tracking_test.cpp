@@ -4,12 +4,14 @@
 #include <map>
 #include <vector>
 
-#include "robots/inverse/joint_space.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "server/transfer/extension_pool.hpp"
 #include "server/transfer/resample.hpp"
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/transfer.hpp"
+#include "tests/support/joint_distance.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::transfer::tracking_test {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 using kinematics::JointType;
 using test::planar_pose;
 using test::PlanarArm;
+using test::transfer_path;
 
 constexpr std::uint64_t kSeed = 5;
 
@@ -36,7 +39,13 @@ Path bent_path() {
   return Path(waypoints);
 }
 
-/// What transfer_path does before it looks for tracks, and the tracks themselves.
+/// The tracks of one path alone.
+const std::vector<Track>& found_tracks(const ArmPair& pair, ShapeTracker& tracker) {
+  ExtensionPool(pair).run({&tracker});
+  return tracker.tracks();
+}
+
+/// What transfer_paths does before it looks for tracks, and the tracks themselves.
 struct Tracking {
   kinematics::Chain source, target;
   ArmPair pair{source, target};
@@ -54,7 +63,7 @@ struct Tracking {
         poses(path_poses(waypoints, pair, Eigen::Isometry3d::Identity())),
         counted(filters),
         tracker(pair, poses, parameters, kSeed, counted),
-        tracks(tracker.find_tracks()) {}
+        tracks(found_tracks(pair, tracker)) {}
 
   Eigen::Isometry3d T_wanted(Eigen::Index pose) const {
     return poses.T_base_transfer[static_cast<std::size_t>(pose)];
@@ -74,9 +83,9 @@ void expect_lawful(const Tracking& run, double least_coverage) {
       if (i == 0)
         continue;
       const double most =
-          ShapeTracker::kMostMotion * run.poses.source_motion[track.first_pose + i - 1] +
+          ShapeTracker::kMaxMotion * run.poses.source_motion[track.first_pose + i - 1] +
           ShapeTracker::kSpareMotion;
-      EXPECT_LE(inverse::distance(run.target, q, track.configurations.col(i - 1)), most + 1e-9);
+      EXPECT_LE(test::distance(run.target, q, track.configurations.col(i - 1)), most + 1e-9);
     }
   }
 }
@@ -101,15 +110,15 @@ TEST(ShapeTracker, FollowsAcrossPiOfContinuousJoints) {
   CountedFilters counted(none);
   const TransferParameters parameters;
   ShapeTracker tracker(pair, poses, parameters, kSeed, counted);
-  const std::vector<Track> tracks = tracker.find_tracks();
+  const std::vector<Track> tracks = found_tracks(pair, tracker);
   ASSERT_FALSE(tracks.empty());
   for (const Track& track : tracks)
     for (Eigen::Index i = 0; i < track.configurations.cols(); ++i) {
       EXPECT_LE(track.configurations.col(i).cwiseAbs().maxCoeff(), M_PI);
       if (i > 0) {
         EXPECT_LE(
-            inverse::distance(target, track.configurations.col(i), track.configurations.col(i - 1)),
-            ShapeTracker::kMostMotion * 0.3 + ShapeTracker::kSpareMotion + 1e-9);
+            test::distance(target, track.configurations.col(i), track.configurations.col(i - 1)),
+            ShapeTracker::kMaxMotion * 0.3 + ShapeTracker::kSpareMotion + 1e-9);
       }
     }
 }

@@ -9,12 +9,14 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "server/transfer/resample.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/transfer_path.hpp"
 
 namespace kinship::transfer::transfer_test {
 namespace {
 
 using test::planar_pose;
 using test::PlanarArm;
+using test::transfer_path;
 
 constexpr std::uint64_t kSeed = 11;
 

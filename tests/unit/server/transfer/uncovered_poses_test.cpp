@@ -14,27 +14,27 @@ namespace kinship::transfer::uncovered_poses_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
-constexpr int kMostDraws = 10'000;
+constexpr int kMaxDraws = 10'000;
 
 /// Poses of a Panda by what they cost: e, found at once; h, found with patience only (joints at
 /// their limits); f, out of reach by a few centimetres, as patience finds out.
 class UncoveredPoses : public testing::Test {
  protected:
-  RandomSolutions look(const Eigen::Isometry3d& T_base_transfer, Patience patience) {
+  RandomSolutions look(const Eigen::Isometry3d& T_base_transfer, bool exhaustive) {
     return random_solutions(pair_.target_solver(), T_base_transfer, parameters_, kSeed, counted_,
-                            patience);
+                            exhaustive);
   }
 
   Eigen::Isometry3d pose(char kind) {
-    for (int i = 0; i < kMostDraws; ++i) {
+    for (int i = 0; i < kMaxDraws; ++i) {
       Eigen::VectorXd q = test::random_configuration(arm_, generator_);
       for (Eigen::Index j = 0; kind == 'h' && j < q.size(); ++j)
         q[j] = generator_() % 2 == 0 ? arm_.lower()[j] : arm_.upper()[j];
       Eigen::Isometry3d T = kinematics::T_base_transfer(arm_, q);
       if (kind == 'f')
         T.translation() *= 1.3;
-      const bool at_once = look(T, Patience::None).configurations.cols() > 0;
-      const bool at_all = at_once || look(T, Patience::Full).configurations.cols() > 0;
+      const bool at_once = look(T, false).configurations.cols() > 0;
+      const bool at_all = at_once || look(T, true).configurations.cols() > 0;
       if (at_once == (kind == 'e') && at_all == (kind != 'f'))
         return T;
     }
@@ -56,8 +56,7 @@ class UncoveredPoses : public testing::Test {
       const bool any = found[i].configurations.cols() > 0;
       EXPECT_EQ(found[i].reason == inverse::NoSolution::None, any || covered[i]);
       if (any) {
-        EXPECT_EQ(found[i].configurations,
-                  look(poses.T_base_transfer[i], Patience::Full).configurations);
+        EXPECT_EQ(found[i].configurations, look(poses.T_base_transfer[i], true).configurations);
       }
       result += any ? '1' : '0';
     }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "proto/types/distribution.hpp"
+#include "proto/types/mixture.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/em_run.hpp"
+
+namespace kinship::density {
+
+/// What is tried, from too many components down.
+struct ComponentSearch {
+  std::vector<ComponentScore> curve;  ///< falling number of components
+  Mixture best;                       ///< of the highest score, fitted to the training points
+  double best_score = 0;
+};
+
+/// The share of the uniform distribution in a score: one point far away must not decide it.
+inline constexpr double kBackgroundShare = 0.01;
+
+/// Fits many components, then merges them down step by step, with EM in between, and scores each
+/// step on the held-out points. Ends early where scores are low or merging fails.
+/// \param most  components to begin with, at least 1.
+/// \param log_uniform  u as above, logarithm.
+ComponentSearch prune_components(const BlockPoints& training, const BlockPoints& held_out,
+                                 Eigen::Index most, double log_uniform, std::uint64_t seed,
+                                 const EmOptions& options);
+
+}  // namespace kinship::density
