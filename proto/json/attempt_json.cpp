@@ -1,12 +1,8 @@
 #include "proto/json/attempt_json.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
-#include "proto/json/reader.hpp"
-#include "proto/json/record_json.hpp"
 #include "proto/json/recorded_scene_json.hpp"
-#include "proto/json/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -57,7 +53,7 @@ NamedAttempt read_attempt(const Reader& reader) {
   }
   if (const auto placement = reader.find("T_task_base"))
     attempt.T_task_base = placement->pose();
-  attempt.record = read_record(reader.at("record"));
+  attempt.record = read_as<PlanningRecord>(reader.at("record"));
   attempt.path = read_path(reader, attempt.record.outcome);
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
@@ -73,7 +69,7 @@ std::string to_json(const Attempt& attempt) {
   object["T_task_base"] = pose_or_null(attempt.T_task_base);
   object["waypoints"] =
       attempt.path ? list_of_columns(attempt.path->waypoints()) : OrderedJson(nullptr);
-  object["record"] = record_object(attempt.record);
+  object["record"] = json_of(attempt.record);
   object["scene"] = attempt.scene ? recorded_scene_object(*attempt.scene) : OrderedJson(nullptr);
   return write(object);
 }

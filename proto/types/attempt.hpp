@@ -4,8 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/path.hpp"
 #include "proto/types/recorded_scene.hpp"
 #include "proto/types/uuid.hpp"
@@ -33,6 +37,25 @@ struct PlanningRecord {
   std::optional<Digest> distribution_id;
   std::uint64_t distribution_revision = 0;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<PlanningRecord>{
+    Field{"outcome", &PlanningRecord::outcome},
+    Field{"planner",
+          &PlanningRecord::planner,
+          {.limit = kMaxPlannerBytes, .check = check_planner, .may_be_missing = true}},
+    Field{"planner_options",
+          &PlanningRecord::planner_options,
+          {.limit = kMaxPlannerOptionsBytes, .may_be_missing = true}},
+    Field{"planning_time_s", &PlanningRecord::planning_time_s, {.min = 0}},
+    Field{"collision_checks", &PlanningRecord::collision_checks},
+    Field{"projections", &PlanningRecord::projections, {.may_be_missing = true}},
+    Field{"time_limit_s", &PlanningRecord::time_limit_s, {.min = 0, .may_be_missing = true}},
+    Field{"arm", &PlanningRecord::arm, {.may_be_missing = true}},
+    Field{"share", &PlanningRecord::share, {.min = 0, .max = 1, .may_be_missing = true}},
+    Field{"distribution_id", &PlanningRecord::distribution_id},
+    Field{
+        "distribution_revision", &PlanningRecord::distribution_revision, {.may_be_missing = true}}};
 
 /// One planning query of a client: solved (with a path) or not (without).
 struct Attempt {

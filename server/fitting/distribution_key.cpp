@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "proto/types/field_digest.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
@@ -68,23 +69,8 @@ Digest identify(const DistributionKey& key) {
     const Eigen::MatrixXd placement = key.T_task_base->matrix().topRows<3>();  // 3 x 4
     sha.add(placement);
   }
-  const TransferParameters& transfer = key.profile.transfer;
-  sha.add(transfer.pose_spacing).add(bits(transfer.max_poses_per_path));
-  sha.add(bits(transfer.max_solutions)).add(transfer.min_distance).add(transfer.dropped_end_share);
-  sha.add(bits(transfer.tracks)).add(transfer.least_coverage).add(bits(transfer.track_candidates));
-  sha.add(transfer.shape_noise).add(bits(transfer.shape_steps));
-  sha.add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
-  sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
-  if (!transfer.take_over)  // nobody's distribution had a mark for it before
-    sha.add(std::string_view("inverse kinematics for every arm"));
-  const DensityParameters& density = key.profile.density;
-  sha.add(bits(density.components)).add(density.covariance_floor);
-  sha.add(density.covariance_floor_m2);
-  sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
-  sha.add(static_cast<std::uint64_t>(density.weighting));
-  sha.add(std::uint64_t{density.warm_refits ? 1U : 0U});
-  if (density.estimator == Estimator::Kernels)  // ids of mixtures need no new number
-    sha.add(std::string_view("kernels"));
+  add_fields(key.profile.transfer, sha);
+  add_fields(key.profile.density, sha);
   sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);
   sha.add(std::uint64_t{key.sources.size()});
   for (const Digest& source : key.sources)

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "proto/types/field_digest.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/sha256.hpp"
@@ -56,21 +57,13 @@ Digest content_digest(const Digest& waypoints,
 
 Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path,
                    const std::optional<PreparedScene>& scene) {
-  const PlanningRecord& record = attempt.record;
   Sha256 hash;
   hash.add(attempt.robot).add(attempt.machine).add(attempt.task);
   hash.add(std::uint64_t{attempt.T_task_base ? 1U : 0U});
   if (attempt.T_task_base)
     for (const double number : to_pose_array(*attempt.T_task_base))
       hash.add(number);
-  hash.add(static_cast<std::uint64_t>(record.outcome));
-  hash.add(record.planner).add(record.planner_options);
-  hash.add(record.planning_time_s).add(record.collision_checks).add(record.projections);
-  hash.add(record.time_limit_s).add(static_cast<std::uint64_t>(record.arm)).add(record.share);
-  hash.add(std::uint64_t{record.distribution_id ? 1U : 0U});
-  if (record.distribution_id)
-    hash.add(*record.distribution_id);
-  hash.add(record.distribution_revision);
+  add_fields(attempt.record, hash);
   if (path)
     hash.add(path->waypoints);  // the placement is in it already, unsnapped
   if (scene)

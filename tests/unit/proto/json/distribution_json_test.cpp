@@ -62,7 +62,11 @@ Distribution with_details() {
   Distribution distribution = two_components();
   distribution.selection = {
       .sources = {digest_of(1), digest_of(2)}, .weighting = Weighting::Paths, .since_ms = 99};
-  Source source{.robot = digest_of(1), .label = "panda", .paths = 60, .generation = 12};
+  Source source;
+  source.robot = digest_of(1);
+  source.label = "panda";
+  source.paths = 60;
+  source.generation = 12;
   source.poses = 900;
   source.poses_solved = 800;
   source.relation = Relation::SameArm;
