@@ -71,7 +71,7 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
     attempt.scene = read_scene(scene[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = codec::check(attempt))
+  if (const auto error = find_fault(attempt))
     return *error;
   return attempt;
 }
@@ -90,41 +90,12 @@ void check_batch(const BatchBytes& bytes, Rules& rules) {
 
 }  // namespace
 
-BatchBytes batch_bytes(const Attempt& attempt) {
-  BatchBytes bytes;
-  if (attempt.path)
-    bytes.waypoints = sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
-  if (attempt.scene)
-    bytes.scenes = kinship::scene_bytes(*attempt.scene);
-  return bytes;
-}
-
-std::optional<Error> check(const Attempt& attempt) {
-  Rules rules;
-  rules.that(attempt.report_uuid != Uuid{}, "report_uuid: is zero")
-      .name(check_machine(attempt.machine))
-      .name(check_task(attempt.task));
-  if (attempt.T_task_base)
-    rules.pose("T_task_base", *attempt.T_task_base);
-  check_fields(attempt.record, rules);
-  rules.that(
-      attempt.path.has_value() == (attempt.record.outcome == Outcome::Solved),
-      attempt.path ? "waypoints: given although not solved" : "waypoints: missing although solved");
-  if (attempt.path)
-    rules.at_most("dof", static_cast<std::size_t>(attempt.path->dof()), kMaxDof)
-        .at_most("waypoints", static_cast<std::size_t>(attempt.path->size()), kMaxWaypoints)
-        .at_most("waypoints (bytes)", batch_bytes(attempt).waypoints, kMaxBatchBytes);
-  if (attempt.scene)
-    rules.name(check_scene(*attempt.scene));
-  return rules.broken();
-}
-
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
   rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
   BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
-    rules.name(check(attempt));
+    rules.name(find_fault(attempt));
     bytes = bytes + batch_bytes(attempt);
   }
   check_batch(bytes, rules);

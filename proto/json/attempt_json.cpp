@@ -43,20 +43,17 @@ NamedAttempt read_attempt(const Reader& reader) {
   Attempt& attempt = named.attempt;
   attempt.report_uuid = reader.at("report_uuid").uuid();
   attempt.task = reader.at("task").text(kMaxTaskBytes);
-  if (const auto error = check_task(attempt.task))
-    throw Failure(*error);
   read_robot(reader.at("robot"), named);
-  if (const auto machine = reader.find("machine")) {
+  if (const auto machine = reader.find("machine"))
     attempt.machine = machine->text(kMaxMachineBytes);
-    if (const auto error = check_machine(attempt.machine))
-      throw Failure(*error);
-  }
   if (const auto placement = reader.find("T_task_base"))
     attempt.T_task_base = placement->pose();
   attempt.record = read_as<PlanningRecord>(reader.at("record"));
   attempt.path = read_path(reader, attempt.record.outcome);
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
+  if (const auto error = find_fault(attempt))
+    throw Failure(*error);
   return named;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -68,5 +69,23 @@ struct Attempt {
   std::optional<Path> path;            ///< present exactly if solved
   std::optional<RecordedScene> scene;  ///< if the client likes
 };
+
+/// The rule of the contract that an attempt breaks, if any. Whether the robot is known and the
+/// path within its limits is for the server to say.
+std::optional<Error> find_fault(const Attempt& attempt);
+
+/// What attempts count against the bounds of a batch.
+struct BatchBytes {
+  std::size_t waypoints = 0;  ///< 8 a waypoint and joint; at most kMaxBatchBytes
+  std::size_t scenes = 0;     ///< as scene_bytes() counts; at most kMaxSceneBytes
+
+  bool fits() const noexcept { return waypoints <= kMaxBatchBytes && scenes <= kMaxSceneBytes; }
+
+  friend BatchBytes operator+(const BatchBytes& a, const BatchBytes& b) noexcept {
+    return {a.waypoints + b.waypoints, a.scenes + b.scenes};
+  }
+};
+
+BatchBytes batch_bytes(const Attempt& attempt);
 
 }  // namespace kinship

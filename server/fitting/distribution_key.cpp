@@ -4,8 +4,6 @@
 #include <string_view>
 
 #include "proto/types/field_digest.hpp"
-#include "proto/types/limits.hpp"
-#include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/profile_text.hpp"
 #include "proto/types/sha256.hpp"
@@ -18,28 +16,12 @@ namespace {
 
 std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{value}); }
 
-/// What is wrong with a selection, or nothing.
-std::optional<Error> check_selection(const Selection& selection) {
-  if (selection.sources.size() > kMaxSelectedSources)
-    return Error{ErrorCode::InvalidInput, std::to_string(selection.sources.size()) +
-                                              " selected sources exceed " +
-                                              std::to_string(kMaxSelectedSources)};
-  if (selection.since_ms < 0)
-    return Error{ErrorCode::InvalidInput,
-                 "since: " + std::to_string(selection.since_ms) + " ms is below 0"};
-  return std::nullopt;
-}
-
 }  // namespace
 
 Result<DistributionKey> make_key(const FetchRequest& request) {
-  if (const auto error = check_task(request.task))
-    return *error;
   const Result<Profile> profile = profile_from_text(request.profile);
   if (!profile)
     return profile.error();
-  if (const auto error = check_selection(request.selection))
-    return *error;
   DistributionKey key{request.task,
                       request.robot,
                       std::nullopt,
@@ -50,14 +32,8 @@ Result<DistributionKey> make_key(const FetchRequest& request) {
     key.profile.density.weighting = *request.selection.weighting;
   std::sort(key.sources.begin(), key.sources.end());
   key.sources.erase(std::unique(key.sources.begin(), key.sources.end()), key.sources.end());
-  if (!request.T_task_base)
-    return key;
-  const Eigen::Isometry3d& T_task_base = *request.T_task_base;
-  if (!T_task_base.matrix().allFinite() ||
-      T_task_base.translation().cwiseAbs().maxCoeff() > kMaxPlacement_m)
-    return Error{ErrorCode::InvalidInput, "placement: a coordinate is not finite or exceeds " +
-                                              std::to_string(kMaxPlacement_m) + " m"};
-  key.T_task_base = snapped(T_task_base);
+  if (request.T_task_base)
+    key.T_task_base = snapped(*request.T_task_base);
   return key;
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "proto/types/field_digest.hpp"
-#include "proto/types/limits.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/sha256.hpp"
 
@@ -13,27 +12,14 @@ namespace kinship::store {
 namespace {
 
 std::optional<std::string> reason_against(const Attempt& attempt) {
-  const PlanningRecord& record = attempt.record;
-  if ((record.outcome == Outcome::Solved) != attempt.path.has_value())
-    return attempt.path ? "an attempt that is not solved has a path"
-                        : "a solved attempt has no path";
-  if (attempt.T_task_base)
-    if (const auto pose = from_pose_array(to_pose_array(*attempt.T_task_base)); !pose)
-      return "T_task_base: " + pose.error().message;
-  if (attempt.scene)
-    if (const std::optional<Error> error = check_scene(*attempt.scene))
-      return error->message;
+  if (const std::optional<Error> error = find_fault(attempt))
+    return error->message;
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const PlanningRecord& record = attempt.record;
   for (const std::uint64_t counter :
        {record.collision_checks, record.projections, record.distribution_revision})
     if (counter > kLargest)
       return "counter " + std::to_string(counter) + " exceeds " + std::to_string(kLargest);
-  if (attempt.path && attempt.path->dof() > static_cast<Eigen::Index>(kMaxDof))
-    return "path of " + std::to_string(attempt.path->dof()) + " joints exceeds " +
-           std::to_string(kMaxDof);
-  if (attempt.path && attempt.path->size() > static_cast<Eigen::Index>(kMaxWaypoints))
-    return "path of " + std::to_string(attempt.path->size()) + " waypoints exceeds " +
-           std::to_string(kMaxWaypoints);
   return std::nullopt;
 }
 
