@@ -37,6 +37,9 @@ struct TransferCounts {
   std::uint64_t filter_checks = 0;     ///< configurations that the filters were asked about
   std::uint64_t self_collisions = 0;   ///< of them left out: the target touches itself
   std::uint64_t scene_collisions = 0;  ///< of them left out: it touches the recorded scene
+  /// Of `poses_solved`: on a track that was kept. The others have random configurations, or were
+  /// taken over.
+  std::uint64_t poses_on_tracks = 0;
 
   TransferCounts& operator+=(const TransferCounts& other);
 };
@@ -76,7 +79,8 @@ inline constexpr std::tuple kFieldsOf<Source>{
     Field{"self_collisions", &Source::self_collisions, since(3)},
     Field{"scene_collisions", &Source::scene_collisions, since(3)},
     Field{"paths_with_scene", &Source::paths_with_scene, since(3)},
-    Field{"tracks_through", &Source::tracks_through, since(7)}};
+    Field{"tracks_through", &Source::tracks_through, since(7)},
+    Field{"poses_on_tracks", &Source::poses_on_tracks, since(8)}};
 
 inline TransferCounts& TransferCounts::operator+=(const TransferCounts& other) {
   for_each_field<Source>([&]<typename Type, typename Value>(const Field<Value, Type>& field) {

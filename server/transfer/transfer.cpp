@@ -115,6 +115,7 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
       solve_uncovered(pair, path.poses, covered, parameters, seed, path.counted);
   for (std::size_t pose = 0; pose < covered.size(); ++pose) {
     if (covered[pose]) {
+      ++summary.poses_on_tracks;
       count_pose(solutions[pose].cols(), inverse::NoSolution::None, summary);
       continue;
     }

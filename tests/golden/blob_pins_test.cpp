@@ -16,7 +16,7 @@
 namespace kinship::store::blob_pins_test {
 namespace {
 
-constexpr int kFormat = 7;  // of today
+constexpr int kFormat = 8;  // of today
 
 std::string blob_name(int format) { return "blob/distribution-" + std::to_string(format) + ".hex"; }
 

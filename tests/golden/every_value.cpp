@@ -29,6 +29,7 @@ Source every_source(Distinct& next, Relation relation) {
   source.scene_collisions = next.count();
   source.paths_with_scene = next.count();
   source.tracks_through = next.count();
+  source.poses_on_tracks = 10'000 + source.tracks_through;
   return source;
 }
 
