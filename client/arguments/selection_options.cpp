@@ -120,7 +120,7 @@ void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
   app.add_option("--weighting", arguments.weighting,
                  "sources: every robot the same; paths: by number of paths (default: the "
                  "profile's)")
-      ->check([](const std::string& text) { return complaint(parse_weighting(text)); });
+      ->check([](const std::string& text) { return complaint(parse_word<Weighting>(text)); });
   app.add_option("--since", arguments.since,
                  "only experience received since a date or time in UTC (2026-11-21T05:32), an age "
                  "(90m, 12h, 14d, 2w) or a Unix time in ms")
@@ -165,7 +165,7 @@ Result<Selection> read_selection(const SelectionArguments& arguments,
                                  std::chrono::system_clock::time_point now) {
   Selection selection;
   if (!arguments.weighting.empty()) {
-    const Result<Weighting> weighting = parse_weighting(arguments.weighting);
+    const Result<Weighting> weighting = parse_word<Weighting>(arguments.weighting);
     if (!weighting)
       return weighting.error();
     selection.weighting = *weighting;

@@ -77,10 +77,11 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 
 /// How the poses of each source became configurations.
 void print_source_transfers(const Distribution& distribution, std::ostream& out) {
-  Table table({"SOURCE", "POSES SOLVED", "TRACKS KEPT", "THROUGH", "RANDOM", "SELF-COLLIDING",
-               "IN RECORDED SCENE", "PATHS WITH SCENE"});
+  Table table({"SOURCE", "POSES SOLVED", "ON TRACKS", "TRACKS KEPT", "THROUGH", "RANDOM",
+               "SELF-COLLIDING", "IN RECORDED SCENE", "PATHS WITH SCENE"});
   for (const Source& source : distribution.sources)
     table.add_row({source.label, share_text(source.poses_solved, source.poses),
+                   share_text(source.poses_on_tracks, source.poses_solved),
                    source.tracks_tried == 0 ? "-"
                                             : std::to_string(source.tracks_kept) + " of " +
                                                   std::to_string(source.tracks_tried),

@@ -9,7 +9,6 @@
 #include "client/link/delivery.hpp"
 #include "client/link/outbox.hpp"
 #include "client/link/report_sender.hpp"
-#include "proto/codec/report_codec.hpp"
 #include "proto/dds/requester.hpp"
 #include "robots/kinematics/urdf.hpp"
 
@@ -78,7 +77,7 @@ class Client::Implementation {
   void report(const Attempt& attempt) {
     if (!outbox_)
       throw std::logic_error("Client: report() without an outbox");
-    if (const auto error = codec::check(attempt))
+    if (const auto error = find_fault(attempt))
       throw Failure(*error);
     outbox_->add(attempt);
     sender_->wake();

@@ -7,7 +7,6 @@
 #include <thread>
 #include <utility>
 
-#include "proto/codec/report_codec.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::link {
@@ -59,18 +58,18 @@ class Delivery {
 
   /// \return what is wrong if a batch had no reply.
   std::optional<Error> add(Attempt attempt) {
-    if (const auto error = codec::check(attempt)) {
+    if (const auto error = find_fault(attempt)) {
       receipts_.push_back({attempt.report_uuid, ReceiptStatus::Refused, error->message});
       return std::nullopt;
     }
-    const codec::BatchBytes bytes = bytes_ + codec::batch_bytes(attempt);
+    const BatchBytes bytes = bytes_ + batch_bytes(attempt);
     const bool is_full = batch_.attempts.size() == kMaxAttemptsPerBatch || !bytes.fits() ||
                          waiting_.contains(attempt.report_uuid);  // receipts are found by UUID
     bytes_ = bytes;
     if (is_full) {
       if (const auto error = send_batch())
         return error;
-      bytes_ = codec::batch_bytes(attempt);
+      bytes_ = batch_bytes(attempt);
     }
     waiting_.emplace(attempt.report_uuid, receipts_.size());
     receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, "no receipt in time"});
@@ -94,7 +93,7 @@ class Delivery {
   const std::chrono::milliseconds timeout_;
   const Send& send_;
   ReportRequest batch_;
-  codec::BatchBytes bytes_;
+  BatchBytes bytes_;
   std::map<Uuid, std::size_t> waiting_;  // place of a receipt of the batch
   std::vector<Receipt> receipts_;
 };

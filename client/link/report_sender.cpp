@@ -4,7 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "proto/codec/report_codec.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::link {
@@ -121,18 +120,17 @@ void ReportSender::purge_now_and_then() {
 /// \return false if something is left that should be tried again.
 bool ReportSender::send_all_pending() {
   ReportRequest batch;
-  codec::BatchBytes bytes;
+  BatchBytes bytes;
   unknown_.clear();
   for (const Uuid& uuid : outbox_.pending()) {
     if (is_stopped())
       return false;
     Result<Attempt> attempt = outbox_.read(uuid);
-    const auto error = attempt ? codec::check(*attempt) : attempt.error();
-    if (error && error->code != ErrorCode::NotFound)
-      apply({uuid, ReceiptStatus::Refused, error->message});
-    if (error || unknown_.contains(attempt->robot))
+    if (!attempt && attempt.error().code != ErrorCode::NotFound)
+      apply({uuid, ReceiptStatus::Refused, attempt.error().message});
+    if (!attempt || unknown_.contains(attempt->robot))
       continue;
-    const codec::BatchBytes size = codec::batch_bytes(*attempt);
+    const BatchBytes size = batch_bytes(*attempt);
     if (batch.attempts.size() == kMaxAttemptsPerBatch || !(bytes + size).fits()) {
       if (!deliver(batch))
         return false;

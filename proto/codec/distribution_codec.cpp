@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/codec/fields.hpp"
 #include "proto/codec/mixture_codec.hpp"
 #include "proto/codec/selection_codec.hpp"
-#include "proto/codec/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -17,84 +17,38 @@ namespace {
 
 constexpr std::size_t kMaxEnginesBytes = 128;
 
-void write_sources(const std::vector<Source>& sources, Arena& arena,
-                   kinship_wire_Distribution& wire) {
-  arena.resize(wire.sources, sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    kinship_wire_Source& entry = wire.sources._buffer[i];
-    write_digest(sources[i].robot, entry.robot);
-    entry.label = arena.text(sources[i].label);
-    entry.paths = sources[i].paths;
-    entry.generation = sources[i].generation;
-    entry.poses = sources[i].poses;
-    entry.poses_solved = sources[i].poses_solved;
-    entry.relation = static_cast<std::uint32_t>(sources[i].relation);
-    entry.paths_used = sources[i].paths_used;
-    entry.out_of_reach = sources[i].out_of_reach;
-    entry.outside_limits = sources[i].outside_limits;
-    entry.not_converged = sources[i].not_converged;
-    entry.configurations = sources[i].configurations;
-    entry.mass = sources[i].mass;
-    entry.colliding = sources[i].colliding;
-    entry.tracks_tried = sources[i].tracks_tried;
-    entry.tracks_kept = sources[i].tracks_kept;
-    entry.random_configurations = sources[i].random_configurations;
-    entry.filter_checks = sources[i].filter_checks;
-    entry.self_collisions = sources[i].self_collisions;
-    entry.scene_collisions = sources[i].scene_collisions;
-    entry.paths_with_scene = sources[i].paths_with_scene;
-    entry.tracks_through = sources[i].tracks_through;
-  }
+constexpr const char* kOfSource = " of a source";
+
+/// A list of values with fields as a sequence.
+template <typename Value, typename Sequence>
+void write_list(const std::vector<Value>& values, Arena& arena, Sequence& wire) {
+  arena.resize(wire, values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    write_fields(values[i], arena, wire._buffer[i]);
 }
 
-std::vector<Source> read_sources(const kinship_wire_Distribution& wire, Reader& reader) {
-  std::vector<Source> sources;
-  for (const kinship_wire_Source& entry : elements(wire.sources))
-    sources.push_back(
-        {.robot = read_digest(entry.robot),
-         .label = reader.text("label", entry.label, kMaxLabelBytes),
-         .paths = entry.paths,
-         .generation = entry.generation,
-         .poses = entry.poses,
-         .poses_solved = entry.poses_solved,
-         .relation = reader.enumerator("relation of a source", entry.relation, Relation::Identical),
-         .paths_used = entry.paths_used,
-         .out_of_reach = entry.out_of_reach,
-         .outside_limits = entry.outside_limits,
-         .not_converged = entry.not_converged,
-         .configurations = entry.configurations,
-         .mass = entry.mass,
-         .colliding = entry.colliding,
-         .tracks_tried = entry.tracks_tried,
-         .tracks_kept = entry.tracks_kept,
-         .random_configurations = entry.random_configurations,
-         .filter_checks = entry.filter_checks,
-         .self_collisions = entry.self_collisions,
-         .scene_collisions = entry.scene_collisions,
-         .paths_with_scene = entry.paths_with_scene,
-         .tracks_through = entry.tracks_through});
-  return sources;
+template <typename Value, typename Sequence>
+std::vector<Value> read_list(const Sequence& wire, Reader& reader, const std::string& of = "") {
+  std::vector<Value> values;
+  for (const auto& entry : elements(wire))
+    values.push_back(read_fields<Value>(entry, reader, of));
+  return values;
 }
 
-using EvidenceMember = decltype(kinship_wire_Distribution::guided);
-
-void write_evidence(const std::optional<ArmEvidence>& evidence, Arena& arena,
-                    EvidenceMember& wire) {
-  if (!evidence)
-    return;
-  arena.resize(wire, 1);
-  wire._buffer[0].attempts = evidence->attempts;
-  wire._buffer[0].solved = evidence->solved;
-  wire._buffer[0].checks_per_solution = evidence->checks_per_solution;
+/// What may be missing as a sequence of one or none.
+template <typename Value, typename Sequence>
+void write_optional(const std::optional<Value>& value, Arena& arena, Sequence& wire) {
+  if (value)
+    write_list(std::vector{*value}, arena, wire);
 }
 
-std::optional<ArmEvidence> read_evidence(const EvidenceMember& wire) {
+template <typename Value, typename Sequence>
+std::optional<Value> read_optional(const Sequence& wire, Reader& reader,
+                                   const std::string& of = "") {
   const auto entries = elements(wire);
   if (entries.empty())
     return std::nullopt;
-  return ArmEvidence{.attempts = entries[0].attempts,
-                     .solved = entries[0].solved,
-                     .checks_per_solution = entries[0].checks_per_solution};
+  return read_fields<Value>(entries[0], reader, of);
 }
 
 void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evidence,
@@ -109,28 +63,6 @@ void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evid
       .not_negative(what + ": checks_per_solution", evidence->checks_per_solution);
 }
 
-void write_recent(const std::vector<JudgedAttempt>& recent, Arena& arena,
-                  kinship_wire_Distribution& wire) {
-  arena.resize(wire.recent, recent.size());
-  for (std::size_t i = 0; i < recent.size(); ++i) {
-    kinship_wire_JudgedAttempt& entry = wire.recent._buffer[i];
-    entry.arm = static_cast<std::uint32_t>(recent[i].arm);
-    entry.solved = recent[i].solved;
-    entry.checks = recent[i].checks;
-    entry.age = recent[i].age;
-  }
-}
-
-std::vector<JudgedAttempt> read_recent(const kinship_wire_Distribution& wire, Reader& reader) {
-  std::vector<JudgedAttempt> recent;
-  for (const kinship_wire_JudgedAttempt& entry : elements(wire.recent))
-    recent.push_back({.arm = reader.enumerator("arm of a recent attempt", entry.arm, Arm::Control),
-                      .solved = entry.solved,
-                      .checks = entry.checks,
-                      .age = entry.age});
-  return recent;
-}
-
 void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
   rules.at_most("recent", recent.size(), kMaxJudgedAttempts);
   for (std::size_t i = 0; i < recent.size() && !rules.broken(); ++i) {
@@ -140,24 +72,6 @@ void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
                  "recent: age " + std::to_string(recent[i].age) + " after " +
                      std::to_string(recent[i - 1].age) + ", must be oldest first");
   }
-}
-
-void write_scores(const std::vector<ComponentScore>& scores, Arena& arena,
-                  kinship_wire_Distribution& wire) {
-  arena.resize(wire.component_scores, scores.size());
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    wire.component_scores._buffer[i].components = static_cast<std::uint32_t>(scores[i].components);
-    wire.component_scores._buffer[i].score = scores[i].score;
-  }
-}
-
-std::vector<ComponentScore> read_scores(const kinship_wire_Distribution& wire, Reader& reader) {
-  std::vector<ComponentScore> scores;
-  for (const kinship_wire_ComponentScore& entry : elements(wire.component_scores)) {
-    reader.rules.at_most("component_scores: components", entry.components, kMaxComponents);
-    scores.push_back({.components = static_cast<int>(entry.components), .score = entry.score});
-  }
-  return scores;
 }
 
 void check_scores(const std::vector<ComponentScore>& scores, Rules& rules) {
@@ -211,32 +125,6 @@ void check_cuts(const std::vector<std::optional<double>>& cuts, std::size_t join
     rules.finite("cuts", cut.value_or(0));
 }
 
-void write_fit(const std::optional<FitOrigin>& fit, Arena& arena, kinship_wire_Distribution& wire) {
-  if (!fit)
-    return;
-  arena.resize(wire.fit, 1);
-  kinship_wire_FitOrigin& origin = wire.fit._buffer[0];
-  origin.from_revision = fit->from_revision;
-  origin.full_revision = fit->full_revision;
-  origin.paths = fit->paths;
-  origin.new_paths = fit->new_paths;
-  origin.transferred = fit->transferred;
-  origin.reason = arena.text(fit->reason);
-}
-
-std::optional<FitOrigin> read_fit(const kinship_wire_Distribution& wire, Reader& reader) {
-  const auto entries = elements(wire.fit);
-  if (entries.empty())
-    return std::nullopt;
-  return FitOrigin{
-      .from_revision = entries[0].from_revision,
-      .full_revision = entries[0].full_revision,
-      .paths = entries[0].paths,
-      .new_paths = entries[0].new_paths,
-      .transferred = entries[0].transferred,
-      .reason = reader.text("reason of a full fit", entries[0].reason, kMaxMessageBytes)};
-}
-
 void check_fit(const std::optional<FitOrigin>& fit, Rules& rules) {
   if (!fit)
     return;
@@ -248,7 +136,7 @@ void check_fit(const std::optional<FitOrigin>& fit, Rules& rules) {
   at_most("full_revision", fit->full_revision, "from_revision", fit->from_revision);
   at_most("new_paths", fit->new_paths, "paths", fit->paths);
   at_most("transferred", fit->transferred, "paths", fit->paths);
-  rules.text("reason of a full fit", fit->reason, kMaxMessageBytes);
+  check_fields(*fit, rules, " of a full fit");
 }
 
 void check_limits(const Eigen::Matrix2Xd& limits, Rules& rules) {
@@ -279,8 +167,7 @@ std::optional<Error> check(const Distribution& distribution) {
   if (distribution.T_task_base)
     rules.pose("T_task_base", *distribution.T_task_base);
   for (const Source& source : distribution.sources)
-    rules.text("label of a source", source.label, kMaxLabelBytes)
-        .between("mass of a source", source.mass, 0, 1);
+    check_fields(source, rules, kOfSource);
   check_selection(distribution.selection, rules);
   check_evidence("guided", distribution.advice.guided, rules);
   check_evidence("control", distribution.advice.control, rules);
@@ -314,7 +201,7 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   wire.engines = arena.text(distribution.engines);
   wire.state = static_cast<std::uint32_t>(distribution.state);
   wire.reason = arena.text(distribution.reason);
-  write_sources(distribution.sources, arena, wire);
+  write_list(distribution.sources, arena, wire.sources);
   wire.configurations = distribution.configurations;
   if (distribution.mixture)
     write_mixture(*distribution.mixture, arena, wire);
@@ -328,13 +215,13 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   wire.transfer_time_s = distribution.transfer_time_s;
   wire.fit_time_s = distribution.fit_time_s;
   write_selection(distribution.selection, arena, wire.selection);
-  write_evidence(distribution.advice.guided, arena, wire.guided);
-  write_evidence(distribution.advice.control, arena, wire.control);
+  write_optional(distribution.advice.guided, arena, wire.guided);
+  write_optional(distribution.advice.control, arena, wire.control);
   wire.guided_share = distribution.advice.guided_share;
-  write_recent(distribution.advice.recent, arena, wire);
-  write_scores(distribution.component_scores, arena, wire);
+  write_list(distribution.advice.recent, arena, wire.recent);
+  write_list(distribution.component_scores, arena, wire.component_scores);
   write_cuts(distribution.cuts, arena, wire);
-  write_fit(distribution.fit, arena, wire);
+  write_optional(distribution.fit, arena, wire.fit);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -359,7 +246,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
       .that(limits.size() % 2 == 0, "limits: an odd number of numbers");
   if (reader.rules.broken())
     return distribution;
-  distribution.sources = read_sources(wire, reader);
+  distribution.sources = read_list<Source>(wire.sources, reader, kOfSource);
   distribution.limits = Eigen::Map<const Eigen::Matrix2Xd>(
       limits.data(), 2, static_cast<Eigen::Index>(limits.size() / 2));
   distribution.mixture = read_mixture(wire, limits.size() / 2, reader);
@@ -371,13 +258,16 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.transfer_time_s = wire.transfer_time_s;
   distribution.fit_time_s = wire.fit_time_s;
   distribution.selection = read_selection(wire.selection, reader);
-  distribution.advice.guided = read_evidence(wire.guided);
-  distribution.advice.control = read_evidence(wire.control);
+  distribution.advice.guided = read_optional<ArmEvidence>(wire.guided, reader);
+  distribution.advice.control = read_optional<ArmEvidence>(wire.control, reader);
   distribution.advice.guided_share = wire.guided_share;
-  distribution.advice.recent = read_recent(wire, reader);
-  distribution.component_scores = read_scores(wire, reader);
+  distribution.advice.recent =
+      read_list<JudgedAttempt>(wire.recent, reader, " of a recent attempt");
+  for (const kinship_wire_ComponentScore& entry : elements(wire.component_scores))
+    reader.rules.at_most("component_scores: components", entry.components, kMaxComponents);
+  distribution.component_scores = read_list<ComponentScore>(wire.component_scores, reader);
   distribution.cuts = read_cuts(wire, limits.size() / 2, reader);
-  distribution.fit = read_fit(wire, reader);
+  distribution.fit = read_optional<FitOrigin>(wire.fit, reader, " of a full fit");
   return distribution;
 }
 

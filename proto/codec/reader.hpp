@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "proto/codec/rules.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/rules.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship::codec {

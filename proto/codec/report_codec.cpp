@@ -1,57 +1,12 @@
 #include "proto/codec/report_codec.hpp"
 
-#include "proto/codec/reader.hpp"
+#include "proto/codec/fields.hpp"
 #include "proto/codec/scene_codec.hpp"
-#include "proto/codec/writer.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/number_text.hpp"
 
 namespace kinship::codec {
 namespace {
-
-void check_record(const PlanningRecord& record, Rules& rules) {
-  rules.name(check_planner(record.planner))
-      .text("planner_options", record.planner_options, kMaxPlannerOptionsBytes)
-      .not_negative("planning_time_s", record.planning_time_s)
-      .not_negative("time_limit_s", record.time_limit_s)
-      .between("share", record.share, 0, 1);
-}
-
-void write_record(const PlanningRecord& record, Arena& arena, kinship_wire_PlanningRecord& wire) {
-  wire.outcome = static_cast<std::uint32_t>(record.outcome);
-  wire.planner = arena.text(record.planner);
-  wire.planner_options = arena.text(record.planner_options);
-  wire.planning_time_s = record.planning_time_s;
-  wire.collision_checks = record.collision_checks;
-  wire.projections = record.projections;
-  wire.time_limit_s = record.time_limit_s;
-  wire.arm = static_cast<std::uint32_t>(record.arm);
-  wire.share = record.share;
-  if (record.distribution_id) {
-    const auto& bytes = record.distribution_id->bytes;
-    arena.resize(wire.distribution_id, bytes.size());
-    std::copy(bytes.begin(), bytes.end(), wire.distribution_id._buffer);
-  }
-  wire.distribution_revision = record.distribution_revision;
-}
-
-PlanningRecord read_record(const kinship_wire_PlanningRecord& wire, Reader& reader) {
-  PlanningRecord record;
-  record.outcome = reader.enumerator("outcome", wire.outcome, Outcome::Failed);
-  record.planner = reader.text("planner", wire.planner, kMaxPlannerBytes);
-  record.planner_options =
-      reader.text("planner_options", wire.planner_options, kMaxPlannerOptionsBytes);
-  record.planning_time_s = wire.planning_time_s;
-  record.collision_checks = wire.collision_checks;
-  record.projections = wire.projections;
-  record.time_limit_s = wire.time_limit_s;
-  record.arm = reader.enumerator("arm", wire.arm, Arm::Uniform);
-  record.share = wire.share;
-  record.distribution_id =
-      reader.optional_digest("distribution_id", elements(wire.distribution_id));
-  record.distribution_revision = wire.distribution_revision;
-  return record;
-}
 
 /// A path from dof and waypoints, or none; sizes are checked before it is made.
 std::optional<Path> read_path(const kinship_wire_Attempt& wire, Reader& reader) {
@@ -86,7 +41,7 @@ void write_attempt(const Attempt& attempt, Arena& arena, kinship_wire_Attempt& w
   wire.task = arena.text(attempt.task);
   write_placement(arena, attempt.T_task_base, wire.T_task_base);
   arena.resize(wire.record, 1);
-  write_record(attempt.record, arena, wire.record._buffer[0]);
+  write_fields(attempt.record, arena, wire.record._buffer[0]);
   if (attempt.scene) {
     arena.resize(wire.scene, 1);
     write_scene(*attempt.scene, arena, wire.scene._buffer[0]);
@@ -108,7 +63,7 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
   attempt.task = reader.text("task", wire.task, kMaxTaskBytes);
   attempt.T_task_base = reader.placement("T_task_base", elements(wire.T_task_base));
   if (const auto record = elements(wire.record); !record.empty())
-    attempt.record = read_record(record[0], reader);
+    attempt.record = read_fields<PlanningRecord>(record[0], reader);
   else
     reader.rules.that(false, "record: is missing");
   attempt.path = read_path(wire, reader);
@@ -116,7 +71,7 @@ Result<Attempt> read_attempt(const kinship_wire_Attempt& wire) {
     attempt.scene = read_scene(scene[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
-  if (const auto error = codec::check(attempt))
+  if (const auto error = find_fault(attempt))
     return *error;
   return attempt;
 }
@@ -135,41 +90,12 @@ void check_batch(const BatchBytes& bytes, Rules& rules) {
 
 }  // namespace
 
-BatchBytes batch_bytes(const Attempt& attempt) {
-  BatchBytes bytes;
-  if (attempt.path)
-    bytes.waypoints = sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
-  if (attempt.scene)
-    bytes.scenes = kinship::scene_bytes(*attempt.scene);
-  return bytes;
-}
-
-std::optional<Error> check(const Attempt& attempt) {
-  Rules rules;
-  rules.that(attempt.report_uuid != Uuid{}, "report_uuid: is zero")
-      .name(check_machine(attempt.machine))
-      .name(check_task(attempt.task));
-  if (attempt.T_task_base)
-    rules.pose("T_task_base", *attempt.T_task_base);
-  check_record(attempt.record, rules);
-  rules.that(
-      attempt.path.has_value() == (attempt.record.outcome == Outcome::Solved),
-      attempt.path ? "waypoints: given although not solved" : "waypoints: missing although solved");
-  if (attempt.path)
-    rules.at_most("dof", static_cast<std::size_t>(attempt.path->dof()), kMaxDof)
-        .at_most("waypoints", static_cast<std::size_t>(attempt.path->size()), kMaxWaypoints)
-        .at_most("waypoints (bytes)", batch_bytes(attempt).waypoints, kMaxBatchBytes);
-  if (attempt.scene)
-    rules.name(check_scene(*attempt.scene));
-  return rules.broken();
-}
-
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
   rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
   BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
-    rules.name(check(attempt));
+    rules.name(find_fault(attempt));
     bytes = bytes + batch_bytes(attempt);
   }
   check_batch(bytes, rules);

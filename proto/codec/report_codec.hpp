@@ -1,30 +1,9 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include "proto/codec/message.hpp"
 #include "proto/idl/report.h"
 
 namespace kinship::codec {
-
-/// The rule of the contract that an attempt breaks, if any. Whether the robot is known and the
-/// path within its limits is for the server to say.
-std::optional<Error> check(const Attempt& attempt);
-
-/// What attempts count against the bounds of a batch.
-struct BatchBytes {
-  std::size_t waypoints = 0;  ///< 8 a waypoint and joint; at most kMaxBatchBytes
-  std::size_t scenes = 0;     ///< as scene_bytes() counts; at most kMaxSceneBytes
-
-  bool fits() const noexcept { return waypoints <= kMaxBatchBytes && scenes <= kMaxSceneBytes; }
-
-  friend BatchBytes operator+(const BatchBytes& a, const BatchBytes& b) noexcept {
-    return {a.waypoints + b.waypoints, a.scenes + b.scenes};
-  }
-};
-
-BatchBytes batch_bytes(const Attempt& attempt);
 
 /// \return InvalidInput or TooLarge if an attempt breaks a rule or the batch is too large.
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request);

@@ -2,8 +2,8 @@
 
 #include "proto/codec/arena.hpp"
 #include "proto/codec/reader.hpp"
-#include "proto/codec/rules.hpp"
 #include "proto/idl/fetch.h"
+#include "proto/types/rules.hpp"
 #include "proto/types/selection.hpp"
 
 /// A selection as a member of messages, which may lack it: all experience.

@@ -1,12 +1,8 @@
 #include "proto/json/attempt_json.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "proto/json/fields.hpp"
 #include "proto/json/parts.hpp"
-#include "proto/json/reader.hpp"
-#include "proto/json/record_json.hpp"
 #include "proto/json/recorded_scene_json.hpp"
-#include "proto/json/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 
@@ -47,20 +43,17 @@ NamedAttempt read_attempt(const Reader& reader) {
   Attempt& attempt = named.attempt;
   attempt.report_uuid = reader.at("report_uuid").uuid();
   attempt.task = reader.at("task").text(kMaxTaskBytes);
-  if (const auto error = check_task(attempt.task))
-    throw Failure(*error);
   read_robot(reader.at("robot"), named);
-  if (const auto machine = reader.find("machine")) {
+  if (const auto machine = reader.find("machine"))
     attempt.machine = machine->text(kMaxMachineBytes);
-    if (const auto error = check_machine(attempt.machine))
-      throw Failure(*error);
-  }
   if (const auto placement = reader.find("T_task_base"))
     attempt.T_task_base = placement->pose();
-  attempt.record = read_record(reader.at("record"));
+  attempt.record = read_as<PlanningRecord>(reader.at("record"));
   attempt.path = read_path(reader, attempt.record.outcome);
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
+  if (const auto error = find_fault(attempt))
+    throw Failure(*error);
   return named;
 }
 
@@ -73,7 +66,7 @@ std::string to_json(const Attempt& attempt) {
   object["T_task_base"] = pose_or_null(attempt.T_task_base);
   object["waypoints"] =
       attempt.path ? list_of_columns(attempt.path->waypoints()) : OrderedJson(nullptr);
-  object["record"] = record_object(attempt.record);
+  object["record"] = json_of(attempt.record);
   object["scene"] = attempt.scene ? recorded_scene_object(*attempt.scene) : OrderedJson(nullptr);
   return write(object);
 }

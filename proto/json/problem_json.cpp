@@ -1,13 +1,9 @@
 #include "proto/json/problem_json.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "proto/json/fields.hpp"
 #include "proto/json/name_pairs_json.hpp"
-#include "proto/json/reader.hpp"
 #include "proto/json/scene_json.hpp"
 #include "proto/json/task_space_region_json.hpp"
-#include "proto/json/writer.hpp"
-#include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::json {
@@ -61,36 +57,43 @@ Problem read_problem(const Reader& reader) {
   return problem;
 }
 
+constexpr std::tuple kEffort{
+    Field{"name", &ProblemResult::name, {.limit = kMaxTaskBytes}},
+    Field{"solved", &ProblemResult::solved},
+    Field{"collision_checks", &ProblemResult::collision_checks},
+    Field{"goal_checks", &ProblemResult::goal_checks, {.may_be_missing = true}},
+    Field{"shortcut_checks", &ProblemResult::shortcut_checks, {.may_be_missing = true}},
+    Field{"projections", &ProblemResult::projections},
+    Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
+    Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
+
+/// If there is a distribution.
+constexpr std::tuple kGuidance{
+    Field{"distribution_id", &ProblemResult::distribution_id},
+    Field{"revision", &ProblemResult::distribution_revision},
+    Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
+    Field{"arm", &ProblemResult::arm, {.may_be_missing = true}},
+    Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}}};
+
+constexpr std::tuple kReasons{
+    Field{"guidance_reason",
+          &ProblemResult::guidance_reason,
+          {.limit = kMaxMessageBytes, .may_be_missing = true}},
+    Field{"planner", &ProblemResult::planner, {.limit = kMaxPlannerBytes, .may_be_missing = true}},
+    Field{"reason", &ProblemResult::reason, {.limit = kMaxMessageBytes, .may_be_missing = true}}};
+
 ProblemResult read_problem_result(const Reader& reader) {
   ProblemResult result;
-  result.name = reader.at("name").text(kMaxTaskBytes);
-  result.solved = reader.at("solved").boolean();
-  result.collision_checks = reader.at("collision_checks").count();
-  if (const auto checks = reader.find("goal_checks"))
-    result.goal_checks = checks->count();
-  if (const auto checks = reader.find("shortcut_checks"))
-    result.shortcut_checks = checks->count();
-  result.projections = reader.at("projections").count();
-  result.planning_time_s = reader.at("planning_time_s").number(0);
-  result.time_limit_s = reader.at("time_limit_s").number(0);
+  read_members(reader, kEffort, result);
   if (const auto waypoints = reader.find("waypoints"))
     result.waypoints = waypoints->columns(kMaxDof, kMaxWaypoints);
   if (const auto guidance = reader.find("guidance")) {
-    result.distribution_id = guidance->at("distribution_id").digest();
-    result.distribution_revision = guidance->at("revision").count();
-    result.share = guidance->at("share").number(0, 1);
-    result.arm = result.share > 0 ? Arm::Guided : Arm::Control;
-    if (const auto arm = guidance->find("arm"))
-      result.arm = parse_arm(arm->text(kMaxWordBytes)).value_or_throw();
-    if (const auto gate = guidance->find("gate_fired"))
-      result.gate_fired = gate->boolean();
+    static_cast<void>(guidance->at("distribution_id").digest());
+    const double share = guidance->at("share").number(0, 1);
+    result.arm = share > 0 ? Arm::Guided : Arm::Control;  // of older files
+    read_members(*guidance, kGuidance, result);
   }
-  if (const auto reason = reader.find("guidance_reason"))
-    result.guidance_reason = reason->text(kMaxMessageBytes);
-  if (const auto planner = reader.find("planner"))
-    result.planner = planner->text(kMaxPlannerBytes);
-  if (const auto reason = reader.find("reason"))
-    result.reason = reason->text(kMaxMessageBytes);
+  read_members(reader, kReasons, result);
   return result;
 }
 
@@ -124,26 +127,13 @@ Result<Problem> problem_from_json(std::string_view text) {
 
 std::string to_json(const ProblemResult& result) {
   OrderedJson object;
-  object["name"] = result.name;
-  object["solved"] = result.solved;
-  object["collision_checks"] = result.collision_checks;
-  object["goal_checks"] = result.goal_checks;
-  object["shortcut_checks"] = result.shortcut_checks;
-  object["projections"] = result.projections;
-  object["planning_time_s"] = result.planning_time_s;
-  object["time_limit_s"] = result.time_limit_s;
+  add_members(result, kEffort, object);
   object["waypoints"] =
       result.waypoints ? list_of_columns(*result.waypoints) : OrderedJson(nullptr);
   object["guidance"] = nullptr;
   if (result.distribution_id)
-    object["guidance"] = {{"distribution_id", result.distribution_id->hex()},
-                          {"revision", result.distribution_revision},
-                          {"share", result.share},
-                          {"arm", to_text(result.arm)},
-                          {"gate_fired", result.gate_fired}};
-  object["guidance_reason"] = result.guidance_reason;
-  object["planner"] = result.planner;
-  object["reason"] = result.reason;
+    add_members(result, kGuidance, object["guidance"]);
+  add_members(result, kReasons, object);
   return write(object);
 }
 

@@ -21,9 +21,6 @@
 /// Reading of untrusted JSON; for the sources of this library only.
 namespace kinship::json {
 
-/// Longest text that is read as a word of a closed set.
-inline constexpr std::size_t kMaxWordBytes = 64;
-
 inline constexpr std::size_t kMaxDocumentBytes = 64'000'000;
 inline constexpr std::size_t kMaxDocumentValues = 2'000'000;
 inline constexpr std::size_t kMaxDocumentDepth = 32;

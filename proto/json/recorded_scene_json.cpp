@@ -45,8 +45,6 @@ RecordedScene read_recorded_scene(const Reader& reader) {
       scene.held.push_back(read_held(each));
   if (const auto allowed = reader.find("allowed_collisions"))
     scene.allowed_collisions = read_pairs(*allowed);
-  if (const auto error = check_scene(scene))
-    throw Failure(*error);
   return scene;
 }
 

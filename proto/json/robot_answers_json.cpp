@@ -1,9 +1,6 @@
 #include "proto/json/robot_answers_json.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include "proto/json/reader.hpp"
-#include "proto/json/writer.hpp"
+#include "proto/json/fields.hpp"
 
 namespace kinship::json {
 
@@ -22,15 +19,7 @@ std::string to_json(const RobotCheck& check) {
   document["base_link"] = check.base_link;
   document["tip_link"] = check.tip_link;
   document["dof"] = check.joints.size();
-  document["joints"] = OrderedJson::array();
-  for (const CheckedJoint& joint : check.joints) {
-    OrderedJson row;
-    row["name"] = joint.name;
-    row["type"] = joint.type;
-    row["lower"] = joint.lower;
-    row["upper"] = joint.upper;
-    document["joints"].push_back(std::move(row));
-  }
+  document["joints"] = json_of(check.joints);
   document["structure"] = check.structure;
   document["solver"] = check.solver;
   document["poses"] = check.poses;

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/field.hpp"
 
 namespace kinship {
 
@@ -19,6 +21,11 @@ struct ArmEvidence {
 
   bool operator==(const ArmEvidence&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<ArmEvidence>{
+    Field{"attempts", &ArmEvidence::attempts}, Field{"solved", &ArmEvidence::solved},
+    Field{"checks_per_solution", &ArmEvidence::checks_per_solution, {.min = 0}}};
 
 inline constexpr std::size_t kJudgedAttemptsPerArm = 64;  ///< the newest ones; older are forgotten
 
@@ -33,6 +40,12 @@ struct JudgedAttempt {
 
   bool operator==(const JudgedAttempt&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<JudgedAttempt>{
+    Field{"arm", &JudgedAttempt::arm, {.max = static_cast<double>(Arm::Control)}},
+    Field{"solved", &JudgedAttempt::solved}, Field{"checks", &JudgedAttempt::checks},
+    Field{"age", &JudgedAttempt::age}};
 
 /// What the attempts of a (task, robot) say about guidance, on whichever machines they were made.
 struct Advice {

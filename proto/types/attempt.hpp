@@ -1,11 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/path.hpp"
 #include "proto/types/recorded_scene.hpp"
 #include "proto/types/uuid.hpp"
@@ -34,6 +39,25 @@ struct PlanningRecord {
   std::uint64_t distribution_revision = 0;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<PlanningRecord>{
+    Field{"outcome", &PlanningRecord::outcome},
+    Field{"planner",
+          &PlanningRecord::planner,
+          {.limit = kMaxPlannerBytes, .check = check_planner, .may_be_missing = true}},
+    Field{"planner_options",
+          &PlanningRecord::planner_options,
+          {.limit = kMaxPlannerOptionsBytes, .may_be_missing = true}},
+    Field{"planning_time_s", &PlanningRecord::planning_time_s, {.min = 0}},
+    Field{"collision_checks", &PlanningRecord::collision_checks},
+    Field{"projections", &PlanningRecord::projections, {.may_be_missing = true}},
+    Field{"time_limit_s", &PlanningRecord::time_limit_s, {.min = 0, .may_be_missing = true}},
+    Field{"arm", &PlanningRecord::arm, {.may_be_missing = true}},
+    Field{"share", &PlanningRecord::share, {.min = 0, .max = 1, .may_be_missing = true}},
+    Field{"distribution_id", &PlanningRecord::distribution_id},
+    Field{
+        "distribution_revision", &PlanningRecord::distribution_revision, {.may_be_missing = true}}};
+
 /// One planning query of a client: solved (with a path) or not (without).
 struct Attempt {
   Uuid report_uuid;
@@ -45,5 +69,23 @@ struct Attempt {
   std::optional<Path> path;            ///< present exactly if solved
   std::optional<RecordedScene> scene;  ///< if the client likes
 };
+
+/// The rule of the contract that an attempt breaks, if any. Whether the robot is known and the
+/// path within its limits is for the server to say.
+std::optional<Error> find_fault(const Attempt& attempt);
+
+/// What attempts count against the bounds of a batch.
+struct BatchBytes {
+  std::size_t waypoints = 0;  ///< 8 a waypoint and joint; at most kMaxBatchBytes
+  std::size_t scenes = 0;     ///< as scene_bytes() counts; at most kMaxSceneBytes
+
+  bool fits() const noexcept { return waypoints <= kMaxBatchBytes && scenes <= kMaxSceneBytes; }
+
+  friend BatchBytes operator+(const BatchBytes& a, const BatchBytes& b) noexcept {
+    return {a.waypoints + b.waypoints, a.scenes + b.scenes};
+  }
+};
+
+BatchBytes batch_bytes(const Attempt& attempt);
 
 }  // namespace kinship

@@ -4,52 +4,20 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/advice.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/field.hpp"
 #include "proto/types/fit_origin.hpp"
+#include "proto/types/limits.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/selection.hpp"
+#include "proto/types/source.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship {
-
-/// How a source robot is related to the target.
-enum class Relation {
-  Other,      ///< another arm: by inverse kinematics
-  SameArm,    ///< the same arm within tolerance: waypoints taken over and polished
-  Identical,  ///< the same kinematics, or the robot itself: waypoints taken over as they are
-};
-
-/// What one source robot contributed to a distribution.
-struct Source {
-  Digest robot;
-  std::string label;
-  std::uint64_t paths = 0;         ///< of (robot, task) when the fit read it
-  std::uint64_t generation = 0;    ///< of (robot, task) when the fit read it
-  std::uint64_t poses = 0;         ///< after resampling
-  std::uint64_t poses_solved = 0;  ///< with at least one configuration of the target
-  Relation relation = Relation::Other;
-  std::uint64_t paths_used = 0;    ///< read and transferred; fewer than `paths` by `since`, a cap
-  std::uint64_t out_of_reach = 0;  ///< poses without a solution, by reason
-  std::uint64_t outside_limits = 0;
-  std::uint64_t not_converged = 0;
-  std::uint64_t configurations = 0;  ///< its poses became
-  double mass = 0;                   ///< its share of the weight of all configurations, 0 to 1
-  std::uint64_t colliding = 0;       ///< poses whose every configuration a filter left out
-  std::uint64_t tracks_tried = 0;    ///< along its paths
-  std::uint64_t tracks_kept = 0;     ///< that cover enough of their path
-  /// Of `configurations`: found for one pose alone, neither along a track nor taken over.
-  std::uint64_t random_configurations = 0;
-  std::uint64_t filter_checks = 0;     ///< configurations that the filters were asked about
-  std::uint64_t self_collisions = 0;   ///< of them left out: the target touches itself
-  std::uint64_t scene_collisions = 0;  ///< of them left out: it touches the recorded scene
-  std::uint64_t paths_with_scene = 0;  ///< of `paths_used`: filtered by their recorded scene
-  /// Of `tracks_tried`: came through the whole path. The share of the target's solutions that
-  /// continue through the paths.
-  std::uint64_t tracks_through = 0;
-};
 
 /// How well a number of components does at configurations of paths that were held out.
 struct ComponentScore {
@@ -60,6 +28,11 @@ struct ComponentScore {
 
   bool operator==(const ComponentScore&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<ComponentScore>{
+    Field{"K", &ComponentScore::components, {.min = 1, .max = kMaxComponents}},
+    Field{"score", &ComponentScore::score}};
 
 /// Ready: there is a mixture. Failed: nothing could be transferred or fitted; `reason` says why.
 /// Thin: there is a mixture, made of a small part of the experience (server/service says how

@@ -1,30 +1,92 @@
 #pragma once
 
+#include <array>
+#include <span>
+#include <stdexcept>
 #include <string_view>
+#include <type_traits>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/profile.hpp"
 #include "proto/types/publications.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 
-/// The words for enumerators wherever people or files see them: lower case, stable.
+/// The words for enumerators wherever people or files see them: lower case, stable. In the order of
+/// the enumerators, which count from 0.
 namespace kinship {
 
-std::string_view to_text(Outcome outcome);          ///< solved, timeout, failed
-std::string_view to_text(Arm arm);                  ///< guided, control, uniform
-std::string_view to_text(DistributionState state);  ///< ready, failed, thin
-std::string_view to_text(Relation relation);        ///< other, same_arm, identical
-std::string_view to_text(Weighting weighting);      ///< sources, paths
-std::string_view to_text(EventKind kind);  ///< registered, report, fetch, fit, refusal, admin
-std::string_view to_text(JobState state);  ///< queued, running, done, failed, cancelled
+template <typename Enum>
+struct Words;
 
-/// Each returns the enumerator, or InvalidInput that lists the allowed words.
-Result<Outcome> parse_outcome(std::string_view text);
-Result<Arm> parse_arm(std::string_view text);
-Result<DistributionState> parse_distribution_state(std::string_view text);
-Result<Relation> parse_relation(std::string_view text);
-Result<Weighting> parse_weighting(std::string_view text);
-Result<JobState> parse_job_state(std::string_view text);
+template <>
+struct Words<Outcome> {
+  static constexpr std::string_view kWhat = "outcome";
+  static constexpr std::array<std::string_view, 3> kWords = {"solved", "timeout", "failed"};
+};
+template <>
+struct Words<Arm> {
+  static constexpr std::string_view kWhat = "arm";
+  static constexpr std::array<std::string_view, 3> kWords = {"guided", "control", "uniform"};
+};
+template <>
+struct Words<DistributionState> {
+  static constexpr std::string_view kWhat = "state";
+  static constexpr std::array<std::string_view, 3> kWords = {"ready", "failed", "thin"};
+};
+template <>
+struct Words<Relation> {
+  static constexpr std::string_view kWhat = "relation";
+  static constexpr std::array<std::string_view, 3> kWords = {"other", "same_arm", "identical"};
+};
+template <>
+struct Words<Weighting> {
+  static constexpr std::string_view kWhat = "weighting";
+  static constexpr std::array<std::string_view, 2> kWords = {"sources", "paths"};
+};
+template <>
+struct Words<Estimator> {
+  static constexpr std::string_view kWhat = "estimator";
+  static constexpr std::array<std::string_view, 2> kWords = {"gmm", "kde"};
+};
+template <>
+struct Words<EventKind> {
+  static constexpr std::string_view kWhat = "kind";
+  static constexpr std::array<std::string_view, 6> kWords = {"registered", "report",  "fetch",
+                                                             "fit",        "refusal", "admin"};
+};
+template <>
+struct Words<JobState> {
+  static constexpr std::string_view kWhat = "state";
+  static constexpr std::array<std::string_view, 5> kWords = {"queued", "running", "done", "failed",
+                                                             "cancelled"};
+};
+
+/// The enumerator with the largest value.
+template <typename Enum>
+inline constexpr Enum kLastOf = static_cast<Enum>(Words<Enum>::kWords.size() - 1);
+
+/// \throws std::invalid_argument if it is not an enumerator.
+template <typename Enum>
+requires std::is_enum_v<Enum> std::string_view to_text(Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  if (index >= Words<Enum>::kWords.size())
+    throw std::invalid_argument("to_text: not an enumerator");
+  return Words<Enum>::kWords[index];
+}
+
+/// `what: 'text' is not one of word, word`.
+Error not_one_of(std::string_view what, std::string_view text,
+                 std::span<const std::string_view> words);
+
+/// \return the enumerator, or InvalidInput that lists the allowed words.
+template <typename Enum>
+Result<Enum> parse_word(std::string_view text) {
+  for (std::size_t i = 0; i < Words<Enum>::kWords.size(); ++i)
+    if (Words<Enum>::kWords[i] == text)
+      return static_cast<Enum>(i);
+  return not_one_of(Words<Enum>::kWhat, text, Words<Enum>::kWords);
+}
 
 }  // namespace kinship

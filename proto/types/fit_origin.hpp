@@ -2,6 +2,10 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
+
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
 
 namespace kinship {
 
@@ -17,6 +21,15 @@ struct FitOrigin {
 
   bool operator==(const FitOrigin&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<FitOrigin>{
+    Field{"from_revision", &FitOrigin::from_revision},
+    Field{"full_revision", &FitOrigin::full_revision},
+    Field{"paths", &FitOrigin::paths},
+    Field{"new_paths", &FitOrigin::new_paths},
+    Field{"transferred", &FitOrigin::transferred},
+    Field{"reason", &FitOrigin::reason, {.limit = kMaxMessageBytes}}};
 
 /// E.g. "incremental from revision 4, 25 of 525 paths new" or "full (the first), 500 paths", and
 /// how many paths were transferred if those are not the new ones.

@@ -10,6 +10,7 @@ inline constexpr std::size_t kMaxWaypoints = 16384;
 inline constexpr std::size_t kMaxUrdfBytes = 1'000'000;
 inline constexpr std::size_t kMaxTaskBytes = 128;
 inline constexpr std::size_t kMaxLabelBytes = 64;
+inline constexpr std::size_t kMaxWordBytes = 64;  ///< of a word among some, an id of a job
 inline constexpr std::size_t kMaxProfileBytes = 256;
 inline constexpr std::size_t kMaxLinkNameBytes = 128;
 inline constexpr std::size_t kMaxMachineBytes = 128;

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 
+#include "proto/types/field.hpp"
 #include "proto/types/selection.hpp"
 
 namespace kinship {
@@ -35,6 +37,25 @@ struct TransferParameters {
   bool operator==(const TransferParameters&) const = default;
 };
 
+/// Those with limits are options of a profile's text. In the order in which they are digested.
+template <>
+inline constexpr std::tuple kFieldsOf<TransferParameters>{
+    Field{"pose_spacing", &TransferParameters::pose_spacing, between(0.01, 10)},
+    Field{"max_poses_per_path", &TransferParameters::max_poses_per_path, between(0, 4096)},
+    Field{"max_solutions", &TransferParameters::max_solutions, between(1, 100)},
+    Field{"min_distance", &TransferParameters::min_distance, between(0, 10)},
+    Field{"dropped_end_share", &TransferParameters::dropped_end_share, between(0, 0.45)},
+    Field{"tracks", &TransferParameters::tracks, between(0, 100)},
+    Field{"least_coverage", &TransferParameters::least_coverage, between(0, 1)},
+    Field{"track_candidates", &TransferParameters::track_candidates, between(1, 100)},
+    Field{"shape_noise", &TransferParameters::shape_noise, between(0, 10)},
+    Field{"shape_steps", &TransferParameters::shape_steps, between(0, 100)},
+    Field{"avoid_self_collision", &TransferParameters::avoid_self_collision, between(0, 1)},
+    Field{"avoid_recorded_scene", &TransferParameters::avoid_recorded_scene, between(0, 1)},
+    Field{"take_over",
+          &TransferParameters::take_over,
+          {.min = 0, .max = 1, .mark = "inverse kinematics for every arm"}}};
+
 /// What is made of configurations.
 enum class Estimator : std::uint8_t {
   Mixture,  ///< K Gaussians, each with its own covariance
@@ -57,6 +78,16 @@ struct DensityParameters {
 
   bool operator==(const DensityParameters&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<DensityParameters>{
+    Field{"components", &DensityParameters::components, between(0, 1000)},
+    Field{"covariance_floor", &DensityParameters::covariance_floor, between(1e-8, 1)},
+    Field{"covariance_floor_m2", &DensityParameters::covariance_floor_m2, between(1e-8, 1)},
+    Field{"equal_path_weights", &DensityParameters::equal_path_weights, between(0, 1)},
+    Field{"weighting", &DensityParameters::weighting},
+    Field{"warm_refits", &DensityParameters::warm_refits, between(0, 1)},
+    Field{"estimator", &DensityParameters::estimator, {.min = 0, .max = 1, .mark = "kernels"}}};
 
 /// A named set of parameters. Its values, not its name, identify a distribution.
 struct Profile {

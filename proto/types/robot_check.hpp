@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/field.hpp"
 
 /// What the command line finds out about a robot without a server.
 namespace kinship {
@@ -16,6 +18,11 @@ struct CheckedJoint {
   double lower = 0;  ///< joint units
   double upper = 0;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<CheckedJoint>{
+    Field{"name", &CheckedJoint::name}, Field{"type", &CheckedJoint::type},
+    Field{"lower", &CheckedJoint::lower}, Field{"upper", &CheckedJoint::upper}};
 
 /// `robots check`.
 struct RobotCheck {

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
 
 namespace kinship {
 
@@ -22,5 +25,11 @@ struct Selection {
 
   bool operator==(const Selection&) const = default;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<Selection>{
+    Field{"sources", &Selection::sources, {.limit = kMaxSelectedSources, .may_be_missing = true}},
+    Field{"weighting", &Selection::weighting},
+    Field{"since_ms", &Selection::since_ms, {.min = 0, .may_be_missing = true}}};
 
 }  // namespace kinship

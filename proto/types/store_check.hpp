@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "proto/types/field.hpp"
 #include "proto/types/uuid.hpp"
 
 namespace kinship {
@@ -26,5 +28,22 @@ struct StoreCheck {
   std::uint64_t problems = 0;         ///< of all tables, and of the file
   std::vector<std::string> messages;  ///< one a problem, the first of them; each names the row
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<StoreCheck::Table>{
+    Field{"name", &StoreCheck::Table::name}, Field{"rows", &StoreCheck::Table::rows},
+    Field{"problems", &StoreCheck::Table::problems}};
+
+template <>
+inline constexpr std::tuple kFieldsOf<StoreCheck>{
+    Field{"file", &StoreCheck::file},
+    Field{"epoch", &StoreCheck::epoch},
+    Field{"schema_version", &StoreCheck::schema_version},
+    Field{"bytes", &StoreCheck::bytes},
+    Field{"tables", &StoreCheck::tables},
+    Field{"damaged_paths", &StoreCheck::damaged_paths},
+    Field{"retired_paths", &StoreCheck::retired_paths},
+    Field{"problems", &StoreCheck::problems},
+    Field{"messages", &StoreCheck::messages}};
 
 }  // namespace kinship

@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
 #include "proto/types/uuid.hpp"
 
 /// The rows that admin verbs list: what the store knows, without waypoints and mixtures.
@@ -25,6 +28,18 @@ struct RobotSummary {
   std::int64_t registered_ms = 0;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<RobotSummary>{
+    Field{"robot", &RobotSummary::robot},
+    Field{"label", &RobotSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"base_link", &RobotSummary::base_link, {.limit = kMaxLinkNameBytes}},
+    Field{"tip_link", &RobotSummary::tip_link, {.limit = kMaxLinkNameBytes}},
+    Field{"dof", &RobotSummary::dof},
+    Field{"solver", &RobotSummary::solver, {.limit = kMaxMessageBytes}},
+    Field{"paths", &RobotSummary::paths},
+    Field{"attempts", &RobotSummary::attempts},
+    Field{"registered_ms", &RobotSummary::registered_ms}};
+
 struct TaskRobotSummary {
   Digest robot;
   std::string label;
@@ -33,12 +48,25 @@ struct TaskRobotSummary {
   std::uint64_t generation = 0;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<TaskRobotSummary>{
+    Field{"robot", &TaskRobotSummary::robot},
+    Field{"label", &TaskRobotSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"paths", &TaskRobotSummary::paths}, Field{"attempts", &TaskRobotSummary::attempts},
+    Field{"generation", &TaskRobotSummary::generation}};
+
 struct TaskSummary {
   std::string task;
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::vector<TaskRobotSummary> robots;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<TaskSummary>{
+    Field{"task", &TaskSummary::task, {.limit = kMaxTaskBytes}},
+    Field{"paths", &TaskSummary::paths}, Field{"attempts", &TaskSummary::attempts},
+    Field{"robots", &TaskSummary::robots, {.limit = kMaxSources}}};
 
 struct PathSummary {
   Uuid report_uuid;
@@ -53,6 +81,20 @@ struct PathSummary {
   std::int64_t received_ms = 0;
   std::int64_t retired_ms = 0;  ///< 0: in use
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<PathSummary>{
+    Field{"report_uuid", &PathSummary::report_uuid},
+    Field{"robot", &PathSummary::robot},
+    Field{"label", &PathSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"task", &PathSummary::task, {.limit = kMaxTaskBytes}},
+    Field{"machine", &PathSummary::machine, {.limit = kMaxMachineBytes}},
+    Field{"T_task_base", &PathSummary::T_task_base},
+    Field{"record", &PathSummary::record},
+    Field{"waypoints", &PathSummary::waypoints},
+    Field{"length", &PathSummary::length, {.min = 0}},
+    Field{"received_ms", &PathSummary::received_ms},
+    Field{"retired_ms", &PathSummary::retired_ms}};
 
 struct DistributionSummary {
   Digest id;
@@ -69,6 +111,21 @@ struct DistributionSummary {
   std::int64_t fitted_ms = 0;
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<DistributionSummary>{
+    Field{"id", &DistributionSummary::id},
+    Field{"revision", &DistributionSummary::revision},
+    Field{"task", &DistributionSummary::task, {.limit = kMaxTaskBytes}},
+    Field{"robot", &DistributionSummary::robot},
+    Field{"label", &DistributionSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"profile", &DistributionSummary::profile, {.limit = kMaxProfileBytes}},
+    Field{"state", &DistributionSummary::state},
+    Field{"reason", &DistributionSummary::reason, {.limit = kMaxMessageBytes}},
+    Field{"components", &DistributionSummary::components},
+    Field{"configurations", &DistributionSummary::configurations},
+    Field{"paths", &DistributionSummary::paths},
+    Field{"fitted_ms", &DistributionSummary::fitted_ms}};
+
 /// What is kept of a distribution, and how it stands to the experience of now.
 struct Explanation {
   Distribution distribution;  ///< its mixture may be left out
@@ -83,12 +140,23 @@ struct Explanation {
   std::string next_fit;         ///< when and why it is fitted next, in words
 };
 
+template <>
+inline constexpr std::tuple kFieldsOf<Explanation::Now>{
+    Field{"robot", &Explanation::Now::robot},
+    Field{"label", &Explanation::Now::label, {.limit = kMaxLabelBytes}},
+    Field{"paths", &Explanation::Now::paths}, Field{"generation", &Explanation::Now::generation}};
+
 /// Paths that were taken out of every fit. They are kept for the record.
 struct Retirement {
   std::string task;
   std::uint64_t paths = 0;  ///< retired now; 0: they were retired already
   std::vector<Digest> robots;
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<Retirement>{
+    Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
+    Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
 
 enum class JobState { Queued, Running, Done, Failed, Cancelled };
 
@@ -104,6 +172,18 @@ struct Job {
   std::int64_t started_ms = 0;
   std::int64_t ended_ms = 0;  ///< 0: not yet
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<Job>{
+    Field{"id", &Job::id, {.limit = kMaxWordBytes}},
+    Field{"verb", &Job::verb, {.limit = kMaxWordBytes}},
+    Field{"argument", &Job::argument, {.limit = kMaxFileNameBytes}},
+    Field{"state", &Job::state},
+    Field{"progress", &Job::progress, {.min = 0, .max = 1}},
+    Field{"message", &Job::message, {.limit = kMaxMessageBytes}},
+    Field{"rows", &Job::rows},
+    Field{"started_ms", &Job::started_ms},
+    Field{"ended_ms", &Job::ended_ms}};
 
 struct ServerStatus {
   std::string version;
@@ -121,5 +201,30 @@ struct ServerStatus {
   bool writable = true;
   std::string storage_message;  ///< why not writable, or a warning
 };
+
+template <>
+inline constexpr std::tuple kFieldsOf<ServerStatus>{
+    Field{"version", &ServerStatus::version, {.limit = kMaxMessageBytes}},
+    Field{"store_file", &ServerStatus::store_file, {.limit = kMaxPageBytes}},
+    Field{"store_epoch", &ServerStatus::store_epoch},
+    Field{"schema_version", &ServerStatus::schema_version},
+    Field{"uptime_s", &ServerStatus::uptime_s},
+    Field{"robots", &ServerStatus::robots},
+    Field{"tasks", &ServerStatus::tasks},
+    Field{"paths", &ServerStatus::paths},
+    Field{"attempts", &ServerStatus::attempts},
+    Field{"distributions", &ServerStatus::distributions},
+    Field{"reports_received", &ServerStatus::reports_received},
+    Field{"reports_refused", &ServerStatus::reports_refused},
+    Field{"fetches", &ServerStatus::fetches},
+    Field{"fetches_from_memory", &ServerStatus::fetches_from_memory},
+    Field{"fits", &ServerStatus::fits},
+    Field{"queued_reports", &ServerStatus::queued_reports},
+    Field{"queued_fits", &ServerStatus::queued_fits},
+    Field{"followed", &ServerStatus::followed},
+    Field{"jobs", &ServerStatus::jobs},
+    Field{"store_bytes", &ServerStatus::store_bytes},
+    Field{"writable", &ServerStatus::writable},
+    Field{"storage_message", &ServerStatus::storage_message, {.limit = kMaxPageBytes}}};
 
 }  // namespace kinship

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "proto/types/limits.hpp"
-#include "proto/types/names.hpp"
+#include "proto/types/field_digest.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/profile_text.hpp"
 #include "proto/types/sha256.hpp"
@@ -17,28 +16,12 @@ namespace {
 
 std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{value}); }
 
-/// What is wrong with a selection, or nothing.
-std::optional<Error> check_selection(const Selection& selection) {
-  if (selection.sources.size() > kMaxSelectedSources)
-    return Error{ErrorCode::InvalidInput, std::to_string(selection.sources.size()) +
-                                              " selected sources exceed " +
-                                              std::to_string(kMaxSelectedSources)};
-  if (selection.since_ms < 0)
-    return Error{ErrorCode::InvalidInput,
-                 "since: " + std::to_string(selection.since_ms) + " ms is below 0"};
-  return std::nullopt;
-}
-
 }  // namespace
 
 Result<DistributionKey> make_key(const FetchRequest& request) {
-  if (const auto error = check_task(request.task))
-    return *error;
   const Result<Profile> profile = profile_from_text(request.profile);
   if (!profile)
     return profile.error();
-  if (const auto error = check_selection(request.selection))
-    return *error;
   DistributionKey key{request.task,
                       request.robot,
                       std::nullopt,
@@ -49,14 +32,8 @@ Result<DistributionKey> make_key(const FetchRequest& request) {
     key.profile.density.weighting = *request.selection.weighting;
   std::sort(key.sources.begin(), key.sources.end());
   key.sources.erase(std::unique(key.sources.begin(), key.sources.end()), key.sources.end());
-  if (!request.T_task_base)
-    return key;
-  const Eigen::Isometry3d& T_task_base = *request.T_task_base;
-  if (!T_task_base.matrix().allFinite() ||
-      T_task_base.translation().cwiseAbs().maxCoeff() > kMaxPlacement_m)
-    return Error{ErrorCode::InvalidInput, "placement: a coordinate is not finite or exceeds " +
-                                              std::to_string(kMaxPlacement_m) + " m"};
-  key.T_task_base = snapped(T_task_base);
+  if (request.T_task_base)
+    key.T_task_base = snapped(*request.T_task_base);
   return key;
 }
 
@@ -68,23 +45,8 @@ Digest identify(const DistributionKey& key) {
     const Eigen::MatrixXd placement = key.T_task_base->matrix().topRows<3>();  // 3 x 4
     sha.add(placement);
   }
-  const TransferParameters& transfer = key.profile.transfer;
-  sha.add(transfer.pose_spacing).add(bits(transfer.max_poses_per_path));
-  sha.add(bits(transfer.max_solutions)).add(transfer.min_distance).add(transfer.dropped_end_share);
-  sha.add(bits(transfer.tracks)).add(transfer.least_coverage).add(bits(transfer.track_candidates));
-  sha.add(transfer.shape_noise).add(bits(transfer.shape_steps));
-  sha.add(std::uint64_t{transfer.avoid_self_collision ? 1U : 0U});
-  sha.add(std::uint64_t{transfer.avoid_recorded_scene ? 1U : 0U});
-  if (!transfer.take_over)  // nobody's distribution had a mark for it before
-    sha.add(std::string_view("inverse kinematics for every arm"));
-  const DensityParameters& density = key.profile.density;
-  sha.add(bits(density.components)).add(density.covariance_floor);
-  sha.add(density.covariance_floor_m2);
-  sha.add(std::uint64_t{density.equal_path_weights ? 1U : 0U});
-  sha.add(static_cast<std::uint64_t>(density.weighting));
-  sha.add(std::uint64_t{density.warm_refits ? 1U : 0U});
-  if (density.estimator == Estimator::Kernels)  // ids of mixtures need no new number
-    sha.add(std::string_view("kernels"));
+  add_fields(key.profile.transfer, sha);
+  add_fields(key.profile.density, sha);
   sha.add(key.profile.recommended_share).add(key.profile.thin_share).add(key.profile.seed);
   sha.add(std::uint64_t{key.sources.size()});
   for (const Digest& source : key.sources)

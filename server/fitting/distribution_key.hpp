@@ -24,8 +24,8 @@ struct DistributionKey {
   std::int64_t since_ms = 0;         ///< paths received at or after, Unix time, UTC; 0: all
 };
 
-/// What a request asks for.
-/// \return the key, or InvalidInput if task, profile, placement or selection break a rule.
+/// What a request asks for that breaks no rule of the contract.
+/// \return the key, or InvalidInput if there is no such profile.
 Result<DistributionKey> make_key(const FetchRequest& request);
 
 /// The id of the distribution: a digest of the key and of the versions of the code that makes it.

@@ -29,23 +29,6 @@ Relation relation_of(const transfer::ArmPair& pair) {
   return Relation::Other;
 }
 
-void write(const transfer::TransferSummary& total, Source& source) {
-  source.poses = total.poses;
-  source.poses_solved = total.poses_solved;
-  source.out_of_reach = total.out_of_reach;
-  source.outside_limits = total.outside_limits;
-  source.not_converged = total.not_converged;
-  source.configurations = total.configurations;
-  source.colliding = total.colliding;
-  source.tracks_tried = total.tracks_tried;
-  source.tracks_kept = total.tracks_kept;
-  source.tracks_through = total.tracks_through;
-  source.random_configurations = total.random_configurations;
-  source.filter_checks = total.filter_checks;
-  source.self_collisions = total.self_collisions;
-  source.scene_collisions = total.scene_collisions;
-}
-
 /// Calls `visit` with the paths of a robot and task in the order of arrival, page by page, until it
 /// says false.
 template <typename Visit>
@@ -115,7 +98,6 @@ void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted
                                const std::stop_token& stop, SourceSummary& summary) {
   const transfer::ArmPair pair(robot.chain, target_.chain);
   summary.source.relation = relation_of(pair);
-  transfer::TransferSummary total;
   const std::uint64_t count = summary.paths_selected;
   std::uint64_t index = 0;
   if (count > 0)
@@ -127,14 +109,13 @@ void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted
       });
       const std::vector<PathOutcome> outcomes = transfer_.transfer(page, pair, stop);
       for (std::size_t i = 0; i < page.size(); ++i)
-        add_path(page[i], outcomes[i], summary, total);
+        add_path(page[i], outcomes[i], summary);
       return index < count && !stop.stop_requested();
     });
-  write(total, summary.source);
 }
 
 void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome& outcome,
-                              SourceSummary& summary, transfer::TransferSummary& total) {
+                              SourceSummary& summary) {
   if (!outcome.path) {  // one bad path must not cost the others
     ++summary.paths_left_out;
     if (summary.problem.empty())
@@ -143,7 +124,7 @@ void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome
   }
   ++summary.source.paths_used;
   pool_.add(outcome.path->path, stored.report_uuid);
-  total.add(outcome.path->path->summary);
+  summary.source += outcome.path->path->summary;
   count_scene(*outcome.path, summary);
   (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
   transferred_ += outcome.was_known ? 0 : 1;
@@ -151,7 +132,7 @@ void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome
 }
 
 void SourceTransfer::count_scene(const KnownPath& path, SourceSummary& summary) {
-  const transfer::TransferSummary& transferred = path.path->summary;
+  const TransferCounts& transferred = path.path->summary;
   if (!path.has_scene || transferred.filter_checks == 0)
     return;  // nothing was asked: waypoints that were taken over were free on their robot
   ++summary.source.paths_with_scene;

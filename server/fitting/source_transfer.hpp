@@ -60,8 +60,8 @@ class SourceTransfer {
   void add_paths(const runtime::Robot& robot, std::uint64_t wanted, const std::stop_token& stop,
                  SourceSummary& summary);
   static void count_scene(const KnownPath& path, SourceSummary& summary);
-  void add_path(const store::StoredPath& stored, const PathOutcome& outcome, SourceSummary& summary,
-                transfer::TransferSummary& total);
+  void add_path(const store::StoredPath& stored, const PathOutcome& outcome,
+                SourceSummary& summary);
 
   const store::Store& store_;
   runtime::RobotRegistry& robots_;

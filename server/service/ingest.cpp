@@ -45,10 +45,8 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   for (const Attempt& attempt : attempts) {
     batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
     batch->costs.push_back(catalog::cost_of(attempt));
-    if (attempt.path)
-      batch->bytes += sizeof(double) * static_cast<std::size_t>(attempt.path->waypoints().size());
-    if (attempt.scene)
-      batch->bytes += scene_bytes(*attempt.scene);
+    const BatchBytes bytes = batch_bytes(attempt);
+    batch->bytes += bytes.waypoints + bytes.scenes;
   }
   batch->attempts = std::move(attempts);
   received_ += batch->receipts.size();

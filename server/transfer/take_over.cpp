@@ -59,7 +59,7 @@ TransferredPath take_over(const Eigen::MatrixXd& waypoints, const ArmPair& pair)
     const NoSolution reason = !exact && !polish(pair, q)        ? NoSolution::NotConverged
                               : !bring_within(pair.target(), q) ? NoSolution::Limits
                                                                 : NoSolution::None;
-    result.summary.count(reason == NoSolution::None ? 1 : 0, reason);
+    count_pose(reason == NoSolution::None ? 1 : 0, reason, result.summary);
     if (reason != NoSolution::None)
       continue;
     result.configurations.col(found) = q;

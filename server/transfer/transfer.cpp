@@ -59,14 +59,14 @@ class PathSolutions {
   }
 
   /// One row per solution, in the order of poses.
-  TransferredPath stacked(const TransferSummary& summary) const;
+  TransferredPath stacked(const TransferCounts& summary) const;
 
  private:
   Eigen::Index dof_;
   std::vector<Eigen::MatrixXd> of_pose_;
 };
 
-TransferredPath PathSolutions::stacked(const TransferSummary& summary) const {
+TransferredPath PathSolutions::stacked(const TransferCounts& summary) const {
   const auto total = static_cast<Eigen::Index>(summary.configurations);
   TransferredPath result;
   result.configurations.resize(dof_, total);
@@ -103,7 +103,7 @@ struct PathUnderWay {
 TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
                                       const TransferParameters& parameters, std::uint64_t seed) {
   PathSolutions solutions(pair.target().dof(), path.poses.size());
-  TransferSummary summary;
+  TransferCounts summary;
   for (const Track& track : path.tracker.tracks()) {
     solutions.add(track);
     ++summary.tracks_kept;
@@ -115,13 +115,14 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
       solve_uncovered(pair, path.poses, covered, parameters, seed, path.counted);
   for (std::size_t pose = 0; pose < covered.size(); ++pose) {
     if (covered[pose]) {
-      summary.count(solutions[pose].cols(), inverse::NoSolution::None);
+      ++summary.poses_on_tracks;
+      count_pose(solutions[pose].cols(), inverse::NoSolution::None, summary);
       continue;
     }
-    summary.count(random[pose]);
+    count_pose(random[pose], summary);
     solutions[pose] = std::move(random[pose].configurations);
   }
-  summary.set(path.counted);
+  count_filtered(path.counted, summary);
   return solutions.stacked(summary);
 }
 

@@ -90,7 +90,7 @@ double cpu_s() {
 }
 
 struct Run {
-  transfer::TransferSummary summary;
+  TransferCounts summary;
   std::vector<Eigen::Isometry3d> unsolved;  // of the transfer frame, in the target's base
   double wall_s = 0, processor_s = 0;
 
@@ -125,7 +125,7 @@ Run run_pair(const Teacher& source, const transfer::ArmPair& pair,
   run.processor_s = cpu_s() - start_cpu_s;
   run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    run.summary.add(results[i].summary);
+    run.summary += results[i].summary;
     const auto poses = transfer::path_poses(transfer::resample(source.paths[i], parameters), pair,
                                             T_target_source);
     std::vector<bool> solved(poses.T_base_transfer.size(), false);

@@ -90,7 +90,7 @@ std::vector<Recorded> record(const PlanarRobot& robot, const Eigen::VectorXd& no
 /// The mixture for a target, fitted with every path weighing the same.
 std::optional<Mixture> learn(const std::vector<Recorded>& paths, const PlanarRobot& source,
                              const PlanarRobot& target, const TransferParameters& parameters,
-                             transfer::TransferSummary& summary) {
+                             TransferCounts& summary) {
   const transfer::ArmPair pair(source.chain, target.chain);
   transfer::Filters filters;
   if (parameters.avoid_self_collision)
@@ -105,7 +105,7 @@ std::optional<Mixture> learn(const std::vector<Recorded>& paths, const PlanarRob
     }
     moved.push_back(test::transfer_path(recorded.path, pair, Eigen::Isometry3d::Identity(),
                                         parameters, 0, filters));
-    summary.add(moved.back().summary);
+    summary += moved.back().summary;
     total += moved.back().configurations.cols();
   }
   Eigen::MatrixXd configurations(target.chain.dof(), total);
@@ -175,7 +175,7 @@ int run(int instances, std::size_t paths) {
       for (std::size_t source = 0; source < names.size(); ++source) {
         if (source == target)
           continue;
-        transfer::TransferSummary summary;
+        TransferCounts summary;
         const auto mixture =
             learn(recorded[source], *robots[source], *robots[target], variant.parameters, summary);
         int unsolved = 0;

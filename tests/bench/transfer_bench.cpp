@@ -62,13 +62,13 @@ void transfer_pair(benchmark::State& state, const std::string& from, const std::
   const TransferParameters parameters{.tracks = tracks};
   const transfer::Filters none;
   std::size_t next = 0;
-  transfer::TransferSummary sum;
+  TransferCounts sum;
   for (auto step : state) {
     std::vector<transfer::PathToTransfer> group;
     for (; group.size() < kGroup; next = (next + 1) % paths.size())
       group.push_back({paths[next], Eigen::Isometry3d::Identity(), none});
     for (const auto& path : transfer::transfer_paths(group, pair, parameters, 0))
-      sum.add(path.summary);
+      sum += path.summary;
   }
   const auto rate = [](std::uint64_t count) {
     return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);

@@ -373,7 +373,7 @@ TEST(CodecGarbage, SpoiledAttemptIsRefusedOrKeepsTheRules) {
     const auto read = decode(message.wire).value_or_throw();
     EXPECT_EQ(read.attempts.size() + read.refused.size(), 2U);
     for (const Attempt& attempt : read.attempts)
-      EXPECT_FALSE(check(attempt));
+      EXPECT_FALSE(find_fault(attempt));
     refused += read.refused.size();
   }
   EXPECT_GT(refused, static_cast<std::size_t>(5 * kCases));

@@ -146,7 +146,9 @@ TEST(JsonRoundTrip, DistributionComesBackBitByBit) {
     written.advice.recommended_share = values.share();
     if (values.coin())
       written.held_out_score = values.any_double();
-    written.sources.push_back({values.digest(), "panda", values.count(), 1, 2, 3});
+    Source& source = written.sources.emplace_back();
+    source.robot = values.digest();
+    source.paths = values.count();
 
     const auto read = distribution_from_json(to_json(written));
 

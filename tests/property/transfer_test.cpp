@@ -41,7 +41,7 @@ TEST_P(TransferBetweenModels, KeepsThePoseOfTheTransferFrameInTheCommonFrame) {
   const TransferParameters parameters{.pose_spacing = 1.0};
   const ArmPair pair(source, target);
 
-  TransferSummary sum;
+  TransferCounts sum;
   for (int i = 0; i < kPaths; ++i) {
     const Path path = random_path(source, generator);
     const auto transferred = test::transfer_path(path, pair, T_target_source, parameters, kSeed);
@@ -54,7 +54,7 @@ TEST_P(TransferBetweenModels, KeepsThePoseOfTheTransferFrameInTheCommonFrame) {
           kinematics::T_base_transfer(source, resampled.col(transferred.pose_index[c]));
       EXPECT_LT((kinematics::T_base_transfer(target, q).matrix() - T_wanted.matrix()).norm(), 4e-6);
     }
-    const TransferSummary& one = transferred.summary;
+    const TransferCounts& one = transferred.summary;
     EXPECT_EQ(one.poses, static_cast<std::uint64_t>(resampled.cols()));
     EXPECT_EQ(one.poses,
               one.poses_solved + one.out_of_reach + one.outside_limits + one.not_converged);
@@ -84,7 +84,7 @@ class TransferToATwin : public testing::Test {
       const Path path = random_path(source_, generator);
       const Eigen::MatrixXd resampled = resample(path, {});
       const auto moved = test::transfer_path(path, pair, Eigen::Isometry3d::Identity(), {}, kSeed);
-      sum_.add(moved.summary);
+      sum_ += moved.summary;
       EXPECT_TRUE((moved.solution_index.array() == 0).all());
       for (Eigen::Index c = 0; c < moved.configurations.cols(); ++c)
         check(resampled.col(moved.pose_index[c]), moved.configurations.col(c), target);
@@ -95,7 +95,7 @@ class TransferToATwin : public testing::Test {
 
   kinematics::Chain source_ = test::model_chain("ur10e");
   kinematics::ArmLikeness likeness_ = kinematics::ArmLikeness::Different;
-  TransferSummary sum_;
+  TransferCounts sum_;
 
  private:
   static constexpr int kTwinPaths = 40;

@@ -159,28 +159,16 @@ class RandomValues {
   }
 
   Source source() {
-    return {.robot = digest(),
-            .label = name(64),
-            .paths = count(),
-            .generation = count(),
-            .poses = count(),
-            .poses_solved = count(),
-            .relation = static_cast<Relation>(below(3)),
-            .paths_used = count(),
-            .out_of_reach = count(),
-            .outside_limits = count(),
-            .not_converged = count(),
-            .configurations = count(),
-            .mass = share(),
-            .colliding = count(),
-            .tracks_tried = count(),
-            .tracks_kept = count(),
-            .random_configurations = count(),
-            .filter_checks = count(),
-            .self_collisions = count(),
-            .scene_collisions = count(),
-            .paths_with_scene = count(),
-            .tracks_through = count()};
+    Source source;
+    for_each_field<Source>([&]<typename Of, typename T>(const Field<Of, T>& field) {
+      if constexpr (std::is_same_v<T, std::uint64_t>)
+        source.*field.member = count();
+    });
+    source.robot = digest();
+    source.label = name(64);
+    source.relation = static_cast<Relation>(below(3));
+    source.mass = share();
+    return source;
   }
 
   ArmEvidence evidence() {

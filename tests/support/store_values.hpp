@@ -94,7 +94,13 @@ inline Distribution make_distribution(const Digest& robot, const std::string& ta
   distribution.profile = "default";
   distribution.engines = "transfer 1, density 1";
   distribution.reason = "2 of 5 poses out of reach";
-  distribution.sources = {{robot, "panda", 12, 3, 640, 600}};
+  Source& source = distribution.sources.emplace_back();
+  source.robot = robot;
+  source.label = "panda";
+  source.paths = 12;
+  source.generation = 3;
+  source.poses = 640;
+  source.poses_solved = 600;
   distribution.configurations = 3000;
   const std::vector<Eigen::MatrixXd> covariances(2, 0.25 * Eigen::MatrixXd::Identity(kDof, kDof));
   distribution.mixture =

@@ -95,13 +95,6 @@ std::optional<Attempt> read_candidate(Database& database, const Candidate& candi
   return std::move(row->attempt);
 }
 
-std::size_t bytes_of(const Attempt& attempt) {
-  const std::size_t waypoints =
-      attempt.path ? static_cast<std::size_t>(attempt.path->waypoints().size()) * sizeof(double)
-                   : 0;
-  return waypoints + (attempt.scene ? scene_bytes(*attempt.scene) : 0);
-}
-
 }  // namespace
 
 ExportRead export_page(Database& database, const std::optional<Digest>& robot,
@@ -121,7 +114,8 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
       return read;
     for (const Candidate& candidate : candidates) {
       if (std::optional<Attempt> attempt = read_candidate(database, candidate, read)) {
-        bytes += bytes_of(*attempt);
+        const BatchBytes more = batch_bytes(*attempt);
+        bytes += more.waypoints + more.scenes;
         if (read.page.rows.size() == rows || (!read.page.rows.empty() && bytes > max_bytes)) {
           read.page.next_cursor = std::to_string(last_id);
           return read;

@@ -9,7 +9,13 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kContentColumns =
+/// Where a column stands among the selected ones. Schema 1 has no more than its content.
+struct PathColumn {
+  static constexpr int kId = 0, kReportUuid = 1, kPlacement = 2, kDof = 3, kWaypointCount = 4,
+                       kEncoding = 5, kCrc = 6, kWaypoints = 7, kReceivedMs = 8, kSceneId = 9;
+};
+
+constexpr std::string_view kPathContentColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
 constexpr std::string_view kPathColumns =
     "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
@@ -33,34 +39,40 @@ struct PathContent {
   }
 };
 
-/// \param row  of kPathColumns.
-std::optional<StoredPath> read_path(const Statement& row) {
-  const PathContent content{row.column_blob(1),    row.column_blob(2),    row.column_integer(3),
-                            row.column_integer(4), row.column_integer(5), row.column_blob(7)};
-  if (content.crc() != row.column_integer(6))
+/// A path without the time it was received and its scene, or nothing if it is damaged.
+/// \param row  of kPathContentColumns, or of kPathColumns.
+std::optional<StoredPath> read_path_content(const Statement& row) {
+  const PathContent content{
+      row.column_blob(PathColumn::kReportUuid),  row.column_blob(PathColumn::kPlacement),
+      row.column_integer(PathColumn::kDof),      row.column_integer(PathColumn::kWaypointCount),
+      row.column_integer(PathColumn::kEncoding), row.column_blob(PathColumn::kWaypoints)};
+  if (content.crc() != row.column_integer(PathColumn::kCrc))
     return std::nullopt;
   std::optional<Path> path =
       decode_waypoints(content.dof, content.waypoint_count, content.encoding, content.waypoints);
   if (!path)
     return std::nullopt;
   std::optional<Eigen::Isometry3d> T_task_base;
-  if (!row.column_is_null(2)) {
+  if (!row.column_is_null(PathColumn::kPlacement)) {
     T_task_base = pose_from_blob(content.T_task_base);
     if (!T_task_base)
       return std::nullopt;
   }
-  StoredPath stored{row.column_integer(0), id_of<Uuid>(content.report_uuid), T_task_base,
-                    row.column_integer(8), std::move(*path)};
-  if (!row.column_is_null(9))
-    stored.scene_id = row.column_integer(9);
-  return stored;
+  return StoredPath{row.column_integer(PathColumn::kId), id_of<Uuid>(content.report_uuid),
+                    T_task_base, 0, std::move(*path)};
 }
 
+/// \param row  of kPathColumns.
 void take_row(const Statement& row, PathsRead& read) {
-  if (std::optional<StoredPath> path = read_path(row))
-    read.paths.push_back(std::move(*path));
-  else
-    read.damaged.push_back(row.column_integer(0));
+  std::optional<StoredPath> path = read_path_content(row);
+  if (!path) {
+    read.damaged.push_back(row.column_integer(PathColumn::kId));
+    return;
+  }
+  path->received_ms = row.column_integer(PathColumn::kReceivedMs);
+  if (!row.column_is_null(PathColumn::kSceneId))
+    path->scene_id = row.column_integer(PathColumn::kSceneId);
+  read.paths.push_back(std::move(*path));
 }
 
 /// \return its robot and task, or nothing if it was in no fit any more.
@@ -147,15 +159,14 @@ void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
 }
 
 PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {
-  // Of every schema: the column that schema 1 lacks is not among these.
-  const auto query = database.cached(std::string(kContentColumns) +
+  const auto query = database.cached(std::string(kPathContentColumns) +
                                      "FROM path WHERE id > ? AND damaged = 0 ORDER BY id LIMIT ?");
   query->bind_all(after_id, limit);
   PathsChecked checked;
   while (query->step()) {
-    checked.last_id = query->column_integer(0);
+    checked.last_id = query->column_integer(PathColumn::kId);
     ++checked.paths;
-    if (!read_path(*query))
+    if (!read_path_content(*query))
       checked.damaged.push_back(checked.last_id);
   }
   return checked;
@@ -167,8 +178,8 @@ std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t co
   query->bind(1, count);
   std::vector<std::int64_t> damaged;
   while (query->step())
-    if (!read_path(*query))
-      damaged.push_back(query->column_integer(0));
+    if (!read_path_content(*query))
+      damaged.push_back(query->column_integer(PathColumn::kId));
   return damaged;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "proto/types/limits.hpp"
+#include "proto/types/field_digest.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/sha256.hpp"
 
@@ -12,27 +12,14 @@ namespace kinship::store {
 namespace {
 
 std::optional<std::string> reason_against(const Attempt& attempt) {
-  const PlanningRecord& record = attempt.record;
-  if ((record.outcome == Outcome::Solved) != attempt.path.has_value())
-    return attempt.path ? "an attempt that is not solved has a path"
-                        : "a solved attempt has no path";
-  if (attempt.T_task_base)
-    if (const auto pose = from_pose_array(to_pose_array(*attempt.T_task_base)); !pose)
-      return "T_task_base: " + pose.error().message;
-  if (attempt.scene)
-    if (const std::optional<Error> error = check_scene(*attempt.scene))
-      return error->message;
+  if (const std::optional<Error> error = find_fault(attempt))
+    return error->message;
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const PlanningRecord& record = attempt.record;
   for (const std::uint64_t counter :
        {record.collision_checks, record.projections, record.distribution_revision})
     if (counter > kLargest)
       return "counter " + std::to_string(counter) + " exceeds " + std::to_string(kLargest);
-  if (attempt.path && attempt.path->dof() > static_cast<Eigen::Index>(kMaxDof))
-    return "path of " + std::to_string(attempt.path->dof()) + " joints exceeds " +
-           std::to_string(kMaxDof);
-  if (attempt.path && attempt.path->size() > static_cast<Eigen::Index>(kMaxWaypoints))
-    return "path of " + std::to_string(attempt.path->size()) + " waypoints exceeds " +
-           std::to_string(kMaxWaypoints);
   return std::nullopt;
 }
 
@@ -56,21 +43,13 @@ Digest content_digest(const Digest& waypoints,
 
 Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path,
                    const std::optional<PreparedScene>& scene) {
-  const PlanningRecord& record = attempt.record;
   Sha256 hash;
   hash.add(attempt.robot).add(attempt.machine).add(attempt.task);
   hash.add(std::uint64_t{attempt.T_task_base ? 1U : 0U});
   if (attempt.T_task_base)
     for (const double number : to_pose_array(*attempt.T_task_base))
       hash.add(number);
-  hash.add(static_cast<std::uint64_t>(record.outcome));
-  hash.add(record.planner).add(record.planner_options);
-  hash.add(record.planning_time_s).add(record.collision_checks).add(record.projections);
-  hash.add(record.time_limit_s).add(static_cast<std::uint64_t>(record.arm)).add(record.share);
-  hash.add(std::uint64_t{record.distribution_id ? 1U : 0U});
-  if (record.distribution_id)
-    hash.add(*record.distribution_id);
-  hash.add(record.distribution_revision);
+  add_fields(attempt.record, hash);
   if (path)
     hash.add(path->waypoints);  // the placement is in it already, unsnapped
   if (scene)

@@ -32,9 +32,7 @@ struct PreparedAttempt {
   std::optional<PreparedScene> scene;
 };
 
-/// \return the reason if it cannot be stored: solved without a path or the reverse, a placement
-///         that is no pose, a scene that breaks a rule, a counter over 2^63, more joints or
-///         waypoints than the limits.
+/// \return the reason if it cannot be stored: what find_fault() says, or a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);
 
 }  // namespace kinship::store

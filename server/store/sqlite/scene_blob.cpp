@@ -11,7 +11,7 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::uint64_t kFormat = 1;  // written first
+constexpr std::uint64_t kSceneFormat = 1;  // written first
 /// Of the largest scene: a solid takes at most 104 bytes beside its name here, 96 for
 /// kMaxSceneBytes.
 constexpr std::int64_t kMaxPlainBytes = std::int64_t{1} << 20U;
@@ -48,7 +48,7 @@ Thing read_thing(ByteReader& in) {
 }
 
 RecordedScene read_scene(ByteReader& in) {
-  if (in.integer() != kFormat)
+  if (in.integer() != kSceneFormat)
     throw std::out_of_range("scene: unknown format");
   RecordedScene scene;
   for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
@@ -68,7 +68,7 @@ RecordedScene read_scene(ByteReader& in) {
 
 SceneBlob encode_scene(const RecordedScene& scene) {
   ByteWriter out;
-  out.add(kFormat).add(std::uint64_t{scene.objects.size()});
+  out.add(kSceneFormat).add(std::uint64_t{scene.objects.size()});
   for (const SceneObject& object : scene.objects)
     add(out, object.name, object.shape, object.T_task_object);
   out.add(std::uint64_t{scene.held.size()});

@@ -19,7 +19,11 @@ FetchReply ready(double guided_share = 0.9, Eigen::Index dimension = kDof) {
   distribution.id.bytes[0] = 0xab;
   distribution.revision = 3;
   distribution.configurations = 400;
-  distribution.sources = {{Digest{}, "panda", 60, 60, 900, 880}};
+  Source& source = distribution.sources.emplace_back();
+  source.label = "panda";
+  source.paths = source.generation = 60;
+  source.poses = 900;
+  source.poses_solved = 880;
   distribution.mixture = one_component(dimension);
   distribution.advice.recommended_share = 0.1;
   distribution.advice.guided_share = guided_share;

@@ -248,6 +248,7 @@ TEST(FetchCodec, ScoresFallInComponentsAndCutsNameJoints) {
 TEST(FetchCodec, WhatAFitBeganWithComesBackAndAddsUp) {
   FetchReply reply = ready_reply();
   std::optional<FitOrigin>& fit = reply.distribution->fit;
+  fit.reset();
   EXPECT_FALSE(decode(encode({}, reply).value_or_throw().wire).value_or_throw().distribution->fit);
   fit = FitOrigin{4, 2, 525, 25, 30, ""};
   auto message = encode({}, reply).value_or_throw();

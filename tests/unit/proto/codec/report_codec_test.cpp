@@ -21,7 +21,7 @@ Attempt solved_attempt(Eigen::Index dof, Eigen::Index waypoints) {
 }
 
 std::string complaint(const Attempt& attempt) {
-  const auto error = check(attempt);
+  const auto error = find_fault(attempt);
   return error ? error->message : "";
 }
 

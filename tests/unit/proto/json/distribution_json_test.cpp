@@ -62,7 +62,11 @@ Distribution with_details() {
   Distribution distribution = two_components();
   distribution.selection = {
       .sources = {digest_of(1), digest_of(2)}, .weighting = Weighting::Paths, .since_ms = 99};
-  Source source{.robot = digest_of(1), .label = "panda", .paths = 60, .generation = 12};
+  Source source;
+  source.robot = digest_of(1);
+  source.label = "panda";
+  source.paths = 60;
+  source.generation = 12;
   source.poses = 900;
   source.poses_solved = 800;
   source.relation = Relation::SameArm;
@@ -81,6 +85,7 @@ Distribution with_details() {
   source.scene_collisions = 400;
   source.paths_with_scene = 20;
   source.tracks_through = 85;
+  source.poses_on_tracks = 750;
   distribution.sources = {source};
   distribution.advice.guided = ArmEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
   distribution.advice.guided_share = 0.5;
@@ -98,7 +103,7 @@ TEST(DistributionJson, SelectionSourcesAndEvidenceAreReadBack) {
             R"("outside_limits":30,"not_converged":10,"configurations":4000,"mass":0.625,)"
             R"("colliding":7,"tracks_tried":90,"tracks_kept":80,"random_configurations":1500,)"
             R"("filter_checks":5000,"self_collisions":600,"scene_collisions":400,)"
-            R"("paths_with_scene":20,"tracks_through":85})"),
+            R"("paths_with_scene":20,"tracks_through":85,"poses_on_tracks":750})"),
         std::string(R"("guided":{"attempts":20,"solved":18,"checks_per_solution":45.0},)"
                     R"("control":null,"recent":[)"
                     R"({"arm":"control","solved":true,"checks":70,"age":19},)"

@@ -7,20 +7,20 @@ namespace {
 
 TEST(EnumText, EveryWordIsReadBack) {
   for (const Outcome outcome : {Outcome::Solved, Outcome::Timeout, Outcome::Failed})
-    EXPECT_EQ(parse_outcome(to_text(outcome)).value(), outcome);
+    EXPECT_EQ(parse_word<Outcome>(to_text(outcome)).value(), outcome);
   for (const Arm arm : {Arm::Guided, Arm::Control, Arm::Uniform})
-    EXPECT_EQ(parse_arm(to_text(arm)).value(), arm);
+    EXPECT_EQ(parse_word<Arm>(to_text(arm)).value(), arm);
   for (const DistributionState state :
        {DistributionState::Ready, DistributionState::Failed, DistributionState::Thin})
-    EXPECT_EQ(parse_distribution_state(to_text(state)).value(), state);
+    EXPECT_EQ(parse_word<DistributionState>(to_text(state)).value(), state);
 }
 
 TEST(EnumText, RefusalListsTheAllowedWords) {
-  const auto outcome = parse_outcome("Solved");
+  const auto outcome = parse_word<Outcome>("Solved");
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::InvalidInput);
   EXPECT_EQ(outcome.error().message, "outcome: 'Solved' is not one of solved, timeout, failed");
-  EXPECT_FALSE(parse_arm(""));
+  EXPECT_FALSE(parse_word<Arm>(""));
 }
 
 TEST(EnumText, ValueOutsideTheEnumIsACallersBug) {

@@ -16,8 +16,12 @@ Distribution fitted(std::uint64_t paths_1, std::uint64_t paths_2) {
   Distribution distribution;
   distribution.robot = robot(1);
   distribution.fitted_ms = 1'000'000;
-  distribution.sources = {{.robot = robot(1), .label = "a", .paths = paths_1, .generation = 3},
-                          {.robot = robot(2), .label = "b", .paths = paths_2, .generation = 7}};
+  for (const std::uint64_t paths : {paths_1, paths_2}) {
+    Source& source = distribution.sources.emplace_back();
+    source.robot = robot(static_cast<std::uint8_t>(distribution.sources.size()));
+    source.paths = paths;
+    source.generation = 3;
+  }
   return distribution;
 }
 

@@ -388,11 +388,14 @@ TEST_F(FitDistribution, SaysHowTracksFared) {
   EXPECT_LE(tracked.tracks_kept, tracked.tracks_tried);
   EXPECT_GT(tracked.tracks_through, 0U);
   EXPECT_LE(tracked.tracks_through, tracked.tracks_tried);
+  EXPECT_GT(tracked.poses_on_tracks, 0U);
+  EXPECT_LE(tracked.poses_on_tracks, tracked.poses_solved);
   EXPECT_LT(tracked.random_configurations, tracked.configurations);
   key.profile = *find_profile("paper");
   key.profile.density.components = 2;
   const Source paper = fitted(key).sources.at(0);
   EXPECT_EQ(paper.tracks_tried, 0U);
+  EXPECT_EQ(paper.poses_on_tracks, 0U);
   EXPECT_EQ(paper.filter_checks, 0U);
   EXPECT_EQ(paper.random_configurations, paper.configurations);
 }

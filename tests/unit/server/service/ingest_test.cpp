@@ -62,7 +62,8 @@ TEST_F(IngestTest, AnswersABatchOnceInItsOrder) {
                          ReceiptStatus::Recorded}));
   for (std::size_t i = 0; i < batch.size(); ++i)
     EXPECT_EQ(receipts[i].report_uuid, batch[i].report_uuid);
-  EXPECT_EQ(receipts[0].message, "share: 2 is not within 0 to 1");
+  EXPECT_EQ(receipts[0].message,
+            "attempt " + bad.report_uuid.text() + ": share: 2 is not between 0 and 1");
   EXPECT_EQ(receipts[2].message,
             "robot " + unknown.robot.short_hex() + " is not known here; register it first");
   EXPECT_EQ(ingest_.received(), 4U);

@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -66,62 +63,6 @@ TEST(DistributionBlob, KernelsShareTheirCovariance) {
   EXPECT_EQ(after->mixture->means(), before.mixture->means());
   EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
   EXPECT_FALSE(decode_distribution(encode_distribution(example_of_kernels(4001))));
-}
-
-/// Takes the first place that holds these bytes out of a blob, all but the first `kept` of them.
-void erase_bytes(std::vector<std::uint8_t>& blob, const std::array<std::uint8_t, 16>& wanted,
-                 std::ptrdiff_t kept) {
-  const auto found = std::search(blob.begin(), blob.end(), wanted.begin(), wanted.end());
-  ASSERT_NE(found, blob.end());
-  blob.erase(found + kept, found + static_cast<std::ptrdiff_t>(wanted.size()));
-}
-
-std::array<std::uint8_t, 16> bytes_of(std::uint64_t first, std::uint64_t second) {
-  std::array<std::uint8_t, 16> bytes = {};
-  std::memcpy(bytes.data(), &first, 8);
-  std::memcpy(bytes.data() + 8, &second, 8);
-  return bytes;
-}
-
-/// The blob as it was written before sources told how many tracks came through.
-std::vector<std::uint8_t> in_format_6(Distribution distribution) {
-  constexpr std::uint64_t kMark = 0x1122334455667788;
-  for (Source& source : distribution.sources)
-    source.paths_with_scene = source.tracks_through = kMark;
-  std::vector<std::uint8_t> blob = encode_distribution(distribution);
-  for (std::size_t i = 0; i < distribution.sources.size(); ++i)
-    erase_bytes(blob, bytes_of(kMark, kMark), 8);
-  blob[0] = 6;
-  return blob;
-}
-
-/// And before there were kernels: no number of covariances after the means.
-std::vector<std::uint8_t> in_format_5(const Distribution& distribution) {
-  std::vector<std::uint8_t> blob = in_format_6(distribution);
-  const Mixture& mixture = *distribution.mixture;
-  const double last = mixture.means()(mixture.means().rows() - 1, mixture.means().cols() - 1);
-  std::uint64_t last_bits = 0;
-  std::memcpy(&last_bits, &last, 8);
-  erase_bytes(blob, bytes_of(last_bits, mixture.covariances().size()), 8);
-  blob[0] = 5;
-  return blob;
-}
-
-TEST(DistributionBlob, ReadsTheFormatThatKnewNoTracksThatCameThrough) {
-  const Distribution before = example();
-  const std::optional<Distribution> after = decode_distribution(in_format_6(before));
-  ASSERT_TRUE(after);
-  EXPECT_EQ(after->sources.at(0).tracks_through, 0U);
-  EXPECT_EQ(after->mixture->means(), before.mixture->means());
-}
-
-TEST(DistributionBlob, ReadsTheFormatWithoutKernels) {
-  const Distribution before = example();
-  const std::optional<Distribution> after = decode_distribution(in_format_5(before));
-  ASSERT_TRUE(after);
-  EXPECT_EQ(after->mixture->means(), before.mixture->means());
-  EXPECT_EQ(after->mixture->covariances(), before.mixture->covariances());
-  EXPECT_EQ(after->cuts, before.cuts);
 }
 
 TEST(DistributionBlob, KeepsAFailureWithoutAMixture) {

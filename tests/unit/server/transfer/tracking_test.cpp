@@ -219,7 +219,7 @@ TEST(TransferWithFilters, NothingThatAFilterRejectsComesOut) {
     const auto moved =
         transfer_path(source_path(), {kSource.chain(), kTarget.chain()},
                       Eigen::Isometry3d::Identity(), {.tracks = tracks}, kSeed, filters);
-    const TransferSummary& summary = moved.summary;
+    const TransferCounts& summary = moved.summary;
     EXPECT_GT(summary.configurations, 0U);
     EXPECT_LT(moved.configurations.row(1).maxCoeff(), 0.5);
     EXPECT_GT(moved.configurations.row(2).minCoeff(), -0.5);

@@ -33,7 +33,7 @@ Path source_path() {
   return Path(waypoints);
 }
 
-std::uint64_t reasons(const TransferSummary& summary) {
+std::uint64_t reasons(const TransferCounts& summary) {
   return summary.out_of_reach + summary.outside_limits + summary.not_converged;
 }
 
@@ -120,7 +120,7 @@ TEST(Transfer, SummaryAndIndicesAddUp) {
   const auto short_arm = PlanarArm{.lengths_m = {0.4, 0.3, 0.2, 0.1}, .limit = 1.5}.chain();
   const auto transferred = transfer_path(source_path(), {source_arm(), short_arm},
                                          planar_pose(0.1, 0, 0), {.pose_spacing = 0.05}, kSeed);
-  const TransferSummary& summary = transferred.summary;
+  const TransferCounts& summary = transferred.summary;
   EXPECT_GT(summary.poses_solved, 0U);
   EXPECT_GT(reasons(summary), 0U);
   EXPECT_EQ(summary.poses, summary.poses_solved + reasons(summary));

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "proto/types/failure.hpp"
+#include "proto/types/field.hpp"
 
-namespace kinship::codec {
+namespace kinship {
 
 /// Applies rules to the members of a value, one after the other, and remembers the first that is
 /// broken. Messages name the thing, its value and the limit.
@@ -33,4 +36,26 @@ class Rules {
   std::optional<Error> broken_;
 };
 
-}  // namespace kinship::codec
+/// The limits of each field.
+/// \param of  after its name in messages, e.g. " of a source".
+template <Described Value>
+void check_fields(const Value& value, Rules& rules, const std::string& of = "") {
+  for_each_field<Value>([&]<typename Of, typename T>(const Field<Of, T>& field) {
+    const auto what = [&] { return std::string(field.name) + of; };
+    const FieldRules& limits = field.rules;
+    if constexpr (std::is_same_v<T, std::string>) {
+      rules.text(what(), value.*field.member, limits.limit);
+      if (limits.check)
+        rules.name(limits.check(value.*field.member));
+    } else if constexpr (std::is_floating_point_v<T>) {
+      if (limits.max < std::numeric_limits<T>::max())
+        rules.between(what(), value.*field.member, limits.min, limits.max);
+      else if (limits.min == 0)
+        rules.not_negative(what(), value.*field.member);
+      else
+        rules.finite(what(), value.*field.member);
+    }
+  });
+}
+
+}  // namespace kinship

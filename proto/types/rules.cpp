@@ -1,4 +1,4 @@
-#include "proto/codec/rules.hpp"
+#include "proto/types/rules.hpp"
 
 #include <cmath>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "proto/types/number_text.hpp"
 #include "proto/types/pose.hpp"
 
-namespace kinship::codec {
+namespace kinship {
 
 void Rules::breaks(ErrorCode code, std::string message) {
   if (!broken_)
@@ -72,4 +72,4 @@ Rules& Rules::that(bool holds, std::string_view message) {
   return *this;
 }
 
-}  // namespace kinship::codec
+}  // namespace kinship

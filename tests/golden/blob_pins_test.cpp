@@ -1,0 +1,73 @@
+// What the store keeps as bytes: today's format as it is written, every format as it is read.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "proto/json/attempt_json.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "server/store/sqlite/compression.hpp"
+#include "server/store/sqlite/distribution_blob.hpp"
+#include "server/store/sqlite/scene_blob.hpp"
+#include "server/store/sqlite/waypoint_blob.hpp"
+#include "tests/golden/every_value.hpp"
+#include "tests/golden/pins.hpp"
+
+namespace kinship::store::blob_pins_test {
+namespace {
+
+constexpr int kFormat = 8;  // of today
+
+std::string blob_name(int format) { return "blob/distribution-" + std::to_string(format) + ".hex"; }
+
+TEST(BlobPins, DistributionsAreWrittenAsPinned) {
+  test::expect_pinned_bytes(blob_name(kFormat), encode_distribution(test::every_distribution()));
+  test::expect_pinned_bytes("blob/distribution-kernels.hex",
+                            encode_distribution(test::every_kernels()));
+  test::expect_pinned_bytes("blob/distribution-failed.hex",
+                            encode_distribution(test::every_failure()));
+}
+
+TEST(BlobPins, DistributionsOfEveryFormatAreRead) {
+  for (int format = 1; format <= kFormat; ++format) {
+    const auto distribution = decode_distribution(test::read_pinned_bytes(blob_name(format)));
+    ASSERT_TRUE(distribution) << format;
+    test::expect_pinned("blob/distribution-" + std::to_string(format) + ".json",
+                        json::to_json(*distribution) + "\n");
+  }
+}
+
+/// zstd may compress otherwise tomorrow: what is compressed is pinned, and that it comes back.
+TEST(BlobPins, ScenesAreWrittenAsPinned) {
+  const SceneBlob blob = encode_scene(test::every_recorded_scene());
+  ASSERT_EQ(blob.encoding, SceneEncoding::Zstd);
+  const auto plain = decompress(blob.bytes, static_cast<std::size_t>(blob.size));
+  ASSERT_TRUE(plain);
+  test::expect_pinned_bytes("blob/scene.hex", *plain);
+  const auto scene = decode_scene(blob.size, 2, blob.bytes);
+  ASSERT_TRUE(scene);
+  Attempt attempt = test::every_attempt();
+  attempt.scene = scene;
+  test::expect_pinned("json/attempt.json", json::to_json(attempt) + "\n");
+}
+
+TEST(BlobPins, WaypointsAreWrittenAsPinned) {
+  std::mt19937_64 generator(4000);
+  const Eigen::MatrixXd waypoints = Eigen::MatrixXd::NullaryExpr(
+      4, 5, [&] { return static_cast<double>(generator() >> 11U) / 9007199254740992.0; });
+  const WaypointBlob raw = encode_waypoints(waypoints);
+  ASSERT_EQ(raw.encoding, WaypointEncoding::Raw);
+  test::expect_pinned_bytes("blob/waypoints-raw.hex", raw.bytes);
+  const Eigen::MatrixXd line = test::Distinct(5000).matrix(4, 100);
+  const WaypointBlob delta = encode_waypoints(line);
+  ASSERT_EQ(delta.encoding, WaypointEncoding::Delta);
+  const auto planes = decompress(delta.bytes, static_cast<std::size_t>(line.size()) * 8);
+  ASSERT_TRUE(planes);
+  test::expect_pinned_bytes("blob/waypoints-delta.hex", *planes);
+  const auto path = decode_waypoints(4, 100, 2, delta.bytes);
+  ASSERT_TRUE(path);
+  EXPECT_EQ(path->waypoints(), line);
+}
+
+}  // namespace
+}  // namespace kinship::store::blob_pins_test
