@@ -1,0 +1,322 @@
+#include "client/planner/plan_problem.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "client/planning/birrt.hpp"
+#include "client/planning/cbirrt2.hpp"
+#include "client/planning/configuration_sampler.hpp"
+#include "client/planning/goal_configurations.hpp"
+#include "client/planning/guidance_gate.hpp"
+#include "client/planning/ompl_planner.hpp"
+#include "client/planning/planning_bounds.hpp"
+#include "client/planning/region_constraint.hpp"
+#include "client/planning/repetition_roadmap.hpp"
+#include "client/planning/shortcut.hpp"
+#include "robots/collision/collision_world.hpp"
+
+namespace kinship::planner {
+namespace {
+
+struct Interrupted {};  // leaves a planner between two checks
+
+/// The first joint of a configuration that is beyond its limits, with its value and the limits.
+std::optional<std::string> beyond_limits(const kinematics::Chain& chain,
+                                         const Eigen::Ref<const Eigen::VectorXd>& q) {
+  constexpr double kRounding = 1e-6;  // of a limit written with few digits
+  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    if (joint.type == kinematics::JointType::Continuous)
+      continue;
+    if (q[i] < joint.lower - kRounding || q[i] > joint.upper + kRounding)
+      return "joint '" + joint.name + "' at " + std::to_string(q[i]) + " is outside " +
+             std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
+  }
+  return std::nullopt;
+}
+
+/// The configurations where planning may go: within limits to rounding, turning joints in the
+/// turn of the start.
+Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matrix2Xd& bounds,
+                              const Eigen::MatrixXd& configurations) {
+  const std::vector<bool> turning = planning::turning_joints(chain);
+  Eigen::MatrixXd kept(configurations.rows(), configurations.cols());
+  Eigen::Index count = 0;
+  for (const auto& q : configurations.colwise()) {
+    Eigen::VectorXd limited = q;
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      if (chain.joints()[static_cast<std::size_t>(i)].type != kinematics::JointType::Continuous)
+        limited[i] = std::clamp(q[i], chain.lower()[i], chain.upper()[i]);
+    if (const auto turned = planning::turned_into(bounds, turning, limited))
+      kept.col(count++) = *turned;
+  }
+  return kept.leftCols(count);
+}
+
+std::string joint_names(const kinematics::Chain& chain) {
+  std::string names;
+  for (const kinematics::Joint& joint : chain.joints())
+    names += (names.empty() ? "'" : ", '") + joint.name + "'";
+  return names;
+}
+
+/// What is wrong with the problem for this robot.
+std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Problem& problem) {
+  const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
+  const auto of_robot = [&] { return std::to_string(chain.dof()) + ": " + joint_names(chain); };
+  if (problem.start.size() != chain.dof())
+    return "start has " + joints(problem.start.size()) + ", the robot " + of_robot();
+  if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
+    return "goal configurations have " + joints(problem.goal_configurations.rows()) +
+           ", the robot " + of_robot();
+  if (const auto outside = beyond_limits(chain, problem.start))
+    return "start: " + *outside;
+  for (Eigen::Index i = 0; i < problem.goal_configurations.cols(); ++i)
+    if (const auto outside = beyond_limits(chain, problem.goal_configurations.col(i)))
+      return "goal " + std::to_string(i + 1) + ": " + *outside;
+  return std::nullopt;
+}
+
+planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
+                                            const Eigen::Matrix2Xd& bounds,
+                                            const Guidance* guidance, double share) {
+  if (guidance == nullptr || share == 0)
+    return planning::ConfigurationSampler(bounds);
+  return {bounds, chain, guidance->mixture, share};
+}
+
+/// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
+std::string described(const planning::RegionConstraint::Vector6& excess) {
+  std::string text;
+  for (Eigen::Index i = 0; i < excess.size(); ++i)
+    if (excess[i] != 0)
+      text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
+              std::to_string(excess[i]);
+  return text + " outside Bw";
+}
+
+/// Empty for a query that is to be guided.
+std::string why_unguided(const QueryGuidance& query) {
+  if (query.guidance == nullptr)
+    return query.why_not;
+  switch (query.arm) {
+    case Arm::Control:
+      return "planned uniformly as control";
+    case Arm::Uniform:
+      return "planned uniformly by wish";
+    case Arm::Guided:
+      break;
+  }
+  return query.guidance->share == 0 ? "the share of guided samples is 0" : "";
+}
+
+/// Which planner answers: a roadmap leaves a mixture of too many components to its trees.
+std::string planner_text(const PlannerChoice& planner,
+                         const planning::ConfigurationSampler& sampler) {
+  const std::string name = name_of(planner);
+  if (planner.kind != PlannerKind::Roadmap || !sampler.mixture() ||
+      sampler.mixture()->size() <= planning::kMaxRoadmapComponents)
+    return name;
+  return name + " (trees alone: " + std::to_string(sampler.mixture()->size()) +
+         " components exceed " + std::to_string(planning::kMaxRoadmapComponents) + ")";
+}
+
+Outcome outcome_of(const planning::PlanSummary& summary) {
+  if (summary.waypoints)
+    return Outcome::Solved;
+  const bool gave_up = summary.reason == "checks" || summary.reason == "time";
+  return gave_up ? Outcome::Timeout : Outcome::Failed;
+}
+
+/// One problem under way.
+class Planning {
+ public:
+  Planning(const PlannedRobot& robot, const Problem& problem, const PlanSettings& settings,
+           const std::function<bool()>& stop)
+      : robot_(robot),
+        problem_(problem),
+        settings_(settings),
+        T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
+        world_(robot.solids,
+               {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
+        is_free_([this, &stop](const Eigen::VectorXd& q) {
+          if (stop())
+            throw Interrupted();
+          return !world_.collides(q);
+        }),
+        bounds_(planning::planning_bounds(robot.chain, problem.start)),
+        generator_(problem.seed) {
+    if (problem.constraint)
+      constraint_.emplace(robot.chain, *problem.constraint, T_task_base_, bounds_);
+  }
+
+  void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
+    const Eigen::MatrixXd goals = find_goals(planned.result);
+    if (goals.cols() == 0)
+      return;
+    planning::BirrtOptions options;
+    options.step = settings_.resolution;
+    options.overshoot = settings_.overshoot;
+    options.max_checks = settings_.max_checks;
+    options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
+    heed_gate(goals, guidance, planned.result);
+    const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
+    planned.result.planner = planner_text(planner, sampler);
+    const planning::PlanSummary summary = search(planner, goals, sampler, options);
+    planned.outcome = outcome_of(summary);
+    planned.result.solved = summary.waypoints.has_value();
+    planned.result.collision_checks = summary.collision_checks;
+    planned.result.projections = summary.projections;
+    planned.result.planning_time_s = summary.planning_time_s;
+    planned.result.reason = explained(summary.reason);
+    if (summary.waypoints)
+      shorten(*summary.waypoints, planned.result);
+  }
+
+ private:
+  planning::PlanSummary search(const PlannerChoice& planner, const Eigen::MatrixXd& goals,
+                               const planning::ConfigurationSampler& sampler,
+                               const planning::BirrtOptions& options) {
+    const Eigen::VectorXd& start = problem_.start;
+    if (planner.kind == PlannerKind::Roadmap) {
+      planning::RoadmapOptions roadmap;
+      roadmap.tree = options;
+      return constraint_
+                 ? planning::plan_roadmap(start, goals, {is_free_, *constraint_}, sampler, roadmap,
+                                          generator_)
+                 : planning::plan_roadmap(start, goals, is_free_, sampler, roadmap, generator_);
+    }
+    if (planner.kind == PlannerKind::Ompl) {
+      const planning::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
+      return constraint_
+                 ? planning::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler, ompl,
+                                            generator_)
+                 : planning::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
+    }
+    return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
+                                                options, generator_)
+                       : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
+  }
+
+  /// All of them count: the nearest may lie behind an obstacle.
+  Eigen::MatrixXd find_goals(ProblemResult& result) {
+    if (!problem_.T_task_goal) {
+      Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
+      if (goals.cols() > 0)
+        first_goal_ = goals.col(0);
+      return goals;
+    }
+    const planning::IsFree is_free = [this](const Eigen::VectorXd& q) {
+      if (!first_goal_)
+        first_goal_ = q;
+      return is_free_(q);
+    };
+    planning::GoalOptions options;
+    options.max_configurations = settings_.max_goals;
+    options.seed = problem_.seed;
+    planning::GoalConfigurations goals = planning::goal_configurations(
+        robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free, options);
+    result.goal_checks = goals.collision_checks;
+    result.reason = explained(goals.reason);
+    return std::move(goals.configurations);
+  }
+
+  /// A query that the distribution knows nothing about is planned uniformly; its arm stays.
+  void heed_gate(const Eigen::MatrixXd& goals, const Guidance* guidance,
+                 ProblemResult& result) const {
+    if (guidance == nullptr || result.share == 0)
+      return;
+    result.gate_fired =
+        planning::query_distance(robot_.chain, guidance->mixture, problem_.start, goals)
+            .is_beyond(settings_.gate_distance);
+    if (result.gate_fired) {
+      result.share = 0;
+      result.guidance_reason = "start or goals are far from all that the distribution knows";
+    }
+  }
+
+  void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
+    planning::ShortcutOptions options;
+    options.step = settings_.resolution;
+    options.max_checks = settings_.shortcut_checks;
+    const planning::ShortcutSummary shortened =
+        constraint_
+            ? planning::shortcut_constrained(waypoints, is_free_, *constraint_, options, generator_)
+            : planning::shortcut(waypoints, is_free_, options, generator_);
+    result.shortcut_checks = shortened.collision_checks;
+    result.waypoints = shortened.waypoints;
+  }
+
+  std::string explained(const std::string& reason) {
+    if (reason == "start collides")
+      return reason + contact_text(": ", problem_.start);
+    if (reason == "every goal collides" && first_goal_)
+      return reason + contact_text(", at the first one ", *first_goal_);
+    if (reason == "start violates the constraint")
+      return reason + ": " + described(constraint_->excess(problem_.start));
+    if (reason == "checks")
+      return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
+    if (reason == "time")
+      return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
+    return reason;
+  }
+
+  std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
+    const auto contact = world_.find_contact(q);
+    return contact ? before + "'" + contact->first + "' touches '" + contact->second + "'" : "";
+  }
+
+  const PlannedRobot& robot_;
+  const Problem& problem_;
+  const PlanSettings& settings_;
+  const Eigen::Isometry3d T_task_base_;
+  collision::CollisionWorld world_;
+  planning::IsFree is_free_;
+  Eigen::Matrix2Xd bounds_;
+  std::optional<planning::RegionConstraint> constraint_;
+  std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
+  std::mt19937_64 generator_;
+};
+
+}  // namespace
+
+PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
+                            const QueryGuidance& query, const PlanSettings& settings,
+                            const std::function<bool()>& stop) {
+  PlannedProblem planned;
+  planned.result.name = problem.name;
+  planned.result.time_limit_s = problem.time_limit_s;
+  if (query.guidance != nullptr) {
+    planned.result.distribution_id = query.guidance->distribution_id;
+    planned.result.distribution_revision = query.guidance->revision;
+    planned.result.arm = query.arm;
+    planned.result.share = query.arm == Arm::Guided ? query.guidance->share : 0;
+  }
+  planned.result.guidance_reason = why_unguided(query);
+  const Result<PlannerChoice> planner =
+      planner_for(settings.planner, problem.constraint.has_value());
+  const auto misfit =
+      planner ? find_misfit(robot.chain, problem) : std::optional(planner.error().message);
+  if (misfit) {
+    planned.result.reason = *misfit;
+    return planned;
+  }
+  try {
+    Planning planning(robot, problem, settings, stop);
+    planned.attempted = true;
+    planned.planner = name_of(*planner);
+    planned.result.planner = planned.planner;
+    planning.run(*planner, query.guidance, planned);
+  } catch (const Interrupted&) {
+    planned.interrupted = true;
+  } catch (const std::exception& exception) {  // of one problem: the others are planned
+    planned.result.reason = exception.what();
+  }
+  return planned;
+}
+
+}  // namespace kinship::planner
