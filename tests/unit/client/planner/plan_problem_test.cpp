@@ -120,7 +120,8 @@ TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
     EXPECT_EQ(result.arm, arm);
     EXPECT_EQ(result.share, 0);
     EXPECT_FALSE(result.gate_fired);
-    EXPECT_NE(result.guidance_reason, "");
+    EXPECT_EQ(result.guidance_reason,
+              arm == Arm::Control ? "planned uniformly as control" : "planned uniformly by wish");
     EXPECT_EQ(result.distribution_id, guidance.distribution_id);
     EXPECT_EQ(result.collision_checks, uniform.collision_checks);
     EXPECT_EQ(*result.waypoints, *uniform.waypoints);
@@ -133,7 +134,7 @@ TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGu
   EXPECT_TRUE(gated.gate_fired);
   EXPECT_EQ(gated.arm, Arm::Guided);
   EXPECT_EQ(gated.share, 0);
-  EXPECT_NE(gated.guidance_reason, "");
+  EXPECT_EQ(gated.guidance_reason, "start or goals are far from all that the distribution knows");
   EXPECT_EQ(gated.distribution_id, far.distribution_id);
   const ProblemResult uniform = planned(wall_problem()).result;
   EXPECT_EQ(gated.collision_checks, uniform.collision_checks);
@@ -164,8 +165,16 @@ TEST(PlanProblem, RunningOutOfChecksIsATimeoutWithItsReason) {
   EXPECT_FALSE(answer.result.waypoints);
   EXPECT_EQ(answer.outcome, Outcome::Timeout);
   EXPECT_EQ(answer.result.collision_checks, 20U);
-  EXPECT_NE(answer.result.reason, "");
+  EXPECT_EQ(answer.result.reason, "not solved within 20 collision checks");
   EXPECT_TRUE(answer.attempted);
+}
+
+TEST(PlanProblem, RunningOutOfTimeIsATimeoutWithItsReason) {
+  Problem problem = wall_problem();
+  problem.time_limit_s = 0;
+  const PlannedProblem answer = planned(problem);
+  EXPECT_EQ(answer.outcome, Outcome::Timeout);
+  EXPECT_EQ(answer.result.reason, "not solved within 0.000000 s");
 }
 
 TEST(PlanProblem, ACollidingStartNamesWhatTouches) {
@@ -173,21 +182,21 @@ TEST(PlanProblem, ACollidingStartNamesWhatTouches) {
   problem.start.setZero();
   const PlannedProblem answer = planned(problem);
   EXPECT_EQ(answer.outcome, Outcome::Failed);
-  EXPECT_NE(answer.result.reason.find("wall"), std::string::npos) << answer.result.reason;
+  EXPECT_EQ(answer.result.reason, "start collides: 'l4' touches 'wall'");
 }
 
 TEST(PlanProblem, CollidingGoalsNameWhatTouches) {
   Problem problem = wall_problem();
   problem.scene.objects.push_back(
       {"lump", SphereShape{0.25}, Eigen::Isometry3d(Eigen::Translation3d(0.45, -0.95, 0))});
-  EXPECT_NE(planned(problem).result.reason.find("every goal collides, at the first one '"),
-            std::string::npos)
-      << planned(problem).result.reason;
+  EXPECT_EQ(planned(problem).result.reason,
+            "every goal collides, at the first one 'l4' touches 'lump'");
   problem.T_task_goal =
       kinematics::T_base_transfer(planar_robot().chain, problem.goal_configurations.col(0));
   problem.goal_configurations.resize(0, 0);
   const PlannedProblem posed = planned(problem);
-  EXPECT_NE(posed.result.reason.find("'lump'"), std::string::npos) << posed.result.reason;
+  EXPECT_EQ(posed.result.reason, "every goal collides, at the first one 'l4' touches 'lump'");
+  EXPECT_EQ(posed.outcome, Outcome::Failed);
   EXPECT_TRUE(posed.attempted);
 }
 
@@ -197,7 +206,16 @@ TEST(PlanProblem, AGoalOutOfReachIsSaid) {
   problem.T_task_goal = Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0));
   const PlannedProblem answer = planned(problem);
   EXPECT_FALSE(answer.result.solved);
-  EXPECT_NE(answer.result.reason.find("goal"), std::string::npos) << answer.result.reason;
+  EXPECT_EQ(answer.outcome, Outcome::Failed);
+  EXPECT_EQ(answer.result.reason, "goal out of reach");
+}
+
+TEST(PlanProblem, AGoalReachedOnlyBeyondTheLimitsIsSaid) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal =
+      kinematics::T_base_transfer(planar_robot().chain, Eigen::Vector4d(3.1, 0, 0, 0));
+  EXPECT_EQ(planned(problem).result.reason, "goal only reached outside the joint limits");
 }
 
 TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
@@ -208,11 +226,19 @@ TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
   EXPECT_EQ(answer.result.reason, "start has 6 joints, the robot 4: 'j1', 'j2', 'j3', 'j4'");
   problem = wall_problem();
   problem.start[2] = 3;
-  EXPECT_NE(planned(problem).result.reason.find("j3"), std::string::npos);
+  EXPECT_EQ(planned(problem).result.reason,
+            "start: joint 'j3' at 3.000000 is outside -2.800000 to 2.800000");
   EXPECT_FALSE(planned(problem).attempted);
   problem = wall_problem();
   problem.attached.push_back({"box", "hand", BoxShape{{0.1, 0.1, 0.1}}, {}, {}});
   EXPECT_NE(planned(problem).result.reason.find("hand"), std::string::npos);
+}
+
+TEST(PlanProblem, GoalsOfAnotherRobotAreAnsweredNotAttempted) {
+  Problem problem = wall_problem();
+  problem.goal_configurations = Eigen::VectorXd::Zero(6);
+  EXPECT_EQ(planned(problem).result.reason,
+            "goal configurations have 6 joints, the robot 4: 'j1', 'j2', 'j3', 'j4'");
 }
 
 TEST(PlanProblem, AGoalBeyondALimitNamesGoalJointValueAndLimit) {
@@ -321,7 +347,9 @@ TEST(PlanProblem, APlannerThatCannotKeepToAConstraintIsNotStarted) {
   const PlannedProblem refused = planned(line_problem(), settings);
   EXPECT_FALSE(refused.attempted);
   EXPECT_EQ(refused.result.planner, "");
-  EXPECT_NE(refused.result.reason.find("--planner cbirrt2"), std::string::npos);
+  EXPECT_EQ(refused.result.reason,
+            "--planner birrt does not keep to a constraint: use --planner cbirrt2 or "
+            "ompl:RRTConnect");
   EXPECT_EQ(planned(wall_problem(), settings).result.planner, "BiRRT");
   EXPECT_EQ(planned(line_problem()).result.planner, "CBiRRT2");
 }
