@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/planner/problem_mismatch.hpp"
 #include "client/planning/birrt.hpp"
 #include "client/planning/cbirrt2.hpp"
 #include "client/planning/configuration_sampler.hpp"
@@ -22,22 +23,9 @@
 namespace kinship::planner {
 namespace {
 
-struct Interrupted {};  // leaves a planner between two checks
+using planning::NoPath;
 
-/// The first joint of a configuration that is beyond its limits, with its value and the limits.
-std::optional<std::string> beyond_limits(const kinematics::Chain& chain,
-                                         const Eigen::Ref<const Eigen::VectorXd>& q) {
-  constexpr double kRounding = 1e-6;  // of a limit written with few digits
-  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
-    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
-    if (joint.type == kinematics::JointType::Continuous)
-      continue;
-    if (q[i] < joint.lower - kRounding || q[i] > joint.upper + kRounding)
-      return "joint '" + joint.name + "' at " + std::to_string(q[i]) + " is outside " +
-             std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
-  }
-  return std::nullopt;
-}
+struct Interrupted {};  // leaves a planner between two checks
 
 /// The configurations where planning may go: within limits to rounding, turning joints in the
 /// turn of the start.
@@ -55,30 +43,6 @@ Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matri
       kept.col(count++) = *turned;
   }
   return kept.leftCols(count);
-}
-
-std::string joint_names(const kinematics::Chain& chain) {
-  std::string names;
-  for (const kinematics::Joint& joint : chain.joints())
-    names += (names.empty() ? "'" : ", '") + joint.name + "'";
-  return names;
-}
-
-/// What is wrong with the problem for this robot.
-std::optional<std::string> find_misfit(const kinematics::Chain& chain, const Problem& problem) {
-  const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
-  const auto of_robot = [&] { return std::to_string(chain.dof()) + ": " + joint_names(chain); };
-  if (problem.start.size() != chain.dof())
-    return "start has " + joints(problem.start.size()) + ", the robot " + of_robot();
-  if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
-    return "goal configurations have " + joints(problem.goal_configurations.rows()) +
-           ", the robot " + of_robot();
-  if (const auto outside = beyond_limits(chain, problem.start))
-    return "start: " + *outside;
-  for (Eigen::Index i = 0; i < problem.goal_configurations.cols(); ++i)
-    if (const auto outside = beyond_limits(chain, problem.goal_configurations.col(i)))
-      return "goal " + std::to_string(i + 1) + ": " + *outside;
-  return std::nullopt;
 }
 
 planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
@@ -128,8 +92,9 @@ std::string planner_text(const PlannerChoice& planner,
 Outcome outcome_of(const planning::PlanSummary& summary) {
   if (summary.waypoints)
     return Outcome::Solved;
-  const bool gave_up = summary.reason == "checks" || summary.reason == "time";
-  return gave_up ? Outcome::Timeout : Outcome::Failed;
+  const bool is_used_up =
+      summary.reason == NoPath::MaxChecks || summary.reason == NoPath::TimeLimit;
+  return is_used_up ? Outcome::Timeout : Outcome::Failed;
 }
 
 /// One problem under way.
@@ -172,7 +137,7 @@ class Planning {
     planned.result.collision_checks = summary.collision_checks;
     planned.result.projections = summary.projections;
     planned.result.planning_time_s = summary.planning_time_s;
-    planned.result.reason = explained(summary.reason);
+    planned.result.reason = explain(summary.reason, summary.planner_message);
     if (summary.waypoints)
       shorten(*summary.waypoints, planned.result);
   }
@@ -221,7 +186,7 @@ class Planning {
     planning::GoalConfigurations goals = planning::goal_configurations(
         robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free, options);
     result.goal_checks = goals.collision_checks;
-    result.reason = explained(goals.reason);
+    result.reason = explain(goals.reason);
     return std::move(goals.configurations);
   }
 
@@ -251,18 +216,25 @@ class Planning {
     result.waypoints = shortened.waypoints;
   }
 
-  std::string explained(const std::string& reason) {
-    if (reason == "start collides")
-      return reason + contact_text(": ", problem_.start);
-    if (reason == "every goal collides" && first_goal_)
-      return reason + contact_text(", at the first one ", *first_goal_);
-    if (reason == "start violates the constraint")
-      return reason + ": " + described(constraint_->excess(problem_.start));
-    if (reason == "checks")
-      return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
-    if (reason == "time")
-      return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
-    return reason;
+  /// Why there is no path, with what only this problem knows.
+  std::string explain(NoPath reason, const std::string& planner_message = {}) {
+    const std::string text(describe(reason));
+    switch (reason) {
+      case NoPath::StartCollides:
+        return text + contact_text(": ", problem_.start);
+      case NoPath::GoalsCollide:
+        return text + (first_goal_ ? contact_text(", at the first one ", *first_goal_) : "");
+      case NoPath::StartOffConstraint:
+        return text + ": " + described(constraint_->excess(problem_.start));
+      case NoPath::MaxChecks:
+        return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
+      case NoPath::TimeLimit:
+        return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
+      case NoPath::GaveUp:
+        return planner_message;
+      default:
+        return text;
+    }
   }
 
   std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
@@ -299,10 +271,10 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =
       planner_for(settings.planner, problem.constraint.has_value());
-  const auto misfit =
-      planner ? find_misfit(robot.chain, problem) : std::optional(planner.error().message);
-  if (misfit) {
-    planned.result.reason = *misfit;
+  const auto mismatch =
+      planner ? find_mismatch(robot.chain, problem) : std::optional(planner.error().message);
+  if (mismatch) {
+    planned.result.reason = *mismatch;
     return planned;
   }
   try {

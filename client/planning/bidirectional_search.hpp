@@ -5,7 +5,6 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,7 +34,7 @@ void check_arguments(const char* planner, const Eigen::VectorXd& start,
 /// The goals that hold a constraint.
 /// \return empty, with a reason as plan_cbirrt2 says, if the start or all goals do not.
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                                       const RegionConstraint& constraint, std::string& reason);
+                                       const RegionConstraint& constraint, NoPath& reason);
 
 /// Two trees, from the start and from every goal, extended in turn.
 /// \tparam Steering  goes from a node to a target as far as it can:
@@ -58,7 +57,7 @@ class BidirectionalSearch {
     if (auto answer = answer_at_once(start, goals, free_goals))
       return *std::move(answer);
     if (auto path = go_straight(free_goals))
-      return summary(std::move(path), "");
+      return summary(std::move(path), NoPath::None);
     return search();
   }
 
@@ -66,14 +65,14 @@ class BidirectionalSearch {
   std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
                                             const Eigen::MatrixXd& goals,
                                             Eigen::MatrixXd& free_goals) {
-    const std::string reason = plant(start, goals);
-    if (!reason.empty())
+    const NoPath reason = plant(start, goals);
+    if (reason != NoPath::None)
       return summary(std::nullopt, reason);
     free_goals.resize(goals.rows(), goal_tree_.size());
     for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
       free_goals.col(i) = goal_tree_.node(i);
     if (auto path = standstill())
-      return summary(std::move(path), "");
+      return summary(std::move(path), NoPath::None);
     return std::nullopt;
   }
 
@@ -86,10 +85,10 @@ class BidirectionalSearch {
   }
 
   /// What was planned and spent so far.
-  PlanSummary summary(std::optional<Eigen::MatrixXd> path, std::string reason) {
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason) {
     PlanSummary summary;
     summary.waypoints = std::move(path);
-    summary.reason = std::move(reason);
+    summary.reason = reason;
     summary.iterations = iterations_;
     summary.collision_checks = budget_.checks();
     summary.planning_time_s = budget_.thread_time_s();
@@ -103,23 +102,23 @@ class BidirectionalSearch {
       ++iterations_;
       path = iterate();
     }
-    const std::string reason = path ? "" : budget_.reason();
+    const NoPath reason = path ? NoPath::None : budget_.reason();
     return summary(std::move(path), reason);
   }
 
-  /// \return why there is nothing to plan, or an empty text.
-  std::string plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+  /// \return why there is nothing to plan, if so.
+  NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
-      return "no goal";
+      return NoPath::NoGoal;
     if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : "start collides";
+      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
     start_tree_.add(start, -1);
     for (Eigen::Index i = 0; i < goals.cols(); ++i)
       if (budget_.is_free(goals.col(i)))
         goal_tree_.add(goals.col(i), -1);
     if (budget_.exhausted())
       return budget_.reason();
-    return goal_tree_.size() == 0 ? "every goal collides" : "";
+    return goal_tree_.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
   }
 
   /// The path of a start that is a goal already.

@@ -5,9 +5,9 @@
 
 namespace kinship::planning {
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                                       const RegionConstraint& constraint, std::string& reason) {
+                                       const RegionConstraint& constraint, NoPath& reason) {
   if (!constraint.holds(start)) {
-    reason = "start violates the constraint";
+    reason = NoPath::StartOffConstraint;
     return std::nullopt;
   }
   Eigen::MatrixXd kept(goals.rows(), goals.cols());
@@ -16,7 +16,7 @@ std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen
     if (constraint.holds(goal))
       kept.col(count++) = goal;
   if (count == 0 && goals.cols() > 0) {
-    reason = "every goal violates the constraint";
+    reason = NoPath::GoalsOffConstraint;
     return std::nullopt;
   }
   return kept.leftCols(count);

@@ -44,7 +44,7 @@ struct RoadmapQuery {
     RoadmapGraph graph(start, free_goals, way);
     graph.add_components(sampler, project, options, generator);
     if (auto path = graph.search(budget, options.max_roadmap_checks))
-      return trees.summary(std::move(path), "");
+      return trees.summary(std::move(path), NoPath::None);
     return trees.run_from(graph.reached_from_start(), graph.reached_from_goals());
   }
 };
