@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "client/arguments/selection_options.hpp"
+#include "client/arguments/selection_arguments.hpp"
 #include "client/link/client.hpp"
 #include "proto/types/distribution.hpp"
 

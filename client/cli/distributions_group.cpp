@@ -1,5 +1,5 @@
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/profile_options.hpp"
+#include "client/arguments/command_options.hpp"
 #include "client/cli/explain_command.hpp"
 #include "client/cli/export_commands.hpp"
 #include "client/cli/fetch_command.hpp"

@@ -1,5 +1,5 @@
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/robot_options.hpp"
+#include "client/arguments/command_options.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/inverse_commands.hpp"
 #include "client/cli/listings.hpp"

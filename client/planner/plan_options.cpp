@@ -6,10 +6,8 @@
 #include <ostream>
 #include <vector>
 
+#include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/profile_options.hpp"
-#include "client/arguments/robot_options.hpp"
-#include "client/arguments/selection_options.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
 

@@ -1,6 +1,5 @@
-#include "client/arguments/selection_options.hpp"
+#include "client/arguments/selection_arguments.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -14,12 +13,6 @@ namespace kinship::arguments {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// What is wrong, as CLI11 wants it of a check; empty: nothing.
-template <typename T>
-std::string complaint(const Result<T>& result) {
-  return result ? std::string() : result.error().message;
-}
 
 Error not_a_time(std::string_view text) {
   return {
@@ -112,22 +105,6 @@ std::optional<milliseconds> utc_of(std::string_view text) {
 }
 
 }  // namespace
-
-void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
-  app.add_option("--sources", arguments.sources,
-                 "only experience of these robots: labels or digests, separated by commas")
-      ->check([](const std::string& text) { return complaint(parse_robot_names(text)); });
-  app.add_option("--weighting", arguments.weighting,
-                 "sources: every robot the same; paths: by number of paths (default: the "
-                 "profile's)")
-      ->check([](const std::string& text) { return complaint(parse_weighting(text)); });
-  app.add_option("--since", arguments.since,
-                 "only experience received since a date or time in UTC (2026-11-21T05:32), an age "
-                 "(90m, 12h, 14d, 2w) or a Unix time in ms")
-      ->check([](const std::string& text) {
-        return complaint(parse_since(text, std::chrono::system_clock::now()));
-      });
-}
 
 Result<std::vector<std::string>> parse_robot_names(std::string_view text) {
   std::vector<std::string> names;

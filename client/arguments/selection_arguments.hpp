@@ -9,10 +9,6 @@
 #include "proto/types/result.hpp"
 #include "proto/types/selection.hpp"
 
-namespace CLI {  // NOLINT: theirs
-class App;
-}  // namespace CLI
-
 namespace kinship::arguments {
 
 /// What --sources, --weighting and --since said: which part of a task's experience is wanted.
@@ -21,10 +17,6 @@ struct SelectionArguments {
   std::string weighting;  ///< a word of enum_text; empty: the profile's
   std::string since;      ///< see parse_since(); empty: all
 };
-
-/// Adds the three options. A malformed value is refused while the command line is parsed.
-/// \param arguments  filled when the command line is parsed; must outlive that.
-void add_selection_options(CLI::App& app, SelectionArguments& arguments);
 
 /// The names of an option that takes several, separated by commas: without empty ones, each once.
 /// \return InvalidInput that names what cannot be the label or digest of a robot, or more than
