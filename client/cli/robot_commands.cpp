@@ -1,4 +1,4 @@
-#include "client/cli/inverse_commands.hpp"
+#include "client/cli/robot_commands.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -8,8 +8,6 @@
 #include <random>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/exit_code.hpp"
-#include "client/cli/robot_geometry.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"
 #include "client/files/lines.hpp"
@@ -20,6 +18,7 @@
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -59,6 +58,23 @@ std::optional<DescribedRobot> read_robot(const char* command,
     return std::nullopt;
   }
   return DescribedRobot{*std::move(description), *std::move(chain)};
+}
+
+/// A robot's collision geometry: planning needs it, kinematics and the server do not.
+/// \return empty if it cannot be known here, and says why on `err`; of a description that is no
+///         chain nothing is said.
+std::optional<geometry::RobotShapes> read_geometry(const char* command,
+                                                   const models::RobotArguments& arguments,
+                                                   const RobotDescription& description,
+                                                   std::ostream& err) {
+  const auto chain = kinematics::read_chain(description);
+  if (!chain)
+    return std::nullopt;
+  auto shapes = models::load_shapes(arguments, description, *chain);
+  if (shapes)
+    return *std::move(shapes);
+  err << command << ": without collision geometry: " << shapes.error().message << '\n';
+  return std::nullopt;
 }
 
 const char* reason_text(inverse::NoSolution reason) {
@@ -169,6 +185,15 @@ void print_check(const RobotCheck& check, const RobotDescription& description,
   table.print(out);
 }
 
+void print_same_arms(const std::vector<std::string>& labels, std::ostream& out) {
+  if (labels.empty())
+    return;
+  out << "the same arm as";
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    out << (i == 0 ? " " : ", ") << labels[i];
+  out << ": experience passes between them as it is\n";
+}
+
 }  // namespace
 
 int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err) {
@@ -224,6 +249,34 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
     return T_base_tip.has_value();
   });
   return code;
+}
+
+int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
+                   std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "robots register";
+  const auto description = models::describe_robot(arguments);
+  if (!description)
+    return refuse(kCommand, description.error(), err);
+  read_geometry(kCommand, arguments, *description, err);
+  const auto reply = server.register_robot(*description);
+  if (!reply)
+    return refuse(kCommand, reply.error(), err);
+  if (reply->status == RegisterStatus::Refused) {
+    err << kCommand << ": refused: " << reply->message << '\n';
+    return kWrongUsage;
+  }
+  if (!reply->message.empty())
+    err << kCommand << ": " << reply->message << "; the label '" << description->label
+        << "' is not kept\n";
+  if (json)
+    out << json::to_json(*reply, description->label) << '\n';
+  else
+    out << (reply->message.empty() ? description->label + " is " : "") << "robot "
+        << reply->robot.short_hex() << ": " << reply->dof << " joints, " << reply->solver
+        << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
+  if (!json)
+    print_same_arms(reply->same_arms, out);
+  return kDone;
 }
 
 }  // namespace kinship::cli

@@ -1,4 +1,4 @@
-#include "client/cli/fetch_command.hpp"
+#include "client/cli/distribution_commands.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,14 +11,13 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::cli {
 namespace {
-
-constexpr const char* kFetch = "distributions fetch";
 
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {
@@ -30,7 +29,7 @@ int print_samples(const Distribution& distribution, const FetchOptions& options,
   for (std::uint64_t i = 0; i < options.samples; ++i) {
     const auto q = sampler.sample(generator);
     if (!q) {
-      err << kFetch << ": the mixture lies outside the joint limits\n";
+      err << "distributions fetch: the mixture lies outside the joint limits\n";
       return kFailed;
     }
     for (Eigen::Index joint = 0; joint < q->size(); ++joint)
@@ -129,6 +128,41 @@ void print_curve(const Distribution& distribution, std::ostream& out) {
   out << '\n';
 }
 
+/// The generation of a robot's experience that the fit read; empty if it read none.
+std::string fitted_generation(const Distribution& distribution, const Digest& robot) {
+  const auto source =
+      std::find_if(distribution.sources.begin(), distribution.sources.end(),
+                   [&](const Source& candidate) { return candidate.robot == robot; });
+  return source == distribution.sources.end() ? "-" : std::to_string(source->generation);
+}
+
+void print_arm(const char* name, const std::optional<ArmEvidence>& arm, std::ostream& out) {
+  out << name;
+  if (!arm) {
+    out << "no attempts\n";
+    return;
+  }
+  out << arm->attempts << " attempts, " << arm->solved << " solved";
+  if (arm->solved > 0)
+    out << ", " << number_text(arm->checks_per_solution, 0) << " collision checks per solution";
+  out << '\n';
+}
+
+void print_explanation(const Explanation& explanation, std::ostream& out) {
+  print_distribution(explanation.distribution, out);
+  out << '\n';
+  print_arm("guided      ", explanation.distribution.advice.guided, out);
+  print_arm("control     ", explanation.distribution.advice.control, out);
+  out << "experience  " << (explanation.behind ? "has grown since the fit" : "is that of the fit")
+      << (explanation.next_fit.empty() ? "" : "; next fit: ") << explanation.next_fit << "\n\n";
+  Table table({"EXPERIENCE NOW", "ROBOT", "PATHS", "GENERATION", "FITTED"});
+  for (const Explanation::Now& now : explanation.experience)
+    table.add_row({now.label, now.robot.short_hex(), std::to_string(now.paths),
+                   std::to_string(now.generation),
+                   fitted_generation(explanation.distribution, now.robot)});
+  table.print(out);
+}
+
 }  // namespace
 
 void print_distribution(const Distribution& distribution, std::ostream& out) {
@@ -170,8 +204,9 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
 
 int fetch_distribution(link::Client& server, const FetchOptions& options, std::ostream& out,
                        std::ostream& err) {
+  constexpr const char* kCommand = "distributions fetch";
   int code = kDone;
-  const auto distribution = fetch_wish(server, options.wish, kFetch, false, err, code);
+  const auto distribution = fetch_wish(server, options.wish, kCommand, false, err, code);
   if (!distribution)
     return code;
   if (options.samples > 0)
@@ -180,6 +215,27 @@ int fetch_distribution(link::Client& server, const FetchOptions& options, std::o
     out << json::to_json(*distribution) << '\n';
   else
     print_distribution(*distribution, out);
+  return kDone;
+}
+
+int explain_distribution(link::Client& server, const DistributionWish& wish, bool json,
+                         std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "distributions explain";
+  int code = kDone;
+  const std::string id = id_of_wish(server, wish, kCommand, true, err, code);
+  if (code != kDone)
+    return code;
+  const auto rows = show_rows(server, AdminVerb::ExplainDistribution, id, kCommand, err, code);
+  if (code != kDone)
+    return code;
+  if (json) {
+    out << rows.front() << '\n';
+    return kDone;
+  }
+  const auto explanation = json::explanation_from_json(rows.front());
+  if (!explanation)
+    return refuse(kCommand, {ErrorCode::Internal, explanation.error().message}, err);
+  print_explanation(*explanation, out);
   return kDone;
 }
 

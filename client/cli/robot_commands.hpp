@@ -5,9 +5,10 @@
 #include <iosfwd>
 #include <string>
 
+#include "client/link/client.hpp"
 #include "robots/models/robot_arguments.hpp"
 
-/// `robots check` and `robots ik`: what Kinship makes of a robot, without a server.
+/// `robots check` and `robots ik`, which need no server, and `robots register`.
 namespace kinship::cli {
 
 struct CheckOptions {
@@ -36,5 +37,9 @@ struct InverseCommandOptions {
 /// Configurations for one pose, or for each line of a file in its order. No solution is an
 /// answer, with its reason.
 int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err);
+
+/// `robots register`: hands a robot's description to the server.
+int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
+                   std::ostream& out, std::ostream& err);
 
 }  // namespace kinship::cli

@@ -23,4 +23,9 @@ int fetch_distribution(link::Client& server, const FetchOptions& options, std::o
 /// A distribution for people: where it is from, what is in it.
 void print_distribution(const Distribution& distribution, std::ostream& out);
 
+/// `distributions explain`: what a distribution is made of, why it failed, how it stands to the
+/// experience of now. One that could not be made is explained too.
+int explain_distribution(link::Client& server, const DistributionWish& wish, bool json,
+                         std::ostream& out, std::ostream& err);
+
 }  // namespace kinship::cli

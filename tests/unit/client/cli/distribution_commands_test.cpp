@@ -1,4 +1,4 @@
-#include "client/cli/fetch_command.hpp"
+#include "client/cli/distribution_commands.hpp"
 
 #include <gtest/gtest.h>
 
