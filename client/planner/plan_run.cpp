@@ -11,7 +11,6 @@
 #include "client/planner/attempt_record.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
-#include "client/planner/result_text.hpp"
 #include "client/planner/scene_record.hpp"
 #include "client/planner/server_line.hpp"
 #include "proto/json/problem_json.hpp"

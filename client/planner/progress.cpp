@@ -9,11 +9,24 @@ namespace {
 
 constexpr std::size_t kLines = 10;  // where the output is not a terminal
 
-/// "shelf-1-0003: 3804 checks"; why a line could not be read begins with its name already.
-std::string outcome_text(const ProblemResult& result) {
-  const std::string outcome =
-      result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason;
+/// "shelf-1-0003: every goal collides"; why a line could not be read begins with its name already.
+std::string named(const ProblemResult& result, const std::string& outcome) {
   return outcome.starts_with(result.name + ":") ? outcome : result.name + ": " + outcome;
+}
+
+std::string with_digits(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string guidance_text(const ProblemResult& result) {
+  constexpr int kShareDigits = 2;
+  if (result.guidance_reason.empty() && result.distribution_id)
+    return "guided by " + result.distribution_id->short_hex() + " revision " +
+           std::to_string(result.distribution_revision) + ", share " +
+           with_digits(result.share, kShareDigits);
+  return result.guidance_reason.empty() ? "uniform" : "uniform: " + result.guidance_reason;
 }
 
 }  // namespace
@@ -30,8 +43,11 @@ void Progress::add(const ProblemResult& result, bool attempted) {
     ++(result.arm == Arm::Guided ? guided_ : result.arm == Arm::Control ? control_ : uniform_);
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
+  const std::string outcome =
+      result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
-          << solved_ << ", last: " << outcome_text(result) << (terminal_ ? "" : "\n") << std::flush;
+          << solved_ << ", last: " << named(result, outcome) << (terminal_ ? "" : "\n")
+          << std::flush;
 }
 
 void Progress::finish() {
@@ -51,6 +67,20 @@ void Progress::finish() {
   if (done_ > attempted)
     stream_ << "; " << done_ - attempted << " could not be attempted";
   stream_ << std::endl;
+}
+
+std::string result_text(const ProblemResult& result) {
+  constexpr int kTimeDigits = 3;
+  if (result.planner.empty())  // no planner was started
+    return named(result, result.reason);
+  std::string text = result.name + ": ";
+  text += result.solved && result.waypoints
+              ? "solved, " + std::to_string(result.waypoints->cols()) + " waypoints"
+              : "not solved, " + result.reason;
+  text += "; " + result.planner + ", " + std::to_string(result.collision_checks) + " checks in " +
+          with_digits(result.planning_time_s, kTimeDigits) + " s of " +
+          with_digits(result.time_limit_s, 0) + " s";
+  return text + "; " + guidance_text(result);
 }
 
 }  // namespace kinship::planner

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
+#include <string>
 
 #include "proto/types/problem.hpp"
 
@@ -37,5 +38,9 @@ class Progress {
   std::uint64_t checks_ = 0;
   double planning_time_s_ = 0;
 };
+
+/// A result as one line for people, without line end: what came of it, what it cost, guided by what
+/// or why not.
+std::string result_text(const ProblemResult& result);
 
 }  // namespace kinship::planner

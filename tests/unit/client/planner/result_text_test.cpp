@@ -1,4 +1,4 @@
-#include "client/planner/result_text.hpp"
+#include "client/planner/progress.hpp"
 
 #include <gtest/gtest.h>
 
