@@ -11,14 +11,6 @@
 #include "proto/mixture/cholesky.hpp"
 
 namespace kinship::planning {
-
-Mixture widened(const Mixture& mixture) {
-  std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
-  for (Eigen::MatrixXd& covariance : covariances)
-    covariance.diagonal().array() += kGateVariance;
-  return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
-}
-
 namespace {
 
 /// Measures many configurations against one mixture.
@@ -36,7 +28,7 @@ class Ruler {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
       for (Eigen::Index i = 0; i < offset.size(); ++i)
         if (turning_[static_cast<std::size_t>(i)])
-          offset[i] = std::remainder(offset[i], 2 * M_PI);
+          offset[i] = std::remainder(offset[i], kTurn);
       factors_[mixture_.covariance_index(k)].triangularView<Eigen::Lower>().solveInPlace(offset);
       nearest = std::min(nearest, offset.squaredNorm());
     }
@@ -50,6 +42,13 @@ class Ruler {
 };
 
 }  // namespace
+
+Mixture widened(const Mixture& mixture) {
+  std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
+  for (Eigen::MatrixXd& covariance : covariances)
+    covariance.diagonal().array() += kGateVariance;
+  return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
+}
 
 QueryDistance query_distance(const kinematics::Chain& chain, const Mixture& mixture,
                              const Eigen::Ref<const Eigen::VectorXd>& start,

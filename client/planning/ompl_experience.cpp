@@ -227,12 +227,8 @@ class OmplExperience::Implementation {
     const ob::PlannerTerminationCondition ended([this] { return budget_->exhausted(); });
     if (planner->solve(ended) != ob::PlannerStatus::EXACT_SOLUTION || !problem->hasExactSolution())
       return std::nullopt;
-    const auto& path = *problem->getSolutionPath()->as<og::PathGeometric>();
-    Eigen::MatrixXd waypoints(bounds_.cols(), static_cast<Eigen::Index>(path.getStateCount()));
-    for (Eigen::Index i = 0; i < waypoints.cols(); ++i)
-      waypoints.col(i) =
-          to_configuration(*path.getState(static_cast<unsigned int>(i)), bounds_.cols());
-    return densified(waypoints, part_);
+    auto& path = *problem->getSolutionPath()->as<og::PathGeometric>();
+    return densified(to_waypoints(path.getStates(), bounds_.cols()), part_);
   }
 
   static Eigen::MatrixXd free_ones(const Eigen::MatrixXd& goals, PlanningBudget& budget) {

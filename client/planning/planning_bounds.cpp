@@ -8,7 +8,6 @@
 namespace kinship::planning {
 namespace {
 
-constexpr double kTurn = 2 * M_PI;
 constexpr double kTolerance = 1e-9;  // a limit at +-pi, rounded, is not wider than a turn
 
 bool is_turning(const kinematics::Joint& joint) {
