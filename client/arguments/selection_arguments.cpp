@@ -53,10 +53,10 @@ std::optional<milliseconds> age_of(std::string_view text) {
 /// "1795239134000" as a time since 1970. \return empty if it is no number of at least ten digits
 /// (a year, or a count of days without its letter, is not meant so), or beyond the year 9999.
 std::optional<milliseconds> unix_ms_of(std::string_view text) {
-  constexpr std::size_t kFewestDigits = 10;
+  constexpr std::size_t kMinDigits = 10;
   constexpr std::int64_t kLatest_ms = 253'402'300'799'999;
   const auto number = digits_of(text);
-  if (!number || text.size() < kFewestDigits || *number > kLatest_ms)
+  if (!number || text.size() < kMinDigits || *number > kLatest_ms)
     return std::nullopt;
   return milliseconds(*number);
 }

@@ -206,7 +206,7 @@ int fetch_distribution(link::Client& server, const FetchOptions& options, std::o
                        std::ostream& err) {
   constexpr const char* kCommand = "distributions fetch";
   int code = kDone;
-  const auto distribution = fetch_wish(server, options.wish, kCommand, false, err, code);
+  const auto distribution = fetch_query(server, options.query, kCommand, false, err, code);
   if (!distribution)
     return code;
   if (options.samples > 0)
@@ -218,11 +218,11 @@ int fetch_distribution(link::Client& server, const FetchOptions& options, std::o
   return kDone;
 }
 
-int explain_distribution(link::Client& server, const DistributionWish& wish, bool json,
+int explain_distribution(link::Client& server, const DistributionQuery& query, bool json,
                          std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "distributions explain";
   int code = kDone;
-  const std::string id = id_of_wish(server, wish, kCommand, true, err, code);
+  const std::string id = id_of_query(server, query, kCommand, true, err, code);
   if (code != kDone)
     return code;
   const auto rows = show_rows(server, AdminVerb::ExplainDistribution, id, kCommand, err, code);

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <iosfwd>
 
-#include "client/cli/distribution_wish.hpp"
+#include "client/cli/distribution_query.hpp"
 #include "client/link/client.hpp"
 
 namespace kinship::cli {
 
 struct FetchOptions {
-  DistributionWish wish;
+  DistributionQuery query;
   std::uint64_t samples = 0;  ///< configurations to draw and print as CSV, instead of the rest
   std::uint64_t seed = 0;     ///< of these samples
   bool json = false;
@@ -25,7 +25,7 @@ void print_distribution(const Distribution& distribution, std::ostream& out);
 
 /// `distributions explain`: what a distribution is made of, why it failed, how it stands to the
 /// experience of now. One that could not be made is explained too.
-int explain_distribution(link::Client& server, const DistributionWish& wish, bool json,
+int explain_distribution(link::Client& server, const DistributionQuery& query, bool json,
                          std::ostream& out, std::ostream& err);
 
 }  // namespace kinship::cli

@@ -52,20 +52,20 @@ std::string describe(const Distribution& distribution, const planning::ArmChoose
   return text;
 }
 
-GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceWish& wish) {
-  if (!distribution.mixture || distribution.mixture->dimension() != wish.dof)
+GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceOptions& wanted) {
+  if (!distribution.mixture || distribution.mixture->dimension() != wanted.dof)
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
-                                           " has no mixture over " + std::to_string(wish.dof) +
+                                           " has no mixture over " + std::to_string(wanted.dof) +
                                            " joints");
   const double told = distribution.advice.guided_share;
   if (!(told >= 0 && told <= 1))
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has guided share " + std::to_string(told) +
                                            ", must be 0 to 1");
-  const double share = planning::guided_share(distribution.advice, wish.arms);
+  const double share = planning::guided_share(distribution.advice, wanted.arms);
   GuidanceAnswer answer;
   answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
-  answer.arms.emplace(distribution.advice, wish.arms);
+  answer.arms.emplace(distribution.advice, wanted.arms);
   answer.message = describe(distribution, *answer.arms, share);
   return answer;
 }
@@ -76,15 +76,15 @@ std::string or_else(const std::string& message, const std::string& otherwise) {
 
 }  // namespace
 
-GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
+GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base) {
   FetchRequest request;
-  request.task = wish.task;
-  request.robot = wish.robot;
+  request.task = wanted.task;
+  request.robot = wanted.robot;
   request.T_task_base = T_task_base;
-  request.profile = wish.profile;
-  request.selection = wish.selection;
-  request.deadline = wish.wait;
+  request.profile = wanted.profile;
+  request.selection = wanted.selection;
+  request.deadline = wanted.wait;
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {
     const bool nobody = reply.error().code == ErrorCode::Unavailable;
@@ -93,22 +93,22 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
   switch (reply->status) {
     case FetchStatus::Ready:
       if (reply->distribution)
-        return answer_with(*reply->distribution, wish);
+        return answer_with(*reply->distribution, wanted);
       return refusal(NoGuidance::Failed, "the server sent no distribution");
     case FetchStatus::NoExperience:
       return refusal(NoGuidance::NotFound,
-                     or_else(reply->message, "no experience with task '" + wish.task + "'"));
+                     or_else(reply->message, "no experience with task '" + wanted.task + "'"));
     case FetchStatus::UnknownRobot:
       return refusal(
           NoGuidance::NotFound,
-          or_else(reply->message, "the server does not know robot " + wish.robot.short_hex()));
+          or_else(reply->message, "the server does not know robot " + wanted.robot.short_hex()));
     case FetchStatus::Failed:
       return refusal(NoGuidance::NotFound,
                      or_else(reply->distribution ? reply->distribution->reason : reply->message,
                              "nothing could be transferred or fitted"));
     case FetchStatus::Pending:
       return refusal(NoGuidance::Failed, "the distribution is still being made after " +
-                                             std::to_string(wish.wait.count()) + " ms");
+                                             std::to_string(wanted.wait.count()) + " ms");
     case FetchStatus::Busy:
       return refusal(NoGuidance::Failed, or_else(reply->message, "the server is busy"));
     case FetchStatus::Refused:
@@ -130,7 +130,7 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
     return {known->second, false};
   GuidanceAnswer answer = server_missing_
                               ? refusal(NoGuidance::NoServer, "no server answered before")
-                              : fetch_guidance(fetch_, wish_, T_task_base);
+                              : fetch_guidance(fetch_, wanted_, T_task_base);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
   if (answer.arms)  // of the same task and robot as those before, and newer

@@ -20,7 +20,7 @@ namespace kinship::planner {
 using Fetch = std::function<Result<FetchReply>(const FetchRequest&)>;
 
 /// What a run wants guidance for.
-struct GuidanceWish {
+struct GuidanceOptions {
   std::string task;
   Digest robot;
   Eigen::Index dof = 0;
@@ -42,7 +42,7 @@ struct GuidanceAnswer {
 };
 
 /// Asks once. Never throws for what a server may answer.
-GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
+GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                               const std::optional<Eigen::Isometry3d>& T_task_base);
 
 /// The guidance of a run, asked for once per distinct placement (snapped to 1 mm and 1 mrad) before
@@ -50,7 +50,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceWish& wish,
 /// again.
 class GuidanceBook {
  public:
-  GuidanceBook(Fetch fetch, GuidanceWish wish) : fetch_(std::move(fetch)), wish_(std::move(wish)) {}
+  GuidanceBook(Fetch fetch, GuidanceOptions wanted)
+      : fetch_(std::move(fetch)), wanted_(std::move(wanted)) {}
 
   /// Asks unless the placement is known. \return the answer, and whether it is new.
   std::pair<const GuidanceAnswer&, bool> ask(const std::optional<Eigen::Isometry3d>& T_task_base);
@@ -66,7 +67,7 @@ class GuidanceBook {
   static Key key_of(const std::optional<Eigen::Isometry3d>& T_task_base);
 
   Fetch fetch_;
-  GuidanceWish wish_;
+  GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
   std::optional<planning::ArmChooser> arms_;  // of all placements: same task, same robot
   bool server_missing_ = false;

@@ -62,7 +62,7 @@ void add_inputs(CLI::App& app, PlanOptions& options) {
 
 void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   using arguments::between;
-  constexpr std::uint64_t kMost = 1'000'000'000;
+  constexpr std::uint64_t kMax = 1'000'000'000;
   PlanSettings& settings = options.settings;
   app.add_option(
          "--planner", raw.planner,
@@ -77,11 +77,11 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->check(between(1e-4, 1.0))
       ->capture_default_str();
   app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
-      ->check(between(std::uint64_t{1}, kMost))
+      ->check(between(std::uint64_t{1}, kMax))
       ->capture_default_str();
   app.add_option("--shortcut-checks", settings.shortcut_checks,
                  "collision checks spent on shortening a path; 0: none")
-      ->check(between(std::uint64_t{0}, kMost))
+      ->check(between(std::uint64_t{0}, kMax))
       ->capture_default_str();
   app.add_option("--overshoot", settings.overshoot,
                  "extend this much farther than the sample, for uniform and guided alike")
@@ -92,7 +92,7 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       ->capture_default_str();
   app.add_option("--seed,--seed-offset", options.seed_offset,
                  "added to the seed of every problem (of one without: 0)")
-      ->check(between(std::uint64_t{0}, kMost))
+      ->check(between(std::uint64_t{0}, kMax))
       ->capture_default_str();
   app.add_option("--output", options.output, "file for the results; standard output if missing");
   app.add_flag("--json", options.json,

@@ -128,7 +128,7 @@ class Planning {
     options.overshoot = settings_.overshoot;
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
-    heed_gate(goals, guidance, planned.result);
+    apply_gate(goals, guidance, planned.result);
     const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
     planned.result.planner = planner_text(planner, sampler);
     const planning::PlanSummary summary = search(planner, goals, sampler, options);
@@ -191,8 +191,8 @@ class Planning {
   }
 
   /// A query that the distribution knows nothing about is planned uniformly; its arm stays.
-  void heed_gate(const Eigen::MatrixXd& goals, const Guidance* guidance,
-                 ProblemResult& result) const {
+  void apply_gate(const Eigen::MatrixXd& goals, const Guidance* guidance,
+                  ProblemResult& result) const {
     if (guidance == nullptr || result.share == 0)
       return;
     result.gate_fired =

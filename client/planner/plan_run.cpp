@@ -80,16 +80,16 @@ PlannedProblem unread(const Problem& problem, const Error& error) {
   return planned;
 }
 
-GuidanceWish wish_of(const PlanOptions& options, const kinematics::Chain& chain) {
-  GuidanceWish wish;
-  wish.task = options.task;
-  wish.robot = chain.digest();
-  wish.dof = chain.dof();
-  wish.profile = options.profile;
-  wish.selection = options.selection;
-  wish.arms = options.arms;
-  wish.wait = options.wait;
-  return wish;
+GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::Chain& chain) {
+  GuidanceOptions wanted;
+  wanted.task = options.task;
+  wanted.robot = chain.digest();
+  wanted.dof = chain.dof();
+  wanted.profile = options.profile;
+  wanted.selection = options.selection;
+  wanted.arms = options.arms;
+  wanted.wait = options.wait;
+  return wanted;
 }
 
 /// The problems of a run, one after another.
@@ -165,7 +165,7 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};
   }
-  const NoGuidance why_not = server.fetch_guidance(wish_of(options, robot.chain), lines);
+  const NoGuidance why_not = server.fetch_guidance(guidance_options(options, robot.chain), lines);
   if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
     streams.messages << "nothing is planned: --guidance require, and there is none\n";
     return {exit_code_without(why_not), false};

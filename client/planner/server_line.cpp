@@ -87,10 +87,11 @@ std::optional<Error> ServerLine::find_sources(Selection& selection) {
   return std::nullopt;
 }
 
-NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines) {
+NoGuidance ServerLine::fetch_guidance(GuidanceOptions wanted,
+                                      const std::vector<ProblemLine>& lines) {
   if (options_.guidance == GuidanceMode::Uniform)
     return NoGuidance::None;
-  const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wish.selection);
+  const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wanted.selection);
   if (trouble) {
     messages_ << "no guidance, all is planned uniformly: " << trouble->message << '\n';
     why_unguided_ = trouble->message;
@@ -100,7 +101,7 @@ NoGuidance ServerLine::fetch_guidance(GuidanceWish wish, const std::vector<Probl
       [this](const FetchRequest& request) {
         return wait_for<FetchReply>([&] { return client_->fetch(request); });
       },
-      std::move(wish));
+      std::move(wanted));
   NoGuidance first_reason = NoGuidance::None;
   for (const ProblemLine& line : lines) {
     if (stop_())

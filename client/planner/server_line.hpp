@@ -29,7 +29,7 @@ class ServerLine {
 
   /// Asks for guidance for every placement of the problems, and says what came of it.
   /// \return why guidance that the options require is missing.
-  NoGuidance fetch_guidance(GuidanceWish wish, const std::vector<ProblemLine>& lines);
+  NoGuidance fetch_guidance(GuidanceOptions wanted, const std::vector<ProblemLine>& lines);
 
   /// Whether a server refused the robot, for example because its label belongs to another one. That
   /// may come out only in finish(): the server may come up later than this.

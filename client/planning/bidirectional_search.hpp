@@ -141,10 +141,10 @@ class BidirectionalSearch {
     std::vector<Eigen::Index> order(static_cast<std::size_t>(goals.cols()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     std::ranges::stable_sort(order, {}, [&](Eigen::Index goal) { return distances[goal]; });
-    constexpr std::uint64_t kMostChecks = 100;
-    const std::uint64_t most = budget_.checks() + kMostChecks;
+    constexpr std::uint64_t kMaxChecks = 100;
+    const std::uint64_t end = budget_.checks() + kMaxChecks;
     for (const Eigen::Index goal : order) {
-      if (budget_.checks() >= most || budget_.exhausted())
+      if (budget_.checks() >= end || budget_.exhausted())
         return std::nullopt;
       const Extension there = steering_.extend(start_tree_, 0, goals.col(goal), Aim::Node, budget_);
       if (there.reached)

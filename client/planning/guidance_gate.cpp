@@ -14,15 +14,15 @@ namespace kinship::planning {
 namespace {
 
 /// Measures many configurations against one mixture.
-class Ruler {
+class MahalanobisDistance {
  public:
-  Ruler(const kinematics::Chain& chain, const Mixture& mixture)
+  MahalanobisDistance(const kinematics::Chain& chain, const Mixture& mixture)
       : mixture_(mixture),
         factors_(mixture::cholesky_factors(widened(mixture))),
         turning_(turning_joints(chain)) {}
 
   /// Squared, to the nearest component.
-  double distance(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  double operator()(const Eigen::Ref<const Eigen::VectorXd>& q) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (Eigen::Index k = 0; k < mixture_.size(); ++k) {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
@@ -56,10 +56,10 @@ QueryDistance query_distance(const kinematics::Chain& chain, const Mixture& mixt
   if (mixture.dimension() != chain.dof() || start.size() != chain.dof() ||
       goals.rows() != chain.dof())
     throw std::invalid_argument("query_distance: chain, mixture, start and goals differ in size");
-  const Ruler ruler(chain, mixture);
-  QueryDistance distance{ruler.distance(start), std::numeric_limits<double>::infinity()};
+  const MahalanobisDistance distance_to(chain, mixture);
+  QueryDistance distance{distance_to(start), std::numeric_limits<double>::infinity()};
   for (const auto& goal : goals.colwise())
-    distance.goal = std::min(distance.goal, ruler.distance(goal));
+    distance.goal = std::min(distance.goal, distance_to(goal));
   return distance;
 }
 

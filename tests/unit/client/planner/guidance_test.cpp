@@ -35,11 +35,11 @@ FetchReply status_only(FetchStatus status) {
   return reply;
 }
 
-GuidanceWish wish() {
-  GuidanceWish wish;
-  wish.task = "box_to_shelf";
-  wish.dof = kDof;
-  return wish;
+GuidanceOptions wanted() {
+  GuidanceOptions wanted;
+  wanted.task = "box_to_shelf";
+  wanted.dof = kDof;
+  return wanted;
 }
 
 Eigen::Isometry3d placement(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
@@ -51,13 +51,14 @@ Problem problem_at(double x, std::uint64_t seed = 0) {
   return problem;
 }
 
-GuidanceAnswer answer_to(const Result<FetchReply>& reply, const GuidanceWish& for_what = wish()) {
+GuidanceAnswer answer_to(const Result<FetchReply>& reply,
+                         const GuidanceOptions& for_what = wanted()) {
   return fetch_guidance([&](const FetchRequest&) { return reply; }, for_what, placement(0));
 }
 
 TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
   EXPECT_EQ(answer_to(ready(0.9)).guidance->share, 0.9);
-  GuidanceWish own_share = wish();
+  GuidanceOptions own_share = wanted();
   own_share.arms.share = 0.25;
   EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->share, 0.25);
 }
@@ -73,7 +74,7 @@ TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
 
 TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
   const auto tail = [](const planning::ArmOptions& arms) {
-    GuidanceWish told = wish();
+    GuidanceOptions told = wanted();
     told.arms = arms;
     const std::string message = answer_to(ready(), told).message;
     return message.substr(message.find("; ") + 2);
@@ -85,7 +86,7 @@ TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
 }
 
 TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
-  GuidanceWish special = wish();
+  GuidanceOptions special = wanted();
   special.selection.since_ms = 77;
   special.profile = "paper";
   special.robot.bytes[5] = 7;
@@ -137,7 +138,7 @@ TEST(GuidanceBook, AsksOncePerPlacementWithinAMillimetre) {
         ++asked;
         return Result<FetchReply>(ready());
       },
-      wish());
+      wanted());
   EXPECT_TRUE(book.ask(placement(0.1)).second);
   EXPECT_FALSE(book.ask(placement(0.1001)).second);
   EXPECT_TRUE(book.ask(placement(0.2)).second);
@@ -151,7 +152,7 @@ TEST(GuidanceBook, AMissingPlacementIsAskedForAsMissing) {
         placed.push_back(request.T_task_base.has_value());
         return Result<FetchReply>(ready());
       },
-      wish());
+      wanted());
   EXPECT_TRUE(book.ask(std::nullopt).second);
   EXPECT_FALSE(book.ask(std::nullopt).second);
   EXPECT_TRUE(book.ask(placement(0)).second);
@@ -165,7 +166,7 @@ TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
         const bool experienced = request.T_task_base->translation().x() > 0;
         return Result<FetchReply>(experienced ? ready() : status_only(FetchStatus::NoExperience));
       },
-      wish());
+      wanted());
   book.ask(placement(-1));
   book.ask(placement(1));
   EXPECT_EQ(book.choose(problem_at(-1)).guidance, nullptr);
@@ -177,7 +178,7 @@ TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
 
 /// Guided queries at one placement that cost ten times as much as control ones.
 TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
-  GuidanceBook book([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wish());
+  GuidanceBook book([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wanted());
   book.ask(placement(0));
   book.ask(placement(1));
   const auto guided = [&book] {
@@ -205,7 +206,7 @@ TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {
         ++asked;
         return Result<FetchReply>(Error{ErrorCode::Unavailable, "no server answered in 5 s"});
       },
-      wish());
+      wanted());
   EXPECT_EQ(book.ask(placement(0.1)).first.why_not, NoGuidance::NoServer);
   EXPECT_EQ(book.ask(placement(0.2)).first.why_not, NoGuidance::NoServer);
   EXPECT_EQ(asked, 1);

@@ -14,7 +14,7 @@
 namespace kinship::cli {
 
 /// A distribution as a command line names it: by what it is for and made of, or by its id.
-struct DistributionWish {
+struct DistributionQuery {
   std::string task;
   std::string robot;      ///< a label, or the beginning of a digest
   std::string placement;  ///< T_task_base, "x y z qx qy qz qw"; empty: missing
@@ -24,18 +24,18 @@ struct DistributionWish {
   std::string id;  ///< beginning of a distribution's id, instead of the rest; may be empty
 };
 
-/// Fetches the distribution that is wished for, which has it made if need be.
+/// Fetches the distribution that a query means, which has it made if need be.
 /// \param command       named in messages.
 /// \param allow_failed  whether one that could not be made is an answer.
 /// \return empty with an exit code in `code` if there is none: kNotFound without experience,
 ///         kFailed if it is still pending after the wait.
-std::optional<Distribution> fetch_wish(link::Client& server, const DistributionWish& wish,
-                                       std::string_view command, bool allow_failed,
-                                       std::ostream& err, int& code);
+std::optional<Distribution> fetch_query(link::Client& server, const DistributionQuery& query,
+                                        std::string_view command, bool allow_failed,
+                                        std::ostream& err, int& code);
 
-/// The id, or what it begins with, of the distribution that is wished for; fetched unless named.
+/// The id, or what it begins with, of the distribution that a query means; fetched unless named.
 /// \return empty with an exit code in `code` if there is none.
-std::string id_of_wish(link::Client& server, const DistributionWish& wish, std::string_view command,
-                       bool allow_failed, std::ostream& err, int& code);
+std::string id_of_query(link::Client& server, const DistributionQuery& query,
+                        std::string_view command, bool allow_failed, std::ostream& err, int& code);
 
 }  // namespace kinship::cli

@@ -1,4 +1,4 @@
-#include "client/cli/distribution_wish.hpp"
+#include "client/cli/distribution_query.hpp"
 
 #include <ostream>
 
@@ -17,28 +17,28 @@ Error with_advice(Error error) {
   return error;
 }
 
-Result<FetchRequest> request_for(link::Client& server, const DistributionWish& wish) {
+Result<FetchRequest> request_for(link::Client& server, const DistributionQuery& query) {
   FetchRequest request;
-  request.task = wish.task;
-  request.profile = wish.profile;
-  request.deadline = wish.wait;
-  if (!wish.placement.empty()) {
-    const auto T_task_base = models::parse_pose(wish.placement);
+  request.task = query.task;
+  request.profile = query.profile;
+  request.deadline = query.wait;
+  if (!query.placement.empty()) {
+    const auto T_task_base = models::parse_pose(query.placement);
     if (!T_task_base)
       return Error{T_task_base.error().code, "--placement: " + T_task_base.error().message};
     request.T_task_base = *T_task_base;
   }
   const auto selection =
-      arguments::read_selection(wish.selection, std::chrono::system_clock::now());
+      arguments::read_selection(query.selection, std::chrono::system_clock::now());
   if (!selection)
     return selection.error();
   request.selection = *selection;
-  const auto robot = link::resolve_robots(server, {wish.robot});
+  const auto robot = link::resolve_robots(server, {query.robot});
   if (!robot)
     return with_advice(robot.error());
   request.robot = robot->front();
-  if (!wish.selection.sources.empty()) {
-    const auto names = arguments::parse_robot_names(wish.selection.sources);
+  if (!query.selection.sources.empty()) {
+    const auto names = arguments::parse_robot_names(query.selection.sources);
     if (!names)
       return names.error();
     const auto sources = link::resolve_robots(server, *names);
@@ -50,7 +50,7 @@ Result<FetchRequest> request_for(link::Client& server, const DistributionWish& w
 }
 
 /// Says why there is no distribution to print. \return an exit code, kDone if there is one.
-int judge(const Result<FetchReply>& reply, const DistributionWish& wish, std::string_view command,
+int judge(const Result<FetchReply>& reply, const DistributionQuery& query, std::string_view command,
           bool allow_failed, std::ostream& err) {
   if (!reply)
     return refuse(command, reply.error(), err);
@@ -69,7 +69,7 @@ int judge(const Result<FetchReply>& reply, const DistributionWish& wish, std::st
       return kNotFound;
     case FetchStatus::Pending:
       say("still being made after " +
-          number_text(1e-3 * static_cast<double>(wish.wait.count()), 1) + " s (--wait)");
+          number_text(1e-3 * static_cast<double>(query.wait.count()), 1) + " s (--wait)");
       return kFailed;
     case FetchStatus::Busy:
       say("the server is busy");
@@ -87,26 +87,26 @@ int judge(const Result<FetchReply>& reply, const DistributionWish& wish, std::st
 
 }  // namespace
 
-std::optional<Distribution> fetch_wish(link::Client& server, const DistributionWish& wish,
-                                       std::string_view command, bool allow_failed,
-                                       std::ostream& err, int& code) {
-  const Result<FetchRequest> request = request_for(server, wish);
+std::optional<Distribution> fetch_query(link::Client& server, const DistributionQuery& query,
+                                        std::string_view command, bool allow_failed,
+                                        std::ostream& err, int& code) {
+  const Result<FetchRequest> request = request_for(server, query);
   if (!request) {
     code = refuse(command, request.error(), err);
     return std::nullopt;
   }
   Result<FetchReply> reply = server.fetch(*request);
-  code = judge(reply, wish, command, allow_failed, err);
+  code = judge(reply, query, command, allow_failed, err);
   if (code != kDone)
     return std::nullopt;
   return std::move(reply).value().distribution;
 }
 
-std::string id_of_wish(link::Client& server, const DistributionWish& wish, std::string_view command,
-                       bool allow_failed, std::ostream& err, int& code) {
-  if (!wish.id.empty())
-    return wish.id;
-  const auto distribution = fetch_wish(server, wish, command, allow_failed, err, code);
+std::string id_of_query(link::Client& server, const DistributionQuery& query,
+                        std::string_view command, bool allow_failed, std::ostream& err, int& code) {
+  if (!query.id.empty())
+    return query.id;
+  const auto distribution = fetch_query(server, query, command, allow_failed, err, code);
   return distribution ? distribution->id.hex() : std::string();
 }
 
