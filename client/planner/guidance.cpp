@@ -17,12 +17,12 @@ std::string formatted(const char* format, double value) {
 }
 
 /// How the run's queries will be planned.
-std::string describe(const planning::ArmChooser& arms, double share) {
+std::string describe(const planning::ArmChooser& arms, double guided_fraction) {
   constexpr double kPercent = 100;
   const double guided = arms.guided_part();
-  if (share == 0)
+  if (guided_fraction == 0)
     return "uniform";
-  const std::string words = "share " + formatted("%.2f", share);
+  const std::string words = "share " + formatted("%.2f", guided_fraction);
   if (arms.is_sampling())
     return words + ", the first query guided with probability " + formatted("%.2f", guided);
   if (guided == 1)
@@ -32,7 +32,7 @@ std::string describe(const planning::ArmChooser& arms, double share) {
 }
 
 std::string describe(const Distribution& distribution, const planning::ArmChooser& arms,
-                     double share) {
+                     double guided_fraction) {
   std::string text =
       "distribution " + distribution.id.short_hex() + " revision " +
       std::to_string(distribution.revision) + ", " + std::to_string(distribution.mixture->size()) +
@@ -44,7 +44,7 @@ std::string describe(const Distribution& distribution, const planning::ArmChoose
             (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
             std::to_string(source.paths) + " paths)";
   }
-  text += "; " + describe(arms, share);
+  text += "; " + describe(arms, guided_fraction);
   if (!distribution.advice.evidence.empty())
     text += " (" + distribution.advice.evidence + ")";
   if (!distribution.reason.empty())
@@ -62,11 +62,12 @@ GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceOptio
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has guided share " + std::to_string(told) +
                                            ", must be 0 to 1");
-  const double share = planning::guided_share(distribution.advice, wanted.arms);
+  const double guided_fraction = planning::guided_fraction(distribution.advice, wanted.arms);
   GuidanceAnswer answer;
-  answer.guidance = Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
+  answer.guidance =
+      Guidance{distribution.id, distribution.revision, *distribution.mixture, guided_fraction};
   answer.arms.emplace(distribution.advice, wanted.arms);
-  answer.message = describe(distribution, *answer.arms, share);
+  answer.message = describe(distribution, *answer.arms, guided_fraction);
   return answer;
 }
 

@@ -45,8 +45,8 @@ struct RawOptions {
   std::string record_scenes = "yes";
   double timeout_s = 5;
   double wait_s = 30;
-  double share = 0;
-  double control_share = 0;
+  double guided_fraction = 0;
+  double control_fraction = 0;
   arguments::SelectionArguments selection;
 };
 
@@ -111,10 +111,10 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   arguments::add_profile_options(app, options.profile);
   arguments::add_selection_options(app, raw.selection);
   app.add_option(
-         "--share", raw.share,
+         "--share", raw.guided_fraction,
          "share of guided samples in a guided query; the server's if missing; 0: all uniform")
       ->check(between(0.0, 1.0));
-  app.add_option("--control-share", raw.control_share,
+  app.add_option("--control-share", raw.control_fraction,
                  "part of the queries planned uniformly as control (default: chosen query by query "
                  "with --guidance auto, 0 with always)")
       ->check(between(0.0, 1.0));
@@ -194,7 +194,7 @@ void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& 
   const bool is_uniform = options.guidance == GuidanceMode::Uniform;
   if (is_uniform)
     note_unused(app, kOfGuidance, "with --guidance uniform", notes);
-  else if (options.arms.share == 0.0)
+  else if (options.arms.guided_fraction == 0.0)
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
@@ -218,15 +218,15 @@ GuidanceMode guidance_of(const RawOptions& raw, const PlanOptions& options) {
 
 void complete_shares(const CLI::App& app, const RawOptions& raw, PlanOptions& options) {
   if (app.count("--share") > 0)
-    options.arms.share = raw.share;
+    options.arms.guided_fraction = raw.guided_fraction;
   if (app.count("--control-share") > 0)
-    options.arms.control_share = raw.control_share;
+    options.arms.control_fraction = raw.control_fraction;
   if (options.guidance != GuidanceMode::Always)
     return;
-  if (options.arms.share == 0.0)
+  if (options.arms.guided_fraction == 0.0)
     throw CLI::ValidationError("--guidance", "always guides no query with --share 0");
-  if (!options.arms.control_share)
-    options.arms.control_share = 0;
+  if (!options.arms.control_fraction)
+    options.arms.control_fraction = 0;
 }
 
 /// Puts into `options` what depends on several options.

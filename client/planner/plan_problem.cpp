@@ -47,10 +47,10 @@ Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matri
 
 planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
                                             const Eigen::Matrix2Xd& bounds,
-                                            const Guidance* guidance, double share) {
-  if (guidance == nullptr || share == 0)
+                                            const Guidance* guidance, double guided_fraction) {
+  if (guidance == nullptr || guided_fraction == 0)
     return planning::ConfigurationSampler(bounds);
-  return {bounds, chain, guidance->mixture, share};
+  return {bounds, chain, guidance->mixture, guided_fraction};
 }
 
 /// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
@@ -75,7 +75,7 @@ std::string why_unguided(const QueryGuidance& query) {
     case Arm::Guided:
       break;
   }
-  return query.guidance->share == 0 ? "the share of guided samples is 0" : "";
+  return query.guidance->guided_fraction == 0 ? "the share of guided samples is 0" : "";
 }
 
 /// Which planner answers: a roadmap leaves a mixture of too many components to its trees.
@@ -266,7 +266,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     planned.result.distribution_id = query.guidance->distribution_id;
     planned.result.distribution_revision = query.guidance->revision;
     planned.result.arm = query.arm;
-    planned.result.share = query.arm == Arm::Guided ? query.guidance->share : 0;
+    planned.result.share = query.arm == Arm::Guided ? query.guidance->guided_fraction : 0;
   }
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =

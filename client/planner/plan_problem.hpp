@@ -32,7 +32,7 @@ struct Guidance {
   Digest distribution_id;
   std::uint64_t revision = 0;
   Mixture mixture;
-  double share = 0;  ///< of samples drawn from it in a guided query
+  double guided_fraction = 0;  ///< of samples drawn from it in a guided query
 };
 
 /// What guidance a query has, and whether it uses it.

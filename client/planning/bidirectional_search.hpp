@@ -158,7 +158,7 @@ class BidirectionalSearch {
     Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
     Tree& other = grow_start_ ? goal_tree_ : start_tree_;
     grow_start_ = !grow_start_;
-    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_share());
+    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_fraction());
     const Eigen::Index near = grown.nearest(sample);
     const Extension there =
         steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
@@ -172,10 +172,11 @@ class BidirectionalSearch {
 
   /// A query that the mixture has not solved soon may need what it does not cover, and without any
   /// uniform samples no patience would find that.
-  double guided_share() const {
+  double guided_fraction() const {
     constexpr std::uint64_t kPatience = 300;  // samples
-    constexpr double kLateShare = 0.9;
-    return iterations_ <= kPatience ? sampler_.share() : std::min(sampler_.share(), kLateShare);
+    constexpr double kLateFraction = 0.9;
+    return iterations_ <= kPatience ? sampler_.guided_fraction()
+                                    : std::min(sampler_.guided_fraction(), kLateFraction);
   }
 
   Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {

@@ -57,10 +57,10 @@ GuidanceAnswer answer_to(const Result<FetchReply>& reply,
 }
 
 TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
-  EXPECT_EQ(answer_to(ready(0.9)).guidance->share, 0.9);
+  EXPECT_EQ(answer_to(ready(0.9)).guidance->guided_fraction, 0.9);
   GuidanceOptions own_share = wanted();
-  own_share.arms.share = 0.25;
-  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->share, 0.25);
+  own_share.arms.guided_fraction = 0.25;
+  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->guided_fraction, 0.25);
 }
 
 TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
