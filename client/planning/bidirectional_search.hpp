@@ -36,6 +36,21 @@ void check_arguments(const char* planner, const Eigen::VectorXd& start,
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                                        const RegionConstraint& constraint, NoPath& reason);
 
+/// Plans along a constraint to the goals that hold it, and counts the projections.
+/// \param plan  called with these goals, dof x n; returns a PlanSummary.
+template <typename Plan>
+PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const RegionConstraint& constraint, Plan plan) {
+  PlanSummary summary;
+  const auto reachable = holding(start, goals, constraint, summary.reason);
+  if (!reachable)
+    return summary;
+  const std::uint64_t before = constraint.projections();
+  summary = plan(*reachable);
+  summary.projections = constraint.projections() - before;
+  return summary;
+}
+
 /// Two trees, from the start and from every goal, extended in turn.
 /// \tparam Steering  goes from a node to a target as far as it can:
 ///         `Extension extend(Tree&, Eigen::Index from, const Eigen::VectorXd& target, Aim,

@@ -26,18 +26,11 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
                          const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
                          const BirrtOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_cbirrt2", start, goals, sampler, options);
-  RegionConstraint& constraint = freedom.constraint;
-  PlanSummary nothing;
-  const auto reachable = holding(start, goals, constraint, nothing.reason);
-  if (!reachable)
-    return nothing;
-  const std::uint64_t before = constraint.projections();
-  PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
-  ConstrainedSteering steering(start.size(), options.step, constraint);
-  PlanSummary summary =
-      BidirectionalSearch(sampler, options, steering, budget, generator).run(start, *reachable);
-  summary.projections = constraint.projections() - before;
-  return summary;
+  return plan_along(start, goals, freedom.constraint, [&](const Eigen::MatrixXd& reachable) {
+    PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
+    ConstrainedSteering steering(start.size(), options.step, freedom.constraint);
+    return BidirectionalSearch(sampler, options, steering, budget, generator).run(start, reachable);
+  });
 }
 
 }  // namespace kinship::planning

@@ -209,18 +209,13 @@ PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& 
                            const OmplOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_with_ompl", start, goals, sampler, options.limits);
   ompl::msg::noOutputHandler();
-  PlanSummary nothing;
-  const auto reachable = holding(start, goals, freedom.constraint, nothing.reason);
-  if (!reachable)
-    return nothing;
-  PlanningSpace space =
-      constrained_space(sampler.bounds(), freedom.constraint, options.limits.step);
-  install_guided_sampler(*space.information->getStateSpace(),
-                         std::make_shared<ConfigurationSampler>(sampler), generator());
-  const std::uint64_t before = freedom.constraint.projections();
-  PlanSummary summary = run(std::move(space), start, *reachable, freedom.is_free, options);
-  summary.projections = freedom.constraint.projections() - before;
-  return summary;
+  return plan_along(start, goals, freedom.constraint, [&](const Eigen::MatrixXd& reachable) {
+    PlanningSpace space =
+        constrained_space(sampler.bounds(), freedom.constraint, options.limits.step);
+    install_guided_sampler(*space.information->getStateSpace(),
+                           std::make_shared<ConfigurationSampler>(sampler), generator());
+    return run(std::move(space), start, reachable, freedom.is_free, options);
+  });
 }
 
 }  // namespace kinship::planning
