@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "client/cli/exit_code.hpp"
 #include "client/link/client.hpp"
 #include "proto/types/conversations.hpp"
+#include "proto/types/exit_code.hpp"
 #include "proto/types/result.hpp"
 
 namespace kinship::cli {

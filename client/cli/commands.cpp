@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "client/arguments/number_range.hpp"
-#include "client/cli/exit_code.hpp"
 #include "client/cli/groups.hpp"
+#include "proto/types/exit_code.hpp"
 
 namespace kinship::cli {
 

@@ -1,8 +1,7 @@
+#include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/profile_options.hpp"
-#include "client/cli/explain_command.hpp"
+#include "client/cli/distribution_commands.hpp"
 #include "client/cli/export_commands.hpp"
-#include "client/cli/fetch_command.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/retire_commands.hpp"
@@ -11,30 +10,30 @@ namespace kinship::cli {
 namespace {
 
 /// What names a distribution by what it is for. \return the required options.
-std::vector<CLI::Option*> add_wish(CLI::App& command, DistributionWish& wish) {
-  CLI::Option* task = command.add_option("--task", wish.task, "Task whose experience is wanted");
+std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query) {
+  CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted");
   CLI::Option* robot =
-      command.add_option("--robot", wish.robot, "Label, or beginning of its digest");
-  command.add_option("--placement", wish.placement,
+      command.add_option("--robot", query.robot, "Label, or beginning of its digest");
+  command.add_option("--placement", query.placement,
                      "Robot's base in the task frame, \"x y z qx qy qz qw\"");
-  arguments::add_profile_options(command, wish.profile);
-  arguments::add_selection_options(command, wish.selection);
+  arguments::add_profile_options(command, query.profile);
+  arguments::add_selection_options(command, query.selection);
   command
       .add_option_function<double>(
-          "--wait", [&wish](double wait_s) { wish.wait = milliseconds(wait_s); },
+          "--wait", [&query](double wait_s) { query.wait = milliseconds(wait_s); },
           "Seconds until it must be there (default 30)")
       ->check(arguments::between(0.0, 3600.0));
   return {task, robot};
 }
 
 /// The same, or its id.
-void add_wish_or_id(CLI::App& command, DistributionWish& wish) {
-  CLI::Option* id = command.add_option("--distribution", wish.id,
+void add_query_or_id(CLI::App& command, DistributionQuery& query) {
+  CLI::Option* id = command.add_option("--distribution", query.id,
                                        "Beginning of its id, instead of --task and --robot");
-  for (CLI::Option* option : add_wish(command, wish))
+  for (CLI::Option* option : add_query(command, query))
     option->excludes(id);
-  command.parse_complete_callback([&wish] {
-    if (wish.id.empty() && (wish.task.empty() || wish.robot.empty()))
+  command.parse_complete_callback([&query] {
+    if (query.id.empty() && (query.task.empty() || query.robot.empty()))
       throw CLI::ValidationError("give --task and --robot, or --distribution");
   });
 }
@@ -46,7 +45,7 @@ void add_fetch(CLI::App& group, Session& session) {
       "kinship distributions fetch --task box_to_shelf --robot ur10e --samples 1000 --csv\n"
       "  kinship distributions fetch --task box_to_shelf --robot ur10e --sources panda --since "
       "14d");
-  for (CLI::Option* option : add_wish(*command, options->wish))
+  for (CLI::Option* option : add_query(*command, options->query))
     option->required();
   CLI::Option* samples = command->add_option("--samples", options->samples,
                                              "Draw so many configurations and print them as CSV");
@@ -66,15 +65,15 @@ void add_fetch(CLI::App& group, Session& session) {
 }
 
 void add_explain(CLI::App& group, Session& session) {
-  const auto wish = std::make_shared<DistributionWish>();
+  const auto query = std::make_shared<DistributionQuery>();
   CLI::App* command = add_command(
       group, "explain", "What a distribution is made of, why it failed, how far it is behind",
       "kinship distributions explain --task box_to_shelf --robot ur10e\n"
       "  kinship distributions explain --distribution 3f9a0c");
-  add_wish_or_id(*command, *wish);
+  add_query_or_id(*command, *query);
   add_json(*command, session);
-  on_run_with_server(*command, session, [&session, wish](link::Client& server) {
-    return explain_distribution(server, *wish, session.json, session.out, session.err);
+  on_run_with_server(*command, session, [&session, query](link::Client& server) {
+    return explain_distribution(server, *query, session.json, session.out, session.err);
   });
 }
 
@@ -103,7 +102,7 @@ void add_configurations(CLI::App& app, Session& session) {
       *group, "export", "Exactly the rows that a distribution's fit saw, as CSV",
       "kinship configurations export --task box_to_shelf --robot ur10e --output rows.csv\n"
       "  kinship configurations export --distribution 3f9a0c");
-  add_wish_or_id(*command, options->wish);
+  add_query_or_id(*command, options->query);
   command->add_option("--output", options->output, "File (default: standard output)");
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->waiting.progress = session.is_on_terminal();

@@ -47,7 +47,7 @@ int export_configurations(link::Client& server, const ConfigurationsOptions& opt
   int code = kDone;
   AdminRequest begin;
   begin.verb = AdminVerb::ExportConfigurations;
-  begin.argument = id_of_wish(server, options.wish, kCommand, false, err, code);
+  begin.argument = id_of_query(server, options.query, kCommand, false, err, code);
   if (code != kDone)
     return code;
   return run_job(server, begin, options.waiting, kCommand, err, [&](const Job& job) {

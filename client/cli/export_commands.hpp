@@ -4,7 +4,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "client/cli/distribution_wish.hpp"
+#include "client/cli/distribution_query.hpp"
 #include "client/cli/job_commands.hpp"
 #include "client/link/client.hpp"
 
@@ -21,7 +21,7 @@ int export_paths(link::Client& server, const ExportOptions& options, std::ostrea
                  std::ostream& err);
 
 struct ConfigurationsOptions {
-  DistributionWish wish;
+  DistributionQuery query;
   std::filesystem::path output;  ///< empty: standard output
   WaitOptions waiting;
 };

@@ -12,8 +12,6 @@
 namespace kinship::cli {
 namespace {
 
-std::string percent(double progress) { return number_text(100 * progress, 0) + "%"; }
-
 std::string said(const Job& job) { return job.message.empty() ? "" : ": " + job.message; }
 
 /// Waits for a job's end. \return empty with an exit code in `code` if that cannot be known.
@@ -21,7 +19,7 @@ std::optional<Job> wait(link::Client& server, const std::string& id, const WaitO
                         std::string_view command, std::ostream& err, int& code) {
   const auto show = [&](const Job& job) {
     if (options.progress)
-      err << "\r\033[K" << job.verb << " " << percent(job.progress) << std::flush;
+      err << "\r\033[K" << job.verb << " " << percent_text(job.progress) << std::flush;
   };
   const Result<Job> job =
       link::wait_for_job(server, id, std::chrono::steady_clock::now() + options.longest, show);
@@ -53,32 +51,6 @@ void print(const Job& job, bool json, std::ostream& out) {
 }
 
 }  // namespace
-
-int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
-              std::ostream& err) {
-  constexpr const char* kCommand = "jobs list";
-  if (options.json)
-    return print_rows_as_json(server, AdminVerb::ListJobs, options, kCommand, out, err);
-  Table table({"JOB", "VERB", "ARGUMENT", "STATE", "PROGRESS", "ROWS", "STARTED", "MESSAGE"});
-  std::optional<Error> unreadable;
-  const int code = for_each_row(
-      server, AdminVerb::ListJobs, options, kCommand, err, [&](const std::string& row) {
-        const Result<Job> job = json::job_from_json(row);
-        if (job)
-          table.add_row({job->id, job->verb, job->argument, std::string(to_text(job->state)),
-                         percent(job->progress), std::to_string(job->rows),
-                         job->started_ms == 0 ? "-" : time_text(job->started_ms), job->message});
-        else
-          unreadable = Error{ErrorCode::Internal, job.error().message};
-        return job.has_value();
-      });
-  if (code != kDone)
-    return code;
-  if (unreadable)
-    return refuse(kCommand, *unreadable, err);
-  table.print(out);
-  return kDone;
-}
 
 int wait_for_job(link::Client& server, const std::string& id, const WaitOptions& options, bool json,
                  std::ostream& out, std::ostream& err) {

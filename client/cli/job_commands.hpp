@@ -20,9 +20,6 @@ struct WaitOptions {
   bool progress = false;  ///< on a terminal: shown on one line that is written again
 };
 
-int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
-              std::ostream& err);
-
 /// `jobs wait`. \return kDone if it was done, kFailed if it failed, was cancelled or goes on.
 int wait_for_job(link::Client& server, const std::string& id, const WaitOptions& options, bool json,
                  std::ostream& out, std::ostream& err);

@@ -4,8 +4,8 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/exit_code.hpp"
 #include "client/cli/table.hpp"
+#include "proto/json/admin_rows_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/enum_text.hpp"
 
@@ -129,6 +129,27 @@ int list_distributions(link::Client& server, const ListOptions& options, std::os
                                  time_text(distribution.fitted_ms)};
                            }},
                    options, out, err);
+}
+
+int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
+              std::ostream& err) {
+  return list_rows(
+      server,
+      Listing{AdminVerb::ListJobs, "jobs list",
+              Table({"JOB", "VERB", "ARGUMENT", "STATE", "PROGRESS", "ROWS", "STARTED", "MESSAGE"}),
+              json::job_from_json,
+              [](const Job& job) {
+                return std::vector<std::string>{
+                    job.id,
+                    job.verb,
+                    job.argument,
+                    std::string(to_text(job.state)),
+                    percent_text(job.progress),
+                    std::to_string(job.rows),
+                    job.started_ms == 0 ? "-" : time_text(job.started_ms),
+                    job.message};
+              }},
+      options, out, err);
 }
 
 }  // namespace kinship::cli

@@ -20,6 +20,8 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
                std::ostream& err);
 int list_distributions(link::Client& server, const ListOptions& options, std::ostream& out,
                        std::ostream& err);
+int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,
+              std::ostream& err);
 
 /// \param name  a label, or the beginning of a digest.
 int show_robot(link::Client& server, const std::string& name, bool json, std::ostream& out,

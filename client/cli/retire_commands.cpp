@@ -56,7 +56,7 @@ int reset_task(link::Client& server, const std::string& task, bool confirmed, bo
   if (!summary)
     return refuse(kResetTask, {ErrorCode::Internal, summary.error().message}, err);
   if (summary->paths == 0) {
-    out << kNothingToRetire;
+    out << (json ? json::to_json(Retirement{summary->task, 0, {}}) + "\n" : kNothingToRetire);
     return kDone;
   }
   const auto robots = std::ranges::count_if(

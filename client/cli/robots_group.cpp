@@ -1,9 +1,8 @@
+#include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
-#include "client/arguments/robot_options.hpp"
 #include "client/cli/groups.hpp"
-#include "client/cli/inverse_commands.hpp"
 #include "client/cli/listings.hpp"
-#include "client/cli/register_command.hpp"
+#include "client/cli/robot_commands.hpp"
 
 namespace kinship::cli {
 namespace {

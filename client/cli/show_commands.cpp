@@ -1,8 +1,7 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/exit_code.hpp"
-#include "client/cli/fetch_command.hpp"
+#include "client/cli/distribution_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"

@@ -70,6 +70,8 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+std::string percent_text(double part) { return number_text(100 * part, 0) + "%"; }
+
 std::string count_text(std::uint64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -29,6 +29,8 @@ std::string time_text(std::int64_t unix_ms);
 /// With `digits` behind the point.
 std::string number_text(double value, int digits);
 
+std::string percent_text(double part);  ///< 0.25: "25%"
+
 /// "1 path", "6 paths", "0 paths".
 std::string count_text(std::uint64_t count, const std::string& noun);
 

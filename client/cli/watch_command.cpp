@@ -4,11 +4,11 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/exit_code.hpp"
 #include "client/cli/table.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/event_json.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/exit_code.hpp"
 
 namespace kinship::cli {
 namespace {

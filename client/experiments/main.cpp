@@ -3,7 +3,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "client/arguments/robot_options.hpp"
+#include "client/arguments/command_options.hpp"
 #include "client/experiments/commands.hpp"
 #include "client/experiments/study_options.hpp"
 #include "client/files/output_file.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-#include "client/arguments/profile_options.hpp"
+#include "client/arguments/command_options.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {

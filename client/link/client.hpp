@@ -64,7 +64,7 @@ class Client {
   /// Waits until the reply is final or the request's deadline has passed (then: the last Pending
   /// or Busy reply, or Unavailable if no server answered). With a deadline of 0 the server answers
   /// with what is there, and this waits for its answer up to the timeout of register and admin.
-  Result<FetchReply> fetch(const FetchRequest& request);
+  Result<FetchReply> fetch(FetchRequest request);
 
   /// Holds the newest distribution for the request from now on. What is returned may outlive the
   /// client. \throws Failure(InvalidInput or TooLarge) if the request breaks a rule.
@@ -89,8 +89,8 @@ class Client {
   void cancel();
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  struct Line;
+  std::unique_ptr<Line> line_;
 };
 
 }  // namespace kinship::link

@@ -35,10 +35,10 @@ std::uint64_t attempts_of(const std::optional<ArmEvidence>& evidence) {
 
 }  // namespace
 
-double guided_share(const Advice& advice, const ArmOptions& options) {
-  const double share = options.share.value_or(advice.guided_share);
-  require_part("share", share);
-  return share;
+double guided_fraction(const Advice& advice, const ArmOptions& options) {
+  const double guided_fraction = options.guided_fraction.value_or(advice.guided_share);
+  require_part("share", guided_fraction);
+  return guided_fraction;
 }
 
 ArmChooser::ArmChooser(const Advice& advice, const ArmOptions& options)
@@ -46,8 +46,8 @@ ArmChooser::ArmChooser(const Advice& advice, const ArmOptions& options)
       window_(advice.recent),
       guided_(attempts_of(advice.guided)),
       control_(attempts_of(advice.control)) {
-  require_part("share", options.share.value_or(0));
-  require_part("control share", options.control_share.value_or(0));
+  require_part("share", options.guided_fraction.value_or(0));
+  require_part("control share", options.control_fraction.value_or(0));
 }
 
 Arm ArmChooser::choose(std::uint64_t seed) const {
@@ -63,8 +63,8 @@ Arm ArmChooser::choose(std::uint64_t seed) const {
 double ArmChooser::guided_part() const {
   if (is_uniform())
     return 0;
-  if (options_.control_share)
-    return 1 - *options_.control_share;
+  if (options_.control_fraction)
+    return 1 - *options_.control_fraction;
   const double floor = control_ < kEarlyControls ? kEarlyControlFloor : kLateControlFloor;
   return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper(), kGuidedFloor,
                     1 - floor);

@@ -12,8 +12,8 @@ namespace kinship::planning {
 
 /// What a user says about guidance; what is missing follows the evidence.
 struct ArmOptions {
-  std::optional<double> share;          ///< of guided samples in a guided query, 0 to 1
-  std::optional<double> control_share;  ///< of queries planned uniformly as control, 0 to 1
+  std::optional<double> guided_fraction;   ///< of guided samples in a guided query, 0 to 1
+  std::optional<double> control_fraction;  ///< of queries planned uniformly as control, 0 to 1
 };
 
 inline constexpr std::uint64_t kEarlyControls = 20;  ///< attempts after which fewer are forced
@@ -23,7 +23,7 @@ inline constexpr double kGuidedFloor = 0.02;  ///< so that guidance that became 
 
 /// Of guided samples in a guided query: what the user says, else what the server says.
 /// \throws std::invalid_argument if it is not 0 to 1.
-double guided_share(const Advice& advice, const ArmOptions& options);
+double guided_fraction(const Advice& advice, const ArmOptions& options);
 
 /// Chooses, query by query, between planning guided and uniformly (control) for one (task, robot).
 ///
@@ -31,8 +31,8 @@ double guided_share(const Advice& advice, const ArmOptions& options);
 /// (evidence::compare_costs) is taken; with two arms that is guided with the probability that
 /// guidance is cheaper. The probability is kept at least kGuidedFloor; that of control at least
 /// kEarlyControlFloor until kEarlyControls attempts of it are known, then kLateControlFloor. A
-/// `control_share` takes the place of all that; a share of 0 plans every query uniformly, which is
-/// no evidence.
+/// `control_fraction` takes the place of all that; a share of 0 plans every query uniformly, which
+/// is no evidence.
 ///
 /// The evidence begins with the server's and goes on with add(). Who gets new advice makes a new
 /// chooser and adds those of his own attempts that had no receipt when he asked: the others are in
@@ -53,10 +53,10 @@ class ArmChooser {
   /// teach nothing.
   void add(Arm arm, Outcome outcome, std::uint64_t checks);
 
-  bool is_sampling() const noexcept { return !options_.control_share && !is_uniform(); }
+  bool is_sampling() const noexcept { return !options_.control_fraction && !is_uniform(); }
 
  private:
-  bool is_uniform() const noexcept { return options_.share == 0.0; }
+  bool is_uniform() const noexcept { return options_.guided_fraction == 0.0; }
 
   ArmOptions options_;
   evidence::AttemptWindow window_;

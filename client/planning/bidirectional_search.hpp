@@ -5,7 +5,6 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,7 +34,22 @@ void check_arguments(const char* planner, const Eigen::VectorXd& start,
 /// The goals that hold a constraint.
 /// \return empty, with a reason as plan_cbirrt2 says, if the start or all goals do not.
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                                       const RegionConstraint& constraint, std::string& reason);
+                                       const RegionConstraint& constraint, NoPath& reason);
+
+/// Plans along a constraint to the goals that hold it, and counts the projections.
+/// \param plan  called with these goals, dof x n; returns a PlanSummary.
+template <typename Plan>
+PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const RegionConstraint& constraint, Plan plan) {
+  PlanSummary summary;
+  const auto reachable = holding(start, goals, constraint, summary.reason);
+  if (!reachable)
+    return summary;
+  const std::uint64_t before = constraint.projections();
+  summary = plan(*reachable);
+  summary.projections = constraint.projections() - before;
+  return summary;
+}
 
 /// Two trees, from the start and from every goal, extended in turn.
 /// \tparam Steering  goes from a node to a target as far as it can:
@@ -58,7 +72,7 @@ class BidirectionalSearch {
     if (auto answer = answer_at_once(start, goals, free_goals))
       return *std::move(answer);
     if (auto path = go_straight(free_goals))
-      return summary(std::move(path), "");
+      return summary(std::move(path), NoPath::None);
     return search();
   }
 
@@ -66,14 +80,14 @@ class BidirectionalSearch {
   std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
                                             const Eigen::MatrixXd& goals,
                                             Eigen::MatrixXd& free_goals) {
-    const std::string reason = plant(start, goals);
-    if (!reason.empty())
+    const NoPath reason = plant(start, goals);
+    if (reason != NoPath::None)
       return summary(std::nullopt, reason);
     free_goals.resize(goals.rows(), goal_tree_.size());
     for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
       free_goals.col(i) = goal_tree_.node(i);
     if (auto path = standstill())
-      return summary(std::move(path), "");
+      return summary(std::move(path), NoPath::None);
     return std::nullopt;
   }
 
@@ -86,10 +100,10 @@ class BidirectionalSearch {
   }
 
   /// What was planned and spent so far.
-  PlanSummary summary(std::optional<Eigen::MatrixXd> path, std::string reason) {
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason) {
     PlanSummary summary;
     summary.waypoints = std::move(path);
-    summary.reason = std::move(reason);
+    summary.reason = reason;
     summary.iterations = iterations_;
     summary.collision_checks = budget_.checks();
     summary.planning_time_s = budget_.thread_time_s();
@@ -103,23 +117,23 @@ class BidirectionalSearch {
       ++iterations_;
       path = iterate();
     }
-    const std::string reason = path ? "" : budget_.reason();
+    const NoPath reason = path ? NoPath::None : budget_.reason();
     return summary(std::move(path), reason);
   }
 
-  /// \return why there is nothing to plan, or an empty text.
-  std::string plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+  /// \return why there is nothing to plan, if so.
+  NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
-      return "no goal";
+      return NoPath::NoGoal;
     if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : "start collides";
+      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
     start_tree_.add(start, -1);
     for (Eigen::Index i = 0; i < goals.cols(); ++i)
       if (budget_.is_free(goals.col(i)))
         goal_tree_.add(goals.col(i), -1);
     if (budget_.exhausted())
       return budget_.reason();
-    return goal_tree_.size() == 0 ? "every goal collides" : "";
+    return goal_tree_.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
   }
 
   /// The path of a start that is a goal already.
@@ -142,10 +156,10 @@ class BidirectionalSearch {
     std::vector<Eigen::Index> order(static_cast<std::size_t>(goals.cols()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     std::ranges::stable_sort(order, {}, [&](Eigen::Index goal) { return distances[goal]; });
-    constexpr std::uint64_t kMostChecks = 100;
-    const std::uint64_t most = budget_.checks() + kMostChecks;
+    constexpr std::uint64_t kMaxChecks = 100;
+    const std::uint64_t end = budget_.checks() + kMaxChecks;
     for (const Eigen::Index goal : order) {
-      if (budget_.checks() >= most || budget_.exhausted())
+      if (budget_.checks() >= end || budget_.exhausted())
         return std::nullopt;
       const Extension there = steering_.extend(start_tree_, 0, goals.col(goal), Aim::Node, budget_);
       if (there.reached)
@@ -159,7 +173,7 @@ class BidirectionalSearch {
     Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
     Tree& other = grow_start_ ? goal_tree_ : start_tree_;
     grow_start_ = !grow_start_;
-    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_share());
+    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_fraction());
     const Eigen::Index near = grown.nearest(sample);
     const Extension there =
         steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
@@ -173,10 +187,11 @@ class BidirectionalSearch {
 
   /// A query that the mixture has not solved soon may need what it does not cover, and without any
   /// uniform samples no patience would find that.
-  double guided_share() const {
+  double guided_fraction() const {
     constexpr std::uint64_t kPatience = 300;  // samples
-    constexpr double kLateShare = 0.9;
-    return iterations_ <= kPatience ? sampler_.share() : std::min(sampler_.share(), kLateShare);
+    constexpr double kLateFraction = 0.9;
+    return iterations_ <= kPatience ? sampler_.guided_fraction()
+                                    : std::min(sampler_.guided_fraction(), kLateFraction);
   }
 
   Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {

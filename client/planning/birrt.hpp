@@ -9,6 +9,7 @@
 
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/is_free.hpp"
+#include "client/planning/no_path.hpp"
 
 namespace kinship::planning {
 
@@ -25,9 +26,9 @@ struct PlanSummary {
   std::uint64_t collision_checks = 0;  ///< configurations asked of `is_free`
   std::uint64_t projections = 0;       ///< onto a constraint
   std::uint64_t iterations = 0;
-  double planning_time_s = 0;  ///< CPU time of the thread, sampling and projections included
-  /// Why unsolved: "start collides", "every goal collides", "no goal", "checks" or "time".
-  std::string reason;
+  double planning_time_s = 0;        ///< CPU time of the thread, sampling and projections included
+  NoPath reason = NoPath::None;      ///< why unsolved
+  std::string planner_message = {};  ///< what a planner of OMPL said that gave up
 };
 
 /// Bi-directional RRT with greedy extension of both trees, in the style of CBiRRT2 without

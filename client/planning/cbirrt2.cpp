@@ -5,9 +5,9 @@
 
 namespace kinship::planning {
 std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                                       const RegionConstraint& constraint, std::string& reason) {
+                                       const RegionConstraint& constraint, NoPath& reason) {
   if (!constraint.holds(start)) {
-    reason = "start violates the constraint";
+    reason = NoPath::StartOffConstraint;
     return std::nullopt;
   }
   Eigen::MatrixXd kept(goals.rows(), goals.cols());
@@ -16,7 +16,7 @@ std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen
     if (constraint.holds(goal))
       kept.col(count++) = goal;
   if (count == 0 && goals.cols() > 0) {
-    reason = "every goal violates the constraint";
+    reason = NoPath::GoalsOffConstraint;
     return std::nullopt;
   }
   return kept.leftCols(count);
@@ -26,18 +26,11 @@ PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
                          const ConstrainedFreedom& freedom, const ConfigurationSampler& sampler,
                          const BirrtOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_cbirrt2", start, goals, sampler, options);
-  RegionConstraint& constraint = freedom.constraint;
-  PlanSummary nothing;
-  const auto reachable = holding(start, goals, constraint, nothing.reason);
-  if (!reachable)
-    return nothing;
-  const std::uint64_t before = constraint.projections();
-  PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
-  ConstrainedSteering steering(start.size(), options.step, constraint);
-  PlanSummary summary =
-      BidirectionalSearch(sampler, options, steering, budget, generator).run(start, *reachable);
-  summary.projections = constraint.projections() - before;
-  return summary;
+  return plan_along(start, goals, freedom.constraint, [&](const Eigen::MatrixXd& reachable) {
+    PlanningBudget budget(freedom.is_free, options.max_checks, options.time_limit);
+    ConstrainedSteering steering(start.size(), options.step, freedom.constraint);
+    return BidirectionalSearch(sampler, options, steering, budget, generator).run(start, reachable);
+  });
 }
 
 }  // namespace kinship::planning

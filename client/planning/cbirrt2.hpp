@@ -19,8 +19,7 @@ struct ConstrainedFreedom {
 /// Waypoints are at most `step` apart, each within RegionConstraint::kWaypointTolerance of the
 /// region, and what lies between two within kBetweenTolerance. A goal off the constraint is left
 /// out; of a start or goal outside no collision question is asked.
-/// Reasons besides those of plan_birrt: "start violates the constraint" and "every goal violates
-/// the constraint".
+/// Reasons besides those of plan_birrt: StartOffConstraint and GoalsOffConstraint.
 /// \throws std::invalid_argument as plan_birrt.
 /// Source: Berenson, Srinivasa and Kuffner, Task Space Regions (IJRR 2011), section 5.
 PlanSummary plan_cbirrt2(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,

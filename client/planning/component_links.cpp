@@ -37,7 +37,7 @@ double ComponentShapes::doubt(Eigen::Index k, const Eigen::VectorXd& q) const {
   return offset.squaredNorm() / static_cast<double>(offset.size());
 }
 
-double ComponentShapes::least_doubt(const Eigen::VectorXd& q) const {
+double ComponentShapes::min_doubt(const Eigen::VectorXd& q) const {
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < size(); ++k)
     least = std::min(least, doubt(k, q));

@@ -20,7 +20,7 @@ class ComponentShapes {
 
   /// Squared Mahalanobis distance per joint, the component's variances widened by kGateVariance.
   double doubt(Eigen::Index k, const Eigen::VectorXd& q) const;
-  double least_doubt(const Eigen::VectorXd& q) const;
+  double min_doubt(const Eigen::VectorXd& q) const;
 
   /// Pairs (i < j) of close components, see plan_roadmap.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> links(int neighbours) const;

@@ -30,21 +30,22 @@ ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds) : bounds_(st
 }
 
 ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
-                                           const Mixture& mixture, double share)
+                                           const Mixture& mixture, double guided_fraction)
     : ConfigurationSampler(std::move(bounds)) {
   if (mixture.dimension() != bounds_.cols() || chain.dof() != bounds_.cols())
     throw std::invalid_argument("ConfigurationSampler: chain, mixture and bounds differ in size");
-  if (!(share >= 0 && share <= 1))
+  if (!(guided_fraction >= 0 && guided_fraction <= 1))
     throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
   turning_ = turning_joints(chain);
   mixture_ = mixture;
   guided_.emplace(mixture, draw_limits(bounds_, turning_));
-  share_ = share;
+  guided_fraction_ = guided_fraction;
 }
 
-Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator, double share) const {
+Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator,
+                                             double guided_fraction) const {
   std::uniform_real_distribution<double> unit(0, 1);
-  if (guided_ && unit(generator) < share)
+  if (guided_ && unit(generator) < guided_fraction)
     if (auto q = sample_guided(generator))
       return *std::move(q);
   Eigen::VectorXd q(bounds_.cols());

@@ -26,18 +26,20 @@ class ConfigurationSampler {
   /// limits in the draw; they are moved by full turns into the bounds afterwards, and the draw is
   /// repeated if no turn lies there. If nothing comes out, the sample is uniform.
   /// \param chain  says which joints may be moved by full turns.
-  /// \param share  of guided samples, 0 to 1.
+  /// \param guided_fraction  of the samples, 0 to 1.
   /// \throws std::invalid_argument also if dimensions differ or the share is none.
   /// \throws Failure(Internal) if a covariance is not positive definite.
   ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
-                       const Mixture& mixture, double share);
+                       const Mixture& mixture, double guided_fraction);
 
-  Eigen::VectorXd sample(std::mt19937_64& generator) const { return sample(generator, share_); }
+  Eigen::VectorXd sample(std::mt19937_64& generator) const {
+    return sample(generator, guided_fraction_);
+  }
   /// The same with another share of guided samples; a uniform sampler has none.
-  Eigen::VectorXd sample(std::mt19937_64& generator, double share) const;
+  Eigen::VectorXd sample(std::mt19937_64& generator, double guided_fraction) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
-  double share() const noexcept { return share_; }  ///< 0 if uniform
+  double guided_fraction() const noexcept { return guided_fraction_; }  ///< 0 if uniform
   /// Where guided samples come from; none if uniform.
   const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
   /// The same posture within the bounds; empty if no turn lies there.
@@ -52,7 +54,7 @@ class ConfigurationSampler {
   std::optional<Mixture> mixture_;
   std::optional<mixture::Sampler> guided_;
   std::vector<bool> turning_;
-  double share_ = 0;
+  double guided_fraction_ = 0;
 };
 
 }  // namespace kinship::planning

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // joint units
 /// Of a stride: a projection that takes back more has met the end of the way along the region.
-constexpr double kLeastProgress = 0.2;
+constexpr double kMinProgress = 0.2;
 constexpr int kHalvings = 2;
 
 }  // namespace
@@ -36,8 +36,7 @@ bool ConstrainedStepper::advance(const Eigen::VectorXd& q, const Eigen::VectorXd
     next = q + (stride / distance) * (target - q);
     if (!constraint_.project(next))
       continue;
-    if ((next - q).norm() < kLeastProgress * stride ||
-        (next - target).norm() >= distance - kRounding)
+    if ((next - q).norm() < kMinProgress * stride || (next - target).norm() >= distance - kRounding)
       return false;
     if (joins(q, next))
       return true;

@@ -7,24 +7,24 @@
 namespace kinship::planning {
 namespace {
 
-std::string in_words(inverse::NoSolution reason) {
+NoPath reason_of(inverse::NoSolution reason) {
   switch (reason) {
     case inverse::NoSolution::OutOfReach:
-      return "goal out of reach";
+      return NoPath::GoalOutOfReach;
     case inverse::NoSolution::Limits:
-      return "goal only reached outside the joint limits";
+      return NoPath::GoalBeyondLimits;
     default:
-      return "no inverse kinematics solution of the goal found";
+      return NoPath::GoalNotFound;
   }
 }
 
 /// How often an arm is asked for further solutions as long as none of them is free.
-constexpr int kMostSearches = 10;
+constexpr int kMaxSearches = 10;
 
-std::string reason_of(const GoalConfigurations& goals, inverse::NoSolution why_none) {
+NoPath reason_of(const GoalConfigurations& goals, inverse::NoSolution why_none) {
   if (goals.found == 0)
-    return in_words(why_none);
-  return goals.within_bounds == 0 ? "outside the planning bounds" : "every goal collides";
+    return reason_of(why_none);
+  return goals.within_bounds == 0 ? NoPath::GoalOutsideBounds : NoPath::GoalsCollide;
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ GoalConfigurations goal_configurations(const kinematics::Chain& chain,
     if (kept > 0)
       return goals;
     // Who gives fewer than were asked for has no others.
-    if (found < options.max_configurations || searches == kMostSearches) {
+    if (found < options.max_configurations || searches == kMaxSearches) {
       goals.reason = reason_of(goals, solutions.reason);
       return goals;
     }

@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <string>
 
 #include "client/planning/is_free.hpp"
+#include "client/planning/no_path.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planning {
@@ -20,9 +20,7 @@ struct GoalConfigurations {
   int found = 0;                       ///< by inverse kinematics, before bounds and collisions
   int within_bounds = 0;               ///< of these
   std::uint64_t collision_checks = 0;  ///< counted apart from the plan's
-  /// Why there are none: what inverse kinematics says, "outside the planning bounds" or
-  /// "every goal collides".
-  std::string reason;
+  NoPath reason = NoPath::None;        ///< why there are none
 };
 
 /// Goal configurations of a plan that shall bring the transfer frame to a pose. Where none of

@@ -12,14 +12,6 @@
 #include "proto/types/turn.hpp"
 
 namespace kinship::planning {
-
-Mixture widened(const Mixture& mixture) {
-  std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
-  for (Eigen::MatrixXd& covariance : covariances)
-    covariance.diagonal().array() += kGateVariance;
-  return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
-}
-
 namespace {
 
 /// Measures many configurations against one mixture.
@@ -30,8 +22,8 @@ class MahalanobisDistance {
         factors_(mixture::cholesky_factors(widened(mixture))),
         turning_(turning_joints(chain)) {}
 
-  /// To the nearest component.
-  double squared(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  /// Squared, to the nearest component.
+  double operator()(const Eigen::Ref<const Eigen::VectorXd>& q) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (Eigen::Index k = 0; k < mixture_.size(); ++k) {
       Eigen::VectorXd offset = q - mixture_.means().col(k);
@@ -52,16 +44,23 @@ class MahalanobisDistance {
 
 }  // namespace
 
+Mixture widened(const Mixture& mixture) {
+  std::vector<Eigen::MatrixXd> covariances = mixture.covariances();
+  for (Eigen::MatrixXd& covariance : covariances)
+    covariance.diagonal().array() += kGateVariance;
+  return Mixture(mixture.weights(), mixture.means(), std::move(covariances));
+}
+
 QueryDistance query_distance(const kinematics::Chain& chain, const Mixture& mixture,
                              const Eigen::Ref<const Eigen::VectorXd>& start,
                              const Eigen::Ref<const Eigen::MatrixXd>& goals) {
   if (mixture.dimension() != chain.dof() || start.size() != chain.dof() ||
       goals.rows() != chain.dof())
     throw std::invalid_argument("query_distance: chain, mixture, start and goals differ in size");
-  const MahalanobisDistance to_mixture(chain, mixture);
-  QueryDistance distance{to_mixture.squared(start), std::numeric_limits<double>::infinity()};
+  const MahalanobisDistance distance_to(chain, mixture);
+  QueryDistance distance{distance_to(start), std::numeric_limits<double>::infinity()};
   for (const auto& goal : goals.colwise())
-    distance.goal = std::min(distance.goal, to_mixture.squared(goal));
+    distance.goal = std::min(distance.goal, distance_to(goal));
   return distance;
 }
 

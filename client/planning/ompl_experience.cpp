@@ -27,8 +27,6 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 namespace ot = ompl::tools;
 
-constexpr const char* kNothing = "nothing to recall";
-
 /// OMPL's, but the goal that experience fits best, and without the shortening at the end.
 class LightningRecall : public og::LightningRetrieveRepair {
  public:
@@ -198,10 +196,10 @@ class OmplExperience::Implementation {
     summary.collision_checks = budget.checks();
     summary.planning_time_s = budget.thread_time_s();
     if (!summary.waypoints)
-      summary.reason = budget.exhausted() ? budget.reason() : kNothing;
+      summary.reason = budget.exhausted() ? budget.reason() : NoPath::NothingRecalled;
     else if (!is_path(*summary.waypoints, is_free)) {
       summary.waypoints.reset();
-      summary.reason = "recalled path collides";
+      summary.reason = NoPath::RecallCollides;
     }
     budget_ = nullptr;
     return summary;
@@ -229,12 +227,8 @@ class OmplExperience::Implementation {
     const ob::PlannerTerminationCondition ended([this] { return budget_->exhausted(); });
     if (planner->solve(ended) != ob::PlannerStatus::EXACT_SOLUTION || !problem->hasExactSolution())
       return std::nullopt;
-    const auto& path = *problem->getSolutionPath()->as<og::PathGeometric>();
-    Eigen::MatrixXd waypoints(bounds_.cols(), static_cast<Eigen::Index>(path.getStateCount()));
-    for (Eigen::Index i = 0; i < waypoints.cols(); ++i)
-      waypoints.col(i) =
-          to_configuration(*path.getState(static_cast<unsigned int>(i)), bounds_.cols());
-    return densified(waypoints, part_);
+    auto& path = *problem->getSolutionPath()->as<og::PathGeometric>();
+    return densified(to_waypoints(path.getStates(), bounds_.cols()), part_);
   }
 
   static Eigen::MatrixXd free_ones(const Eigen::MatrixXd& goals, PlanningBudget& budget) {

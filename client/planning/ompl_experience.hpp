@@ -49,8 +49,8 @@ class OmplExperience {
 
   /// Answers one query from experience alone. Counts as plan_birrt does, start and goals included,
   /// which OMPL asks about once more; a path is looked at once more, uncounted. Reasons as
-  /// plan_birrt, "nothing to recall" if retrieval and repair gave up, and "recalled path collides"
-  /// if OMPL's path is none. \throws Failure(Internal) with OMPL's message where it throws.
+  /// plan_birrt, NothingRecalled if retrieval and repair gave up, RecallCollides if OMPL's path is
+  /// none. \throws Failure(Internal) with OMPL's message where it throws.
   PlanSummary recall(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
                      const IsFree& is_free, const BirrtOptions& limits, std::mt19937_64& generator);
 

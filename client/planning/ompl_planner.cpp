@@ -98,8 +98,8 @@ class OmplQuery {
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     PlanSummary summary;
     summary.reason = pose(start, goals);
-    if (summary.reason.empty())
-      summary.waypoints = standstill_ ? standstill_ : solve(summary.reason);
+    if (summary.reason == NoPath::None)
+      summary.waypoints = standstill_ ? standstill_ : solve(summary);
     summary.collision_checks = budget_.checks();
     summary.planning_time_s = budget_.thread_time_s();
     return summary;
@@ -108,17 +108,17 @@ class OmplQuery {
  private:
   bool is_free_at(const Eigen::VectorXd& q) {
     const bool free = space_.holds(q) && budget_.is_free(q);
-    if (!budget_.reason().empty())
+    if (budget_.reason() != NoPath::None)
       ended_ = true;
     return free;
   }
 
-  /// Gives OMPL start and free goals. \return why there is nothing to plan, or an empty text.
-  std::string pose(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+  /// Gives OMPL start and free goals. \return why there is nothing to plan, if so.
+  NoPath pose(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
     if (goals.cols() == 0)
-      return "no goal";
+      return NoPath::NoGoal;
     if (!budget_.is_free(start))
-      return budget_.exhausted() ? budget_.reason() : "start collides";
+      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
     const auto targets = std::make_shared<ob::GoalStates>(space_.information);
     ob::ScopedState<> state(space_.information);
     for (const auto& goal : goals.colwise()) {
@@ -133,14 +133,14 @@ class OmplQuery {
     if (budget_.exhausted())
       return budget_.reason();
     if (!targets->hasStates())
-      return "every goal collides";
+      return NoPath::GoalsCollide;
     space_.copy_to(start, *state.get());
     problem_->addStartState(state);
     problem_->setGoal(targets);
-    return "";
+    return NoPath::None;
   }
 
-  std::optional<Eigen::MatrixXd> solve(std::string& reason) {
+  std::optional<Eigen::MatrixXd> solve(PlanSummary& summary) {
     // Atomic and a constant: some planners ask from a second thread.
     const ob::PlannerTerminationCondition ended(
         [this] { return ended_ || std::chrono::steady_clock::now() >= end_; });
@@ -149,7 +149,9 @@ class OmplQuery {
     const ob::PlannerStatus status = planner_->solve(ended);
     if (status == ob::PlannerStatus::EXACT_SOLUTION)
       return waypoints();
-    reason = budget_.exhausted() ? budget_.reason() : "OMPL: " + status.asString();
+    summary.reason = budget_.exhausted() ? budget_.reason() : NoPath::GaveUp;
+    if (summary.reason == NoPath::GaveUp)
+      summary.planner_message = "OMPL: " + status.asString();
     return std::nullopt;
   }
 
@@ -207,18 +209,13 @@ PlanSummary plan_with_ompl(const Eigen::VectorXd& start, const Eigen::MatrixXd& 
                            const OmplOptions& options, std::mt19937_64& generator) {
   check_arguments("plan_with_ompl", start, goals, sampler, options.limits);
   ompl::msg::noOutputHandler();
-  PlanSummary nothing;
-  const auto reachable = holding(start, goals, freedom.constraint, nothing.reason);
-  if (!reachable)
-    return nothing;
-  PlanningSpace space =
-      constrained_space(sampler.bounds(), freedom.constraint, options.limits.step);
-  install_guided_sampler(*space.information->getStateSpace(),
-                         std::make_shared<ConfigurationSampler>(sampler), generator());
-  const std::uint64_t before = freedom.constraint.projections();
-  PlanSummary summary = run(std::move(space), start, *reachable, freedom.is_free, options);
-  summary.projections = freedom.constraint.projections() - before;
-  return summary;
+  return plan_along(start, goals, freedom.constraint, [&](const Eigen::MatrixXd& reachable) {
+    PlanningSpace space =
+        constrained_space(sampler.bounds(), freedom.constraint, options.limits.step);
+    install_guided_sampler(*space.information->getStateSpace(),
+                           std::make_shared<ConfigurationSampler>(sampler), generator());
+    return run(std::move(space), start, reachable, freedom.is_free, options);
+  });
 }
 
 }  // namespace kinship::planning

@@ -34,8 +34,8 @@ std::vector<std::string> ompl_planner_names();
 /// second thread of OMPL's; RRTConnect and LazyPRM know all goals from the beginning.
 /// Silences OMPL's messages for the process.
 ///
-/// Reasons as plan_birrt; if OMPL gave up before checks and time were used up, "OMPL: " and its
-/// status.
+/// Reasons as plan_birrt; if OMPL gave up before checks and time were used up, GaveUp with its
+/// status as the planner's message.
 /// \throws std::invalid_argument as plan_birrt, if bounds leave a joint no room, the range is
 ///         negative, or for an unknown planner, with the names that there are.
 /// \throws Failure(Internal) with OMPL's message where it throws.

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planning {
+
+inline constexpr double kTurn = 2 * M_PI;
 
 /// Where a plan from `start` may go: the joint limits, but joints wider than a turn, continuous
 /// ones among them, only one turn, with the start in its middle or, near a limit, up to the limit.

@@ -19,13 +19,13 @@ PlanningBudget::PlanningBudget(const IsFree& is_free, std::uint64_t max_checks,
       thread_begin_s_(planning::thread_time_s()) {}
 
 bool PlanningBudget::exhausted() {
-  if (!reason_.empty())
+  if (reason_ != NoPath::None)
     return true;
   if (checks_ >= max_checks_)
-    reason_ = "checks";
+    reason_ = NoPath::MaxChecks;
   else if (Clock::now() - begin_ >= time_limit_)
-    reason_ = "time";
-  return !reason_.empty();
+    reason_ = NoPath::TimeLimit;
+  return reason_ != NoPath::None;
 }
 
 }  // namespace kinship::planning

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
-#include <string>
 
 #include "client/planning/is_free.hpp"
+#include "client/planning/no_path.hpp"
 
 namespace kinship::planning {
 
@@ -32,8 +32,8 @@ class PlanningBudget {
 
   double thread_time_s() const { return planning::thread_time_s() - thread_begin_s_; }
   std::uint64_t checks() const noexcept { return checks_; }
-  /// "checks" or "time"; empty as long as it is not used up.
-  const std::string& reason() const noexcept { return reason_; }
+  /// MaxChecks or TimeLimit; None as long as it is not used up.
+  NoPath reason() const noexcept { return reason_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -44,7 +44,7 @@ class PlanningBudget {
   std::chrono::duration<double> time_limit_;
   double thread_begin_s_;
   std::uint64_t checks_ = 0;
-  std::string reason_;
+  NoPath reason_ = NoPath::None;
 };
 
 }  // namespace kinship::planning

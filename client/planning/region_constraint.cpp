@@ -18,7 +18,7 @@ constexpr int kMaxIterations = 12;
 constexpr double kAimed = 0.5 * RegionConstraint::kWaypointTolerance;
 constexpr double kMarginOfWidth = 0.05, kMaxMargin = 0.02;  // m or rad
 constexpr double kSquaredDamping = 1e-4;  // of singular values about 1 (m or rad per joint unit)
-constexpr double kLeastCosine = 1e-3;     // of the pitch: its derivative is unbounded at 90 degrees
+constexpr double kMinCosine = 1e-3;       // of the pitch: its derivative is unbounded at 90 degrees
 
 /// Angles without a bound on one side are bounded by half a turn there; those that may go round
 /// by nothing.
@@ -148,7 +148,7 @@ Vector6 RegionConstraint::excess(const Eigen::VectorXd& q) const {
 
 void RegionConstraint::derive(const Sweep& along, bool flipped, Matrix6& derivative) const {
   const Eigen::Matrix3d& R = along.R;
-  const double cos_pitch = std::max(std::hypot(R(0, 0), R(1, 0)), kLeastCosine);
+  const double cos_pitch = std::max(std::hypot(R(0, 0), R(1, 0)), kMinCosine);
   const double sin_pitch = -R(2, 0);
   const double cos_yaw = R(0, 0) / cos_pitch, sin_yaw = R(1, 0) / cos_pitch;
   Eigen::Matrix3d rates;  // of roll, pitch, yaw, per angular velocity

@@ -44,7 +44,7 @@ struct RoadmapQuery {
     RoadmapGraph graph(start, free_goals, way);
     graph.add_components(sampler, project, options, generator);
     if (auto path = graph.search(budget, options.max_roadmap_checks))
-      return trees.summary(std::move(path), "");
+      return trees.summary(std::move(path), NoPath::None);
     return trees.run_from(graph.reached_from_start(), graph.reached_from_goals());
   }
 };
@@ -73,11 +73,6 @@ PlanSummary plan_roadmap(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
   check_arguments("plan_roadmap", start, goals, sampler, options.tree);
   check_roadmap_options(options);
   RegionConstraint& constraint = freedom.constraint;
-  PlanSummary summary;
-  const auto reachable = holding(start, goals, constraint, summary.reason);
-  if (!reachable)
-    return summary;
-  const std::uint64_t before = constraint.projections();
   RoadmapQuery<ConstrainedSteering> query = {
       sampler, options, ConstrainedSteering(start.size(), options.tree.step, constraint),
       PlanningBudget(freedom.is_free, options.tree.max_checks, options.tree.time_limit), generator};
@@ -85,10 +80,10 @@ PlanSummary plan_roadmap(const Eigen::VectorXd& start, const Eigen::MatrixXd& go
   const Way way = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
     return stepper.way(from, to);
   };
-  summary =
-      query.plan(start, *reachable, way, [&](Eigen::VectorXd& q) { return constraint.project(q); });
-  summary.projections = constraint.projections() - before;
-  return summary;
+  return plan_along(start, goals, constraint, [&](const Eigen::MatrixXd& reachable) {
+    return query.plan(start, reachable, way,
+                      [&](Eigen::VectorXd& q) { return constraint.project(q); });
+  });
 }
 
 }  // namespace kinship::planning

@@ -90,7 +90,7 @@ void RoadmapGraph::link_ends(const ComponentShapes& shapes, int connections) {
     if (end > 0)
       nearest.emplace_back(0.0, 0);  // the start
     for (const auto& [distance, v] : nearest)
-      link(end, v, shapes.least_doubt((vertices_[end].q + vertices_[v].q) / 2));
+      link(end, v, shapes.min_doubt((vertices_[end].q + vertices_[v].q) / 2));
   }
 }
 

@@ -12,7 +12,7 @@ namespace kinship::planning {
 namespace {
 
 constexpr int kMaxFruitlessTries = 500;
-constexpr double kLeastGain = 1e-6;  // joint units: less is rounding
+constexpr double kMinGain = 1e-6;  // joint units: less is rounding
 
 /// Asks for every configuration of a line but its ends, the middle first, then the middles of
 /// the halves, and so on: what stands in the way is found early.
@@ -55,9 +55,9 @@ ShortcutSummary shorten(Eigen::MatrixXd path, const IsFree& is_free, const Short
     if (to - from < 2)
       continue;
     const double before = path_length(path.middleCols(from, to - from + 1));
-    if ((path.col(to) - path.col(from)).norm() >= before - kLeastGain)
+    if ((path.col(to) - path.col(from)).norm() >= before - kMinGain)
       continue;
-    const Eigen::MatrixXd line = connect(path.col(from), path.col(to), before - kLeastGain);
+    const Eigen::MatrixXd line = connect(path.col(from), path.col(to), before - kMinGain);
     if (line.cols() == 0)
       continue;
     const auto needed = static_cast<std::uint64_t>(line.cols() - 2);

@@ -18,8 +18,12 @@ struct Overloaded : Visitors... {
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
+/// m
 double read_extent(const Reader& reader) {
-  return reader.number(std::numeric_limits<double>::min(), kMaxPlacement_m);  // m, above 0
+  const double extent = reader.number(std::numeric_limits<double>::lowest(), kMaxPlacement_m);
+  if (extent < std::numeric_limits<double>::min())
+    reader.refuse("must be above 0");
+  return extent;
 }
 
 Eigen::Vector3d read_size(const Reader& reader) {

@@ -56,12 +56,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string planning = "client/planning";
-  const std::string plan = "client/plan";
+  const std::string planner = "client/planner";
   const std::set<std::string> planner_programs = {link,    arguments, files,    planning,
                                                   inverse, collision, geometry, kinematics,
                                                   models,  mixture,   json,     types};
   std::set<std::string> experiments = planner_programs;
-  experiments.insert(plan);
+  experiments.insert(planner);
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -91,7 +91,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {"client/cli",
        {{link, arguments, files, inverse, geometry, kinematics, models, mixture, json, types},
         {"Eigen", "CLI11"}}},
-      {plan, {planner_programs, {"Eigen", "CLI11"}}},
+      {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };
 }();

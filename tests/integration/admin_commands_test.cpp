@@ -194,6 +194,9 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
   const Answer again = server_.kinship({"tasks", "reset", "sweep"});
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(again.out, "nothing to do: retired already\n");
+  const Answer document = server_.kinship({"tasks", "reset", "sweep", "--json"});
+  EXPECT_EQ(document.code, 0) << document.err;
+  EXPECT_EQ(json::retirement_from_json(document.out).value_or_throw().paths, 0U);
 }
 
 TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/experiments/studies/study.hpp"
-#include "client/plan/plan_problem.hpp"
+#include "client/planner/plan_problem.hpp"
 #include "proto/types/digest.hpp"
 
 namespace kinship::experiments {
@@ -14,7 +14,7 @@ namespace kinship::experiments {
 struct StudyMember {
   StudyRobot placed;
   models::LoadedRobot robot;
-  plan::PlannedRobot planned;  ///< the same as planning wants it
+  planner::PlannedRobot planned;  ///< the same as planning wants it
   Digest digest;
   DrawInstance draw;
 

@@ -12,8 +12,8 @@
 #include "client/experiments/pipeline/parallel_for.hpp"
 #include "client/files/lines.hpp"
 #include "client/files/output_file.hpp"
-#include "client/plan/attempt_record.hpp"
-#include "client/plan/scene_record.hpp"
+#include "client/planner/attempt_record.hpp"
+#include "client/planner/scene_record.hpp"
 #include "proto/json/experience_line.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/sha256.hpp"
@@ -122,18 +122,18 @@ class Recording {
   }
 
   Attempt plan(std::uint32_t index) const {
-    plan::PlanSettings settings = study_.settings;
+    planner::PlanSettings settings = study_.settings;
     settings.overshoot = 1;
     settings.shortcut_checks = kLearningShortcutChecks;
     const Problem problem = read_instance(member_, seed_, index);
-    const plan::PlannedProblem planned = plan::plan_problem(
-        member_.planned, problem, plan::QueryGuidance{}, settings, [] { return false; });
+    const planner::PlannedProblem planned = planner::plan_problem(
+        member_.planned, problem, planner::QueryGuidance{}, settings, [] { return false; });
     if (!planned.attempted)
       throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
-    const plan::Reporter reporter{member_.digest, "experiments", study_.name};
-    Attempt attempt = plan::make_attempt(reporter, problem, planned, settings);
+    const planner::Reporter reporter{member_.digest, "experiments", study_.name};
+    Attempt attempt = planner::make_attempt(reporter, problem, planned, settings);
     attempt.report_uuid = uuid_of(study_.name, member_.label(), index);
-    attempt.scene = plan::record_scene(member_.robot.chain, problem).value_or_throw();
+    attempt.scene = planner::record_scene(member_.robot.chain, problem).value_or_throw();
     if (attempt.path)
       attempt.path = rounded(*attempt.path, member_.robot.chain);
     return attempt;

@@ -9,11 +9,11 @@ namespace {
 
 QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& problem,
                    QueryKey key) {
-  plan::QueryGuidance query;
+  planner::QueryGuidance query;
   if (cell.guidance)
     query = {.guidance = &*cell.guidance, .arm = Arm::Guided};
-  const plan::PlannedProblem planned =
-      plan::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
+  const planner::PlannedProblem planned =
+      planner::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
   if (!planned.attempted)
     throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
   const ProblemResult& result = planned.result;
@@ -49,10 +49,10 @@ void answer_instance(const StudyMember& member, const std::vector<const Cell*>& 
 
 }  // namespace
 
-std::optional<plan::Guidance> always_guided(const Distribution& distribution, double share) {
+std::optional<planner::Guidance> always_guided(const Distribution& distribution, double share) {
   if (!distribution.mixture)
     return std::nullopt;
-  return plan::Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
+  return planner::Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
 }
 
 void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,

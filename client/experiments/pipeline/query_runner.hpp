@@ -15,14 +15,14 @@ namespace kinship::experiments {
 struct Cell {
   std::size_t robot = 0;  ///< index into the fleet
   std::string name;       ///< unique among the robot's cells; in QueryKey::guidance
-  plan::PlanSettings settings;
-  std::optional<plan::Guidance> guidance;  ///< missing: uniform
+  planner::PlanSettings settings;
+  std::optional<planner::Guidance> guidance;  ///< missing: uniform
 };
 
 /// Guidance for every query, as `kinship-plan --guidance always --control-share 0` has it.
 /// \param share  of guided samples; 0 to 1.
 /// \return       missing if the distribution has no mixture.
-std::optional<plan::Guidance> always_guided(const Distribution& distribution, double share);
+std::optional<planner::Guidance> always_guided(const Distribution& distribution, double share);
 
 /// Which instances are planned, and how often.
 struct QueryPlan {

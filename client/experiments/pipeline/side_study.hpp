@@ -17,7 +17,7 @@ struct WishedCell {
   DistributionWish wish;
   double overshoot = 1;
   double share = 1;  ///< of guided samples
-  plan::PlannerKind planner = plan::PlannerKind::ByProblem;
+  planner::PlannerKind planner = planner::PlannerKind::ByProblem;
 };
 
 /// Further cells over the test instances: what the main tables do not tell.

@@ -25,24 +25,24 @@ constexpr std::uint32_t kTestSeeds = 4;
 constexpr std::uint32_t kQuickInstances = 6;
 
 /// Uniform planning, named after its overshoot.
-Cell uniform_cell(std::size_t robot, plan::PlanSettings settings, double overshoot) {
+Cell uniform_cell(std::size_t robot, planner::PlanSettings settings, double overshoot) {
   settings.overshoot = overshoot;
   settings.shortcut_checks = 0;
   return {robot, uniform_name(overshoot), settings, std::nullopt};
 }
 
 /// Uniform cells of a robot: with the overshoot that guided cells have, and plain.
-std::vector<Cell> uniform_cells(std::size_t robot, const plan::PlanSettings& settings) {
+std::vector<Cell> uniform_cells(std::size_t robot, const planner::PlanSettings& settings) {
   std::vector<Cell> cells = {uniform_cell(robot, settings, settings.overshoot)};
   if (settings.overshoot != 1)
     cells.push_back(uniform_cell(robot, settings, 1));
   return cells;
 }
 
-std::optional<Cell> guided_cell(std::size_t robot, std::string name, plan::PlanSettings settings,
+std::optional<Cell> guided_cell(std::size_t robot, std::string name, planner::PlanSettings settings,
                                 const Distribution& distribution, double share) {
   settings.shortcut_checks = 0;
-  std::optional<plan::Guidance> guidance = always_guided(distribution, share);
+  std::optional<planner::Guidance> guidance = always_guided(distribution, share);
   if (!guidance)
     return std::nullopt;
   return Cell{robot, std::move(name), settings, std::move(guidance)};
@@ -75,7 +75,7 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
     session.report_as(shortened.task, shortened.paths);
   std::vector<Cell> cells;
   for (const WishedCell& wished : side.cells) {
-    plan::PlanSettings settings = study.settings;
+    planner::PlanSettings settings = study.settings;
     settings.overshoot = wished.overshoot;
     settings.planner.kind = wished.planner;
     if (is_uniform(wished)) {
@@ -241,7 +241,7 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
   again.resume = true;
   StudySession session(study, again, messages);
   session.learn();
-  plan::PlanSettings settings = study.settings;
+  planner::PlanSettings settings = study.settings;
   settings.overshoot = tuning.overshoot.value_or(study.settings.overshoot);
   std::vector<Cell> cells;
   nlohmann::ordered_json compared{{"uniform", uniform_name(settings.overshoot)},

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/plan/plan_settings.hpp"
+#include "client/planner/plan_settings.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/models/loaded_robot.hpp"
 
@@ -36,7 +36,8 @@ struct Study {
   std::string name;     ///< also its task at the server, and its folder of results
   std::string purpose;  ///< for the command line's help
   std::vector<StudyRobot> robots;
-  plan::PlanSettings settings;  ///< of every query; the overshoot may be chosen on tuning instances
+  planner::PlanSettings
+      settings;                 ///< of every query; the overshoot may be chosen on tuning instances
   double guided_share = 1;      ///< of samples in guided queries; chosen on tuning instances
   bool is_constrained = false;  ///< its problems keep to a task space region
   std::uint32_t learning_instances = 0;

@@ -1,4 +1,4 @@
-#include "client/arguments/profile_options.hpp"
+#include "client/arguments/command_options.hpp"
 
 #include <gtest/gtest.h>
 

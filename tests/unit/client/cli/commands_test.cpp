@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/exit_code.hpp"
+#include "proto/types/exit_code.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/temporary_directory.hpp"
 

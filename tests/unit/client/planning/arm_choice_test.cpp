@@ -46,9 +46,9 @@ int count(const ArmChooser& chooser, Arm arm, std::uint64_t queries = kQueries) 
 }
 
 TEST(GuidedShare, IsTheUsersElseTheServersForGuidedQueries) {
-  EXPECT_EQ(guided_share(advice(0, 0), {}), 0.9);
-  EXPECT_EQ(guided_share(advice(0, 0), {0.25, {}}), 0.25);
-  EXPECT_THROW(guided_share(advice(0, 0), {1.5, {}}), std::invalid_argument);
+  EXPECT_EQ(guided_fraction(advice(0, 0), {}), 0.9);
+  EXPECT_EQ(guided_fraction(advice(0, 0), {0.25, {}}), 0.25);
+  EXPECT_THROW(guided_fraction(advice(0, 0), {1.5, {}}), std::invalid_argument);
 }
 
 TEST(ArmChooser, RefusesSharesThatAreNone) {

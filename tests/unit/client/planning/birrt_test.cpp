@@ -35,7 +35,7 @@ TEST(Birrt, FindsFreePathsWithTheRightEndsAndStep) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     WallWorld world;
     const PlanSummary summary = plan(world, kGoal, seed);
-    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
     const Eigen::MatrixXd& path = *summary.waypoints;
     EXPECT_EQ(path.col(0), kStart);
     EXPECT_EQ(path.rightCols(1), kGoal);
@@ -44,7 +44,7 @@ TEST(Birrt, FindsFreePathsWithTheRightEndsAndStep) {
       EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), options().step + 1e-9);
       EXPECT_GT((path.col(i) - path.col(i - 1)).norm(), 0);
     }
-    EXPECT_EQ(summary.reason, "");
+    EXPECT_EQ(summary.reason, NoPath::None);
   }
 }
 
@@ -54,7 +54,7 @@ TEST(Birrt, AStartThatIsAGoalIsAPathOfTwoEqualWaypoints) {
     Eigen::MatrixXd goals(2, 2);
     goals << kGoal, kStart;
     const PlanSummary summary = plan(world, goals, seed);
-    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
     ASSERT_EQ(summary.waypoints->cols(), 2);
     EXPECT_EQ(summary.waypoints->col(0), kStart);
     EXPECT_EQ(summary.waypoints->col(1), kStart);
@@ -83,7 +83,7 @@ TEST(Birrt, AMixtureThatCoversNoWayOutDelaysAPathButNeverPreventsIt) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     WallWorld world;
     const PlanSummary summary = plan(world, kGoal, seed, options(), sampler);
-    ASSERT_TRUE(summary.waypoints) << summary.reason;
+    ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
     EXPECT_GT(summary.iterations, 300U);
   }
 }
@@ -131,11 +131,11 @@ TEST(Birrt, EqualSeedEqualPath) {
 
 TEST(Birrt, SaysWhyItDidNotPlan) {
   WallWorld world;
-  EXPECT_EQ(plan(world, at(0, 0), 0).reason, "every goal collides");
-  EXPECT_EQ(plan(world, Eigen::MatrixXd(2, 0), 0).reason, "no goal");
+  EXPECT_EQ(plan(world, at(0, 0), 0).reason, NoPath::GoalsCollide);
+  EXPECT_EQ(plan(world, Eigen::MatrixXd(2, 0), 0).reason, NoPath::NoGoal);
   world.half_thickness = 0.9;
   const PlanSummary blocked = plan(world, kGoal, 0);
-  EXPECT_EQ(blocked.reason, "start collides");
+  EXPECT_EQ(blocked.reason, NoPath::StartCollides);
   EXPECT_FALSE(blocked.waypoints);
   EXPECT_EQ(blocked.collision_checks, 1u);
 }
@@ -149,7 +149,7 @@ TEST(Birrt, StopsAtItsLastCheck) {
     const PlanSummary summary = plan(world, kGoal, 4, limited);
     EXPECT_EQ(world.asked, limit);
     EXPECT_EQ(summary.collision_checks, limit);
-    EXPECT_EQ(summary.reason, "checks");
+    EXPECT_EQ(summary.reason, NoPath::MaxChecks);
     EXPECT_FALSE(summary.waypoints);
   }
 }
@@ -163,7 +163,7 @@ TEST(Birrt, StopsInTime) {
   const auto begin = std::chrono::steady_clock::now();
   const PlanSummary summary = plan(world, kGoal, 5, limited);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  EXPECT_EQ(summary.reason, "time");
+  EXPECT_EQ(summary.reason, NoPath::TimeLimit);
   EXPECT_GE(elapsed.count(), 0.02);
   EXPECT_GT(summary.planning_time_s, 0);
   EXPECT_LE(summary.planning_time_s, elapsed.count() + 1e-3);  // CPU time of this thread

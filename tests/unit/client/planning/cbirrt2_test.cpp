@@ -72,7 +72,7 @@ TEST(Cbirrt2, FollowsAThinRegionAtAnyStep) {
     const auto summary =
         plan_cbirrt2(LineArm::at_height(-1), LineArm::at_height(1), {everywhere, constraint},
                      ConfigurationSampler(arm.bounds), options(step), generator);
-    ASSERT_TRUE(summary.waypoints) << summary.reason << " at step " << step;
+    ASSERT_TRUE(summary.waypoints) << describe(summary.reason) << " at step " << step;
     EXPECT_LE(largest_excess(*summary.waypoints, constraint, 1),
               RegionConstraint::kWaypointTolerance);
     EXPECT_LE(largest_excess(*summary.waypoints, constraint, 20),
@@ -92,10 +92,10 @@ TEST(Cbirrt2, AskedAboutTheConstraintFirst) {
   const ConfigurationSampler sampler(arm.bounds);
   const auto from_outside = plan_cbirrt2(off, LineArm::at_height(1), {never_asked, constraint},
                                          sampler, options(0.1), generator);
-  EXPECT_EQ(from_outside.reason, "start violates the constraint");
+  EXPECT_EQ(from_outside.reason, NoPath::StartOffConstraint);
   const auto to_outside = plan_cbirrt2(LineArm::at_height(1), off, {never_asked, constraint},
                                        sampler, options(0.1), generator);
-  EXPECT_EQ(to_outside.reason, "every goal violates the constraint");
+  EXPECT_EQ(to_outside.reason, NoPath::GoalsOffConstraint);
   EXPECT_EQ(to_outside.collision_checks, 0u);
 }
 
@@ -107,7 +107,7 @@ TEST(Cbirrt2, AGoalOffTheConstraintIsLeftOut) {
   goals << Eigen::Vector2d(0, 0), LineArm::at_height(0.5);
   const auto summary = plan_cbirrt2(LineArm::at_height(-0.5), goals, {everywhere, constraint},
                                     ConfigurationSampler(arm.bounds), options(0.1), generator);
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.waypoints->rightCols<1>(), goals.col(1));
 }
 
@@ -128,7 +128,7 @@ TEST(Cbirrt2, EqualSeedEqualPathAndItsLastCheckEndsIt) {
   EXPECT_EQ(one.projections, two.projections);
   const PlanSummary cut = plan(5);
   EXPECT_EQ(cut.collision_checks, 5u);
-  EXPECT_EQ(cut.reason, "checks");
+  EXPECT_EQ(cut.reason, NoPath::MaxChecks);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(GoalConfigurations, PutTheTransferFrameAtThePoseOnEveryBranch) {
     const Eigen::Isometry3d T = kinematics::T_base_transfer(chain, goals.configurations.col(i));
     EXPECT_LT((T.translation() - kGoal.translation()).norm(), 1e-6);
   }
-  EXPECT_EQ(goals.reason, "");
+  EXPECT_EQ(goals.reason, NoPath::None);
 }
 
 TEST(GoalConfigurations, KeepTheFreeOnesAndCountApart) {
@@ -85,14 +85,14 @@ TEST(GoalConfigurations, ARedundantArmIsAskedAgainUntilOneIsFree) {
   EXPECT_EQ(goals.configurations.cols(), 2);  // of the second four
   EXPECT_EQ(goals.found, 8);
   EXPECT_EQ(goals.collision_checks, 8U);
-  EXPECT_EQ(goals.reason, "");
+  EXPECT_EQ(goals.reason, NoPath::None);
 
   asked = -1'000'000;
   const auto none =
       goal_configurations(chain, kGoal, bounds, from_the_seventh, {.max_configurations = 4});
   EXPECT_EQ(none.configurations.cols(), 0);
   EXPECT_EQ(none.found, 40);
-  EXPECT_EQ(none.reason, "every goal collides");
+  EXPECT_EQ(none.reason, NoPath::GoalsCollide);
 }
 
 TEST(GoalConfigurations, SayWhyThereAreNone) {
@@ -100,14 +100,14 @@ TEST(GoalConfigurations, SayWhyThereAreNone) {
   const Eigen::Matrix2Xd bounds = bounds_around_zero(chain);
   const auto far = goal_configurations(chain, planar_pose(3, 0, 0), bounds, kEverythingFree);
   EXPECT_EQ(far.configurations.cols(), 0);
-  EXPECT_EQ(far.reason, "goal out of reach");
+  EXPECT_EQ(far.reason, NoPath::GoalOutOfReach);
   const auto blocked =
       goal_configurations(chain, kGoal, bounds, [](const Eigen::VectorXd&) { return false; });
-  EXPECT_EQ(blocked.reason, "every goal collides");
+  EXPECT_EQ(blocked.reason, NoPath::GoalsCollide);
   EXPECT_EQ(blocked.configurations.rows(), 2);
   const Eigen::Matrix2Xd tight = Eigen::Matrix2Xd::Constant(2, 2, 3.0);
   EXPECT_EQ(goal_configurations(chain, kGoal, tight, kEverythingFree).reason,
-            "outside the planning bounds");
+            NoPath::GoalOutsideBounds);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Both, Experience,
 TEST_P(Experience, KnowsNothingAtFirst) {
   const PlanSummary summary = recall(at(0.7, -0.4));
   EXPECT_FALSE(summary.waypoints);
-  EXPECT_EQ(summary.reason, "nothing to recall");
+  EXPECT_EQ(summary.reason, NoPath::NothingRecalled);
   EXPECT_EQ(summary.collision_checks, 0U);
 }
 
@@ -60,7 +60,7 @@ TEST_P(Experience, RecallsAPathThatStillHolds) {
   EXPECT_GT(experience.size(), 0U);
   world.asked = 0;
   const PlanSummary summary = recall(at(0.7, -0.4));
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.waypoints->leftCols<1>(), at(-0.75, -0.45));
   EXPECT_EQ(summary.waypoints->rightCols<1>(), at(0.7, -0.4));
   EXPECT_TRUE(world.path_is_free(*summary.waypoints, kStep));
@@ -75,7 +75,7 @@ TEST_P(Experience, EndsWithItsBudget) {
   world.asked = 0;
   const PlanSummary summary = recall(at(0.7, -0.4), 5);
   EXPECT_FALSE(summary.waypoints);
-  EXPECT_EQ(summary.reason, "checks");
+  EXPECT_EQ(summary.reason, NoPath::MaxChecks);
   EXPECT_EQ(world.asked, 5U);
 }
 
@@ -84,7 +84,7 @@ TEST_P(Experience, MayRecallToAnyGoal) {
   Eigen::MatrixXd goals(2, 2);
   goals << 0, 0.7, 0, -0.4;  // the first one is in the wall
   const PlanSummary summary = recall(goals);
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.waypoints->rightCols<1>(), at(0.7, -0.4));
 }
 
@@ -98,7 +98,7 @@ TEST(LightningExperience, RepairsWhatIsInTheWay) {
   std::mt19937_64 generator(5);
   const PlanSummary summary =
       experience.recall(at(-0.75, -0.45), at(0.7, -0.4), other.is_free(), limits(), generator);
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_TRUE(other.path_is_free(*summary.waypoints, kStep));
 }
 

@@ -72,12 +72,12 @@ INSTANTIATE_TEST_SUITE_P(All, EveryOmplPlanner, testing::ValuesIn(ompl_planner_n
 TEST_P(EveryOmplPlanner, FindsCheckedWaypointsAStepApart) {
   Witness witness;
   const PlanSummary summary = plan(GetParam(), witness, kGoal, options(""));
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   const Eigen::MatrixXd& path = *summary.waypoints;
   EXPECT_EQ(path.col(0), kStart);
   EXPECT_EQ(path.rightCols<1>(), kGoal);
   EXPECT_EQ(summary.collision_checks, witness.asked.size());
-  EXPECT_EQ(summary.reason, "");
+  EXPECT_EQ(summary.reason, NoPath::None);
   for (Eigen::Index i = 0; i < path.cols(); ++i) {
     EXPECT_TRUE(witness.world.free_at(path.col(i)));
     EXPECT_LT(witness.distance_to_asked(path.col(i)), 1e-9);
@@ -93,7 +93,7 @@ TEST_P(EveryOmplPlanner, ReachesTheGoalThatCanBeReached) {
   goals << at(0, -0.5), at(0.05, 0.9), kGoal;  // in the wall twice
   Witness witness;
   const PlanSummary summary = plan(GetParam(), witness, goals, options(""));
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.waypoints->rightCols<1>(), kGoal);
 }
 
@@ -105,7 +105,7 @@ TEST_P(EveryOmplPlanner, AsksNothingBeyondItsBudget) {
     limited.limits.max_checks = limit;
     const PlanSummary summary = plan(GetParam(), witness, kGoal, limited);
     EXPECT_FALSE(summary.waypoints);
-    EXPECT_EQ(summary.reason, "checks");
+    EXPECT_EQ(summary.reason, NoPath::MaxChecks);
     EXPECT_EQ(witness.asked.size(), limit);
     EXPECT_EQ(summary.collision_checks, limit);
   }
@@ -123,7 +123,7 @@ TEST_P(EveryOmplPlanner, TriesEveryGoal) {
   };
   const PlanSummary summary =
       plan_with_ompl(kStart, goals, is_free, gap_sampler(0.7), options(GetParam()), generator);
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.waypoints->rightCols<1>(), kGoal);
 }
 
@@ -133,18 +133,18 @@ TEST(OmplPlanner, StopsInTime) {
   OmplOptions limited = options("");
   limited.limits.max_checks = std::numeric_limits<std::uint64_t>::max();
   limited.limits.time_limit = std::chrono::milliseconds(20);
-  EXPECT_EQ(plan("RRTConnect", witness, kGoal, limited).reason, "time");
+  EXPECT_EQ(plan("RRTConnect", witness, kGoal, limited).reason, NoPath::TimeLimit);
 }
 
 TEST(OmplPlanner, SaysWhyItDidNotPlan) {
   Witness witness;
-  EXPECT_EQ(plan("RRT", witness, at(0, 0), options("")).reason, "every goal collides");
-  EXPECT_EQ(plan("RRT", witness, Eigen::MatrixXd(2, 0), options("")).reason, "no goal");
+  EXPECT_EQ(plan("RRT", witness, at(0, 0), options("")).reason, NoPath::GoalsCollide);
+  EXPECT_EQ(plan("RRT", witness, Eigen::MatrixXd(2, 0), options("")).reason, NoPath::NoGoal);
   const PlanSummary there = plan("RRT", witness, kStart, options(""));
   ASSERT_TRUE(there.waypoints);
   EXPECT_EQ(there.waypoints->cols(), 2);
   witness.world.half_thickness = 0.9;
-  EXPECT_EQ(plan("RRT", witness, kGoal, options("")).reason, "start collides");
+  EXPECT_EQ(plan("RRT", witness, kGoal, options("")).reason, NoPath::StartCollides);
 }
 
 TEST(OmplPlanner, RefusesAnUnknownNameWithThoseThereAre) {
@@ -180,7 +180,8 @@ TEST(OmplPlanner, FollowsAThinRegion) {
       const auto summary = plan_with_ompl(LineArm::at_height(-1), LineArm::at_height(1),
                                           ConstrainedFreedom{is_free, constraint},
                                           ConfigurationSampler(arm.bounds), stepped, generator);
-      ASSERT_TRUE(summary.waypoints) << name << ": " << summary.reason << " at step " << step;
+      ASSERT_TRUE(summary.waypoints)
+          << name << ": " << describe(summary.reason) << " at step " << step;
       EXPECT_EQ(summary.collision_checks, asked);
       EXPECT_EQ(summary.projections, constraint.projections());
       EXPECT_EQ(summary.waypoints->col(0), LineArm::at_height(-1));
@@ -206,7 +207,7 @@ TEST(OmplPlanner, AsksAboutTheConstraintFirst) {
   EXPECT_EQ(plan_with_ompl(off, LineArm::at_height(1), ConstrainedFreedom{never, constraint},
                            ConfigurationSampler(arm.bounds), options("RRT"), generator)
                 .reason,
-            "start violates the constraint");
+            NoPath::StartOffConstraint);
 }
 
 TEST(OmplPlanner, ConstrainedWaypointsAreThoseThatWereAsked) {
@@ -222,7 +223,7 @@ TEST(OmplPlanner, ConstrainedWaypointsAreThoseThatWereAsked) {
     const auto summary = plan_with_ompl(LineArm::at_height(-0.5), LineArm::at_height(0.5),
                                         ConstrainedFreedom{is_free, constraint},
                                         ConfigurationSampler(arm.bounds), options(name), generator);
-    ASSERT_TRUE(summary.waypoints) << name << ": " << summary.reason;
+    ASSERT_TRUE(summary.waypoints) << name << ": " << describe(summary.reason);
     for (const auto& q : summary.waypoints->colwise())
       EXPECT_EQ(witness.distance_to_asked(q), 0) << name;
   }

@@ -67,9 +67,9 @@ PlanSummary plan(WallWorld& world, const Eigen::MatrixXd& goals,
 }
 
 void expect_law(const WallWorld& world, const PlanSummary& summary) {
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   const Eigen::MatrixXd& path = *summary.waypoints;
-  EXPECT_EQ(summary.reason, "");
+  EXPECT_EQ(summary.reason, NoPath::None);
   EXPECT_EQ(summary.collision_checks, world.asked);
   EXPECT_EQ(path.col(0), kStart);
   for (Eigen::Index i = 0; i < path.cols(); ++i) {
@@ -136,7 +136,7 @@ TEST(RepetitionRoadmap, StopsAtItsLastCheck) {
     const PlanSummary summary = plan(world, kGoal, knowing_sampler(), limited);
     EXPECT_EQ(world.asked, limit);
     EXPECT_EQ(summary.collision_checks, limit);
-    EXPECT_EQ(summary.reason, "checks");
+    EXPECT_EQ(summary.reason, NoPath::MaxChecks);
     EXPECT_FALSE(summary.waypoints);
   }
 }
@@ -208,10 +208,10 @@ TEST(RepetitionRoadmap, GoalsWithinReach) {
 
 TEST(RepetitionRoadmap, SaysWhyItDidNotPlan) {
   WallWorld world;
-  EXPECT_EQ(plan(world, at(0, 0)).reason, "every goal collides");
-  EXPECT_EQ(plan(world, Eigen::MatrixXd(2, 0)).reason, "no goal");
+  EXPECT_EQ(plan(world, at(0, 0)).reason, NoPath::GoalsCollide);
+  EXPECT_EQ(plan(world, Eigen::MatrixXd(2, 0)).reason, NoPath::NoGoal);
   world.half_thickness = 0.9;
-  EXPECT_EQ(plan(world, kGoal).reason, "start collides");
+  EXPECT_EQ(plan(world, kGoal).reason, NoPath::StartCollides);
   RoadmapOptions negative = options();
   negative.draws = -1;
   EXPECT_THROW(plan(world, kGoal, knowing_sampler(), negative), std::invalid_argument);
@@ -253,7 +253,7 @@ TEST(RepetitionRoadmap, FollowsAThinRegion) {
   const PlanSummary summary =
       plan_roadmap(LineArm::at_height(-1), LineArm::at_height(1),
                    ConstrainedFreedom{is_free, constraint}, sampler, options(), generator);
-  ASSERT_TRUE(summary.waypoints) << summary.reason;
+  ASSERT_TRUE(summary.waypoints) << describe(summary.reason);
   EXPECT_EQ(summary.iterations, 0u);
   EXPECT_EQ(summary.collision_checks, asked);
   EXPECT_EQ(summary.projections, constraint.projections());
@@ -265,7 +265,7 @@ TEST(RepetitionRoadmap, FollowsAThinRegion) {
   EXPECT_EQ(plan_roadmap(off, LineArm::at_height(1), ConstrainedFreedom{is_free, constraint},
                          sampler, options(), generator)
                 .reason,
-            "start violates the constraint");
+            NoPath::StartOffConstraint);
 }
 
 TEST(RepetitionRoadmap, CarriesAContainerAsBefore) {
@@ -289,7 +289,7 @@ TEST(RepetitionRoadmap, CarriesAContainerAsBefore) {
   carrying->asked = 0;
   const PlanSummary again =
       plan_roadmap(carrying->start, carrying->goals, freedom, sampler, with, generator);
-  ASSERT_TRUE(again.waypoints) << again.reason;
+  ASSERT_TRUE(again.waypoints) << describe(again.reason);
   EXPECT_EQ(again.iterations, 0u);
   EXPECT_EQ(again.collision_checks, carrying->asked);
   EXPECT_LT(again.collision_checks, first.collision_checks);

@@ -163,7 +163,8 @@ TEST(ProblemJson, GoalIsEitherConfigurationsOrPose) {
 }
 
 TEST(ProblemJson, SolidsNeedPositiveExtents) {
-  EXPECT_FALSE(problem_from_json(changed("[1, 2, 0.1]", "[1, 2, 0]")));
+  EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2, 0]")),
+            "scene.boxes[0].size[2]: must be above 0");
   EXPECT_FALSE(problem_from_json(changed("\"radius\": 0.2", "\"radius\": -0.2")));
   EXPECT_EQ(message_of(changed("[1, 2, 0.1]", "[1, 2]")),
             "scene.boxes[0].size: 2 extents, must be 3");

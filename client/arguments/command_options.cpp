@@ -1,0 +1,69 @@
+#include "client/arguments/command_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "proto/types/enum_text.hpp"
+
+namespace kinship::arguments {
+namespace {
+
+/// What is wrong, as CLI11 wants it of a check; empty: nothing.
+template <typename T>
+std::string complaint(const Result<T>& result) {
+  return result ? std::string() : result.error().message;
+}
+
+}  // namespace
+
+std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profile) {
+  CLI::Option* const named =
+      app.add_option("--profile", profile,
+                     "profile of the distribution: default or paper, and what is to be different")
+          ->capture_default_str();
+  // CLI11 reads options in the order they were added: this one finds the profile complete.
+  CLI::Option* const estimator =
+      app.add_option_function<std::string>(
+             "--estimator",
+             [&profile](const std::string& word) { profile += ",estimator=" + word; },
+             "gmm: a Gaussian mixture; kde: a kernel density estimate (default: the profile's)")
+          ->check(CLI::IsMember({"gmm", "kde"}));
+  return {named, estimator};
+}
+
+void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
+  app.add_option("--base", arguments.base_link, "base link (required with a URDF file)");
+  app.add_option("--tip", arguments.tip_link, "tip link (required with a URDF file)");
+  app.add_option("--label", arguments.label, "name for people (default: the folder's or file's)");
+  app.add_option("--transfer", arguments.transfer,
+                 "transfer frame in the tip link, \"x y z qx qy qz qw\"");
+  app.add_option("--axes", arguments.axes,
+                 "coordinates that matter, of x,y,z,roll,pitch,yaw (default: all)");
+  app.add_option("--hold", arguments.held,
+                 "JOINT=VALUE of a joint off the chain, rad or m; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--srdf", arguments.srdf,
+                 "SRDF file; the links of its disable_collisions are never checked against each "
+                 "other");
+  app.add_option("--package", arguments.packages,
+                 "NAME=DIR, where meshes named package://NAME/... are; may be repeated")
+      ->allow_extra_args(false);
+}
+
+void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
+  app.add_option("--sources", arguments.sources,
+                 "only experience of these robots: labels or digests, separated by commas")
+      ->check([](const std::string& text) { return complaint(parse_robot_names(text)); });
+  app.add_option("--weighting", arguments.weighting,
+                 "sources: every robot the same; paths: by number of paths (default: the "
+                 "profile's)")
+      ->check([](const std::string& text) { return complaint(parse_word<Weighting>(text)); });
+  app.add_option("--since", arguments.since,
+                 "only experience received since a date or time in UTC (2026-11-21T05:32), an age "
+                 "(90m, 12h, 14d, 2w) or a Unix time in ms")
+      ->check([](const std::string& text) {
+        return complaint(parse_since(text, std::chrono::system_clock::now()));
+      });
+}
+
+}  // namespace kinship::arguments

@@ -1,0 +1,82 @@
+#include <iostream>
+
+#include "client/cli/export_commands.hpp"
+#include "client/cli/groups.hpp"
+#include "client/cli/import_command.hpp"
+#include "client/cli/listings.hpp"
+#include "client/cli/retire_commands.hpp"
+
+namespace kinship::cli {
+namespace {
+
+void add_export(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = add_command(
+      group, "export", "Attempts and the robots they need, as JSON Lines for `paths import`",
+      "kinship paths export --task box_to_shelf --output box_to_shelf.jsonl");
+  command->add_option("--task", options->task, "Of this task (default: all)");
+  command->add_option("--robot", options->robot, "Of this robot: label or digest prefix");
+  command->add_option("--output", options->output, "File (default: standard output)");
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    return export_paths(server, *options, session.out, session.err);
+  });
+}
+
+void add_import(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<ImportOptions>();
+  CLI::App* command = add_command(
+      group, "import", "Hand over the lines of an experience file; may be repeated",
+      "kinship paths import box_to_shelf.jsonl\n  zcat old.jsonl.gz | kinship paths import -");
+  command->add_option("file", options->file, "JSON Lines; - is standard input")->required();
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->json = session.json;
+    options->progress = session.is_on_terminal();
+    return import_paths(server, *options, std::cin, session.out, session.err);
+  });
+}
+
+}  // namespace
+
+void add_paths(CLI::App& app, Session& session) {
+  constexpr const char* kId = "UUID of the report, as paths list shows it";
+  constexpr const char* kExampleUuid = "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55";
+  CLI::App* paths = add_group(app, "paths", "Reported paths");
+  add_list(*paths, session, list_paths, true);
+  add_one(*paths, session,
+          {"show", "id", kId, "A path by its report's UUID",
+           std::string("kinship paths show ") + kExampleUuid},
+          show_path);
+  add_export(*paths, session);
+  add_import(*paths, session);
+  add_one(*paths, session,
+          {"retire", "id", kId, "Take a path out of every fit; it is kept for the record",
+           std::string("kinship paths retire ") + kExampleUuid},
+          retire_path);
+}
+
+void add_tasks(CLI::App& app, Session& session) {
+  CLI::App* tasks = add_group(app, "tasks", "Tasks and the robots that have experience of them");
+  add_list(*tasks, session, list_tasks);
+  add_one(*tasks, session,
+          {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
+          show_task);
+
+  struct Options {
+    std::string task;
+    bool yes = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* reset = add_command(
+      *tasks, "reset", "Retire all paths of a task: out of every fit, kept for the record",
+      "kinship tasks reset box_to_shelf\n  kinship tasks reset box_to_shelf --yes");
+  reset->add_option("task", options->task, "Its name")->required();
+  reset->add_flag("--yes", options->yes,
+                  "Do it; without, it is only said what would happen (exit code 2)");
+  add_json(*reset, session);
+  on_run_with_server(*reset, session, [&session, options](link::Client& server) {
+    return reset_task(server, options->task, options->yes, session.json, session.out, session.err);
+  });
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,282 @@
+#include "client/cli/robot_commands.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <optional>
+#include <ostream>
+#include <random>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/robot_text.hpp"
+#include "client/cli/table.hpp"
+#include "client/files/lines.hpp"
+#include "proto/json/robot_answers_json.hpp"
+#include "proto/types/pose.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/closed_form.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr int kJointDigits = 4;
+
+double cpu_time_s() {
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+Error in_line(const std::filesystem::path& file, std::size_t number, const Error& error) {
+  return {error.code,
+          "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
+}
+
+struct DescribedRobot {
+  RobotDescription description;
+  kinematics::Chain chain;
+};
+
+/// The robot that the arguments describe. Empty with an exit code in `code` if there is none:
+/// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
+std::optional<DescribedRobot> read_robot(const char* command,
+                                         const models::RobotArguments& arguments, std::ostream& err,
+                                         int& code) {
+  auto description = models::describe_robot(arguments);
+  if (!description) {
+    code = refuse(command, description.error(), err);
+    return std::nullopt;
+  }
+  auto chain = kinematics::read_chain(*description);
+  if (!chain) {
+    refuse(command, chain.error(), err);
+    code = kFailed;
+    return std::nullopt;
+  }
+  return DescribedRobot{*std::move(description), *std::move(chain)};
+}
+
+/// A robot's collision geometry: planning needs it, kinematics and the server do not.
+/// \return empty if it cannot be known here, and says why on `err`; of a description that is no
+///         chain nothing is said.
+std::optional<geometry::RobotShapes> read_geometry(const char* command,
+                                                   const models::RobotArguments& arguments,
+                                                   const RobotDescription& description,
+                                                   std::ostream& err) {
+  const auto chain = kinematics::read_chain(description);
+  if (!chain)
+    return std::nullopt;
+  auto shapes = models::load_shapes(arguments, description, *chain);
+  if (shapes)
+    return *std::move(shapes);
+  err << command << ": without collision geometry: " << shapes.error().message << '\n';
+  return std::nullopt;
+}
+
+const char* reason_text(inverse::NoSolution reason) {
+  switch (reason) {
+    case inverse::NoSolution::OutOfReach:
+      return "out_of_reach";
+    case inverse::NoSolution::Limits:
+      return "limits";
+    case inverse::NoSolution::NotConverged:
+      return "not_converged";
+    default:
+      return "";
+  }
+}
+
+const char* type_text(kinematics::JointType type) {
+  switch (type) {
+    case kinematics::JointType::Revolute:
+      return "revolute";
+    case kinematics::JointType::Continuous:
+      return "continuous";
+    default:
+      return "prismatic";
+  }
+}
+
+InverseAnswer solve(const inverse::Solver& solver, const Eigen::Isometry3d& T_base_tip,
+                    const inverse::InverseOptions& options) {
+  InverseAnswer answer;
+  answer.solver = solver.name();
+  const double start_s = cpu_time_s();
+  const inverse::InverseSolutions solutions = solver.solve(T_base_tip, options);
+  answer.time_us = 1e6 * (cpu_time_s() - start_s);
+  answer.solutions = solutions.configurations;
+  answer.reason = reason_text(solutions.reason);
+  return answer;
+}
+
+void print_answer(const InverseAnswer& answer, bool json, std::ostream& out) {
+  if (json) {
+    out << json::to_json(answer) << '\n';
+    return;
+  }
+  out << answer.solver << ": " << answer.solutions.cols() << " solutions in "
+      << number_text(answer.time_us, 0) << " us";
+  if (!answer.reason.empty())
+    out << " (" << answer.reason << ')';
+  out << '\n';
+  for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column) {
+    for (Eigen::Index joint = 0; joint < answer.solutions.rows(); ++joint)
+      out << (joint == 0 ? "  " : " ")
+          << number_text(answer.solutions(joint, column), kJointDigits);
+    out << '\n';
+  }
+}
+
+/// Solves poses that random configurations reach.
+void measure(const CheckOptions& options, const kinematics::Chain& chain,
+             const inverse::Solver& solver, RobotCheck& check) {
+  std::mt19937_64 generator(options.seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double time_us = 0;
+  for (int i = 0; i < options.poses; ++i) {
+    Eigen::VectorXd q(chain.dof());
+    for (Eigen::Index joint = 0; joint < chain.dof(); ++joint)
+      q(joint) =
+          chain.lower()(joint) + unit(generator) * (chain.upper()(joint) - chain.lower()(joint));
+    const InverseAnswer answer = solve(solver, kinematics::T_base_tip(chain, q),
+                                       {.max_solutions = options.max_solutions,
+                                        .min_distance = options.min_distance,
+                                        .seed = options.seed + static_cast<std::uint64_t>(i)});
+    time_us += answer.time_us;
+    check.solutions_per_pose += static_cast<double>(answer.solutions.cols());
+    if (answer.solutions.cols() == 0)
+      ++check.poses_without_solution;
+  }
+  check.poses = static_cast<std::uint64_t>(options.poses);
+  check.solutions_per_pose /= std::max(1, options.poses);
+  check.time_per_pose_us = time_us / std::max(1, options.poses);
+}
+
+std::string geometry_text(const geometry::RobotShapes& geometry) {
+  const auto around_meshes = static_cast<std::uint64_t>(
+      std::ranges::count_if(geometry.shapes, &geometry::LinkShape::approximate));
+  return count_text(geometry.shapes.size(), "shape") +
+         (around_meshes > 0 ? ", " + std::to_string(around_meshes) + " of them around meshes"
+                            : "") +
+         "; " + count_text(geometry.never_colliding.size(), "pair") +
+         " of links never checked against each other";
+}
+
+void print_check(const RobotCheck& check, const RobotDescription& description,
+                 const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
+  out << "robot       " << check.robot.hex() << '\n'
+      << "chain       " << check.base_link << " -> " << check.tip_link << ", "
+      << check.joints.size() << " joints\n";
+  print_transfer(description, out);
+  out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
+      << "structure   " << check.structure << '\n'
+      << "solver      " << check.solver << '\n'
+      << "inverse     " << number_text(check.solutions_per_pose, 2) << " solutions and "
+      << number_text(check.time_per_pose_us, 1) << " us (CPU) per reachable pose; "
+      << check.poses_without_solution << " of " << check.poses << " poses without a solution\n\n";
+  Table table({"JOINT", "TYPE", "LOWER", "UPPER"});
+  for (const CheckedJoint& joint : check.joints)
+    table.add_row({joint.name, joint.type, number_text(joint.lower, kJointDigits),
+                   number_text(joint.upper, kJointDigits)});
+  table.print(out);
+}
+
+void print_same_arms(const std::vector<std::string>& labels, std::ostream& out) {
+  if (labels.empty())
+    return;
+  out << "the same arm as";
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    out << (i == 0 ? " " : ", ") << labels[i];
+  out << ": experience passes between them as it is\n";
+}
+
+}  // namespace
+
+int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& err) {
+  int code = kDone;
+  constexpr const char* kCommand = "robots check";
+  const auto robot = read_robot(kCommand, options.robot, err, code);
+  if (!robot)
+    return code;
+  const kinematics::Chain& chain = robot->chain;
+  const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
+  RobotCheck check;
+  check.robot = chain.digest();
+  check.base_link = chain.base_link();
+  check.tip_link = chain.tip_link();
+  check.structure = inverse::describe_structure(chain);
+  const inverse::Solver solver(chain);
+  check.solver = solver.name();
+  for (const kinematics::Joint& joint : chain.joints())
+    check.joints.push_back({joint.name, type_text(joint.type), joint.lower, joint.upper});
+  measure(options, chain, solver, check);
+  if (options.json)
+    out << json::to_json(check) << '\n';
+  else
+    print_check(check, robot->description, geometry, out);
+  return kDone;
+}
+
+int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "robots ik";
+  int code = kDone;
+  const auto robot = read_robot(kCommand, options.robot, err, code);
+  if (!robot)
+    return code;
+  const inverse::Solver solver(robot->chain);
+  const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
+                                                   .min_distance = options.min_distance,
+                                                   .seed = options.seed};
+  if (options.poses.empty()) {
+    const auto T_base_tip = models::parse_pose(options.pose);
+    if (!T_base_tip)
+      return refuse(kCommand, T_base_tip.error(), err);
+    print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
+    return kDone;
+  }
+  std::ifstream stream = files::open_input(options.poses);
+  files::for_each_line(stream, options.poses.string(), [&](const files::Line& line) {
+    const Result<Eigen::Isometry3d> T_base_tip =
+        line.text ? json::pose_from_json(*line.text) : line.text.error();
+    if (T_base_tip)
+      print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
+    else
+      code = refuse(kCommand, in_line(options.poses, line.number, T_base_tip.error()), err);
+    return T_base_tip.has_value();
+  });
+  return code;
+}
+
+int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
+                   std::ostream& out, std::ostream& err) {
+  constexpr const char* kCommand = "robots register";
+  const auto description = models::describe_robot(arguments);
+  if (!description)
+    return refuse(kCommand, description.error(), err);
+  read_geometry(kCommand, arguments, *description, err);
+  const auto reply = server.register_robot(*description);
+  if (!reply)
+    return refuse(kCommand, reply.error(), err);
+  if (reply->status == RegisterStatus::Refused) {
+    err << kCommand << ": refused: " << reply->message << '\n';
+    return kWrongUsage;
+  }
+  if (!reply->message.empty())
+    err << kCommand << ": " << reply->message << "; the label '" << description->label
+        << "' is not kept\n";
+  if (json)
+    out << json::to_json(*reply, description->label) << '\n';
+  else
+    out << (reply->message.empty() ? description->label + " is " : "") << "robot "
+        << reply->robot.short_hex() << ": " << reply->dof << " joints, " << reply->solver
+        << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
+  if (!json)
+    print_same_arms(reply->same_arms, out);
+  return kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,156 @@
+#include "client/planner/guidance.hpp"
+
+#include <cstdio>
+#include <utility>
+
+namespace kinship::planner {
+namespace {
+
+GuidanceAnswer refusal(NoGuidance why, std::string message) {
+  return {std::nullopt, std::nullopt, why, std::move(message)};
+}
+
+std::string formatted(const char* format, double value) {
+  char text[24];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// How the run's queries will be planned.
+std::string describe(const planning::ArmChooser& arms, double guided_fraction) {
+  constexpr double kPercent = 100;
+  const double guided = arms.guided_part();
+  if (guided_fraction == 0)
+    return "uniform";
+  const std::string words = "share " + formatted("%.2f", guided_fraction);
+  if (arms.is_sampling())
+    return words + ", the first query guided with probability " + formatted("%.2f", guided);
+  if (guided == 1)
+    return words;
+  return words + ", " + formatted("%.3g", kPercent * (1 - guided)) +
+         " % of the queries uniform as control";
+}
+
+std::string describe(const Distribution& distribution, const planning::ArmChooser& arms,
+                     double guided_fraction) {
+  std::string text =
+      "distribution " + distribution.id.short_hex() + " revision " +
+      std::to_string(distribution.revision) + ", " + std::to_string(distribution.mixture->size()) +
+      (distribution.mixture->shares_covariance() ? " kernels of " : " components fitted to ") +
+      std::to_string(distribution.configurations) + " configurations from ";
+  for (std::size_t i = 0; i < distribution.sources.size(); ++i) {
+    const Source& source = distribution.sources[i];
+    text += (i == 0 ? "" : ", ") +
+            (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
+            std::to_string(source.paths) + " paths)";
+  }
+  text += "; " + describe(arms, guided_fraction);
+  if (!distribution.advice.evidence.empty())
+    text += " (" + distribution.advice.evidence + ")";
+  if (!distribution.reason.empty())
+    text += "; warning: " + distribution.reason;
+  return text;
+}
+
+GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceOptions& wanted) {
+  if (!distribution.mixture || distribution.mixture->dimension() != wanted.dof)
+    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
+                                           " has no mixture over " + std::to_string(wanted.dof) +
+                                           " joints");
+  const double told = distribution.advice.guided_share;
+  if (!(told >= 0 && told <= 1))
+    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
+                                           " has guided share " + std::to_string(told) +
+                                           ", must be 0 to 1");
+  const double guided_fraction = planning::guided_fraction(distribution.advice, wanted.arms);
+  GuidanceAnswer answer;
+  answer.guidance =
+      Guidance{distribution.id, distribution.revision, *distribution.mixture, guided_fraction};
+  answer.arms.emplace(distribution.advice, wanted.arms);
+  answer.message = describe(distribution, *answer.arms, guided_fraction);
+  return answer;
+}
+
+std::string or_else(const std::string& message, const std::string& otherwise) {
+  return message.empty() ? otherwise : message;
+}
+
+}  // namespace
+
+GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
+                              const std::optional<Eigen::Isometry3d>& T_task_base) {
+  FetchRequest request;
+  request.task = wanted.task;
+  request.robot = wanted.robot;
+  request.T_task_base = T_task_base;
+  request.profile = wanted.profile;
+  request.selection = wanted.selection;
+  request.deadline = wanted.wait;
+  const Result<FetchReply> reply = fetch(request);
+  if (!reply) {
+    const bool nobody = reply.error().code == ErrorCode::Unavailable;
+    return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
+  }
+  switch (reply->status) {
+    case FetchStatus::Ready:
+      if (reply->distribution)
+        return answer_with(*reply->distribution, wanted);
+      return refusal(NoGuidance::Failed, "the server sent no distribution");
+    case FetchStatus::NoExperience:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply->message, "no experience with task '" + wanted.task + "'"));
+    case FetchStatus::UnknownRobot:
+      return refusal(
+          NoGuidance::NotFound,
+          or_else(reply->message, "the server does not know robot " + wanted.robot.short_hex()));
+    case FetchStatus::Failed:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply->distribution ? reply->distribution->reason : reply->message,
+                             "nothing could be transferred or fitted"));
+    case FetchStatus::Pending:
+      return refusal(NoGuidance::Failed, "the distribution is still being made after " +
+                                             std::to_string(wanted.wait.count()) + " ms");
+    case FetchStatus::Busy:
+      return refusal(NoGuidance::Failed, or_else(reply->message, "the server is busy"));
+    case FetchStatus::Refused:
+      break;
+  }
+  return refusal(NoGuidance::Failed, or_else(reply->message, "the server refused the request"));
+}
+
+GuidanceBook::Key GuidanceBook::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {
+  if (!T_task_base)
+    return std::nullopt;
+  return to_pose_array(snapped(*T_task_base));
+}
+
+std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
+    const std::optional<Eigen::Isometry3d>& T_task_base) {
+  const Key key = key_of(T_task_base);
+  if (const auto known = answers_.find(key); known != answers_.end())
+    return {known->second, false};
+  GuidanceAnswer answer = server_missing_
+                              ? refusal(NoGuidance::NoServer, "no server answered before")
+                              : fetch_guidance(fetch_, wanted_, T_task_base);
+  if (answer.why_not == NoGuidance::NoServer)
+    server_missing_ = true;
+  if (answer.arms)  // of the same task and robot as those before, and newer
+    arms_ = answer.arms;
+  return {answers_.emplace(key, std::move(answer)).first->second, true};
+}
+
+QueryGuidance GuidanceBook::choose(const Problem& problem) const {
+  const auto known = answers_.find(key_of(problem.T_task_base));
+  if (known == answers_.end())
+    return {.why_not = "nobody was asked for guidance at its placement"};
+  if (!known->second.guidance)
+    return {.why_not = known->second.message};
+  return {.guidance = &*known->second.guidance, .arm = arms_->choose(planning::arm_seed(problem))};
+}
+
+void GuidanceBook::add(const PlannedProblem& planned) {
+  if (arms_)
+    arms_->add(planned.result.arm, planned.outcome, planned.result.collision_checks);
+}
+
+}  // namespace kinship::planner

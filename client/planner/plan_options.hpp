@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "client/planner/plan_settings.hpp"
+#include "client/planning/arm_choice.hpp"
+#include "proto/types/selection.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+namespace kinship::planner {
+
+enum class GuidanceMode {
+  Uniform,  ///< no distribution is asked for
+  Auto,     ///< guided or control, query by query, by what both ways cost so far
+  Always,   ///< every query that has a distribution is guided, without control
+  Require   ///< as Auto, and a run without a distribution fails
+};
+
+/// The command line of kinship-plan.
+struct PlanOptions {
+  std::filesystem::path problems;  ///< "-": standard input
+  models::RobotArguments robot;
+  std::string task;
+  GuidanceMode guidance = GuidanceMode::Auto;
+  std::string profile = "default";
+  planning::ArmOptions arms;
+  Selection selection;               ///< without its sources
+  std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
+  bool report = false;
+  bool record_scenes = true;  ///< reports carry their problem's scene
+  std::string machine;        ///< empty: the host's name
+  PlanSettings settings;
+  std::uint64_t seed_offset = 0;  ///< added to each problem's seed
+  std::filesystem::path output;   ///< empty: standard output
+  bool json = false;              ///< results as JSON Lines also where people read them
+  std::uint32_t domain = 0;
+  std::string server = "127.0.0.1";  ///< host of kinshipd
+  std::chrono::milliseconds timeout{5000};
+  std::chrono::milliseconds wait{30000};
+  std::filesystem::path outbox;  ///< empty: the client's default
+};
+
+/// An option that has no effect beside the others is told on `err`, or refused.
+/// \return the options, or the exit code after help (0) or a wrong command line (2, with what is
+///         wrong on `err`).
+std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* argv,
+                                                  std::ostream& out, std::ostream& err);
+
+}  // namespace kinship::planner

@@ -1,0 +1,185 @@
+#include "client/planner/plan_run.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/planner/attempt_record.hpp"
+#include "client/planner/problem_lines.hpp"
+#include "client/planner/progress.hpp"
+#include "client/planner/scene_record.hpp"
+#include "client/planner/server_line.hpp"
+#include "proto/json/problem_json.hpp"
+#include "robots/models/loaded_robot.hpp"
+#include "robots/models/scene_meshes.hpp"
+
+namespace kinship::planner {
+namespace {
+
+std::string host_name() {
+  std::array<char, 65> name{};  // HOST_NAME_MAX and a terminator
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+int exit_code_without(NoGuidance why_not) {
+  switch (why_not) {
+    case NoGuidance::None:
+      return kDone;
+    case NoGuidance::NoServer:
+      return kNoServer;
+    case NoGuidance::NotFound:
+      return kNotFound;
+    case NoGuidance::Failed:
+      break;
+  }
+  return kFailed;
+}
+
+void write_result(const ProblemResult& result, const RunStreams& streams) {
+  streams.results << (streams.results_for_people ? result_text(result) : json::to_json(result))
+                  << std::endl;  // flushed: a reader may follow
+  if (!streams.results)
+    throw Failure(ErrorCode::Storage, "cannot write the results");
+}
+
+/// Gives attempts the scenes of their problems, and says once why one goes without.
+class SceneRecorder {
+ public:
+  SceneRecorder(const PlanOptions& options, const kinematics::Chain& chain, std::ostream& messages)
+      : wanted_(options.record_scenes), chain_(chain), messages_(messages) {}
+
+  void add(const Problem& problem, Attempt& attempt) {
+    const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty();
+    if (!wanted_ || (is_open && problem.attached.empty()))
+      return;
+    Result<RecordedScene> scene = record_scene(chain_, problem);
+    if (scene)
+      attempt.scene = std::move(scene).value();
+    else if (!std::exchange(told_, true))
+      messages_ << "problem '" << problem.name
+                << "' is reported without its scene: " << scene.error().message << "\n";
+  }
+
+ private:
+  const bool wanted_;
+  const kinematics::Chain& chain_;
+  std::ostream& messages_;
+  bool told_ = false;
+};
+
+/// The answer to a problem whose meshes cannot be had.
+PlannedProblem unread(const Problem& problem, const Error& error) {
+  PlannedProblem planned;
+  planned.result.name = problem.name;
+  planned.result.time_limit_s = problem.time_limit_s;
+  planned.result.reason = error.message;
+  return planned;
+}
+
+GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::Chain& chain) {
+  GuidanceOptions wanted;
+  wanted.task = options.task;
+  wanted.robot = chain.digest();
+  wanted.dof = chain.dof();
+  wanted.profile = options.profile;
+  wanted.selection = options.selection;
+  wanted.arms = options.arms;
+  wanted.wait = options.wait;
+  return wanted;
+}
+
+/// The problems of a run, one after another.
+class Run {
+ public:
+  Run(const PlanOptions& options, const models::LoadedRobot& robot, ServerLine& server,
+      const RunStreams& streams)
+      : options_(options),
+        robot_(robot.chain, robot.shapes),
+        server_(server),
+        streams_(streams),
+        reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
+                  options.task},
+        meshes_(options.problems.parent_path(),
+                models::parse_packages(options.robot.packages).value_or_throw()),
+        scenes_(options, robot_.chain, streams.messages) {}
+
+  /// \return whether every line has its result; false if `stop` ended it.
+  bool answer(std::vector<ProblemLine>& lines, Progress& progress,
+              const std::function<bool()>& stop) {
+    for (ProblemLine& line : lines) {
+      if (stop())
+        return false;
+      PlannedProblem planned;
+      if (line.problem)
+        planned = plan(*std::move(line.problem), stop);
+      else
+        planned.result = broken_line_result(line.number, line.problem.error());
+      if (planned.interrupted)
+        return false;
+      write_result(planned.result, streams_);  // after: what has a result is in the outbox
+      progress.add(planned.result, planned.attempted);
+    }
+    return true;
+  }
+
+ private:
+  PlannedProblem plan(Problem problem, const std::function<bool()>& stop) {
+    problem.seed += options_.seed_offset;
+    if (const auto error = meshes_.read(problem.scene, problem.attached))
+      return unread(problem, *error);
+    PlannedProblem planned =
+        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop);
+    if (planned.interrupted || !planned.attempted)
+      return planned;
+    server_.add(planned);
+    if (options_.report)
+      server_.report([&] {
+        Attempt attempt = make_attempt(reporter_, problem, planned, options_.settings);
+        scenes_.add(problem, attempt);
+        return attempt;
+      });
+    return planned;
+  }
+
+  const PlanOptions& options_;
+  const PlannedRobot robot_;
+  ServerLine& server_;
+  const RunStreams& streams_;
+  const Reporter reporter_;
+  models::SceneMeshes meshes_;
+  SceneRecorder scenes_;
+};
+
+}  // namespace
+
+RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
+                    const std::function<bool()>& stop) {
+  const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
+  ServerLine server(options, robot.description, streams.messages, stop);
+  if (server.is_robot_refused()) {
+    streams.messages << "nothing is planned: the robot cannot be registered\n";
+    return {kFailed, false};
+  }
+  const NoGuidance why_not = server.fetch_guidance(guidance_options(options, robot.chain), lines);
+  if (options.guidance == GuidanceMode::Require && why_not != NoGuidance::None && !stop()) {
+    streams.messages << "nothing is planned: --guidance require, and there is none\n";
+    return {exit_code_without(why_not), false};
+  }
+
+  Progress progress(streams.messages, streams.messages_on_terminal, lines.size());
+  const bool is_complete = Run(options, robot, server, streams).answer(lines, progress, stop);
+  progress.finish();
+  const bool is_all_kept = server.finish();
+  if (!is_complete)
+    streams.messages << "interrupted: the remaining problems were not planned\n";
+  const bool is_done =
+      is_complete && is_all_kept && !progress.nothing_attempted() && !server.is_robot_refused();
+  return {is_done ? kDone : kFailed, is_complete};
+}
+
+}  // namespace kinship::planner

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "client/planner/planner_choice.hpp"
+#include "client/planning/guidance_gate.hpp"
+
+namespace kinship::planner {
+
+/// How every problem of a run is planned, guided or not.
+struct PlanSettings {
+  double resolution = 0.05;             ///< between checked configurations, joint units
+  double overshoot = 1.5;               ///< see planning::BirrtOptions
+  std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
+  std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
+  int max_goals = 20;                   ///< goal configurations found for a goal pose
+  /// Guided queries farther from the distribution are planned uniformly (planning::query_distance).
+  double gate_distance = planning::kGateDistance;
+  PlannerChoice planner = {};
+};
+
+}  // namespace kinship::planner

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+#include "proto/types/problem.hpp"
+
+namespace kinship::planner {
+
+/// Tells people how far a run is: one line that is written over on a terminal, otherwise a line
+/// for every tenth of the problems.
+class Progress {
+ public:
+  Progress(std::ostream& stream, bool terminal, std::size_t total)
+      : stream_(stream), terminal_(terminal), total_(total) {}
+
+  /// \param attempted  false: answered without planning.
+  void add(const ProblemResult& result, bool attempted);
+
+  /// Ends the line and writes the sums.
+  void finish();
+
+  /// Whether there were problems, and none of them could be planned at all.
+  bool nothing_attempted() const noexcept { return done_ > 0 && attempted() == 0; }
+
+ private:
+  std::size_t attempted() const noexcept { return guided_ + control_ + uniform_; }
+
+  std::ostream& stream_;
+  bool terminal_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  std::size_t solved_ = 0;
+  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // attempts by arm
+  std::size_t gated_ = 0;                               // of the guided ones
+  std::uint64_t checks_ = 0;
+  double planning_time_s_ = 0;
+};
+
+/// A result as one line for people, without line end: what came of it, what it cost, guided by what
+/// or why not.
+std::string result_text(const ProblemResult& result);
+
+}  // namespace kinship::planner

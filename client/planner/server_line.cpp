@@ -1,0 +1,171 @@
+#include "client/planner/server_line.hpp"
+
+#include <exception>
+#include <future>
+#include <ostream>
+#include <utility>
+
+#include "client/link/robot_names.hpp"
+
+namespace kinship::planner {
+namespace {
+
+NoGuidance why_not(const Error& error) {
+  switch (error.code) {
+    case ErrorCode::Unavailable:
+      return NoGuidance::NoServer;
+    case ErrorCode::NotFound:
+      return NoGuidance::NotFound;
+    default:
+      return NoGuidance::Failed;
+  }
+}
+
+}  // namespace
+
+ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
+                       std::ostream& messages, const std::function<bool()>& stop)
+    : options_(options), description_(description), messages_(messages), stop_(stop) {
+  if (options_.guidance == GuidanceMode::Uniform)
+    why_unguided_ = options_.task.empty() ? "no task is named" : "--guidance uniform";
+  if (options_.guidance == GuidanceMode::Uniform && !options_.report)
+    return;
+  link::ClientOptions client;
+  client.domain = options_.domain;
+  client.server = options_.server;
+  client.has_outbox = options_.report;  // who only looks delivers nothing
+  client.outbox = options_.outbox;
+  client.timeout = options_.timeout;
+  try {
+    client_ = std::make_unique<link::Client>(client);
+    register_robot();
+  } catch (const std::exception& exception) {
+    trouble_ = Error{ErrorCode::Internal, exception.what()};
+    messages_ << "no line to a server: " << exception.what() << '\n';
+  }
+}
+
+template <typename Reply>
+Result<Reply> ServerLine::wait_for(const std::function<Result<Reply>()>& call) {
+  constexpr std::chrono::milliseconds kPatience{50};
+  auto reply = std::async(std::launch::async, call);
+  while (reply.wait_for(kPatience) != std::future_status::ready)
+    if (stop_())
+      client_->cancel();
+  try {
+    return reply.get();
+  } catch (const std::exception& exception) {
+    return Error{ErrorCode::Internal, exception.what()};
+  }
+}
+
+void ServerLine::register_robot() {
+  const Result<RegisterReply> reply =
+      wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
+  trouble_.reset();
+  is_robot_refused_ = reply && reply->status == RegisterStatus::Refused;
+  if (!reply)
+    trouble_ = reply.error();
+  else if (is_robot_refused_)
+    trouble_ = Error{ErrorCode::InvalidInput, "the server refused it: " + reply->message};
+  if (trouble_)
+    messages_ << "robot '" << description_.label << "' not registered: " << trouble_->message
+              << '\n';
+  else if (!reply->message.empty())
+    messages_ << "robot '" << description_.label << "': " << reply->message << '\n';
+}
+
+/// \return nothing, or why the named robots cannot be the sources.
+std::optional<Error> ServerLine::find_sources(Selection& selection) {
+  if (options_.sources.empty())
+    return std::nullopt;
+  Result<std::vector<Digest>> robots = wait_for<std::vector<Digest>>(
+      [this] { return link::resolve_robots(*client_, options_.sources); });
+  if (!robots)
+    return robots.error();
+  selection.sources = *std::move(robots);
+  return std::nullopt;
+}
+
+NoGuidance ServerLine::fetch_guidance(GuidanceOptions wanted,
+                                      const std::vector<ProblemLine>& lines) {
+  if (options_.guidance == GuidanceMode::Uniform)
+    return NoGuidance::None;
+  const std::optional<Error> trouble = trouble_ ? trouble_ : find_sources(wanted.selection);
+  if (trouble) {
+    messages_ << "no guidance, all is planned uniformly: " << trouble->message << '\n';
+    why_unguided_ = trouble->message;
+    return why_not(*trouble);
+  }
+  guidance_ = std::make_unique<GuidanceBook>(
+      [this](const FetchRequest& request) {
+        return wait_for<FetchReply>([&] { return client_->fetch(request); });
+      },
+      std::move(wanted));
+  NoGuidance first_reason = NoGuidance::None;
+  for (const ProblemLine& line : lines) {
+    if (stop_())
+      break;
+    if (!line.problem)
+      continue;
+    const auto [answer, is_new] = guidance_->ask(line.problem->T_task_base);
+    if (!is_new)
+      continue;
+    const std::string outcome = answer.guidance ? "" : "none, ";
+    messages_ << "guidance for the placement of '" << line.problem->name << "': " << outcome
+              << answer.message << '\n';
+    if (first_reason == NoGuidance::None)
+      first_reason = answer.why_not;
+  }
+  return first_reason;
+}
+
+QueryGuidance ServerLine::choose(const Problem& problem) const {
+  return guidance_ ? guidance_->choose(problem) : QueryGuidance{.why_not = why_unguided_};
+}
+
+void ServerLine::add(const PlannedProblem& planned) {
+  if (guidance_)
+    guidance_->add(planned);
+}
+
+void ServerLine::report(const std::function<Attempt()>& make_attempt) {
+  try {
+    if (!client_)
+      throw Failure(ErrorCode::Unavailable, "no line to a server");
+    client_->report(make_attempt());
+    ++reported_;
+  } catch (const std::exception& exception) {
+    if (unreportable_++ == 0)
+      messages_ << "an attempt could not be reported: " << exception.what() << '\n';
+  }
+}
+
+bool ServerLine::finish() {
+  if (!options_.report)
+    return true;
+  if (client_ && trouble_)
+    register_robot();
+  messages_ << "reports: " << reported_ << " attempts";
+  try {
+    if (client_)
+      flush();
+  } catch (const std::exception& exception) {
+    messages_ << "; the outbox could not be emptied: " << exception.what();
+  }
+  if (unreportable_ > 0)
+    messages_ << "; " << unreportable_ << " attempts could not be kept";
+  messages_ << std::endl;
+  return unreportable_ == 0;
+}
+
+void ServerLine::flush() {
+  const auto deadline = trouble_ ? std::chrono::milliseconds(0) : options_.timeout;
+  const link::Client::OutboxState state = client_->flush(deadline);
+  messages_ << "; outbox: " << state.accepted << " acknowledged, " << state.pending << " pending, "
+            << state.refused << " refused";
+  if (state.pending > 0)
+    messages_ << " (pending reports are sent when the outbox is next used)";
+}
+
+}  // namespace kinship::planner

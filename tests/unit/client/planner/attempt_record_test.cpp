@@ -1,0 +1,96 @@
+#include "client/planner/attempt_record.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinship::planner::attempt_record_test {
+namespace {
+
+const Reporter kReporter = {Digest{}, "cell 3", "box_to_shelf"};
+
+PlannedProblem solved() {
+  PlannedProblem planned;
+  planned.outcome = Outcome::Solved;
+  planned.result.solved = true;
+  planned.result.collision_checks = 1234;
+  planned.result.shortcut_checks = 300;
+  planned.result.planning_time_s = 0.5;
+  planned.planner = "CBiRRT2";
+  planned.result.time_limit_s = 10;
+  planned.result.waypoints = Eigen::MatrixXd::Random(3, 4);
+  return planned;
+}
+
+TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
+  Problem problem;
+  problem.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.25, 0, 0));
+  const PlannedProblem planned = solved();
+  const Attempt attempt = make_attempt(kReporter, problem, planned, {});
+  ASSERT_TRUE(attempt.path);
+  EXPECT_EQ(attempt.path->waypoints(), *planned.result.waypoints);
+  EXPECT_EQ(attempt.record.outcome, Outcome::Solved);
+  EXPECT_EQ(attempt.record.collision_checks, 1234U);  // without those of shortcutting
+  EXPECT_EQ(attempt.record.planner, "CBiRRT2");
+  EXPECT_EQ(attempt.record.arm, Arm::Uniform);
+  EXPECT_EQ(attempt.task, "box_to_shelf");
+  EXPECT_EQ(attempt.machine, "cell 3");
+  EXPECT_EQ(attempt.T_task_base->translation().x(), 0.25);
+}
+
+TEST(AttemptRecord, AMissingPlacementIsReportedAsMissing) {
+  EXPECT_FALSE(make_attempt(kReporter, {}, solved(), {}).T_task_base);
+}
+
+TEST(AttemptRecord, AnUnsolvedProblemHasNoPath) {
+  PlannedProblem planned = solved();
+  planned.outcome = Outcome::Timeout;
+  planned.result.waypoints.reset();
+  const Attempt attempt = make_attempt(kReporter, {}, planned, {});
+  EXPECT_FALSE(attempt.path);
+  EXPECT_EQ(attempt.record.outcome, Outcome::Timeout);
+}
+
+TEST(AttemptRecord, AGuidedAttemptNamesItsDistribution) {
+  PlannedProblem planned = solved();
+  planned.result.distribution_id = Digest{};
+  planned.result.distribution_revision = 4;
+  planned.result.arm = Arm::Guided;
+  planned.result.share = 0.9;
+  const Attempt attempt = make_attempt(kReporter, {}, planned, {});
+  EXPECT_EQ(attempt.record.arm, Arm::Guided);
+  EXPECT_EQ(attempt.record.distribution_id, Digest{});
+  EXPECT_EQ(attempt.record.distribution_revision, 4U);
+  EXPECT_EQ(attempt.record.share, 0.9);
+}
+
+TEST(AttemptRecord, AControlAttemptIsTold) {
+  PlannedProblem planned = solved();
+  planned.result.distribution_id = Digest{};
+  planned.result.arm = Arm::Control;
+  const Attempt attempt = make_attempt(kReporter, {}, planned, {});
+  EXPECT_EQ(attempt.record.arm, Arm::Control);
+  EXPECT_EQ(attempt.record.share, 0);
+}
+
+TEST(AttemptRecord, AGuidedAttemptStaysGuidedWhereTheGateFired) {
+  PlannedProblem planned = solved();
+  planned.result.distribution_id = Digest{};
+  planned.result.arm = Arm::Guided;
+  planned.result.gate_fired = true;
+  const PlanningRecord record = make_attempt(kReporter, {}, planned, {}).record;
+  EXPECT_EQ(record.arm, Arm::Guided);
+  EXPECT_EQ(record.share, 0);
+  EXPECT_TRUE(record.planner_options.ends_with(" gate=fired")) << record.planner_options;
+}
+
+TEST(AttemptRecord, SaysHowWasPlannedAndUnderWhichUuid) {
+  PlanSettings settings;
+  settings.resolution = 0.1;
+  const Attempt first = make_attempt(kReporter, {}, solved(), settings);
+  const Attempt second = make_attempt(kReporter, {}, solved(), settings);
+  EXPECT_EQ(first.record.planner_options,
+            "step=0.1 overshoot=1.5 shortcut_checks=300 max_checks=100000");
+  EXPECT_NE(first.report_uuid, second.report_uuid);
+}
+
+}  // namespace
+}  // namespace kinship::planner::attempt_record_test

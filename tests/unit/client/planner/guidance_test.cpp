@@ -1,0 +1,220 @@
+#include "client/planner/guidance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace kinship::planner::guidance_test {
+namespace {
+
+constexpr Eigen::Index kDof = 2;
+
+Mixture one_component(Eigen::Index dimension) {
+  return Mixture(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(dimension, 1),
+                 {Eigen::MatrixXd::Identity(dimension, dimension)});
+}
+
+FetchReply ready(double guided_share = 0.9, Eigen::Index dimension = kDof) {
+  Distribution distribution;
+  distribution.id.bytes[0] = 0xab;
+  distribution.revision = 3;
+  distribution.configurations = 400;
+  Source& source = distribution.sources.emplace_back();
+  source.label = "panda";
+  source.paths = source.generation = 60;
+  source.poses = 900;
+  source.poses_solved = 880;
+  distribution.mixture = one_component(dimension);
+  distribution.advice.recommended_share = 0.1;
+  distribution.advice.guided_share = guided_share;
+  FetchReply reply;
+  reply.status = FetchStatus::Ready;
+  reply.distribution = distribution;
+  return reply;
+}
+
+FetchReply status_only(FetchStatus status) {
+  FetchReply reply;
+  reply.status = status;
+  return reply;
+}
+
+GuidanceOptions wanted() {
+  GuidanceOptions wanted;
+  wanted.task = "box_to_shelf";
+  wanted.dof = kDof;
+  return wanted;
+}
+
+Eigen::Isometry3d placement(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
+
+Problem problem_at(double x, std::uint64_t seed = 0) {
+  Problem problem;
+  problem.T_task_base = placement(x);
+  problem.seed = seed;
+  return problem;
+}
+
+GuidanceAnswer answer_to(const Result<FetchReply>& reply,
+                         const GuidanceOptions& for_what = wanted()) {
+  return fetch_guidance([&](const FetchRequest&) { return reply; }, for_what, placement(0));
+}
+
+TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
+  EXPECT_EQ(answer_to(ready(0.9)).guidance->guided_fraction, 0.9);
+  GuidanceOptions own_share = wanted();
+  own_share.arms.guided_fraction = 0.25;
+  EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->guided_fraction, 0.25);
+}
+
+TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
+  const GuidanceAnswer answer = answer_to(ready());
+  EXPECT_EQ(answer.message,
+            "distribution ab0000000000 revision 3, 1 components fitted to 400 configurations from "
+            "panda (60 paths); share 0.90, the first query guided with probability 0.64");
+  EXPECT_EQ(answer.guidance->revision, 3U);
+  EXPECT_EQ(answer.why_not, NoGuidance::None);
+}
+
+TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
+  const auto tail = [](const planning::ArmOptions& arms) {
+    GuidanceOptions told = wanted();
+    told.arms = arms;
+    const std::string message = answer_to(ready(), told).message;
+    return message.substr(message.find("; ") + 2);
+  };
+  EXPECT_EQ(tail({{}, 0.0}), "share 0.90");
+  EXPECT_EQ(tail({0.5, 0.025}), "share 0.50, 2.5 % of the queries uniform as control");
+  EXPECT_EQ(tail({0.5, {}}), "share 0.50, the first query guided with probability 0.64");
+  EXPECT_EQ(tail({0.0, {}}), "uniform");
+}
+
+TEST(FetchGuidance, AsksForTaskRobotPlacementProfileAndSelection) {
+  GuidanceOptions special = wanted();
+  special.selection.since_ms = 77;
+  special.profile = "paper";
+  special.robot.bytes[5] = 7;
+  special.wait = std::chrono::milliseconds(1234);
+  FetchRequest seen;
+  fetch_guidance(
+      [&](const FetchRequest& request) {
+        seen = request;
+        return Result<FetchReply>(ready());
+      },
+      special, placement(0.5));
+  EXPECT_EQ(seen.task, "box_to_shelf");
+  EXPECT_EQ(seen.profile, "paper");
+  EXPECT_EQ(seen.selection, special.selection);
+  EXPECT_EQ(seen.robot, special.robot);
+  EXPECT_EQ(seen.deadline.count(), 1234);
+  EXPECT_EQ(seen.T_task_base->translation().x(), 0.5);
+}
+
+TEST(FetchGuidance, TellsNobodyFromNothingFromFailure) {
+  EXPECT_EQ(answer_to(Error{ErrorCode::Unavailable, "nobody"}).why_not, NoGuidance::NoServer);
+  EXPECT_EQ(answer_to(Error{ErrorCode::Internal, "odd"}).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::NoExperience)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::UnknownRobot)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Failed)).why_not, NoGuidance::NotFound);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Pending)).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Busy)).why_not, NoGuidance::Failed);
+  EXPECT_EQ(answer_to(status_only(FetchStatus::Refused)).why_not, NoGuidance::Failed);
+}
+
+TEST(FetchGuidance, EveryRefusalHasAReason) {
+  for (const FetchStatus status :
+       {FetchStatus::NoExperience, FetchStatus::UnknownRobot, FetchStatus::Failed,
+        FetchStatus::Pending, FetchStatus::Busy, FetchStatus::Refused, FetchStatus::Ready})
+    EXPECT_NE(answer_to(status_only(status)).message, "");
+}
+
+TEST(FetchGuidance, RefusesADistributionThatDoesNotFitTheRobot) {
+  const GuidanceAnswer answer = answer_to(ready(0.9, kDof + 1));
+  EXPECT_FALSE(answer.guidance);
+  EXPECT_EQ(answer.why_not, NoGuidance::Failed);
+  EXPECT_FALSE(answer_to(ready(1.5)).guidance);
+}
+
+TEST(GuidanceBook, AsksOncePerPlacementWithinAMillimetre) {
+  int asked = 0;
+  GuidanceBook book(
+      [&](const FetchRequest&) {
+        ++asked;
+        return Result<FetchReply>(ready());
+      },
+      wanted());
+  EXPECT_TRUE(book.ask(placement(0.1)).second);
+  EXPECT_FALSE(book.ask(placement(0.1001)).second);
+  EXPECT_TRUE(book.ask(placement(0.2)).second);
+  EXPECT_EQ(asked, 2);
+}
+
+TEST(GuidanceBook, AMissingPlacementIsAskedForAsMissing) {
+  std::vector<bool> placed;
+  GuidanceBook book(
+      [&](const FetchRequest& request) {
+        placed.push_back(request.T_task_base.has_value());
+        return Result<FetchReply>(ready());
+      },
+      wanted());
+  EXPECT_TRUE(book.ask(std::nullopt).second);
+  EXPECT_FALSE(book.ask(std::nullopt).second);
+  EXPECT_TRUE(book.ask(placement(0)).second);
+  EXPECT_EQ(placed, (std::vector<bool>{false, true}));
+  EXPECT_NE(book.choose(Problem{}).guidance, nullptr);
+}
+
+TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
+  GuidanceBook book(
+      [](const FetchRequest& request) {
+        const bool experienced = request.T_task_base->translation().x() > 0;
+        return Result<FetchReply>(experienced ? ready() : status_only(FetchStatus::NoExperience));
+      },
+      wanted());
+  book.ask(placement(-1));
+  book.ask(placement(1));
+  EXPECT_EQ(book.choose(problem_at(-1)).guidance, nullptr);
+  EXPECT_EQ(book.choose(problem_at(-1)).arm, Arm::Uniform);
+  EXPECT_EQ(book.choose(problem_at(0.5)).guidance, nullptr);
+  ASSERT_NE(book.choose(problem_at(1)).guidance, nullptr);
+  EXPECT_EQ(book.choose(problem_at(1)).guidance->revision, 3U);
+}
+
+/// Guided queries at one placement that cost ten times as much as control ones.
+TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
+  GuidanceBook book([](const FetchRequest&) { return Result<FetchReply>(ready()); }, wanted());
+  book.ask(placement(0));
+  book.ask(placement(1));
+  const auto guided = [&book] {
+    int count = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed)
+      count += book.choose(problem_at(1, seed)).arm == Arm::Guided ? 1 : 0;
+    return count;
+  };
+  EXPECT_GT(guided(), 100);
+  PlannedProblem planned;
+  planned.outcome = Outcome::Solved;
+  for (int i = 0; i < 10; ++i)
+    for (const Arm arm : {Arm::Guided, Arm::Control}) {
+      planned.result.arm = arm;
+      planned.result.collision_checks = arm == Arm::Guided ? 10'000 : 1000;
+      book.add(planned);
+    }
+  EXPECT_LT(guided(), 20);
+}
+
+TEST(GuidanceBook, DoesNotAskAgainWhenNobodyAnswered) {
+  int asked = 0;
+  GuidanceBook book(
+      [&](const FetchRequest&) {
+        ++asked;
+        return Result<FetchReply>(Error{ErrorCode::Unavailable, "no server answered in 5 s"});
+      },
+      wanted());
+  EXPECT_EQ(book.ask(placement(0.1)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(book.ask(placement(0.2)).first.why_not, NoGuidance::NoServer);
+  EXPECT_EQ(asked, 1);
+}
+
+}  // namespace
+}  // namespace kinship::planner::guidance_test

@@ -1,0 +1,455 @@
+#include "client/planner/plan_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "client/planning/path_vertices.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/unit/client/planner/planar_problem.hpp"
+
+namespace kinship::planner::plan_problem_test {
+namespace {
+
+using test::planar_robot;
+using test::wall_problem;
+
+bool never() { return false; }
+
+PlannedProblem planned(const Problem& problem, const PlanSettings& settings = {},
+                       const QueryGuidance& query = {}) {
+  return plan_problem(planar_robot(), problem, query, settings, never);
+}
+
+Eigen::Isometry3d placement_of(const Problem& problem) {
+  return problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
+}
+
+/// Collisions at the resolution along a path that is straight between its waypoints.
+int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
+  const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
+  const PlannedRobot robot = planar_robot();
+  collision::CollisionWorld world(robot.solids, {placement_of(problem), problem.scene, {}, {}});
+  int collisions = 0;
+  for (Eigen::Index i = 0; i < path.cols(); ++i)
+    if (world.collides(path.col(i)))
+      ++collisions;
+  return collisions;
+}
+
+Guidance guidance_towards(const Eigen::VectorXd& q) {
+  Guidance guidance{
+      Digest{}, 5,
+      Mixture(Eigen::VectorXd::Ones(1), q, {0.25 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
+      0.9};
+  guidance.distribution_id.bytes[3] = 9;
+  return guidance;
+}
+
+TEST(PlanProblem, ThePathLeadsFromStartToGoalFreeAtTheResolution) {
+  const Problem problem = wall_problem();
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  const Eigen::MatrixXd& path = *answer.result.waypoints;
+  EXPECT_EQ(path.col(0), problem.start);
+  EXPECT_EQ(path.col(path.cols() - 1), problem.goal_configurations.col(0));
+  EXPECT_EQ(collisions_along(path, problem), 0);
+  EXPECT_EQ(answer.outcome, Outcome::Solved);
+  EXPECT_EQ(answer.result.reason, "");
+}
+
+TEST(PlanProblem, AGoalPoseIsReachedByTheTransferFrame) {
+  Problem problem = wall_problem();
+  const Eigen::Isometry3d T_task_base(Eigen::Translation3d(0.1, -0.2, 0));
+  problem.T_task_base = T_task_base;
+  problem.scene.objects[0].T_task_object = T_task_base * problem.scene.objects[0].T_task_object;
+  const PlannedRobot robot = planar_robot();
+  problem.T_task_goal =
+      T_task_base * kinematics::T_base_transfer(robot.chain, problem.goal_configurations.col(0));
+  problem.goal_configurations.resize(0, 0);
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  const Eigen::Isometry3d T_task_end =
+      T_task_base * kinematics::T_base_transfer(robot.chain, answer.result.waypoints->rightCols(1));
+  EXPECT_TRUE(T_task_end.isApprox(*problem.T_task_goal, 1e-5));
+  EXPECT_GT(answer.result.goal_checks, 0U);
+}
+
+TEST(PlanProblem, EqualProblemAndSeedGiveEqualChecksAndPath) {
+  const PlannedProblem first = planned(wall_problem());
+  const PlannedProblem second = planned(wall_problem());
+  EXPECT_EQ(first.result.collision_checks, second.result.collision_checks);
+  EXPECT_EQ(first.result.shortcut_checks, second.result.shortcut_checks);
+  EXPECT_EQ(*first.result.waypoints, *second.result.waypoints);
+  Problem other = wall_problem();
+  other.seed += 1;
+  EXPECT_NE(planned(other).result.collision_checks, first.result.collision_checks);
+}
+
+TEST(PlanProblem, ShortcuttingKeepsItsBudgetAndShortensThePath) {
+  PlanSettings without;
+  without.shortcut_checks = 0;
+  const PlannedProblem raw = planned(wall_problem(), without);
+  const PlannedProblem shortened = planned(wall_problem());
+  EXPECT_EQ(raw.result.shortcut_checks, 0U);
+  EXPECT_LE(shortened.result.shortcut_checks, 300U);
+  EXPECT_GT(shortened.result.shortcut_checks, 0U);
+  EXPECT_EQ(raw.result.collision_checks, shortened.result.collision_checks);
+  EXPECT_LT(planning::path_length(*shortened.result.waypoints),
+            planning::path_length(*raw.result.waypoints));
+}
+
+TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  const PlannedProblem answer = planned(wall_problem(), {}, {&guidance, Arm::Guided});
+  EXPECT_EQ(answer.result.distribution_id, guidance.distribution_id);
+  EXPECT_EQ(answer.result.distribution_revision, 5U);
+  EXPECT_EQ(answer.result.arm, Arm::Guided);
+  EXPECT_EQ(answer.result.share, 0.9);
+  EXPECT_EQ(answer.result.guidance_reason, "");
+  EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
+}
+
+TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  const ProblemResult uniform = planned(wall_problem()).result;
+  for (const Arm arm : {Arm::Control, Arm::Uniform}) {
+    const ProblemResult result = planned(wall_problem(), {}, {&guidance, arm}).result;
+    EXPECT_EQ(result.arm, arm);
+    EXPECT_EQ(result.share, 0);
+    EXPECT_FALSE(result.gate_fired);
+    EXPECT_EQ(result.guidance_reason,
+              arm == Arm::Control ? "planned uniformly as control" : "planned uniformly by wish");
+    EXPECT_EQ(result.distribution_id, guidance.distribution_id);
+    EXPECT_EQ(result.collision_checks, uniform.collision_checks);
+    EXPECT_EQ(*result.waypoints, *uniform.waypoints);
+  }
+}
+
+TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGuided) {
+  const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
+  const ProblemResult gated = planned(wall_problem(), {}, {&far, Arm::Guided}).result;
+  EXPECT_TRUE(gated.gate_fired);
+  EXPECT_EQ(gated.arm, Arm::Guided);
+  EXPECT_EQ(gated.share, 0);
+  EXPECT_EQ(gated.guidance_reason, "start or goals are far from all that the distribution knows");
+  EXPECT_EQ(gated.distribution_id, far.distribution_id);
+  const ProblemResult uniform = planned(wall_problem()).result;
+  EXPECT_EQ(gated.collision_checks, uniform.collision_checks);
+  EXPECT_EQ(*gated.waypoints, *uniform.waypoints);
+}
+
+TEST(PlanProblem, TheGateCanBeLeftOpen) {
+  const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
+  PlanSettings open;
+  open.gate_distance = std::numeric_limits<double>::infinity();
+  const ProblemResult guided = planned(wall_problem(), open, {&far, Arm::Guided}).result;
+  EXPECT_FALSE(guided.gate_fired);
+  EXPECT_EQ(guided.share, 0.9);
+}
+
+TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {
+  const ProblemResult result = planned(wall_problem()).result;
+  EXPECT_FALSE(result.distribution_id);
+  EXPECT_EQ(result.arm, Arm::Uniform);
+  EXPECT_EQ(result.share, 0);
+}
+
+TEST(PlanProblem, RunningOutOfChecksIsATimeoutWithItsReason) {
+  PlanSettings few;
+  few.max_checks = 20;
+  const PlannedProblem answer = planned(wall_problem(), few);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_FALSE(answer.result.waypoints);
+  EXPECT_EQ(answer.outcome, Outcome::Timeout);
+  EXPECT_EQ(answer.result.collision_checks, 20U);
+  EXPECT_EQ(answer.result.reason, "not solved within 20 collision checks");
+  EXPECT_TRUE(answer.attempted);
+}
+
+TEST(PlanProblem, RunningOutOfTimeIsATimeoutWithItsReason) {
+  Problem problem = wall_problem();
+  problem.time_limit_s = 0;
+  const PlannedProblem answer = planned(problem);
+  EXPECT_EQ(answer.outcome, Outcome::Timeout);
+  EXPECT_EQ(answer.result.reason, "not solved within 0.000000 s");
+}
+
+TEST(PlanProblem, ACollidingStartNamesWhatTouches) {
+  Problem problem = wall_problem();
+  problem.start.setZero();
+  const PlannedProblem answer = planned(problem);
+  EXPECT_EQ(answer.outcome, Outcome::Failed);
+  EXPECT_EQ(answer.result.reason, "start collides: 'l4' touches 'wall'");
+}
+
+TEST(PlanProblem, CollidingGoalsNameWhatTouches) {
+  Problem problem = wall_problem();
+  problem.scene.objects.push_back(
+      {"lump", SphereShape{0.25}, Eigen::Isometry3d(Eigen::Translation3d(0.45, -0.95, 0))});
+  EXPECT_EQ(planned(problem).result.reason,
+            "every goal collides, at the first one 'l4' touches 'lump'");
+  problem.T_task_goal =
+      kinematics::T_base_transfer(planar_robot().chain, problem.goal_configurations.col(0));
+  problem.goal_configurations.resize(0, 0);
+  const PlannedProblem posed = planned(problem);
+  EXPECT_EQ(posed.result.reason, "every goal collides, at the first one 'l4' touches 'lump'");
+  EXPECT_EQ(posed.outcome, Outcome::Failed);
+  EXPECT_TRUE(posed.attempted);
+}
+
+TEST(PlanProblem, AGoalOutOfReachIsSaid) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal = Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0));
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_EQ(answer.outcome, Outcome::Failed);
+  EXPECT_EQ(answer.result.reason, "goal out of reach");
+}
+
+TEST(PlanProblem, AGoalReachedOnlyBeyondTheLimitsIsSaid) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal =
+      kinematics::T_base_transfer(planar_robot().chain, Eigen::Vector4d(3.1, 0, 0, 0));
+  EXPECT_EQ(planned(problem).result.reason, "goal only reached outside the joint limits");
+}
+
+TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {
+  Problem problem = wall_problem();
+  problem.start = Eigen::VectorXd::Zero(6);
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.attempted);
+  EXPECT_EQ(answer.result.reason, "start has 6 joints, the robot 4: 'j1', 'j2', 'j3', 'j4'");
+  problem = wall_problem();
+  problem.start[2] = 3;
+  EXPECT_EQ(planned(problem).result.reason,
+            "start: joint 'j3' at 3.000000 is outside -2.800000 to 2.800000");
+  EXPECT_FALSE(planned(problem).attempted);
+  problem = wall_problem();
+  problem.attached.push_back({"box", "hand", BoxShape{{0.1, 0.1, 0.1}}, {}, {}});
+  EXPECT_NE(planned(problem).result.reason.find("hand"), std::string::npos);
+}
+
+TEST(PlanProblem, GoalsOfAnotherRobotAreAnsweredNotAttempted) {
+  Problem problem = wall_problem();
+  problem.goal_configurations = Eigen::VectorXd::Zero(6);
+  EXPECT_EQ(planned(problem).result.reason,
+            "goal configurations have 6 joints, the robot 4: 'j1', 'j2', 'j3', 'j4'");
+}
+
+TEST(PlanProblem, AGoalBeyondALimitNamesGoalJointValueAndLimit) {
+  Problem problem = wall_problem();
+  problem.goal_configurations.conservativeResize(4, 2);
+  problem.goal_configurations.col(1) << -0.9, 3.5, 0, 0;
+  const PlannedProblem answer = planned(problem);
+  EXPECT_FALSE(answer.attempted);
+  EXPECT_FALSE(answer.result.solved);
+  EXPECT_EQ(answer.result.reason,
+            "goal 2: joint 'j2' at 3.500000 is outside -2.800000 to 2.800000");
+}
+
+TEST(PlanProblem, AGoalBeyondALimitByRoundingEndsAtTheLimit) {
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.goal_configurations.col(0) << 2.8 + 1e-7, 0, 0, 0;
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.waypoints->rightCols(1)(0), 2.8);
+}
+
+TEST(PlanProblem, AGoalIsTurnedIntoTheTurnOfTheStart) {
+  const PlannedRobot robot = planar_robot("-6.2", "6.2");
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[0] = 3;
+  problem.goal_configurations(0, 0) = -3;
+  const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 2 * M_PI - 3, 1e-9);
+}
+
+TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
+  RobotDescription description = test::planar_description();
+  const std::string revolute = "type='revolute'";
+  description.urdf.replace(description.urdf.find(revolute), revolute.size(), "type='continuous'");
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
+  const PlannedRobot robot{std::move(chain), std::move(shapes)};
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[0] = 3;
+  problem.goal_configurations(0, 0) = 4;
+  const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_NEAR(answer.result.waypoints->rightCols(1)(0), 4, 1e-9);
+}
+
+TEST(PlanProblem, AStartNearALimitLeavesEveryPostureOfAWideJointInReach) {
+  const PlannedRobot robot = planar_robot("-6.2", "6.2");
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[0] = 6;
+  for (const double goal : {0.5, -0.2, -6.2}) {  // -0.2 is 6.08, -6.2 is 0.083
+    problem.goal_configurations(0, 0) = goal;
+    const PlannedProblem answer = plan_problem(robot, problem, {}, {}, never);
+    ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+    const double end = answer.result.waypoints->rightCols(1)(0);
+    EXPECT_NEAR(end, goal < 0 ? goal + 2 * M_PI : goal, 1e-9);
+  }
+}
+
+/// The wall's problem without the wall, the transfer frame on the line x = const of its start.
+Problem line_problem() {
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.T_task_base = Eigen::Isometry3d(Eigen::Translation3d(0.3, -0.2, 0));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion line;
+  line.T_task_region.translation() =
+      (*problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, problem.start))
+          .translation();
+  line.bounds.row(0) << 0, -kInfinity, 0, 0, 0, -kInfinity;
+  line.bounds.row(1) = -line.bounds.row(0);
+  problem.constraint = line;
+  return problem;
+}
+
+TEST(PlanProblem, UnderAConstraintEveryWaypointKeepsToIt) {
+  const Problem problem = line_problem();
+  PlanSettings direct;
+  direct.shortcut_checks = 0;
+  for (const PlanSettings& settings : {direct, PlanSettings()}) {
+    const PlannedProblem answer = planned(problem, settings);
+    ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+    EXPECT_GT(answer.result.projections, 0u);
+    const Eigen::MatrixXd& path = *answer.result.waypoints;
+    EXPECT_EQ(path.col(0), problem.start);
+    EXPECT_EQ(path.rightCols<1>(), problem.goal_configurations);
+    const double x = problem.constraint->T_task_region.translation().x();
+    for (Eigen::Index i = 0; i < path.cols(); ++i) {
+      const Eigen::Isometry3d T_task_transfer =
+          *problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, path.col(i));
+      EXPECT_NEAR(T_task_transfer.translation().x(), x, 1e-3);
+      if (i > 0) {
+        EXPECT_LE((path.col(i) - path.col(i - 1)).norm(), settings.resolution + 1e-8);
+      }
+    }
+  }
+}
+
+TEST(PlanProblem, APlannerThatCannotKeepToAConstraintIsNotStarted) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::Birrt;
+  const PlannedProblem refused = planned(line_problem(), settings);
+  EXPECT_FALSE(refused.attempted);
+  EXPECT_EQ(refused.result.planner, "");
+  EXPECT_EQ(refused.result.reason,
+            "--planner birrt does not keep to a constraint: use --planner cbirrt2 or "
+            "ompl:RRTConnect");
+  EXPECT_EQ(planned(wall_problem(), settings).result.planner, "BiRRT");
+  EXPECT_EQ(planned(line_problem()).result.planner, "CBiRRT2");
+}
+
+TEST(PlanProblem, APlannerOfOmplAnswersWithAndWithoutAConstraint) {
+  PlanSettings settings;
+  settings.planner = parse_planner("ompl:RRTConnect").value();
+  const ProblemResult free = planned(wall_problem(), settings).result;
+  ASSERT_TRUE(free.solved) << free.reason;
+  EXPECT_EQ(free.planner, "OMPL RRTConnect");
+  EXPECT_EQ(collisions_along(*free.waypoints, wall_problem()), 0);
+  const Problem problem = line_problem();
+  const ProblemResult along = planned(problem, settings).result;
+  ASSERT_TRUE(along.solved) << along.reason;
+  for (const auto& q : along.waypoints->colwise()) {
+    const Eigen::Isometry3d T_task_transfer =
+        *problem.T_task_base * kinematics::T_base_transfer(planar_robot().chain, q);
+    EXPECT_NEAR(T_task_transfer.translation().x(),
+                problem.constraint->T_task_region.translation().x(), 1e-3);
+  }
+}
+
+TEST(PlanProblem, TheRoadmapAnswersWithAndWithoutGuidanceAndConstraint) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::Roadmap;
+  settings.gate_distance = std::numeric_limits<double>::infinity();
+  const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  for (const QueryGuidance& query : {QueryGuidance{}, QueryGuidance{&guidance, Arm::Guided}}) {
+    const ProblemResult free = planned(wall_problem(), settings, query).result;
+    ASSERT_TRUE(free.solved) << free.reason;
+    EXPECT_EQ(free.planner, "Repetition Roadmap");
+    EXPECT_EQ(collisions_along(*free.waypoints, wall_problem()), 0);
+  }
+  const ProblemResult along = planned(line_problem(), settings).result;
+  EXPECT_TRUE(along.solved) << along.reason;
+}
+
+TEST(PlanProblem, ARoadmapThatLeavesTooManyKernelsToItsTreesSaysSo) {
+  PlanSettings settings;
+  settings.planner.kind = PlannerKind::Roadmap;
+  Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
+  constexpr Eigen::Index kKernels = 1025;
+  guidance.mixture = Mixture(Eigen::VectorXd::Constant(kKernels, 1.0 / kKernels),
+                             guidance.mixture.means().col(0).replicate(1, kKernels),
+                             {guidance.mixture.covariance(0)});
+  const auto planner_with = [&](Arm arm) {
+    return planned(wall_problem(), settings, {&guidance, arm}).result.planner;
+  };
+  EXPECT_EQ(planner_with(Arm::Guided),
+            "Repetition Roadmap (trees alone: 1025 components exceed 1024)");
+  EXPECT_EQ(planner_with(Arm::Uniform), "Repetition Roadmap");
+}
+
+TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {
+  PlanSettings settings;
+  settings.planner = parse_planner("ompl:RRT").value();
+  int asked = 0;
+  EXPECT_TRUE(plan_problem(planar_robot(), wall_problem(), {}, settings, [&] {
+                return ++asked > 10;
+              }).interrupted);
+}
+
+TEST(PlanProblem, ShortcutsUnderAConstraintKeepTheirBudgetAndShortenThePath) {
+  const Problem problem = line_problem();
+  PlanSettings direct;
+  direct.shortcut_checks = 0;
+  const PlannedProblem one = planned(problem, direct), two = planned(problem);
+  ASSERT_TRUE(one.result.solved && two.result.solved);
+  EXPECT_EQ(one.result.collision_checks, two.result.collision_checks);
+  EXPECT_LE(two.result.shortcut_checks, PlanSettings().shortcut_checks);
+  EXPECT_LE(planning::path_length(*two.result.waypoints),
+            planning::path_length(*one.result.waypoints) + 1e-9);
+}
+
+TEST(PlanProblem, AStartOrGoalOutsideTheConstraintIsSaid) {
+  Problem problem = line_problem();
+  problem.constraint->T_task_region.translation().x() -= 0.25;
+  EXPECT_EQ(planned(problem).result.reason,
+            "start violates the constraint: x by 0.250000 outside Bw");
+  problem = line_problem();
+  problem.goal_configurations(3, 0) += 0.5;
+  EXPECT_EQ(planned(problem).result.reason, "every goal violates the constraint");
+  EXPECT_EQ(planned(problem).outcome, Outcome::Failed);
+}
+
+TEST(PlanProblem, AStartThatIsTheGoalIsAPathOfTwoWaypoints) {
+  Problem problem = wall_problem();
+  problem.goal_configurations = problem.start;
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.waypoints->cols(), 2);
+}
+
+TEST(PlanProblem, StopsWhenAsked) {
+  int asked = 0;
+  const PlannedProblem answer =
+      plan_problem(planar_robot(), wall_problem(), {}, {}, [&] { return ++asked > 10; });
+  EXPECT_TRUE(answer.interrupted);
+  EXPECT_EQ(asked, 11);
+}
+
+}  // namespace
+}  // namespace kinship::planner::plan_problem_test

@@ -1,0 +1,100 @@
+#include "client/planner/progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+namespace kinship::planner::progress_test {
+namespace {
+
+ProblemResult solved(const std::string& name, std::uint64_t checks) {
+  ProblemResult result;
+  result.name = name;
+  result.solved = true;
+  result.collision_checks = checks;
+  return result;
+}
+
+TEST(Progress, WritesALineForEveryTenthWhereNobodyCanWriteOver) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 20);
+  for (int i = 0; i < 20; ++i)
+    progress.add(solved("p", 100), true);
+  const std::string text = stream.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
+  EXPECT_NE(text.find("planned 2/20, solved 2, last: p: 100 checks\n"), std::string::npos);
+}
+
+TEST(Progress, NamesALineThatCouldNotBeReadOnce) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 1);
+  ProblemResult unreadable;
+  unreadable.name = "line 3";
+  unreadable.reason = "line 3: problem: not JSON at byte 9";
+  progress.add(unreadable, false);
+  EXPECT_NE(stream.str().find("last: line 3: problem: not JSON at byte 9\n"), std::string::npos)
+      << stream.str();
+}
+
+TEST(Progress, WritesOverOneLineOnATerminal) {
+  std::ostringstream stream;
+  Progress progress(stream, true, 20);
+  for (int i = 0; i < 20; ++i)
+    progress.add(solved("p", 100), true);
+  const std::string text = stream.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 0);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 20);
+}
+
+TEST(Progress, EndsWithTheSums) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 3);
+  progress.add(solved("a", 100), true);
+  progress.add(solved("b", 300), true);
+  progress.finish();
+  EXPECT_NE(stream.str().find("planned 2 of 3 problems, 2 solved; 0 guided, 0 control, 2 uniform; "
+                              "on average 200 checks"),
+            std::string::npos);
+}
+
+TEST(Progress, TellsHowManyTheGatePlannedUniformly) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 2);
+  ProblemResult guided = solved("a", 100);
+  guided.arm = Arm::Guided;
+  progress.add(guided, true);
+  guided.gate_fired = true;
+  progress.add(guided, true);
+  progress.finish();
+  EXPECT_NE(stream.str().find("2 guided (1 uniform by the gate), 0 control"), std::string::npos)
+      << stream.str();
+}
+
+TEST(Progress, CountsAttemptsByArmAndNothingElse) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 4);
+  ProblemResult guided = solved("a", 100);
+  guided.arm = Arm::Guided;
+  ProblemResult control = solved("b", 500);
+  control.arm = Arm::Control;
+  progress.add(guided, true);
+  progress.add(control, true);
+  progress.add(ProblemResult{}, true);
+  progress.add(ProblemResult{}, false);
+  progress.finish();
+  EXPECT_NE(stream.str().find("planned 3 of 4 problems, 2 solved; 1 guided, 1 control, 1 uniform; "
+                              "on average 200 checks and 0.000 s; 1 could not be attempted\n"),
+            std::string::npos)
+      << stream.str();
+}
+
+TEST(Progress, NoProblemsIsNoDivisionByZero) {
+  std::ostringstream stream;
+  Progress(stream, false, 0).finish();
+  EXPECT_EQ(stream.str(), "planned 0 of 0 problems, 0 solved\n");
+}
+
+}  // namespace
+}  // namespace kinship::planner::progress_test
