@@ -16,7 +16,7 @@
 #include "robots/inverse/joint_space.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
-#include "tests/bench/cpu_time.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/support/robots.hpp"
 
 // Inverse kinematics of ours and of KDL (Debian: liborocos-kdl-dev) at the same reachable poses of
