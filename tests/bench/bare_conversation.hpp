@@ -2,11 +2,7 @@
 
 #include <dds/dds.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <functional>
-#include <vector>
 
 #include "proto/codec/fetch_codec.hpp"
 #include "proto/dds/loan.hpp"
@@ -36,11 +32,9 @@ class Bare {
     dds::require(dds_waitset_attach(waitset_.get(), condition_.get(), 0), "waitset");
   }
 
-  /// Answers a request with the reply whose number its minimum_generation is.
-  [[noreturn]] void serve(const std::vector<FetchReply>& replies) {
-    std::vector<codec::Message<kinship_wire_FetchReply>> messages;
-    for (const FetchReply& reply : replies)
-      messages.push_back(codec::encode({}, reply).value_or_throw());
+  /// Answers every request with the same reply.
+  [[noreturn]] void serve(const FetchReply& answer) {
+    codec::Message<kinship_wire_FetchReply> message = codec::encode({}, answer).value_or_throw();
     while (true) {
       wait();
       const dds::Loan requests(reader_, "bench");
@@ -48,9 +42,8 @@ class Bare {
         if (!requests[i])
           continue;
         const auto& request = *static_cast<const kinship_wire_FetchRequest*>(requests[i]);
-        auto& reply = messages[request.minimum_generation].wire;
-        reply.sequence_number = request.sequence_number;
-        dds_write(writer_.get(), &reply);
+        message.wire.sequence_number = request.sequence_number;
+        dds_write(writer_.get(), &message.wire);
       }
     }
   }
@@ -84,22 +77,5 @@ class Bare {
   dds::Entity request_, reply_, reader_, writer_, condition_, waitset_;
   std::uint64_t sequence_number_ = 0;
 };
-
-inline double percentile(std::vector<double>& times_us, double share) {
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(times_us.size() - 1));
-  std::nth_element(times_us.begin(), times_us.begin() + static_cast<std::ptrdiff_t>(rank),
-                   times_us.end());
-  return times_us[rank];
-}
-
-inline void measure(int times, const std::function<void()>& call, std::vector<double>& times_us) {
-  for (int i = 0; i < times; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    call();
-    times_us.push_back(
-        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
-            .count());
-  }
-}
 
 }  // namespace kinship::bench

@@ -1,189 +1,175 @@
-// A distribution that nobody has asked for before, from the request to the client: a kinshipd
-// process, DDS on loopback, the learning sets of the study `cobots`, each of its robots as target.
+// Distributions that have to be made, from the request to the client: a kinshipd process, DDS on
+// loopback, the learning sets of the study `cobots` (500 queries of each of five robots), default
+// profile with poses so dense that as many configurations come out as the budgets speak of.
 //
-//   cold_fetch_bench LEARNING_FOLDER [REPEATS] [PROFILE...]
-//
-// Prints per target, amount and profile the medians of REPEATS (3) cold fetches: all of it, the
-// transfer and the fit as the server says, the wire (the same reply again, from memory), and the
-// rest: look-up, storing it durably. CPU is that of the server's process.
-
-#include <unistd.h>
+//   cold_fetch_bench
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <map>
 #include <string>
 
 #include "client/link/client.hpp"
+#include "tests/bench/figure.hpp"
 #include "tests/bench/learning_sets.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+namespace kinship::bench {
 namespace {
 
-using namespace kinship;
 using std::chrono::seconds;
 
-/// A profile, and the spacings of poses that make about 72 000 configurations of one robot's paths
-/// and 500 000 of four robots'.
-struct Case {
-  std::string profile, small, large;
-};
+constexpr auto kDense = "default,max_poses_per_path=0,pose_spacing=0.12";       // about 72 000
+constexpr auto kDenseOfAll = "default,max_poses_per_path=0,pose_spacing=0.07";  // about 500 000
 
-const std::vector<Case> kCases = {
-    {"default", "0.12", "0.07"},
-    {"default,tracks=0", "0.3", "0.18"},
-    {"default,max_solutions=8,min_distance=0.2,dropped_end_share=0", "0.24", "0.18"}};
-
-/// Seconds of a process's life on processors.
-double cpu_of(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
-  std::string word;
-  while (file >> word && word.back() != ')') {
-  }
-  constexpr int kUser = 12;  // words after the name
-  double user = 0, kernel = 0;
-  for (int i = 1; i < kUser; ++i)
-    file >> word;
-  file >> user >> kernel;
-  return (user + kernel) / static_cast<double>(sysconf(_SC_CLK_TCK));
+std::string text_of(double time_s) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << time_s << " s";
+  return text.str();
 }
 
-struct Sample {
-  double total = 0, transfer = 0, fit = 0, wire = 0, cpu = 0;
-};
-
-double median(std::vector<Sample> samples, double Sample::*member) {
-  std::sort(samples.begin(), samples.end(),
-            [&](const Sample& a, const Sample& b) { return a.*member < b.*member; });
-  return samples[samples.size() / 2].*member;
+std::string description(const Distribution& distribution) {
+  std::uint64_t paths = 0;
+  for (const Source& source : distribution.sources)
+    paths += source.paths_used;
+  return std::to_string(paths) + " paths, " + std::to_string(distribution.configurations) +
+         " configurations, transfer " + text_of(distribution.transfer_time_s) + ", fit " +
+         text_of(distribution.fit_time_s);
 }
 
-/// What is asked for a target, but for the profile.
-struct Amount {
-  const char* name;
-  bool all_sources;
-  std::string profile;
-};
+double server_time_s(const Distribution& distribution) {
+  return distribution.transfer_time_s + distribution.fit_time_s;
+}
 
-class Bench {
+/// A server, and the cobots that reported to it.
+class Fleet {
  public:
-  Bench(const std::filesystem::path& folder, int repeats)
-      : repeats_(repeats),
-        server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
+  Fleet()
+      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
         client_({.domain = domain_.number(),
                  .outbox = {},
                  .has_outbox = false,
                  .timeout = seconds(120)}) {
-    for (const std::string& robot : bench::cobots()) {
-      bench::LearningSet set = bench::read_learning_set(folder, robot);
-      robots_[robot] = client_.register_robot(set.robot).value_or_throw().robot;
-      placements_[robot] = set.solved.front().T_task_base.value();
-      task_ = set.solved.front().task;
-      client_.deliver(std::move(set.solved)).value_or_throw();
+    for (const std::string& robot : cobots()) {
+      sets_[robot] = read_learning_set(robot);
+      robots_[robot] = client_.register_robot(sets_[robot].robot).value_or_throw().robot;
     }
   }
 
-  void measure(const std::string& target, const Amount& amount) {
-    FetchRequest request;
-    request.task = task_;
-    request.robot = robots_.at(target);
-    request.profile = amount.profile;
-    request.deadline = seconds(600);
-    for (const auto& [name, robot] : robots_)
-      if (amount.all_sources ? name != target : name == (target == "panda" ? "iiwa14" : "panda"))
-        request.selection.sources.push_back(robot);
-    std::sort(request.selection.sources.begin(), request.selection.sources.end());
-    std::vector<Sample> samples;
-    Distribution distribution;
-    for (int i = 0; i < repeats_; ++i) {
-      constexpr double kGrid_m = 0.001;  // another placement is another distribution
-      request.T_task_base =
-          Eigen::Translation3d(0, kGrid_m * (shift_++ % 20 - 10), 0) * placements_.at(target);
-      samples.push_back(fetch_cold(request, distribution));
+  /// Paths of a robot's learning set, for any task.
+  void report(const std::string& robot, const std::string& task, std::size_t first,
+              std::size_t end) {
+    std::vector<Attempt> attempts;
+    for (std::size_t i = first; i < std::min(end, sets_.at(robot).solved.size()); ++i) {
+      attempts.push_back(sets_.at(robot).solved[i]);
+      attempts.back().report_uuid = Uuid::random();
+      attempts.back().task = task;
     }
-    print(target, amount, samples, distribution);
+    client_.deliver(std::move(attempts)).value_or_throw();
   }
+
+  /// What a robot asks for at a placement that nobody has asked for before.
+  FetchRequest request(const std::string& target, const std::string& task,
+                       const std::string& profile, const std::vector<std::string>& sources) {
+    FetchRequest request;
+    request.task = task;
+    request.robot = robots_.at(target);
+    request.profile = profile;
+    request.deadline = seconds(600);
+    for (const std::string& source : sources)
+      request.selection.sources.push_back(robots_.at(source));
+    std::sort(request.selection.sources.begin(), request.selection.sources.end());
+    constexpr double kGrid_m = 0.001;  // to which placements are snapped
+    request.T_task_base = Eigen::Translation3d(0, kGrid_m * (++placements_ % 20 - 10), 0) *
+                          sets_.at(target).solved.front().T_task_base.value();
+    return request;
+  }
+
+  Distribution fetch(const FetchRequest& request) {
+    return client_.fetch(request).value_or_throw().distribution.value();
+  }
+
+  link::Client& client() { return client_; }
 
  private:
-  double fetch(const FetchRequest& request, Distribution& distribution) {
-    const auto begin = std::chrono::steady_clock::now();
-    FetchReply reply = client_.fetch(request).value_or_throw();
-    const double time =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    distribution = std::move(reply.distribution).value();
-    return time;
-  }
-
-  Sample fetch_cold(const FetchRequest& request, Distribution& distribution) {
-    constexpr int kWarm = 20;
-    Sample sample;
-    const double before = cpu_of(server_.pid());
-    sample.total = fetch(request, distribution);
-    sample.cpu = cpu_of(server_.pid()) - before;
-    sample.transfer = distribution.transfer_time_s;
-    sample.fit = distribution.fit_time_s;
-    sample.wire = sample.total;
-    for (int i = 0; i < kWarm; ++i)
-      sample.wire = std::min(sample.wire, fetch(request, distribution));
-    return sample;
-  }
-
-  static void print(const std::string& target, const Amount& amount,
-                    const std::vector<Sample>& samples, const Distribution& distribution) {
-    std::uint64_t paths = 0, poses = 0;
-    for (const Source& source : distribution.sources) {
-      paths += source.paths_used;
-      poses += source.poses;
-    }
-    const double total = median(samples, &Sample::total), wire = median(samples, &Sample::wire);
-    const double transfer = median(samples, &Sample::transfer), fit = median(samples, &Sample::fit);
-    std::printf(
-        "%-10s %-5s %5lu paths %6lu poses %7lu configurations K %3ld | total %6.2f s = "
-        "transfer %6.2f + fit %5.2f + rest %.3f + wire %.4f | cpu %6.2f s | %s\n",
-        target.c_str(), amount.name, static_cast<unsigned long>(paths),
-        static_cast<unsigned long>(poses), static_cast<unsigned long>(distribution.configurations),
-        distribution.mixture ? static_cast<long>(distribution.mixture->size()) : 0, total, transfer,
-        fit, total - transfer - fit - wire, wire, median(samples, &Sample::cpu),
-        amount.profile.c_str());
-    std::fflush(stdout);
-  }
-
-  const int repeats_;
   const test::ReservedDomain domain_;
   const test::TemporaryDirectory directory_{test::disk_root()};
   test::ServerProcess server_;
   link::Client client_;
+  std::map<std::string, LearningSet> sets_;
   std::map<std::string, Digest> robots_;
-  std::map<std::string, Eigen::Isometry3d> placements_;
-  std::string task_;
-  int shift_ = 0;
+  int placements_ = 0;
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "cold_fetch_bench LEARNING_FOLDER [REPEATS] [PROFILE...]\n");
-    return 2;
-  }
-  Bench bench(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 3);
-  std::vector<Case> cases = kCases;
-  if (argc > 3) {
-    cases.clear();
-    for (int i = 3; i < argc; ++i)
-      cases.push_back({argv[i], kCases.front().small, kCases.front().large});
-  }
-  for (const Case& wanted : cases)
-    for (const bool is_large : {false, true}) {
-      const std::string profile = wanted.profile + ",max_poses_per_path=0,pose_spacing=" +
-                                  (is_large ? wanted.large : wanted.small);
-      for (const std::string& target : bench::cobots())
-        bench.measure(target, {is_large ? "large" : "small", is_large, profile});
+void cold_fetches(Fleet& fleet) {
+  for (const std::string& robot : cobots())
+    fleet.report(robot, "cobots", 0, 500);
+  for (const bool of_all : {false, true})
+    for (const std::string& target : cobots()) {
+      std::vector<std::string> sources = {target == "panda" ? "iiwa14" : "panda"};
+      if (of_all) {
+        sources = cobots();
+        std::erase(sources, target);
+      }
+      const FetchRequest request =
+          fleet.request(target, "cobots", of_all ? kDenseOfAll : kDense, sources);
+      const double start_s = wall_s();
+      const Distribution distribution = fleet.fetch(request);
+      print({.name = (of_all ? "2000 paths for " : "500 paths for ") + target,
+             .value = wall_s() - start_s,
+             .unit = "s",
+             .budget = of_all ? 2.5 : 0.25,
+             .note = description(distribution)});
     }
-  return 0;
+}
+
+/// 100 paths with the scenes they were planned in, which the server has transferred before.
+void new_placement(Fleet& fleet) {
+  fleet.report("panda", "placements", 0, 100);
+  const auto request = [&] { return fleet.request("iiwa14", "placements", "default", {"panda"}); };
+  fleet.fetch(request());
+  std::vector<double> times_s;
+  Distribution distribution;
+  for (int i = 0; i < 5; ++i) {
+    const FetchRequest anew = request();
+    const double start_s = wall_s();
+    distribution = fleet.fetch(anew);
+    times_s.push_back(wall_s() - start_s);
+  }
+  print({.name = "new placement of 100 paths with scenes",
+         .value = 1e3 * median(times_s),
+         .unit = "ms",
+         .budget = 30,
+         .note = description(distribution)});
+}
+
+/// 20 paths more than 380: what the follower gets against what is made anew of all of them.
+void refit(Fleet& fleet) {
+  fleet.report("panda", "refit", 0, 380);
+  const FetchRequest request = fleet.request("iiwa14", "refit", kDense, {"panda"});
+  const auto follower = fleet.client().follow(request);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(120);
+  const auto first = follower->wait_for_newer(nullptr, deadline);
+  fleet.report("panda", "refit", 380, 400);
+  const auto second = follower->wait_for_newer(first, deadline);
+  if (!second || second == first || second->fit.value().from_revision == 0)
+    throw std::runtime_error("no refit from the mixture before");
+  const Distribution anew = fleet.fetch(fleet.request("iiwa14", "refit", kDense, {"panda"}));
+  print({.name = "refit with 5 % new paths",
+         .value = server_time_s(*second),
+         .unit = "s",
+         .reference = Reference{"made anew", server_time_s(anew)},
+         .note = description(*second)});
+}
+
+}  // namespace
+}  // namespace kinship::bench
+
+int main() {
+  kinship::bench::Fleet fleet;
+  kinship::bench::cold_fetches(fleet);
+  kinship::bench::new_placement(fleet);
+  kinship::bench::refit(fleet);
 }

@@ -1,111 +1,124 @@
-#include <benchmark/benchmark.h>
+// Transfer between the five cobots: paths of their learning sets, resampled, from each to each
+// other, on two threads, without filters; by tracks (the default profile) and by random solutions
+// alone (L = 8, d = 0.2). Configurations per second of wall clock.
+//
+//   transfer_bench
 
 #include <algorithm>
-#include <random>
+#include <limits>
+#include <memory>
 #include <string>
-#include <utility>
+#include <thread>
 #include <vector>
 
-#include "robots/inverse/inverse.hpp"
-#include "robots/kinematics/forward_kinematics.hpp"
 #include "server/transfer/transfer.hpp"
+#include "tests/bench/figure.hpp"
+#include "tests/bench/learning_sets.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/support/robots.hpp"
 
-// Transfer of paths between model robots that stand at the same place, with the default profile
-// (tracks, random solutions where they are missing) and with random solutions alone (L = 5,
-// d = 0.5): poses and configurations per second, share of poses solved, of tracks kept, of random
-// configurations. `random` paths cross the whole joint range; `near` ones stay within 0.8 of a
-// configuration that the target reaches too, as paths of a shared task do.
-namespace kinship {
+namespace kinship::bench {
 namespace {
 
-constexpr std::size_t kGroup = 16;  // paths that are transferred at once, as the server does
+constexpr std::size_t kPaths = 100;  // a pair
+constexpr int kThreads = 2;
+constexpr std::size_t kGroup = 16;
 
-std::vector<Path> random_paths(const kinematics::Chain& chain, int count) {
-  std::mt19937_64 generator(1);
+struct Teacher {
+  std::string name;
+  kinematics::Chain chain;
+  Eigen::Isometry3d T_task_base;
   std::vector<Path> paths;
-  for (int i = 0; i < count; ++i) {
-    Eigen::MatrixXd waypoints(chain.dof(), 3);
-    for (Eigen::Index column = 0; column < waypoints.cols(); ++column)
-      waypoints.col(column) = test::random_configuration(chain, generator);
-    paths.emplace_back(waypoints);
+};
+
+std::vector<Teacher> teachers() {
+  std::vector<Teacher> result;
+  for (const std::string& name : cobots()) {
+    const LearningSet set = read_learning_set(name);
+    Teacher teacher{name, test::model_chain(name), set.solved.front().T_task_base.value(), {}};
+    for (std::size_t i = 0; i < std::min(kPaths, set.solved.size()); ++i)
+      teacher.paths.push_back(set.solved[i].path.value());
+    result.push_back(std::move(teacher));
   }
-  return paths;
+  return result;
 }
 
-/// Paths around configurations whose pose the target reaches.
-std::vector<Path> near_paths(const kinematics::Chain& source, const kinematics::Chain& target,
-                             int count) {
-  std::mt19937_64 generator(1);
-  std::vector<Path> paths;
-  while (static_cast<int>(paths.size()) < count) {
-    const Eigen::VectorXd middle = test::random_configuration(source, generator);
-    const Eigen::Isometry3d T_base_tip =
-        kinematics::T_base_transfer(source, middle) * target.T_tip_transfer().inverse();
-    if (inverse::inverse(target, T_base_tip, {.max_solutions = 1}).configurations.cols() == 0)
-      continue;
-    Eigen::MatrixXd waypoints(source.dof(), 3);
-    for (Eigen::Index column = 0; column < waypoints.cols(); ++column)
-      waypoints.col(column) =
-          middle + (test::random_configuration(source, generator) - middle).normalized() * 0.8;
-    paths.emplace_back(waypoints);
-  }
-  return paths;
-}
+struct Rate {
+  double per_s = 0;
+  double solved_share = 0;  ///< of the poses
+};
 
-void transfer_pair(benchmark::State& state, const std::string& from, const std::string& to,
-                   bool near, int tracks) {
-  const kinematics::Chain source = test::model_chain(from);
-  const kinematics::Chain target = test::model_chain(to);
-  const std::vector<Path> paths = near ? near_paths(source, target, 50) : random_paths(source, 50);
-  const transfer::ArmPair pair(source, target);
-  const TransferParameters parameters{.tracks = tracks};
+/// Threads take groups of paths in turn, as the server does.
+Rate transfer_pair(const Teacher& source, const Teacher& target,
+                   const TransferParameters& parameters) {
+  const transfer::ArmPair pair(source.chain, target.chain);
+  const Eigen::Isometry3d T_target_source = target.T_task_base.inverse() * source.T_task_base;
   const transfer::Filters none;
-  std::size_t next = 0;
-  TransferCounts sum;
-  for (auto step : state) {
-    std::vector<transfer::PathToTransfer> group;
-    for (; group.size() < kGroup; next = (next + 1) % paths.size())
-      group.push_back({paths[next], Eigen::Isometry3d::Identity(), none});
-    for (const auto& path : transfer::transfer_paths(group, pair, parameters, 0))
-      sum += path.summary;
+  std::vector<transfer::TransferSummary> sums(kThreads);
+  const auto work = [&](std::size_t thread) {
+    for (std::size_t first = thread * kGroup; first < source.paths.size();
+         first += kThreads * kGroup) {
+      std::vector<transfer::PathToTransfer> group;
+      for (std::size_t i = first; i < std::min(first + kGroup, source.paths.size()); ++i)
+        group.push_back({source.paths[i], T_target_source, none});
+      for (const auto& path : transfer::transfer_paths(group, pair, parameters, 0))
+        sums[thread].add(path.summary);
+    }
+  };
+  const double start_s = wall_s();
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < kThreads; ++i)
+      threads.emplace_back(work, i);
   }
-  const auto rate = [](std::uint64_t count) {
-    return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);
-  };
-  const auto share = [](std::uint64_t part, std::uint64_t whole) {
-    return static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(whole, 1));
-  };
-  state.counters["poses/s"] = rate(sum.poses);
-  state.counters["configurations/s"] = rate(sum.configurations);
-  state.counters["solved"] = share(sum.poses_solved, sum.poses);
-  state.counters["tracks"] = share(sum.tracks_kept, sum.tracks_tried);
-  state.counters["random"] = share(sum.random_configurations, sum.configurations);
+  const double taken_s = wall_s() - start_s;
+  sums[0].add(sums[1]);
+  return {static_cast<double>(sums[0].configurations) / taken_s,
+          static_cast<double>(sums[0].poses_solved) / static_cast<double>(sums[0].poses)};
 }
 
-void add_pairs() {
-  const std::vector<std::pair<std::string, std::string>> pairs = {{"panda", "iiwa14"},
-                                                                  {"panda", "ur10e"},
-                                                                  {"iiwa14", "panda"},
-                                                                  {"iiwa14", "ur10e"},
-                                                                  {"ur10e", "panda"},
-                                                                  {"ur10e", "iiwa14"},
-                                                                  {"planar_5r_a", "planar_7r_c"},
-                                                                  {"planar_7r_c", "planar_5r_a"}};
-  for (const auto& [from, to] : pairs)
-    for (const bool near : {false, true})
-      for (const int tracks : {0, 3}) {
-        const std::string name = from + "_to_" + to + (near ? "/near" : "/random") +
-                                 (tracks > 0 ? "/tracks" : "/random_solutions");
-        benchmark::RegisterBenchmark(name.c_str(), transfer_pair, from, to, near, tracks);
+struct Way {
+  std::string name;
+  TransferParameters parameters;
+  std::optional<double> budget_per_s;
+};
+
+void measure(const std::vector<Teacher>& robots, const Way& way) {
+  double sum = 0, solved = 0, least = std::numeric_limits<double>::infinity();
+  std::string slowest;
+  int pairs = 0;
+  for (const Teacher& source : robots)
+    for (const Teacher& target : robots) {
+      if (&source == &target)
+        continue;
+      const Rate rate = transfer_pair(source, target, way.parameters);
+      sum += rate.per_s;
+      solved += rate.solved_share;
+      if (rate.per_s < least) {
+        least = rate.per_s;
+        slowest = source.name + " to " + target.name;
       }
+      ++pairs;
+    }
+  print({.name = way.name + ", mean of " + std::to_string(pairs) + " pairs",
+         .value = sum / pairs,
+         .unit = "configurations/s",
+         .better = Better::Higher,
+         .budget = way.budget_per_s,
+         .note = std::to_string(std::lround(100 * solved / pairs)) + " % of the poses solved"});
+  print({.name = way.name + ", slowest pair",
+         .value = least,
+         .unit = "configurations/s",
+         .better = Better::Higher,
+         .note = slowest});
 }
 
 }  // namespace
-}  // namespace kinship
+}  // namespace kinship::bench
 
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  kinship::add_pairs();
-  benchmark::RunSpecifiedBenchmarks();
+int main() {
+  using namespace kinship::bench;
+  const std::vector<Teacher> robots = teachers();
+  measure(robots, {"tracks", {}, 300e3});
+  measure(robots, {"random solutions", {.max_solutions = 8, .min_distance = 0.2, .tracks = 0}, {}});
 }

@@ -2,15 +2,18 @@
 // Cyclone DDS with the same messages and QoS: processes on loopback, blocks of both taking turns.
 // What the whole of Kinship adds.
 //
-//   fetch_bench [ROUND_TRIPS]      prints p50 and p99 in microseconds and the ratio of the p50
+//   cached_fetch_bench
 
-#include <cstdio>
-#include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "client/link/client.hpp"
 #include "tests/bench/bare_conversation.hpp"
+#include "tests/bench/figure.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
@@ -23,6 +26,7 @@ namespace {
 using namespace kinship;
 using std::chrono::seconds;
 
+constexpr int kRoundTrips = 10'000;
 constexpr int kBlock = 100;
 constexpr std::uint64_t kPaths = 100;
 
@@ -41,17 +45,33 @@ int run_bare(std::uint32_t domain, std::uint32_t bare_domain, const Digest& robo
   const dds::Participant participant({.domain = bare_domain, .role = dds::Role::Server});
   bench::Bare bare(participant, true);
   std::cout << "ready" << std::endl;
-  bare.serve({reply});
+  bare.serve(reply);
+}
+
+void measure(int times, const std::function<void()>& call, std::vector<double>& times_us) {
+  for (int i = 0; i < times; ++i) {
+    const double start_s = bench::wall_s();
+    call();
+    times_us.push_back(1e6 * (bench::wall_s() - start_s));
+  }
+}
+
+void print(const std::string& name, double share, const std::vector<double>& ours,
+           const std::vector<double>& bares, std::optional<double> ratio_budget) {
+  bench::print({.name = name,
+                .value = bench::percentile(ours, share),
+                .unit = "us",
+                .reference = bench::Reference{"bare Cyclone DDS", bench::percentile(bares, share)},
+                .ratio_budget = ratio_budget});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc == 5 && std::string(argv[1]) == "bare")
-    return run_bare(static_cast<std::uint32_t>(std::atoi(argv[2])),
-                    static_cast<std::uint32_t>(std::atoi(argv[3])),
+    return run_bare(static_cast<std::uint32_t>(std::stoul(argv[2])),
+                    static_cast<std::uint32_t>(std::stoul(argv[3])),
                     Digest::from_hex(argv[4]).value());
-  const int round_trips = argc > 1 ? std::atoi(argv[1]) : 10'000;
   const test::ReservedDomain domain, bare_domain;
   const test::TemporaryDirectory directory{test::disk_root()};
   const test::ServerProcess server(
@@ -63,25 +83,21 @@ int main(int argc, char** argv) {
     client.report(test::panda_attempt(panda, "sweep", i));
   client.flush(seconds(60));
   const FetchRequest request = request_for(panda);
-  const FetchReply reply = client.fetch(request).value_or_throw();
-  test::ChildProcess bare_server({argv[0], "bare", std::to_string(domain.number()),
+  client.fetch(request).value_or_throw();
+  test::ChildProcess bare_server({"/proc/self/exe", "bare", std::to_string(domain.number()),
                                   std::to_string(bare_domain.number()), panda.hex()});
   bare_server.read_line();
   const dds::Participant participant({.domain = bare_domain.number()});
   bench::Bare bare(participant, false);
   bare.call(request);  // connected after it
   std::vector<double> ours, bares;
-  for (int done = 0; done < round_trips; done += kBlock) {
-    bench::measure(
+  for (int done = 0; done < kRoundTrips; done += kBlock) {
+    measure(
         kBlock, [&] { client.fetch(request).value_or_throw(); }, ours);
-    bench::measure(
+    measure(
         kBlock, [&] { bare.call(request); }, bares);
   }
-  const double our_p50 = bench::percentile(ours, 0.5);
-  const double bare_p50 = bench::percentile(bares, 0.5);
-  const auto& mixture = *reply.distribution->mixture;
-  std::printf("%d components: kinshipd p50/p99 %.1f / %.1f us, bare %.1f / %.1f us, ratio %.2f\n",
-              static_cast<int>(mixture.weights().size()), our_p50, bench::percentile(ours, 0.99),
-              bare_p50, bench::percentile(bares, 0.99), our_p50 / bare_p50);
+  print("30 KB from memory, p50", 0.5, ours, bares, 1.5);
+  print("30 KB from memory, p99", 0.99, ours, bares, {});
   return 0;
 }

@@ -1,22 +1,25 @@
-// Durable reports per second against appending as many bytes with fdatasync, in one run.
-// Usage: store_bench [DIRECTORY [SECONDS]]   DIRECTORY: on the disk to be measured; default: here.
-// SECONDS: for each of the three ways; default 6.
+// Durable reports of 8 KB per second against appending as many bytes with fdatasync, in turn, in
+// the current directory, which is on the disk to be measured.
+//
+//   report_bench
 
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/bench/figure.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/support/store_values.hpp"
 
 namespace kinship::store {
@@ -28,23 +31,12 @@ constexpr Eigen::Index kDof = 7;
 constexpr Eigen::Index kWaypoints = 146;  // 8176 bytes as float64
 constexpr std::size_t kBytes = 8192;
 
-struct Rate {
-  double per_s = 0;
-  double p50_ms = 0, p99_ms = 0;
-};
-
 /// What was seen in all rounds of one way to write.
 struct Seen {
   std::vector<double> latencies_ms;
   double seconds = 0;
 
-  Rate rate() const {
-    std::vector<double> sorted = latencies_ms;
-    std::ranges::sort(sorted);
-    const auto last = static_cast<double>(sorted.size() - 1);
-    const auto at = [&](double share) { return sorted[static_cast<std::size_t>(share * last)]; };
-    return {static_cast<double>(sorted.size()) / seconds, at(0.5), at(0.99)};
-  }
+  double per_s() const { return static_cast<double>(latencies_ms.size()) / seconds; }
 };
 
 double ms_since(Clock::time_point start) {
@@ -58,7 +50,7 @@ void raw_appends(const std::filesystem::path& file, double seconds, Seen& seen) 
   while (ms_since(begin) < 1e3 * seconds) {
     const Clock::time_point start = Clock::now();
     if (write(descriptor, block.data(), block.size()) < 0 || fdatasync(descriptor) != 0) {
-      std::cerr << "store_bench: cannot write " << file << "\n";
+      std::cerr << "report_bench: cannot write " << file << "\n";
       std::exit(1);
     }
     seen.latencies_ms.push_back(ms_since(start));
@@ -123,38 +115,44 @@ class Clients {
   std::uint64_t next_seed_ = 1;
 };
 
-void print(const std::string& what, const Rate& rate, double raw_per_s) {
-  std::cout << std::left << std::setw(28) << what << std::right << std::fixed
-            << std::setprecision(0) << std::setw(8) << rate.per_s << "/s" << std::setprecision(2)
-            << std::setw(10) << rate.p50_ms << std::setw(10) << rate.p99_ms << std::setw(10)
-            << rate.per_s / raw_per_s << "\n";
+std::string latencies(const Seen& seen) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << "p50 " << bench::median(seen.latencies_ms)
+       << " ms, p99 " << bench::percentile(seen.latencies_ms, 0.99) << " ms";
+  return text.str();
 }
 
-int run(const std::filesystem::path& directory, double seconds) {
-  const std::filesystem::path file = directory / ("store_bench-" + std::to_string(getpid()));
+void print(const std::string& name, const Seen& seen, const bench::Reference& reference,
+           double ratio_budget) {
+  bench::print({.name = name,
+                .value = seen.per_s(),
+                .unit = "reports/s",
+                .better = bench::Better::Higher,
+                .reference = reference,
+                .ratio_budget = ratio_budget,
+                .note = latencies(seen)});
+}
+
+int run() {
+  const std::filesystem::path file = "report_bench-" + std::to_string(getpid());
   RobotRecord robot = test::make_robot("bench", 1);
   robot.dof = kDof;
-  Seen raw;
-  Seen one;
-  Seen sixteen;
+  Seen raw, one, sixteen;
   {
     const std::unique_ptr<Store> store = open_sqlite_store(file);
     if (!store->register_robot(robot))
       return 1;
     Clients clients(*store, robot.digest);
     constexpr int kRounds = 5;  // taken in turn, because the disk's own rate comes and goes
+    constexpr double kRound_s = 0.8;
     for (int round = 0; round < kRounds; ++round) {
-      raw_appends(file.string() + ".raw", seconds / kRounds, raw);
-      clients.run(1, seconds / kRounds, one);
-      clients.run(16, seconds / kRounds, sixteen);
+      raw_appends(file.string() + ".raw", kRound_s, raw);
+      clients.run(1, kRound_s, one);
+      clients.run(16, kRound_s, sixteen);
     }
   }
-  const double raw_per_s = raw.rate().per_s;
-  std::cout << "                                rate    p50 ms    p99 ms   to raw\n";
-  print("append 8 KB + fdatasync", raw.rate(), raw_per_s);
-  print("durable report, 1 client", one.rate(), raw_per_s);
-  print("durable report, 16 clients", sixteen.rate(), raw_per_s);
-  std::cout << "16 clients to one: " << sixteen.rate().per_s / one.rate().per_s << "\n";
+  print("durable reports, 1 client", one, {"append 8 KB + fdatasync", raw.per_s()}, 0.8);
+  print("durable reports, 16 clients", sixteen, {"1 client", one.per_s()}, 2.5);
   for (const char* const suffix : {"", ".raw", ".lock"})
     std::filesystem::remove(file.string() + suffix);
   return 0;
@@ -163,7 +161,4 @@ int run(const std::filesystem::path& directory, double seconds) {
 }  // namespace
 }  // namespace kinship::store
 
-int main(int count, char** arguments) {
-  return kinship::store::run(count > 1 ? arguments[1] : ".",
-                             count > 2 ? std::atof(arguments[2]) : 6);
-}
+int main() { return kinship::store::run(); }

@@ -1,5 +1,5 @@
-// Armadillo's side of fit_compare: armadillo_compare FOLDER D K, prints CPU milliseconds per EM
-// iteration from the start that fit_compare wrote.
+// Armadillo's side of fit_bench: reference_armadillo FOLDER D K, prints CPU milliseconds per EM
+// iteration from the start that fit_bench wrote.
 
 #include <armadillo>
 #include <ctime>
@@ -33,14 +33,14 @@ double fit_s(const arma::mat& points, const arma::gmm_full& start, arma::uword i
 int main(int argc, char** argv) {
   if (argc != 4)
     return 2;
-  const std::string folder = argv[1], name_of_points = folder + "/points_" + argv[2] + ".bin";
+  const std::string folder = argv[1], name_of_points = folder + "/points";
   const arma::uword d = std::stoul(argv[2]), k = std::stoul(argv[3]);
   std::ifstream points_file(name_of_points, std::ios::binary | std::ios::ate);
   const auto bytes = static_cast<arma::uword>(points_file.tellg());
   points_file.seekg(0);
   arma::mat points(d, bytes / sizeof(double) / d);
   read(points_file, points.memptr(), points.n_elem);
-  std::ifstream start_file(folder + "/start_" + argv[2] + "_" + argv[3] + ".bin", std::ios::binary);
+  std::ifstream start_file(folder + "/start", std::ios::binary);
   arma::rowvec weights(k);
   arma::mat means(d, k);
   arma::cube covariances(d, d, k);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <ctime>
+#include <functional>
+#include <vector>
+
+namespace kinship::bench {
+
+inline double clock_s(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+inline double wall_s() { return clock_s(CLOCK_MONOTONIC); }
+inline double thread_cpu_s() { return clock_s(CLOCK_THREAD_CPUTIME_ID); }
+inline double process_cpu_s() { return clock_s(CLOCK_PROCESS_CPUTIME_ID); }
+
+/// \param share  0 the least, 0.5 the median, 1 the greatest.
+inline double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
+}
+
+inline double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+
+/// The least seconds of several calls: others may use the machine.
+inline double least_s(int calls, double (*now_s)(), const std::function<void()>& call) {
+  std::vector<double> times_s;
+  for (int i = 0; i < calls; ++i) {
+    const double start_s = now_s();
+    call();
+    times_s.push_back(now_s() - start_s);
+  }
+  return percentile(std::move(times_s), 0);
+}
+
+}  // namespace kinship::bench

@@ -1,0 +1,231 @@
+"""Builds and runs benchmarks and reports what they say; deploy/bench calls it and tells the options.
+
+A benchmark prints one JSON object a line on standard output, a figure each (tests/bench/figure.hpp).
+"""
+import argparse
+import collections
+import datetime
+import json
+import os
+import pathlib
+import platform
+import shutil
+import signal
+import statistics
+import subprocess
+import sys
+import time
+
+import report
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = ROOT / "build" / "bench"
+
+Bench = collections.namedtuple("Bench", "name program arguments title repeats minutes is_long")
+
+
+def bench(name, program, title, arguments=(), repeats=3, minutes=5, is_long=False):
+    """minutes: after which a run has failed."""
+    return Bench(name, program, list(arguments), title, repeats, minutes, is_long)
+
+
+BENCHES = [
+    bench("em", "fit_bench", "EM, N = 72 160, d = 7, CPU time", ["em"]),
+    bench("fit", "fit_bench", "Fits, N = 72 160, d = 7, CPU time, and samples", ["fit"], repeats=1),
+    bench("inverse", "inverse_bench", "Inverse kinematics, L = 8, d = 0.2, reachable poses, one thread"),
+    bench("transfer", "transfer_bench", "Transfer between the five cobots, two threads"),
+    bench("cold-fetch", "cold_fetch_bench", "Distributions that have to be made, over DDS"),
+    bench("cached-fetch", "cached_fetch_bench", "Distributions from memory, over DDS"),
+    bench("durable-report", "report_bench", "Durable reports of 8 KB"),
+    bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread"),
+    bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),
+    bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
+    bench("command", "command_bench", "One-shot commands against a local server"),
+    bench("large-store", "large_store_bench", "A store of 1 000 000 paths", repeats=1, minutes=60, is_long=True),
+    bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True),
+]
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(prog="deploy/bench")
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--repeat", type=int, metavar="N")
+    parser.add_argument("--long", action="store_true")
+    parser.add_argument("--no-references", action="store_true")
+    parser.add_argument("--write-results", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    options = parser.parse_args()
+    known = [b.name for b in BENCHES]
+    for name in options.names:
+        if name not in known:
+            parser.error(f"no benchmark '{name}'; there are: {' '.join(known)}")
+    if options.repeat is not None and options.repeat < 1:
+        parser.error(f"--repeat {options.repeat}: at least 1")
+    if options.write_results and options.names:
+        parser.error("--write-results needs all benchmarks, so no names")
+    return options
+
+
+def run_quietly(command, log):
+    """Ends the program with the end of the log if the command fails."""
+    with open(log, "w") as stream:
+        code = subprocess.call(command, cwd=ROOT, stdout=stream, stderr=subprocess.STDOUT)
+    if code != 0:
+        print("".join(open(log).readlines()[-30:]), file=sys.stderr)
+        sys.exit(f"bench: {' '.join(map(str, command))} failed; see {log}")
+
+
+def build(benches):
+    programs = sorted({b.program for b in benches})
+    print(f"Building {' '.join(programs)}", flush=True)
+    run_quietly(["cmake", "--preset", "bench"], BUILD / "configure.log")
+    run_quietly(["cmake", "--build", BUILD, "--target", *programs], BUILD / "build.log")
+
+
+def load():
+    return round(os.getloadavg()[0], 2)
+
+
+def git(*arguments):
+    result = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
+    return result.stdout.strip() if result.returncode == 0 else ""
+
+
+def line_after(file, key):
+    """What stands behind `key` in a file of /proc or /etc."""
+    for line in open(file):
+        if line.startswith(key):
+            return line[len(key):].strip(" \t:=\"\n")
+    return "unknown"
+
+
+def describe_run():
+    results = ":(exclude)tests/bench/RESULTS.md"
+    flags = line_after("/proc/cpuinfo", "flags").split()
+    widest = next((name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags), "SSE2")
+    memory_kb = line_after("/proc/meminfo", "MemTotal").split()[0]
+    return {
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "commit": git("rev-parse", "--short=12", "HEAD") or "unknown",
+        "is_modified": bool(git("status", "--porcelain", "--", ".", results)),
+        "cpu": f'{line_after("/proc/cpuinfo", "model name")} ({widest})',
+        "cores": os.cpu_count(),
+        "memory_gb": round(int(memory_kb) / 1e6, 1),
+        "system": line_after("/etc/os-release", "PRETTY_NAME"),
+        "kernel": platform.release(),
+        "load_before": load(),
+    }
+
+
+class Failed(Exception):
+    pass
+
+
+def end_group(process):
+    """Ends what a benchmark started, too: servers, clients, references."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
+def run_once(wanted, has_references, scratch):
+    """The figures of one run, in order."""
+    command = [BUILD / "bin" / wanted.program, *wanted.arguments, *([] if has_references else ["--no-references"])]
+    log = BUILD / f"{wanted.name}.log"
+    with open(log, "w") as errors:
+        process = subprocess.Popen(command, cwd=scratch, stdout=subprocess.PIPE, stderr=errors, text=True,
+                                   start_new_session=True)
+        try:
+            output, _ = process.communicate(timeout=60 * wanted.minutes)
+        except subprocess.TimeoutExpired:
+            raise Failed(f"not done after {wanted.minutes} minutes") from None
+        finally:
+            end_group(process)
+    if process.returncode != 0:
+        last = log.read_text().strip().splitlines()[-1:]
+        raise Failed(f"exit code {process.returncode}; {' '.join(last)}")
+    figures = [json.loads(line) for line in output.splitlines()]
+    if len({figure["name"] for figure in figures}) < len(figures):
+        raise Failed("two figures have one name")
+    return figures
+
+
+def summary(values):
+    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
+
+
+def merge(runs):
+    """One figure of the equal ones of several runs: median, least and greatest of the value and of the ratio."""
+    merged = []
+    for figures in zip(*runs, strict=True):
+        figure = dict(figures[-1])
+        if any(other["name"] != figure["name"] for other in figures):
+            raise Failed(f"'{figure['name']}' is not in every run")
+        figure["value"] = summary([f["value"] for f in figures])
+        if "reference" in figure:
+            figure["reference"] = {"name": figure["reference"]["name"],
+                                   "value": statistics.median(f["reference"]["value"] for f in figures)}
+            if all(f["reference"]["value"] > 0 for f in figures):
+                figure["ratio"] = summary([f["value"] / f["reference"]["value"] for f in figures])
+        limits = [("value", figure.get("budget")), ("ratio", figure.get("ratio_budget"))]
+        kept = [(figure[of]["median"] <= limit if figure["better"] == "lower" else figure[of]["median"] >= limit)
+                for of, limit in limits if limit is not None and of in figure]
+        figure["is_kept"] = all(kept) if kept else None
+        merged.append(figure)
+    return merged
+
+
+def measure(wanted, options, scratch):
+    """A benchmark as the report has it."""
+    repeats = options.repeat or wanted.repeats
+    result = {"bench": wanted.name, "title": wanted.title, "runs": repeats, "load_before": load(), "figures": []}
+    start = time.monotonic()
+    runs = []
+    try:
+        for i in range(repeats):
+            print(f"{wanted.name}: run {i + 1} of {repeats}", flush=True)
+            runs.append(run_once(wanted, not options.no_references, scratch))
+        result["figures"] = merge(runs)
+    except (Failed, ValueError) as error:
+        result["failure"] = str(error)
+        print(f"{wanted.name}: FAILED: {error}", file=sys.stderr, flush=True)
+    result["seconds"] = round(time.monotonic() - start, 1)
+    result["load_after"] = load()
+    for figure in result["figures"]:
+        print("    " + report.in_a_line(figure), flush=True)
+    return result
+
+
+def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that nothing is left running
+    options = parse_arguments()
+    if options.list:
+        for b in BENCHES:
+            print(f"{b.name:18}{b.title} ({b.repeats} run{'s' if b.repeats > 1 else ''}{', --long' if b.is_long else ''})")
+        return 0
+    benches = [b for b in BENCHES if (b.name in options.names if options.names else options.long or not b.is_long)]
+    build(benches)
+    scratch = BUILD / "scratch"
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir()
+    document = describe_run()
+    start = time.monotonic()
+    document["benches"] = [measure(b, options, scratch) for b in benches]
+    document["load_after"] = load()
+    document["seconds"] = round(time.monotonic() - start)
+    shutil.rmtree(scratch)
+    (BUILD / "report.json").write_text(json.dumps(document, indent=1) + "\n")
+    (BUILD / "report.md").write_text(report.markdown(document))
+    (BUILD / "report.html").write_text(report.html(document))
+    failed = [b["bench"] for b in document["benches"] if "failure" in b]
+    if options.write_results and not failed:
+        shutil.copy(BUILD / "report.md", ROOT / "tests" / "bench" / "RESULTS.md")
+    print(f"Report: {BUILD}/report.html, report.md, report.json; {document['seconds']} s")
+    if failed:
+        print(f"bench: failed: {' '.join(failed)}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+sys.exit(main())
