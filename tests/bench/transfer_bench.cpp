@@ -54,7 +54,7 @@ Rate transfer_pair(const Teacher& source, const Teacher& target,
   const transfer::ArmPair pair(source.chain, target.chain);
   const Eigen::Isometry3d T_target_source = target.T_task_base.inverse() * source.T_task_base;
   const transfer::Filters none;
-  std::vector<transfer::TransferSummary> sums(kThreads);
+  std::vector<TransferCounts> sums(kThreads);
   const auto work = [&](std::size_t thread) {
     for (std::size_t first = thread * kGroup; first < source.paths.size();
          first += kThreads * kGroup) {
@@ -62,7 +62,7 @@ Rate transfer_pair(const Teacher& source, const Teacher& target,
       for (std::size_t i = first; i < std::min(first + kGroup, source.paths.size()); ++i)
         group.push_back({source.paths[i], T_target_source, none});
       for (const auto& path : transfer::transfer_paths(group, pair, parameters, 0))
-        sums[thread].add(path.summary);
+        sums[thread] += path.summary;
     }
   };
   const double start_s = wall_s();
@@ -72,7 +72,7 @@ Rate transfer_pair(const Teacher& source, const Teacher& target,
       threads.emplace_back(work, i);
   }
   const double taken_s = wall_s() - start_s;
-  sums[0].add(sums[1]);
+  sums[0] += sums[1];
   return {static_cast<double>(sums[0].configurations) / taken_s,
           static_cast<double>(sums[0].poses_solved) / static_cast<double>(sums[0].poses)};
 }
