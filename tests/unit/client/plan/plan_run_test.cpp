@@ -172,7 +172,7 @@ class PlanRunWithoutServer : public PlanRun {
   }
 
  private:
-  test::ReservedDomain domain_;
+  kinship::test::ReservedDomain domain_;
 };
 
 TEST_F(PlanRunWithoutServer, RequiredGuidanceEndsTheRunBeforePlanning) {
