@@ -24,7 +24,7 @@ struct StudyRobot {
   Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
   /// Where its instances start, but for noise, joint units. A constant of a frozen study, so that
   /// it does not depend on the inverse kinematics of the day; empty: searched.
-  Eigen::VectorXd start;
+  Eigen::VectorXd start{};
 };
 
 /// The instances of a study for one robot: equal arguments, equal problems.
