@@ -137,23 +137,23 @@ std::string fitted_generation(const Distribution& distribution, const Digest& ro
   return source == distribution.sources.end() ? "-" : std::to_string(source->generation);
 }
 
-void print_arm(const char* name, const std::optional<ArmEvidence>& arm, std::ostream& out) {
+void print_evidence(const char* name, const std::optional<ModeEvidence>& mode, std::ostream& out) {
   out << name;
-  if (!arm) {
+  if (!mode) {
     out << "no attempts\n";
     return;
   }
-  out << arm->attempts << " attempts, " << arm->solved << " solved";
-  if (arm->solved > 0)
-    out << ", " << number_text(arm->checks_per_solution, 0) << " collision checks per solution";
+  out << mode->attempts << " attempts, " << mode->solved << " solved";
+  if (mode->solved > 0)
+    out << ", " << number_text(mode->checks_per_solution, 0) << " collision checks per solution";
   out << '\n';
 }
 
 void print_explanation(const Explanation& explanation, std::ostream& out) {
   print_distribution(explanation.distribution, out);
   out << '\n';
-  print_arm("guided      ", explanation.distribution.advice.guided, out);
-  print_arm("control     ", explanation.distribution.advice.control, out);
+  print_evidence("guided      ", explanation.distribution.advice.guided, out);
+  print_evidence("control     ", explanation.distribution.advice.control, out);
   out << "experience  " << (explanation.behind ? "has grown since the fit" : "is that of the fit")
       << (explanation.next_fit.empty() ? "" : "; next fit: ") << explanation.next_fit << "\n\n";
   Table table({"EXPERIENCE NOW", "ROBOT", "PATHS", "GENERATION", "FITTED"});

@@ -100,7 +100,7 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
                                  std::to_string(path.record.collision_checks),
                                  number_text(path.record.planning_time_s, 3),
                                  path.record.planner,
-                                 std::string(to_text(path.record.arm)),
+                                 std::string(to_text(path.record.sampling_mode)),
                                  path.machine,
                                  time_text(path.received_ms),
                                  path.retired_ms == 0 ? "-" : time_text(path.retired_ms)};

@@ -77,7 +77,8 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
       << " collision checks, " << number_text(record.planning_time_s, 3) << " s of "
       << number_text(record.time_limit_s, 1) << " s\n"
       << "planner     " << record.planner << ' ' << record.planner_options << '\n'
-      << "arm         " << to_text(record.arm) << ", share " << number_text(record.share, 2);
+      << "arm         " << to_text(record.sampling_mode) << ", share "
+      << number_text(record.share, 2);
   if (record.distribution_id)
     out << ", distribution " << record.distribution_id->short_hex() << " revision "
         << record.distribution_revision;

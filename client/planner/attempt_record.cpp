@@ -32,7 +32,7 @@ Attempt make_attempt(const Reporter& reporter, const Problem& problem,
   record.collision_checks = result.collision_checks;
   record.projections = result.projections;
   record.time_limit_s = result.time_limit_s;
-  record.arm = result.arm;
+  record.sampling_mode = result.sampling_mode;
   record.share = result.share;
   record.distribution_id = result.distribution_id;
   record.distribution_revision = result.distribution_revision;

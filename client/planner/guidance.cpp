@@ -17,13 +17,13 @@ std::string formatted(const char* format, double value) {
 }
 
 /// How the run's queries will be planned.
-std::string describe(const planning::ArmChooser& arms, double guided_fraction) {
+std::string describe(const planning::SamplingModeChooser& sampling, double guided_fraction) {
   constexpr double kPercent = 100;
-  const double guided = arms.guided_part();
+  const double guided = sampling.guided_part();
   if (guided_fraction == 0)
     return "uniform";
   const std::string words = "share " + formatted("%.2f", guided_fraction);
-  if (arms.is_sampling())
+  if (sampling.is_sampling())
     return words + ", the first query guided with probability " + formatted("%.2f", guided);
   if (guided == 1)
     return words;
@@ -31,8 +31,8 @@ std::string describe(const planning::ArmChooser& arms, double guided_fraction) {
          " % of the queries uniform as control";
 }
 
-std::string describe(const Distribution& distribution, const planning::ArmChooser& arms,
-                     double guided_fraction) {
+std::string describe(const Distribution& distribution,
+                     const planning::SamplingModeChooser& sampling, double guided_fraction) {
   std::string text =
       "distribution " + distribution.id.short_hex() + " revision " +
       std::to_string(distribution.revision) + ", " + std::to_string(distribution.mixture->size()) +
@@ -44,7 +44,7 @@ std::string describe(const Distribution& distribution, const planning::ArmChoose
             (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
             std::to_string(source.paths) + " paths)";
   }
-  text += "; " + describe(arms, guided_fraction);
+  text += "; " + describe(sampling, guided_fraction);
   if (!distribution.advice.evidence.empty())
     text += " (" + distribution.advice.evidence + ")";
   if (!distribution.reason.empty())
@@ -62,12 +62,12 @@ GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceOptio
     return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
                                            " has guided share " + std::to_string(told) +
                                            ", must be 0 to 1");
-  const double guided_fraction = planning::guided_fraction(distribution.advice, wanted.arms);
+  const double guided_fraction = planning::guided_fraction(distribution.advice, wanted.sampling);
   GuidanceAnswer answer;
   answer.guidance =
       Guidance{distribution.id, distribution.revision, *distribution.mixture, guided_fraction};
-  answer.arms.emplace(distribution.advice, wanted.arms);
-  answer.message = describe(distribution, *answer.arms, guided_fraction);
+  answer.sampling.emplace(distribution.advice, wanted.sampling);
+  answer.message = describe(distribution, *answer.sampling, guided_fraction);
   return answer;
 }
 
@@ -134,8 +134,8 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
                               : fetch_guidance(fetch_, wanted_, T_task_base);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
-  if (answer.arms)  // of the same task and robot as those before, and newer
-    arms_ = answer.arms;
+  if (answer.sampling)  // of the same task and robot as those before, and newer
+    sampling_ = answer.sampling;
   return {answers_.emplace(key, std::move(answer)).first->second, true};
 }
 
@@ -145,12 +145,13 @@ QueryGuidance GuidanceBook::choose(const Problem& problem) const {
     return {.why_not = "nobody was asked for guidance at its placement"};
   if (!known->second.guidance)
     return {.why_not = known->second.message};
-  return {.guidance = &*known->second.guidance, .arm = arms_->choose(planning::arm_seed(problem))};
+  return {.guidance = &*known->second.guidance,
+          .sampling_mode = sampling_->choose(planning::sampling_mode_seed(problem))};
 }
 
 void GuidanceBook::add(const PlannedProblem& planned) {
-  if (arms_)
-    arms_->add(planned.result.arm, planned.outcome, planned.result.collision_checks);
+  if (sampling_)
+    sampling_->add(planned.result.sampling_mode, planned.outcome, planned.result.collision_checks);
 }
 
 }  // namespace kinship::planner

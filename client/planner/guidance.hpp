@@ -9,7 +9,7 @@
 #include <string>
 
 #include "client/planner/plan_problem.hpp"
-#include "client/planning/arm_choice.hpp"
+#include "client/planning/sampling_mode_choice.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
@@ -26,7 +26,7 @@ struct GuidanceOptions {
   Eigen::Index dof = 0;
   std::string profile = "default";
   Selection selection;
-  planning::ArmOptions arms;
+  planning::SamplingModeOptions sampling;
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 
@@ -36,7 +36,7 @@ enum class NoGuidance { None, NoServer, NotFound, Failed };
 /// What came of asking for one placement.
 struct GuidanceAnswer {
   std::optional<Guidance> guidance;
-  std::optional<planning::ArmChooser> arms;  ///< present exactly if there is guidance
+  std::optional<planning::SamplingModeChooser> sampling;  ///< present exactly if there is guidance
   NoGuidance why_not = NoGuidance::None;
   std::string message;  ///< for people: what was got, or why nothing
 };
@@ -69,7 +69,8 @@ class GuidanceBook {
   Fetch fetch_;
   GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
-  std::optional<planning::ArmChooser> arms_;  // of all placements: same task, same robot
+  std::optional<planning::SamplingModeChooser>
+      sampling_;  // of all placements: same task, same robot
   bool server_missing_ = false;
 };
 

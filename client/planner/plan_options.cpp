@@ -194,7 +194,7 @@ void note_unused(const CLI::App& app, const PlanOptions& options, std::ostream& 
   const bool is_uniform = options.guidance == GuidanceMode::Uniform;
   if (is_uniform)
     note_unused(app, kOfGuidance, "with --guidance uniform", notes);
-  else if (options.arms.guided_fraction == 0.0)
+  else if (options.sampling.guided_fraction == 0.0)
     note_unused(app, {"--control-share"}, "with --share 0", notes);
   if (!options.report)
     note_unused(app, kOfReports, "without --report yes", notes);
@@ -218,15 +218,15 @@ GuidanceMode guidance_of(const RawOptions& raw, const PlanOptions& options) {
 
 void complete_shares(const CLI::App& app, const RawOptions& raw, PlanOptions& options) {
   if (app.count("--share") > 0)
-    options.arms.guided_fraction = raw.guided_fraction;
+    options.sampling.guided_fraction = raw.guided_fraction;
   if (app.count("--control-share") > 0)
-    options.arms.control_fraction = raw.control_fraction;
+    options.sampling.control_fraction = raw.control_fraction;
   if (options.guidance != GuidanceMode::Always)
     return;
-  if (options.arms.guided_fraction == 0.0)
+  if (options.sampling.guided_fraction == 0.0)
     throw CLI::ValidationError("--guidance", "always guides no query with --share 0");
-  if (!options.arms.control_fraction)
-    options.arms.control_fraction = 0;
+  if (!options.sampling.control_fraction)
+    options.sampling.control_fraction = 0;
 }
 
 /// Puts into `options` what depends on several options.

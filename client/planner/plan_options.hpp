@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/planner/plan_settings.hpp"
-#include "client/planning/arm_choice.hpp"
+#include "client/planning/sampling_mode_choice.hpp"
 #include "proto/types/selection.hpp"
 #include "robots/models/robot_arguments.hpp"
 
@@ -30,7 +30,7 @@ struct PlanOptions {
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
-  planning::ArmOptions arms;
+  planning::SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
   bool report = false;

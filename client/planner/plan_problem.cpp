@@ -67,12 +67,12 @@ std::string described(const planning::RegionConstraint::Vector6& excess) {
 std::string why_unguided(const QueryGuidance& query) {
   if (query.guidance == nullptr)
     return query.why_not;
-  switch (query.arm) {
-    case Arm::Control:
+  switch (query.sampling_mode) {
+    case SamplingMode::Control:
       return "planned uniformly as control";
-    case Arm::Uniform:
+    case SamplingMode::Uniform:
       return "planned uniformly by wish";
-    case Arm::Guided:
+    case SamplingMode::Guided:
       break;
   }
   return query.guidance->guided_fraction == 0 ? "the share of guided samples is 0" : "";
@@ -265,8 +265,9 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   if (query.guidance != nullptr) {
     planned.result.distribution_id = query.guidance->distribution_id;
     planned.result.distribution_revision = query.guidance->revision;
-    planned.result.arm = query.arm;
-    planned.result.share = query.arm == Arm::Guided ? query.guidance->guided_fraction : 0;
+    planned.result.sampling_mode = query.sampling_mode;
+    planned.result.share =
+        query.sampling_mode == SamplingMode::Guided ? query.guidance->guided_fraction : 0;
   }
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =

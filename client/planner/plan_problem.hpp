@@ -38,8 +38,9 @@ struct Guidance {
 /// What guidance a query has, and whether it uses it.
 struct QueryGuidance {
   const Guidance* guidance = nullptr;  ///< null: there is none
-  Arm arm = Arm::Uniform;              ///< Guided uses it; Control and Uniform plan without
-  std::string why_not = {};            ///< for people: why there is none
+  SamplingMode sampling_mode =
+      SamplingMode::Uniform;  ///< Guided uses it; Control and Uniform plan without
+  std::string why_not = {};   ///< for people: why there is none
 };
 
 struct PlannedProblem {

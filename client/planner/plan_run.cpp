@@ -87,7 +87,7 @@ GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::C
   wanted.dof = chain.dof();
   wanted.profile = options.profile;
   wanted.selection = options.selection;
-  wanted.arms = options.arms;
+  wanted.sampling = options.sampling;
   wanted.wait = options.wait;
   return wanted;
 }

@@ -40,7 +40,9 @@ void Progress::add(const ProblemResult& result, bool attempted) {
   planning_time_s_ += result.planning_time_s;
   gated_ += attempted && result.gate_fired ? 1 : 0;
   if (attempted)
-    ++(result.arm == Arm::Guided ? guided_ : result.arm == Arm::Control ? control_ : uniform_);
+    ++(result.sampling_mode == SamplingMode::Guided    ? guided_
+       : result.sampling_mode == SamplingMode::Control ? control_
+                                                       : uniform_);
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
   const std::string outcome =

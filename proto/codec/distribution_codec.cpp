@@ -51,11 +51,11 @@ std::optional<Value> read_optional(const Sequence& wire, Reader& reader,
   return read_fields<Value>(entries[0], reader, of);
 }
 
-void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evidence,
+void check_evidence(std::string_view mode, const std::optional<ModeEvidence>& evidence,
                     Rules& rules) {
   if (!evidence)
     return;
-  const std::string what(arm);
+  const std::string what(mode);
   rules
       .that(evidence->solved <= evidence->attempts, what + ": " + std::to_string(evidence->solved) +
                                                         " solved of " +
@@ -66,7 +66,8 @@ void check_evidence(std::string_view arm, const std::optional<ArmEvidence>& evid
 void check_recent(const std::vector<JudgedAttempt>& recent, Rules& rules) {
   rules.at_most("recent", recent.size(), kMaxJudgedAttempts);
   for (std::size_t i = 0; i < recent.size() && !rules.broken(); ++i) {
-    rules.that(recent[i].arm != Arm::Uniform, "recent: an attempt of arm uniform");
+    rules.that(recent[i].sampling_mode != SamplingMode::Uniform,
+               "recent: an attempt of arm uniform");
     if (i > 0)
       rules.that(recent[i].age <= recent[i - 1].age,
                  "recent: age " + std::to_string(recent[i].age) + " after " +
@@ -258,8 +259,8 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.transfer_time_s = wire.transfer_time_s;
   distribution.fit_time_s = wire.fit_time_s;
   distribution.selection = read_selection(wire.selection, reader);
-  distribution.advice.guided = read_optional<ArmEvidence>(wire.guided, reader);
-  distribution.advice.control = read_optional<ArmEvidence>(wire.control, reader);
+  distribution.advice.guided = read_optional<ModeEvidence>(wire.guided, reader);
+  distribution.advice.control = read_optional<ModeEvidence>(wire.control, reader);
   distribution.advice.guided_share = wire.guided_share;
   distribution.advice.recent =
       read_list<JudgedAttempt>(wire.recent, reader, " of a recent attempt");

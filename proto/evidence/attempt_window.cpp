@@ -7,26 +7,27 @@
 namespace kinship::evidence {
 
 AttemptWindow::AttemptWindow(std::vector<JudgedAttempt> recent) : recent_(std::move(recent)) {
-  std::erase_if(recent_, [](const JudgedAttempt& one) { return one.arm == Arm::Uniform; });
-  for (const Arm arm : {Arm::Guided, Arm::Control})
-    drop_beyond_window(arm);
+  std::erase_if(
+      recent_, [](const JudgedAttempt& one) { return one.sampling_mode == SamplingMode::Uniform; });
+  for (const SamplingMode mode : {SamplingMode::Guided, SamplingMode::Control})
+    drop_beyond_window(mode);
 }
 
-void AttemptWindow::add(Arm arm, bool solved, std::uint64_t checks) {
-  if (arm == Arm::Uniform)
+void AttemptWindow::add(SamplingMode mode, bool solved, std::uint64_t checks) {
+  if (mode == SamplingMode::Uniform)
     return;
   for (JudgedAttempt& one : recent_)
     if (one.age < std::numeric_limits<std::uint32_t>::max())
       ++one.age;
-  recent_.push_back({.arm = arm, .solved = solved, .checks = checks, .age = 0});
-  drop_beyond_window(arm);
+  recent_.push_back({.sampling_mode = mode, .solved = solved, .checks = checks, .age = 0});
+  drop_beyond_window(mode);
 }
 
-void AttemptWindow::drop_beyond_window(Arm arm) {
-  const auto is_of_arm = [arm](const JudgedAttempt& one) { return one.arm == arm; };
-  auto count = static_cast<std::size_t>(std::count_if(recent_.begin(), recent_.end(), is_of_arm));
+void AttemptWindow::drop_beyond_window(SamplingMode mode) {
+  const auto is_of_mode = [mode](const JudgedAttempt& one) { return one.sampling_mode == mode; };
+  auto count = static_cast<std::size_t>(std::count_if(recent_.begin(), recent_.end(), is_of_mode));
   std::erase_if(recent_, [&](const JudgedAttempt& one) {
-    return is_of_arm(one) && count > kJudgedAttemptsPerArm && count-- > 0;
+    return is_of_mode(one) && count > kJudgedAttemptsPerMode && count-- > 0;
   });
 }
 

@@ -7,7 +7,7 @@
 
 namespace kinship::evidence {
 
-/// The newest judged attempts of a (task, robot), oldest first, at most kJudgedAttemptsPerArm of
+/// The newest judged attempts of a (task, robot), oldest first, at most kJudgedAttemptsPerMode of
 /// each arm. The server fills it with what all machines report, a client goes on with its own.
 class AttemptWindow {
  public:
@@ -16,12 +16,12 @@ class AttemptWindow {
   explicit AttemptWindow(std::vector<JudgedAttempt> recent);
 
   /// An attempt newer than all others, which age by one. Uniform ones are no evidence: ignored.
-  void add(Arm arm, bool solved, std::uint64_t checks);
+  void add(SamplingMode mode, bool solved, std::uint64_t checks);
 
   const std::vector<JudgedAttempt>& recent() const noexcept { return recent_; }
 
  private:
-  void drop_beyond_window(Arm arm);
+  void drop_beyond_window(SamplingMode mode);
 
   std::vector<JudgedAttempt> recent_;
 };

@@ -30,9 +30,9 @@ double log_checks(const JudgedAttempt& attempt) {
 }
 
 /// How many standard errors the last `newest` attempts lie from those before.
-double surprise(std::span<const JudgedAttempt> arm, std::ptrdiff_t newest) {
-  const auto last = arm.last(static_cast<std::size_t>(newest));
-  const auto before = arm.first(arm.size() - last.size());
+double surprise(std::span<const JudgedAttempt> mode, std::ptrdiff_t newest) {
+  const auto last = mode.last(static_cast<std::size_t>(newest));
+  const auto before = mode.first(mode.size() - last.size());
   double sum_last = 0, sum = 0, squares = 0;
   for (const JudgedAttempt& attempt : last)
     sum_last += log_checks(attempt);
@@ -47,23 +47,23 @@ double surprise(std::span<const JudgedAttempt> arm, std::ptrdiff_t newest) {
 }
 
 /// The attempts since the last change, if there was one that shows.
-std::span<const JudgedAttempt> since_change(std::span<const JudgedAttempt> arm) {
-  const auto size = static_cast<std::ptrdiff_t>(arm.size());
+std::span<const JudgedAttempt> since_change(std::span<const JudgedAttempt> mode) {
+  const auto size = static_cast<std::ptrdiff_t>(mode.size());
   double greatest = kChange;
   std::ptrdiff_t kept = size;
   for (std::ptrdiff_t newest = kLeastOfChange;
        newest <= kMaxOfChange && size - newest >= kLeastBeforeChange; ++newest) {
-    const double standard_errors = surprise(arm, newest);
+    const double standard_errors = surprise(mode, newest);
     if (standard_errors > greatest) {
       greatest = standard_errors;
       kept = newest;
     }
   }
-  return arm.last(static_cast<std::size_t>(kept));
+  return mode.last(static_cast<std::size_t>(kept));
 }
 
-double weight_of(const JudgedAttempt& attempt, std::size_t newer_in_arm) {
-  return std::exp2(-static_cast<double>(newer_in_arm) / kHalfLifeInArm -
+double weight_of(const JudgedAttempt& attempt, std::size_t newer_in_mode) {
+  return std::exp2(-static_cast<double>(newer_in_mode) / kHalfLifeInMode -
                    static_cast<double>(attempt.age) / kHalfLifeInTask);
 }
 
@@ -71,14 +71,14 @@ double weight_of(const JudgedAttempt& attempt, std::size_t newer_in_arm) {
 struct Sums {
   double weight = 0, solved = 0, checks = 0, checks_squared = 0, checks_of_solved = 0;
 
-  explicit Sums(std::span<const JudgedAttempt> arm) {
-    for (std::size_t i = 0; i < arm.size(); ++i) {
-      const double w = weight_of(arm[i], arm.size() - 1 - i);
-      const auto c = static_cast<double>(arm[i].checks);
+  explicit Sums(std::span<const JudgedAttempt> mode) {
+    for (std::size_t i = 0; i < mode.size(); ++i) {
+      const double w = weight_of(mode[i], mode.size() - 1 - i);
+      const auto c = static_cast<double>(mode[i].checks);
       weight += w;
       checks += w * c;
       checks_squared += w * c * c;
-      if (arm[i].solved) {
+      if (mode[i].solved) {
         solved += w;
         checks_of_solved += w * c;
       }
@@ -99,10 +99,10 @@ double spread_of(const Sums& sums, double solutions) {
 }
 
 /// Nothing if the arm has no attempts that a cost could be told from.
-std::optional<LogCost> log_cost(std::span<const JudgedAttempt> recent, Arm arm) {
+std::optional<LogCost> log_cost(std::span<const JudgedAttempt> recent, SamplingMode mode) {
   std::vector<JudgedAttempt> own;
   std::copy_if(recent.begin(), recent.end(), std::back_inserter(own),
-               [arm](const JudgedAttempt& one) { return one.arm == arm; });
+               [mode](const JudgedAttempt& one) { return one.sampling_mode == mode; });
   const Sums sums(since_change(own));
   if (!(sums.checks > 0) || !(sums.weight > 0))
     return std::nullopt;
@@ -123,8 +123,8 @@ double CostRatio::quantile(double deviates) const {
 }
 
 CostRatio compare_costs(std::span<const JudgedAttempt> recent) {
-  const auto guided = log_cost(recent, Arm::Guided);
-  const auto control = log_cost(recent, Arm::Control);
+  const auto guided = log_cost(recent, SamplingMode::Guided);
+  const auto control = log_cost(recent, SamplingMode::Control);
   if (!guided || !control)
     return {kPriorLogRatio, kPriorVariance, false};
   const double precision = 1 / (guided->variance + control->variance);

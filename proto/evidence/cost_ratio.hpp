@@ -18,13 +18,13 @@ struct CostRatio {
 };
 
 /// How evidence ages: an attempt weighs half as much after so many others.
-inline constexpr double kHalfLifeInArm = 40;    ///< newer attempts of the same arm
+inline constexpr double kHalfLifeInMode = 40;   ///< newer attempts of the same arm
 inline constexpr double kHalfLifeInTask = 150;  ///< newer attempts of either arm
 
 /// What judged attempts say about the worth of guidance.
 ///
 /// The cost of an arm is its collision checks / its solutions, both summed with weights
-/// 2^(-newer of the arm / kHalfLifeInArm) 2^(-newer of either / kHalfLifeInTask): an unsolved
+/// 2^(-newer of the arm / kHalfLifeInMode) 2^(-newer of either / kHalfLifeInTask): an unsolved
 /// attempt is censored, so its checks count and it adds no solution; an arm without solutions
 /// counts as if it had one. log(cost) is taken as normal; its variance is, by the delta method for
 /// a ratio of two correlated means,

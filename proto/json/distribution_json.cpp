@@ -48,7 +48,7 @@ void require_at_most(const Reader& object, std::string_view member, std::uint64_
 }
 
 void check_evidence(const std::optional<Reader>& reader,
-                    const std::optional<ArmEvidence>& evidence) {
+                    const std::optional<ModeEvidence>& evidence) {
   if (evidence)
     require_at_most(*reader, "solved", evidence->attempts);
 }
@@ -63,7 +63,7 @@ Advice read_advice(const Reader& reader) {
     return advice;
   const std::vector<Reader> recent = reader.at("recent").elements(kMaxJudgedAttempts);
   for (std::size_t i = 0; i < recent.size(); ++i) {
-    if (advice.recent[i].arm == Arm::Uniform)
+    if (advice.recent[i].sampling_mode == SamplingMode::Uniform)
       recent[i].at("arm").refuse("must be guided or control");
     if (i > 0 && advice.recent[i].age > advice.recent[i - 1].age)
       recent[i].refuse("is older than the one before, must be oldest first");

@@ -72,7 +72,7 @@ constexpr std::tuple kGuidance{
     Field{"distribution_id", &ProblemResult::distribution_id},
     Field{"revision", &ProblemResult::distribution_revision},
     Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
-    Field{"arm", &ProblemResult::arm, {.may_be_missing = true}},
+    Field{"arm", &ProblemResult::sampling_mode, {.may_be_missing = true}},
     Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}}};
 
 constexpr std::tuple kReasons{
@@ -90,7 +90,8 @@ ProblemResult read_problem_result(const Reader& reader) {
   if (const auto guidance = reader.find("guidance")) {
     static_cast<void>(guidance->at("distribution_id").digest());
     const double share = guidance->at("share").number(0, 1);
-    result.arm = share > 0 ? Arm::Guided : Arm::Control;  // of older files
+    result.sampling_mode =
+        share > 0 ? SamplingMode::Guided : SamplingMode::Control;  // of older files
     read_members(*guidance, kGuidance, result);
   }
   read_members(reader, kReasons, result);

@@ -14,26 +14,26 @@ namespace kinship {
 
 /// What all attempts of one arm of a (task, robot) cost. An attempt that did not solve its problem
 /// is censored: its checks count, it adds no solution.
-struct ArmEvidence {
+struct ModeEvidence {
   std::uint64_t attempts = 0;
   std::uint64_t solved = 0;
   double checks_per_solution = 0;  ///< all checks of the arm / solved; 0 if none was solved
 
-  bool operator==(const ArmEvidence&) const = default;
+  bool operator==(const ModeEvidence&) const = default;
 };
 
 template <>
-inline constexpr std::tuple kFieldsOf<ArmEvidence>{
-    Field{"attempts", &ArmEvidence::attempts}, Field{"solved", &ArmEvidence::solved},
-    Field{"checks_per_solution", &ArmEvidence::checks_per_solution, {.min = 0}}};
+inline constexpr std::tuple kFieldsOf<ModeEvidence>{
+    Field{"attempts", &ModeEvidence::attempts}, Field{"solved", &ModeEvidence::solved},
+    Field{"checks_per_solution", &ModeEvidence::checks_per_solution, {.min = 0}}};
 
-inline constexpr std::size_t kJudgedAttemptsPerArm = 64;  ///< the newest ones; older are forgotten
+inline constexpr std::size_t kJudgedAttemptsPerMode = 64;  ///< the newest ones; older are forgotten
 
 /// One attempt of a (task, robot) from which the worth of guidance is judged: guided, or uniform
 /// although guidance was there (control). One that could not be planned at all (start in collision,
 /// no goal: Outcome::Failed) says nothing about samples and is none.
 struct JudgedAttempt {
-  Arm arm = Arm::Guided;  ///< Guided or Control
+  SamplingMode sampling_mode = SamplingMode::Guided;  ///< Guided or Control
   bool solved = false;
   std::uint64_t checks = 0;  ///< collision checks
   std::uint32_t age = 0;     ///< judged attempts of either arm that came after it
@@ -43,7 +43,8 @@ struct JudgedAttempt {
 
 template <>
 inline constexpr std::tuple kFieldsOf<JudgedAttempt>{
-    Field{"arm", &JudgedAttempt::arm, {.max = static_cast<double>(Arm::Control)}},
+    Field{
+        "arm", &JudgedAttempt::sampling_mode, {.max = static_cast<double>(SamplingMode::Control)}},
     Field{"solved", &JudgedAttempt::solved}, Field{"checks", &JudgedAttempt::checks},
     Field{"age", &JudgedAttempt::age}};
 
@@ -54,9 +55,9 @@ struct Advice {
   double recommended_share = 0;
   /// For clients that choose an arm per query: of guided samples in a guided query, 0 to 1.
   double guided_share = 0;
-  std::string evidence;                        ///< for recommended_share, in words
-  std::optional<ArmEvidence> guided, control;  ///< missing: no such attempts
-  std::vector<JudgedAttempt> recent;           ///< the newest of each arm, oldest first
+  std::string evidence;                         ///< for recommended_share, in words
+  std::optional<ModeEvidence> guided, control;  ///< missing: no such attempts
+  std::vector<JudgedAttempt> recent;            ///< the newest of each arm, oldest first
 };
 
 }  // namespace kinship

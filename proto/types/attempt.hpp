@@ -21,7 +21,7 @@ enum class Outcome { Solved, Timeout, Failed };
 
 /// How the samples of an attempt were chosen: by guidance, uniformly on purpose to compare
 /// (control), or uniformly because there was no guidance.
-enum class Arm { Guided, Control, Uniform };
+enum class SamplingMode { Guided, Control, Uniform };
 
 /// What a planner says about one query. One collision check = one configuration of which any
 /// collision question is asked.
@@ -33,7 +33,7 @@ struct PlanningRecord {
   std::uint64_t collision_checks = 0;
   std::uint64_t projections = 0;
   double time_limit_s = 0;
-  Arm arm = Arm::Uniform;
+  SamplingMode sampling_mode = SamplingMode::Uniform;
   double share = 0;  ///< of samples drawn from the distribution, 0 to 1
   std::optional<Digest> distribution_id;
   std::uint64_t distribution_revision = 0;
@@ -52,7 +52,7 @@ inline constexpr std::tuple kFieldsOf<PlanningRecord>{
     Field{"collision_checks", &PlanningRecord::collision_checks},
     Field{"projections", &PlanningRecord::projections, {.may_be_missing = true}},
     Field{"time_limit_s", &PlanningRecord::time_limit_s, {.min = 0, .may_be_missing = true}},
-    Field{"arm", &PlanningRecord::arm, {.may_be_missing = true}},
+    Field{"arm", &PlanningRecord::sampling_mode, {.may_be_missing = true}},
     Field{"share", &PlanningRecord::share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"distribution_id", &PlanningRecord::distribution_id},
     Field{

@@ -26,7 +26,7 @@ struct Words<Outcome> {
   static constexpr std::array<std::string_view, 3> kWords = {"solved", "timeout", "failed"};
 };
 template <>
-struct Words<Arm> {
+struct Words<SamplingMode> {
   static constexpr std::string_view kWhat = "arm";
   static constexpr std::array<std::string_view, 3> kWords = {"guided", "control", "uniform"};
 };

@@ -43,8 +43,9 @@ struct ProblemResult {
   std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n
   std::optional<Digest> distribution_id;     ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
-  Arm arm = Arm::Uniform;  ///< with guidance: Guided, Control, or Uniform by wish
-  double share = 0;        ///< of guided samples; 0 unless Guided, and if the gate fired
+  SamplingMode sampling_mode =
+      SamplingMode::Uniform;  ///< with guidance: Guided, Control, or Uniform by wish
+  double share = 0;           ///< of guided samples; 0 unless Guided, and if the gate fired
   /// Guided, but planned uniformly: start or goals are far from all that the distribution knows.
   bool gate_fired = false;
   std::string reason;                ///< why not solved

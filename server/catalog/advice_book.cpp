@@ -14,7 +14,7 @@ constexpr int kMostReadings = 3;  // of sums that attempts keep overtaking
 }  // namespace
 
 AttemptCost cost_of(const Attempt& attempt) {
-  return {attempt.task, attempt.robot, attempt.record.arm, attempt.record.outcome,
+  return {attempt.task, attempt.robot, attempt.record.sampling_mode, attempt.record.outcome,
           attempt.record.collision_checks};
 }
 
@@ -49,7 +49,7 @@ std::uint64_t AdviceBook::version(const std::string& task, const Digest& robot) 
 }
 
 void AdviceBook::add(const AttemptCost& cost) {
-  if (cost.arm == Arm::Uniform)
+  if (cost.sampling_mode == SamplingMode::Uniform)
     return;
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find({cost.task, cost.robot});
@@ -59,17 +59,18 @@ void AdviceBook::add(const AttemptCost& cost) {
   entry.is_overtaken = true;
   if (entry.state != State::Read)
     return;
-  store::ArmTotals& arm = cost.arm == Arm::Guided ? entry.totals.guided : entry.totals.control;
+  store::ModeTotals& mode =
+      cost.sampling_mode == SamplingMode::Guided ? entry.totals.guided : entry.totals.control;
   const auto checks = static_cast<double>(cost.checks);
-  ++arm.attempts;
+  ++mode.attempts;
   const bool solved = cost.outcome == Outcome::Solved;
-  arm.solved += solved ? 1 : 0;
-  arm.checks += checks;
-  arm.checks_squared += checks * checks;
-  arm.checks_of_solved += solved ? checks : 0;
+  mode.solved += solved ? 1 : 0;
+  mode.checks += checks;
+  mode.checks_squared += checks * checks;
+  mode.checks_of_solved += solved ? checks : 0;
   if (cost.outcome != Outcome::Failed) {
     evidence::AttemptWindow window(std::move(entry.totals.recent));
-    window.add(cost.arm, solved, cost.checks);
+    window.add(cost.sampling_mode, solved, cost.checks);
     entry.totals.recent = window.recent();
   }
   ++entry.version;

@@ -18,7 +18,7 @@ namespace kinship::catalog {
 struct AttemptCost {
   std::string task;
   Digest robot;
-  Arm arm = Arm::Uniform;
+  SamplingMode sampling_mode = SamplingMode::Uniform;
   Outcome outcome = Outcome::Failed;
   std::uint64_t checks = 0;
 };

@@ -12,13 +12,13 @@ namespace {
 constexpr double kDoubt = 0.05;         // of being right that is left where it is called clear
 constexpr double kQuantile90 = 1.6449;  // two-sided, of the normal distribution
 
-std::optional<ArmEvidence> evidence_of(const store::ArmTotals& totals) {
+std::optional<ModeEvidence> evidence_of(const store::ModeTotals& totals) {
   if (totals.attempts == 0)
     return std::nullopt;
-  ArmEvidence arm{totals.attempts, totals.solved, 0};
+  ModeEvidence mode{totals.attempts, totals.solved, 0};
   if (totals.solved > 0)
-    arm.checks_per_solution = totals.checks / static_cast<double>(totals.solved);
-  return arm;
+    mode.checks_per_solution = totals.checks / static_cast<double>(totals.solved);
+  return mode;
 }
 
 std::string text(const char* format, double value) {
@@ -27,11 +27,11 @@ std::string text(const char* format, double value) {
   return words;
 }
 
-std::string in_words(const char* arm, const char* unit, const store::ArmTotals& totals) {
+std::string in_words(const char* mode, const char* unit, const store::ModeTotals& totals) {
   const std::string attempts = std::to_string(totals.attempts);
   if (totals.solved == 0)
-    return std::string(arm) + " none solved in " + attempts;
-  return arm + text(" %.0f", totals.checks / static_cast<double>(totals.solved)) + unit + " in " +
+    return std::string(mode) + " none solved in " + attempts;
+  return mode + text(" %.0f", totals.checks / static_cast<double>(totals.solved)) + unit + " in " +
          attempts;
 }
 

@@ -51,7 +51,7 @@ struct ExperienceSummary {
 };
 
 /// What the attempts of one arm sum up to; the sums from which a ratio's interval follows.
-struct ArmTotals {
+struct ModeTotals {
   std::uint64_t attempts = 0;
   std::uint64_t solved = 0;
   double checks = 0;            ///< collision checks, of solved and unsolved ones
@@ -61,8 +61,8 @@ struct ArmTotals {
 
 /// The attempts of one robot and task, by arm.
 struct AttemptTotals {
-  ArmTotals guided, control;
-  std::vector<JudgedAttempt> recent;  ///< the newest kJudgedAttemptsPerArm of each, oldest first
+  ModeTotals guided, control;
+  std::vector<JudgedAttempt> recent;  ///< the newest kJudgedAttemptsPerMode of each, oldest first
 };
 
 struct StoreStatus {

@@ -232,7 +232,7 @@ ProblemResult every_problem_result() {
   result.waypoints = next.matrix(kJoints, 3);
   result.distribution_id = next.id<Digest>();
   result.distribution_revision = next.count();
-  result.arm = Arm::Control;
+  result.sampling_mode = SamplingMode::Control;
   result.share = next.share() / 2;
   result.gate_fired = true;
   result.reason = next.text("reason");

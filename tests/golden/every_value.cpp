@@ -33,8 +33,8 @@ Source every_source(Distinct& next, Relation relation) {
   return source;
 }
 
-ArmEvidence every_evidence(Distinct& next) {
-  ArmEvidence evidence;
+ModeEvidence every_evidence(Distinct& next) {
+  ModeEvidence evidence;
   evidence.solved = next.count();
   evidence.attempts = next.count();
   evidence.checks_per_solution = next.real();
@@ -49,8 +49,8 @@ Advice every_advice(Distinct& next) {
   advice.guided = every_evidence(next);
   advice.control = every_evidence(next);
   advice.recent = {
-      {.arm = Arm::Control, .solved = true, .checks = next.count(), .age = 9},
-      {.arm = Arm::Guided, .solved = false, .checks = next.count(), .age = 4},
+      {.sampling_mode = SamplingMode::Control, .solved = true, .checks = next.count(), .age = 9},
+      {.sampling_mode = SamplingMode::Guided, .solved = false, .checks = next.count(), .age = 4},
   };
   return advice;
 }
@@ -77,7 +77,7 @@ PlanningRecord every_record(Distinct& next) {
   record.collision_checks = next.count();
   record.projections = next.count();
   record.time_limit_s = next.real();
-  record.arm = Arm::Control;
+  record.sampling_mode = SamplingMode::Control;
   record.share = next.share();
   record.distribution_id = next.id<Digest>();
   record.distribution_revision = next.count();
@@ -132,7 +132,7 @@ Attempt every_unsolved_attempt() {
   Attempt attempt = every_attempt();
   attempt.T_task_base.reset();
   attempt.record.outcome = Outcome::Timeout;
-  attempt.record.arm = Arm::Uniform;
+  attempt.record.sampling_mode = SamplingMode::Uniform;
   attempt.record.distribution_id.reset();
   attempt.path.reset();
   attempt.scene.reset();

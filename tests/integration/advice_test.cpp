@@ -143,8 +143,8 @@ class Advised : public testing::Test {
       if (reply.status != FetchStatus::Ready)
         throw std::runtime_error("no distribution: " + reply.message);
       const Advice& advice = reply.distribution->advice;
-      const auto count = [](const std::optional<ArmEvidence>& arm) {
-        return arm ? arm->attempts : 0;
+      const auto count = [](const std::optional<ModeEvidence>& mode) {
+        return mode ? mode->attempts : 0;
       };
       if (count(advice.guided) + count(advice.control) >= attempts ||
           std::chrono::steady_clock::now() > end)
@@ -171,9 +171,10 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
 
   Counts guided, control;
   for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0.5"})) {
-    ASSERT_TRUE(result.arm == Arm::Guided || result.arm == Arm::Control);
-    EXPECT_EQ(result.share, result.arm == Arm::Guided ? 0.9 : 0);
-    (result.arm == Arm::Guided ? guided : control).add(result);
+    ASSERT_TRUE(result.sampling_mode == SamplingMode::Guided ||
+                result.sampling_mode == SamplingMode::Control);
+    EXPECT_EQ(result.share, result.sampling_mode == SamplingMode::Guided ? 0.9 : 0);
+    (result.sampling_mode == SamplingMode::Guided ? guided : control).add(result);
   }
   ASSERT_EQ(guided.attempts + control.attempts, kProblems);
   ASSERT_GE(guided.attempts, 10U);
@@ -191,7 +192,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
 
   Counts still_guided;
   for (const ProblemResult& result : plan({}))
-    if (result.arm == Arm::Guided)
+    if (result.sampling_mode == SamplingMode::Guided)
       still_guided.add(result);
   EXPECT_LT(still_guided.attempts, kProblems / 2) << "each machine goes on from what all know";
 }
@@ -207,7 +208,7 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
   std::size_t guided = 0;
   std::vector<std::uint64_t> checks;
   for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0"})) {
-    guided += result.arm == Arm::Guided ? 1 : 0;
+    guided += result.sampling_mode == SamplingMode::Guided ? 1 : 0;
     EXPECT_TRUE(result.gate_fired);
     EXPECT_EQ(result.share, 0);
     checks.push_back(result.collision_checks);
@@ -222,7 +223,7 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
   std::size_t equal = 0;
   const std::vector<ProblemResult> uniform = plan({"--share", "0"});
   for (std::size_t i = 0; i < uniform.size(); ++i) {
-    EXPECT_EQ(uniform[i].arm, Arm::Uniform);
+    EXPECT_EQ(uniform[i].sampling_mode, SamplingMode::Uniform);
     equal += uniform[i].collision_checks == checks[i] ? 1U : 0U;
   }
   EXPECT_EQ(equal, kProblems);

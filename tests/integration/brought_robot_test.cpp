@@ -156,7 +156,7 @@ TEST_F(BroughtRobot, PlansReportsAndIsGuidedByItsOwnReports) {
   for (const ProblemResult& result : results_) {
     EXPECT_TRUE(result.solved) << result.reason;
     EXPECT_TRUE(result.distribution_id) << messages_;
-    EXPECT_EQ(result.arm, Arm::Guided);
+    EXPECT_EQ(result.sampling_mode, SamplingMode::Guided);
     EXPECT_EQ(result.guidance_reason.empty(), result.share > 0) << result.guidance_reason;
   }
 }

@@ -45,11 +45,11 @@ TEST(Story, QuickstartsProgramsTeachANewRobotTwiceInARow) {
     ASSERT_EQ(uniform.size(), 2U);
     ASSERT_EQ(guided.size(), 2U);
     for (const ProblemResult& result : uniform) {
-      EXPECT_EQ(result.arm, Arm::Control) << result.name;
+      EXPECT_EQ(result.sampling_mode, SamplingMode::Control) << result.name;
       EXPECT_EQ(result.share, 0) << result.name;
     }
     for (const ProblemResult& result : guided)
-      EXPECT_EQ(result.arm, Arm::Guided) << result.name;
+      EXPECT_EQ(result.sampling_mode, SamplingMode::Guided) << result.name;
     EXPECT_NE(read_text(folder / "comparison.txt").find("collision checks, mean"),
               std::string::npos);
     const std::string page = read_text(folder / "quickstart.html");

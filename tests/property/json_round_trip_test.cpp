@@ -71,7 +71,7 @@ class Values {
     attempt.record.collision_checks = count();
     attempt.record.projections = count();
     attempt.record.time_limit_s = positive();
-    attempt.record.arm = coin() ? Arm::Guided : Arm::Control;
+    attempt.record.sampling_mode = coin() ? SamplingMode::Guided : SamplingMode::Control;
     attempt.record.share = share();
     if (coin())
       attempt.record.distribution_id = digest();

@@ -95,7 +95,7 @@ class RandomValues {
     record.collision_checks = count();
     record.projections = count();
     record.time_limit_s = 10 * share();
-    record.arm = static_cast<Arm>(below(3));
+    record.sampling_mode = static_cast<SamplingMode>(below(3));
     record.share = share();
     if (coin())
       record.distribution_id = digest();
@@ -171,7 +171,7 @@ class RandomValues {
     return source;
   }
 
-  ArmEvidence evidence() {
+  ModeEvidence evidence() {
     const std::uint64_t attempts = count();
     return {.attempts = attempts, .solved = attempts / 2, .checks_per_solution = 1000 * share()};
   }
@@ -180,7 +180,7 @@ class RandomValues {
     std::vector<JudgedAttempt> recent(static_cast<std::size_t>(below(4)));
     auto age = static_cast<std::uint32_t>(recent.size());
     for (JudgedAttempt& attempt : recent)
-      attempt = {.arm = coin() ? Arm::Guided : Arm::Control,
+      attempt = {.sampling_mode = coin() ? SamplingMode::Guided : SamplingMode::Control,
                  .solved = coin(),
                  .checks = count(),
                  .age = --age};

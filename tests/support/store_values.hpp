@@ -68,7 +68,7 @@ inline Attempt make_attempt(const Digest& robot, const std::string& task, std::u
   attempt.record.collision_checks = 1234;
   attempt.record.projections = 5;
   attempt.record.time_limit_s = 10;
-  attempt.record.arm = Arm::Control;
+  attempt.record.sampling_mode = SamplingMode::Control;
   attempt.record.share = 0.5;
   attempt.record.distribution_id = id_from<Digest>(99);
   attempt.record.distribution_revision = 7;

@@ -11,7 +11,7 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
                    QueryKey key) {
   planner::QueryGuidance query;
   if (cell.guidance)
-    query = {.guidance = &*cell.guidance, .arm = Arm::Guided};
+    query = {.guidance = &*cell.guidance, .sampling_mode = SamplingMode::Guided};
   const planner::PlannedProblem planned =
       planner::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
   if (!planned.attempted)

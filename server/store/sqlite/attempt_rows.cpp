@@ -69,15 +69,16 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
           " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
           " distribution_revision, received_ms, scene_id) "
           "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(
-          Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id, key.robot_id,
-          path.id, static_cast<std::int64_t>(path.status), std::string_view(attempt.machine),
-          blob_or_null(T_task_base), code_of(record.outcome), std::string_view(record.planner),
-          std::string_view(record.planner_options), record.planning_time_s,
-          static_cast<std::int64_t>(record.collision_checks),
-          static_cast<std::int64_t>(record.projections), record.time_limit_s, code_of(record.arm),
-          record.share, distribution, static_cast<std::int64_t>(record.distribution_revision),
-          arrival.received_ms, arrival.scene_id)
+      ->bind_all(Bytes(attempt.report_uuid.bytes), Bytes(prepared.body.bytes), key.task_id,
+                 key.robot_id, path.id, static_cast<std::int64_t>(path.status),
+                 std::string_view(attempt.machine), blob_or_null(T_task_base),
+                 code_of(record.outcome), std::string_view(record.planner),
+                 std::string_view(record.planner_options), record.planning_time_s,
+                 static_cast<std::int64_t>(record.collision_checks),
+                 static_cast<std::int64_t>(record.projections), record.time_limit_s,
+                 code_of(record.sampling_mode), record.share, distribution,
+                 static_cast<std::int64_t>(record.distribution_revision), arrival.received_ms,
+                 arrival.scene_id)
       .run();
 }
 
@@ -134,7 +135,7 @@ PlanningRecord read_record(const Statement& row, int first_column) {
   record.collision_checks = count_of(row, column++);
   record.projections = count_of(row, column++);
   record.time_limit_s = row.column_real(column++);
-  record.arm = arm_of(row.column_integer(column++));
+  record.sampling_mode = mode_of(row.column_integer(column++));
   record.share = row.column_real(column++);
   record.distribution_id = optional_id_of<Digest>(row, column++);
   record.distribution_revision = count_of(row, column);

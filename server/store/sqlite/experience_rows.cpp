@@ -9,25 +9,25 @@ namespace kinship::store {
 namespace {
 
 /// Empty for an arm that nobody judges.
-std::string_view sums_of(Arm arm) {
-  switch (arm) {
-    case Arm::Guided:
+std::string_view sums_of(SamplingMode mode) {
+  switch (mode) {
+    case SamplingMode::Guided:
       return ", guided_attempts = guided_attempts + 1, guided_solved = guided_solved + ?4,"
              " guided_checks = guided_checks + ?5,"
              " guided_checks_squared = guided_checks_squared + ?5 * ?5,"
              " guided_checks_of_solved = guided_checks_of_solved + ?4 * ?5";
-    case Arm::Control:
+    case SamplingMode::Control:
       return ", control_attempts = control_attempts + 1, control_solved = control_solved + ?4,"
              " control_checks = control_checks + ?5,"
              " control_checks_squared = control_checks_squared + ?5 * ?5,"
              " control_checks_of_solved = control_checks_of_solved + ?4 * ?5";
-    case Arm::Uniform:
+    case SamplingMode::Uniform:
       break;
   }
   return "";
 }
 
-ArmTotals read_totals(const Statement& row, int first_column) {
+ModeTotals read_totals(const Statement& row, int first_column) {
   return {count_of(row, first_column), count_of(row, first_column + 1),
           row.column_real(first_column + 2), row.column_real(first_column + 3),
           row.column_real(first_column + 4)};
@@ -44,13 +44,13 @@ std::vector<JudgedAttempt> recent_of(Database& database, const ExperienceKey& ke
   std::vector<JudgedAttempt> newest_first;
   std::size_t guided = 0, control = 0;
   std::uint32_t age = 0;
-  while (std::min(guided, control) < kJudgedAttemptsPerArm && query->step()) {
-    const Arm arm = arm_of(query->column_integer(0));
+  while (std::min(guided, control) < kJudgedAttemptsPerMode && query->step()) {
+    const SamplingMode mode = mode_of(query->column_integer(0));
     const Outcome outcome = outcome_of(query->column_integer(1));
-    if (arm == Arm::Uniform || outcome == Outcome::Failed)
+    if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
       continue;
-    if ((arm == Arm::Guided ? guided : control)++ < kJudgedAttemptsPerArm)
-      newest_first.push_back({.arm = arm,
+    if ((mode == SamplingMode::Guided ? guided : control)++ < kJudgedAttemptsPerMode)
+      newest_first.push_back({.sampling_mode = mode,
                               .solved = outcome == Outcome::Solved,
                               .checks = count_of(*query, 2),
                               .age = age});
@@ -70,7 +70,7 @@ void ensure_experience(Database& database, const ExperienceKey& key) {
 
 void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
                    bool brought_path) {
-  const std::string_view sums = sums_of(record.arm);
+  const std::string_view sums = sums_of(record.sampling_mode);
   const auto update =
       database.cached("UPDATE experience SET attempts = attempts + 1, paths = paths + ?3" +
                       std::string(sums) + " WHERE task_id = ?1 AND robot_id = ?2");

@@ -22,11 +22,13 @@ constexpr Outcome outcome_of(std::int64_t code) {
   return code == 1 ? Outcome::Solved : code == 2 ? Outcome::Timeout : Outcome::Failed;
 }
 
-constexpr std::int64_t code_of(Arm arm) {
-  return arm == Arm::Guided ? 1 : arm == Arm::Control ? 2 : 3;
+constexpr std::int64_t code_of(SamplingMode mode) {
+  return mode == SamplingMode::Guided ? 1 : mode == SamplingMode::Control ? 2 : 3;
 }
-constexpr Arm arm_of(std::int64_t code) {
-  return code == 1 ? Arm::Guided : code == 2 ? Arm::Control : Arm::Uniform;
+constexpr SamplingMode mode_of(std::int64_t code) {
+  return code == 1   ? SamplingMode::Guided
+         : code == 2 ? SamplingMode::Control
+                     : SamplingMode::Uniform;
 }
 
 constexpr std::int64_t code_of(DistributionState state) { return has_mixture(state) ? 1 : 2; }

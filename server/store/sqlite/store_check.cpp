@@ -30,13 +30,13 @@ struct Rule {
 const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
 
 // What an experience says of its attempts of one arm.
-Rule rule_of_sums(const std::string& arm, int code) {
+Rule rule_of_sums(const std::string& mode, int code) {
   // Sums of doubles depend on their order in the last bits.
   const auto differs = [&](const std::string& sum) {
-    return "abs(" + arm + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
+    return "abs(" + mode + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
   };
   return {"experience",
-          "SELECT " + kPair + "'the sums of its " + arm +
+          "SELECT " + kPair + "'the sums of its " + mode +
               " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
               " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
               " total(collision_checks) AS found_checks,"
@@ -46,7 +46,7 @@ Rule rule_of_sums(const std::string& arm, int code) {
               std::to_string(code) +
               " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
               "WHERE " +
-              arm + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
+              mode + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
               differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
               differs("_checks_of_solved")};
 }
@@ -91,8 +91,8 @@ std::vector<Rule> rules_of(std::int64_t schema) {
                      "SELECT 'path ' || path.id || ': has another scene than its attempt' "
                      "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
                      "WHERE damaged = 0 AND path.scene_id IS NOT attempt.scene_id"});
-  for (const auto& [arm, code] : {std::pair("guided", 1), std::pair("control", 2)})
-    rules.push_back(rule_of_sums(arm, code));
+  for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
+    rules.push_back(rule_of_sums(mode, code));
   return rules;
 }
 

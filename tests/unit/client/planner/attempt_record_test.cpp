@@ -30,7 +30,7 @@ TEST(AttemptRecord, ASolvedProblemBringsItsPathAndPlanningChecks) {
   EXPECT_EQ(attempt.record.outcome, Outcome::Solved);
   EXPECT_EQ(attempt.record.collision_checks, 1234U);  // without those of shortcutting
   EXPECT_EQ(attempt.record.planner, "CBiRRT2");
-  EXPECT_EQ(attempt.record.arm, Arm::Uniform);
+  EXPECT_EQ(attempt.record.sampling_mode, SamplingMode::Uniform);
   EXPECT_EQ(attempt.task, "box_to_shelf");
   EXPECT_EQ(attempt.machine, "cell 3");
   EXPECT_EQ(attempt.T_task_base->translation().x(), 0.25);
@@ -53,10 +53,10 @@ TEST(AttemptRecord, AGuidedAttemptNamesItsDistribution) {
   PlannedProblem planned = solved();
   planned.result.distribution_id = Digest{};
   planned.result.distribution_revision = 4;
-  planned.result.arm = Arm::Guided;
+  planned.result.sampling_mode = SamplingMode::Guided;
   planned.result.share = 0.9;
   const Attempt attempt = make_attempt(kReporter, {}, planned, {});
-  EXPECT_EQ(attempt.record.arm, Arm::Guided);
+  EXPECT_EQ(attempt.record.sampling_mode, SamplingMode::Guided);
   EXPECT_EQ(attempt.record.distribution_id, Digest{});
   EXPECT_EQ(attempt.record.distribution_revision, 4U);
   EXPECT_EQ(attempt.record.share, 0.9);
@@ -65,19 +65,19 @@ TEST(AttemptRecord, AGuidedAttemptNamesItsDistribution) {
 TEST(AttemptRecord, AControlAttemptIsTold) {
   PlannedProblem planned = solved();
   planned.result.distribution_id = Digest{};
-  planned.result.arm = Arm::Control;
+  planned.result.sampling_mode = SamplingMode::Control;
   const Attempt attempt = make_attempt(kReporter, {}, planned, {});
-  EXPECT_EQ(attempt.record.arm, Arm::Control);
+  EXPECT_EQ(attempt.record.sampling_mode, SamplingMode::Control);
   EXPECT_EQ(attempt.record.share, 0);
 }
 
 TEST(AttemptRecord, AGuidedAttemptStaysGuidedWhereTheGateFired) {
   PlannedProblem planned = solved();
   planned.result.distribution_id = Digest{};
-  planned.result.arm = Arm::Guided;
+  planned.result.sampling_mode = SamplingMode::Guided;
   planned.result.gate_fired = true;
   const PlanningRecord record = make_attempt(kReporter, {}, planned, {}).record;
-  EXPECT_EQ(record.arm, Arm::Guided);
+  EXPECT_EQ(record.sampling_mode, SamplingMode::Guided);
   EXPECT_EQ(record.share, 0);
   EXPECT_TRUE(record.planner_options.ends_with(" gate=fired")) << record.planner_options;
 }

@@ -63,7 +63,7 @@ GuidanceAnswer answer_to(const Result<FetchReply>& reply,
 TEST(FetchGuidance, TakesTheServersShareUnlessToldOtherwise) {
   EXPECT_EQ(answer_to(ready(0.9)).guidance->guided_fraction, 0.9);
   GuidanceOptions own_share = wanted();
-  own_share.arms.guided_fraction = 0.25;
+  own_share.sampling.guided_fraction = 0.25;
   EXPECT_EQ(answer_to(ready(0.9), own_share).guidance->guided_fraction, 0.25);
 }
 
@@ -77,9 +77,9 @@ TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
 }
 
 TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
-  const auto tail = [](const planning::ArmOptions& arms) {
+  const auto tail = [](const planning::SamplingModeOptions& sampling) {
     GuidanceOptions told = wanted();
-    told.arms = arms;
+    told.sampling = sampling;
     const std::string message = answer_to(ready(), told).message;
     return message.substr(message.find("; ") + 2);
   };
@@ -174,7 +174,7 @@ TEST(GuidanceBook, FindsOnlyWhatWasAskedAndGot) {
   book.ask(placement(-1));
   book.ask(placement(1));
   EXPECT_EQ(book.choose(problem_at(-1)).guidance, nullptr);
-  EXPECT_EQ(book.choose(problem_at(-1)).arm, Arm::Uniform);
+  EXPECT_EQ(book.choose(problem_at(-1)).sampling_mode, SamplingMode::Uniform);
   EXPECT_EQ(book.choose(problem_at(0.5)).guidance, nullptr);
   ASSERT_NE(book.choose(problem_at(1)).guidance, nullptr);
   EXPECT_EQ(book.choose(problem_at(1)).guidance->revision, 3U);
@@ -188,16 +188,16 @@ TEST(GuidanceBook, WhatItIsToldChangesTheArmsOfAllPlacements) {
   const auto guided = [&book] {
     int count = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed)
-      count += book.choose(problem_at(1, seed)).arm == Arm::Guided ? 1 : 0;
+      count += book.choose(problem_at(1, seed)).sampling_mode == SamplingMode::Guided ? 1 : 0;
     return count;
   };
   EXPECT_GT(guided(), 100);
   PlannedProblem planned;
   planned.outcome = Outcome::Solved;
   for (int i = 0; i < 10; ++i)
-    for (const Arm arm : {Arm::Guided, Arm::Control}) {
-      planned.result.arm = arm;
-      planned.result.collision_checks = arm == Arm::Guided ? 10'000 : 1000;
+    for (const SamplingMode mode : {SamplingMode::Guided, SamplingMode::Control}) {
+      planned.result.sampling_mode = mode;
+      planned.result.collision_checks = mode == SamplingMode::Guided ? 10'000 : 1000;
       book.add(planned);
     }
   EXPECT_LT(guided(), 20);

@@ -37,8 +37,8 @@ TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
 TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
   const PlanOptions options = parsed({"p", "--model", "m", "--task", "a"}).options();
   EXPECT_EQ(options.guidance, GuidanceMode::Auto);
-  EXPECT_FALSE(options.arms.guided_fraction);
-  EXPECT_FALSE(options.arms.control_fraction);
+  EXPECT_FALSE(options.sampling.guided_fraction);
+  EXPECT_FALSE(options.sampling.control_fraction);
   EXPECT_EQ(options.selection, Selection{});
   EXPECT_TRUE(options.sources.empty());
 }
@@ -59,17 +59,17 @@ TEST(PlanOptions, TakesEverythingByName) {
   EXPECT_TRUE(options.json);
   EXPECT_EQ(options.server, "cell3");
   EXPECT_EQ(options.seed_offset, 7U);
-  EXPECT_EQ(options.arms.control_fraction, 0.1);
+  EXPECT_EQ(options.sampling.control_fraction, 0.1);
   EXPECT_EQ(answer.err, "");
 }
 
 TEST(PlanOptions, AlwaysMeansWithoutControlUnlessSaid) {
   const PlanOptions always = parsed({"p", "m", "--task", "a", "--guidance", "always"}).options();
   EXPECT_EQ(always.guidance, GuidanceMode::Always);
-  EXPECT_EQ(always.arms.control_fraction, 0.0);
+  EXPECT_EQ(always.sampling.control_fraction, 0.0);
   EXPECT_EQ(parsed({"p", "m", "--task", "a", "--guidance", "always", "--control-share", "0.2"})
                 .options()
-                .arms.control_fraction,
+                .sampling.control_fraction,
             0.2);
 }
 
@@ -156,8 +156,8 @@ TEST(PlanOptions, ReadsWhatConcernsTheServer) {
                                       "0.5"})
                                   .options();
   EXPECT_EQ(options.guidance, GuidanceMode::Require);
-  EXPECT_EQ(options.arms.guided_fraction, 0.0);
-  EXPECT_EQ(options.arms.control_fraction, 0.5);
+  EXPECT_EQ(options.sampling.guided_fraction, 0.0);
+  EXPECT_EQ(options.sampling.control_fraction, 0.5);
   EXPECT_TRUE(options.report);
   EXPECT_EQ(options.machine, "cell 3");
   EXPECT_EQ(options.domain, 7U);

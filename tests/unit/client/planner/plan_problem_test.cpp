@@ -103,10 +103,10 @@ TEST(PlanProblem, ShortcuttingKeepsItsBudgetAndShortensThePath) {
 
 TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
   const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
-  const PlannedProblem answer = planned(wall_problem(), {}, {&guidance, Arm::Guided});
+  const PlannedProblem answer = planned(wall_problem(), {}, {&guidance, SamplingMode::Guided});
   EXPECT_EQ(answer.result.distribution_id, guidance.distribution_id);
   EXPECT_EQ(answer.result.distribution_revision, 5U);
-  EXPECT_EQ(answer.result.arm, Arm::Guided);
+  EXPECT_EQ(answer.result.sampling_mode, SamplingMode::Guided);
   EXPECT_EQ(answer.result.share, 0.9);
   EXPECT_EQ(answer.result.guidance_reason, "");
   EXPECT_NE(answer.result.collision_checks, planned(wall_problem()).result.collision_checks);
@@ -115,13 +115,13 @@ TEST(PlanProblem, GuidanceIsNamedInTheResultAndChangesTheSamples) {
 TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
   const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
   const ProblemResult uniform = planned(wall_problem()).result;
-  for (const Arm arm : {Arm::Control, Arm::Uniform}) {
-    const ProblemResult result = planned(wall_problem(), {}, {&guidance, arm}).result;
-    EXPECT_EQ(result.arm, arm);
+  for (const SamplingMode mode : {SamplingMode::Control, SamplingMode::Uniform}) {
+    const ProblemResult result = planned(wall_problem(), {}, {&guidance, mode}).result;
+    EXPECT_EQ(result.sampling_mode, mode);
     EXPECT_EQ(result.share, 0);
     EXPECT_FALSE(result.gate_fired);
-    EXPECT_EQ(result.guidance_reason,
-              arm == Arm::Control ? "planned uniformly as control" : "planned uniformly by wish");
+    EXPECT_EQ(result.guidance_reason, mode == SamplingMode::Control ? "planned uniformly as control"
+                                                                    : "planned uniformly by wish");
     EXPECT_EQ(result.distribution_id, guidance.distribution_id);
     EXPECT_EQ(result.collision_checks, uniform.collision_checks);
     EXPECT_EQ(*result.waypoints, *uniform.waypoints);
@@ -130,9 +130,9 @@ TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
 
 TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGuided) {
   const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
-  const ProblemResult gated = planned(wall_problem(), {}, {&far, Arm::Guided}).result;
+  const ProblemResult gated = planned(wall_problem(), {}, {&far, SamplingMode::Guided}).result;
   EXPECT_TRUE(gated.gate_fired);
-  EXPECT_EQ(gated.arm, Arm::Guided);
+  EXPECT_EQ(gated.sampling_mode, SamplingMode::Guided);
   EXPECT_EQ(gated.share, 0);
   EXPECT_EQ(gated.guidance_reason, "start or goals are far from all that the distribution knows");
   EXPECT_EQ(gated.distribution_id, far.distribution_id);
@@ -145,7 +145,7 @@ TEST(PlanProblem, TheGateCanBeLeftOpen) {
   const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
   PlanSettings open;
   open.gate_distance = std::numeric_limits<double>::infinity();
-  const ProblemResult guided = planned(wall_problem(), open, {&far, Arm::Guided}).result;
+  const ProblemResult guided = planned(wall_problem(), open, {&far, SamplingMode::Guided}).result;
   EXPECT_FALSE(guided.gate_fired);
   EXPECT_EQ(guided.share, 0.9);
 }
@@ -153,7 +153,7 @@ TEST(PlanProblem, TheGateCanBeLeftOpen) {
 TEST(PlanProblem, WithoutGuidanceTheResultNamesNone) {
   const ProblemResult result = planned(wall_problem()).result;
   EXPECT_FALSE(result.distribution_id);
-  EXPECT_EQ(result.arm, Arm::Uniform);
+  EXPECT_EQ(result.sampling_mode, SamplingMode::Uniform);
   EXPECT_EQ(result.share, 0);
 }
 
@@ -377,7 +377,8 @@ TEST(PlanProblem, TheRoadmapAnswersWithAndWithoutGuidanceAndConstraint) {
   settings.planner.kind = PlannerKind::Roadmap;
   settings.gate_distance = std::numeric_limits<double>::infinity();
   const Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
-  for (const QueryGuidance& query : {QueryGuidance{}, QueryGuidance{&guidance, Arm::Guided}}) {
+  for (const QueryGuidance& query :
+       {QueryGuidance{}, QueryGuidance{&guidance, SamplingMode::Guided}}) {
     const ProblemResult free = planned(wall_problem(), settings, query).result;
     ASSERT_TRUE(free.solved) << free.reason;
     EXPECT_EQ(free.planner, "Repetition Roadmap");
@@ -395,12 +396,12 @@ TEST(PlanProblem, ARoadmapThatLeavesTooManyKernelsToItsTreesSaysSo) {
   guidance.mixture = Mixture(Eigen::VectorXd::Constant(kKernels, 1.0 / kKernels),
                              guidance.mixture.means().col(0).replicate(1, kKernels),
                              {guidance.mixture.covariance(0)});
-  const auto planner_with = [&](Arm arm) {
-    return planned(wall_problem(), settings, {&guidance, arm}).result.planner;
+  const auto planner_with = [&](SamplingMode mode) {
+    return planned(wall_problem(), settings, {&guidance, mode}).result.planner;
   };
-  EXPECT_EQ(planner_with(Arm::Guided),
+  EXPECT_EQ(planner_with(SamplingMode::Guided),
             "Repetition Roadmap (trees alone: 1025 components exceed 1024)");
-  EXPECT_EQ(planner_with(Arm::Uniform), "Repetition Roadmap");
+  EXPECT_EQ(planner_with(SamplingMode::Uniform), "Repetition Roadmap");
 }
 
 TEST(PlanProblem, APlannerOfOmplStopsWhenAsked) {

@@ -63,7 +63,7 @@ TEST(Progress, TellsHowManyTheGatePlannedUniformly) {
   std::ostringstream stream;
   Progress progress(stream, false, 2);
   ProblemResult guided = solved("a", 100);
-  guided.arm = Arm::Guided;
+  guided.sampling_mode = SamplingMode::Guided;
   progress.add(guided, true);
   guided.gate_fired = true;
   progress.add(guided, true);
@@ -76,9 +76,9 @@ TEST(Progress, CountsAttemptsByArmAndNothingElse) {
   std::ostringstream stream;
   Progress progress(stream, false, 4);
   ProblemResult guided = solved("a", 100);
-  guided.arm = Arm::Guided;
+  guided.sampling_mode = SamplingMode::Guided;
   ProblemResult control = solved("b", 500);
-  control.arm = Arm::Control;
+  control.sampling_mode = SamplingMode::Control;
   progress.add(guided, true);
   progress.add(control, true);
   progress.add(ProblemResult{}, true);

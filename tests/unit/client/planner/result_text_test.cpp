@@ -21,7 +21,7 @@ TEST(ResultText, TellsWhatASolutionCostAndWhatGuidedIt) {
   ProblemResult result = solved_result();
   result.distribution_id = Digest{};
   result.distribution_revision = 4;
-  result.arm = Arm::Guided;
+  result.sampling_mode = SamplingMode::Guided;
   result.share = 0.9;
   EXPECT_EQ(result_text(result),
             "shelf-1: solved, 12 waypoints; BiRRT, 3804 checks in 0.412 s of 10 s; guided by " +

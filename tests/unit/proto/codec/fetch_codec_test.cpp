@@ -178,7 +178,7 @@ TEST(FetchCodec, KernelsThatDoNotFitAreRefused) {
 
 TEST(FetchCodec, EvidenceAndSourcesMustBePossible) {
   FetchReply reply = ready_reply();
-  reply.distribution->advice.guided = ArmEvidence{.attempts = 5, .solved = 6};
+  reply.distribution->advice.guided = ModeEvidence{.attempts = 5, .solved = 6};
   EXPECT_EQ(encode({}, reply).error().message, "guided: 6 solved of 5");
   reply.distribution->advice.guided->solved = 5;
   reply.distribution->advice.guided->checks_per_solution = -1;
@@ -196,13 +196,13 @@ TEST(FetchCodec, EvidenceAndSourcesMustBePossible) {
 TEST(FetchCodec, RecentAttemptsAreJudgedOnesOldestFirst) {
   FetchReply reply = ready_reply();
   Advice& advice = reply.distribution->advice;
-  advice.recent = {{Arm::Guided, true, 500, 3}, {Arm::Control, false, 900, 1}};
+  advice.recent = {{SamplingMode::Guided, true, 500, 3}, {SamplingMode::Control, false, 900, 1}};
   EXPECT_EQ(
       decode(encode({}, reply).value_or_throw().wire).value_or_throw().distribution->advice.recent,
       advice.recent);
   advice.recent[1].age = 4;
   EXPECT_EQ(encode({}, reply).error().message, "recent: age 4 after 3, must be oldest first");
-  advice.recent[1] = {Arm::Uniform, true, 900, 1};
+  advice.recent[1] = {SamplingMode::Uniform, true, 900, 1};
   EXPECT_EQ(encode({}, reply).error().message, "recent: an attempt of arm uniform");
   advice.recent.assign(kMaxJudgedAttempts + 1, {});
   EXPECT_EQ(encode({}, reply).error().code, ErrorCode::TooLarge);

@@ -60,7 +60,7 @@ std::vector<std::string> described() {
 
 TEST(Fields, StructuresOfTheIdlHaveThemInTheirOrder) {
   EXPECT_EQ(described<Source>(), members_of("fetch.idl", "Source"));
-  EXPECT_EQ(described<ArmEvidence>(), members_of("fetch.idl", "ArmEvidence"));
+  EXPECT_EQ(described<ModeEvidence>(), members_of("fetch.idl", "ArmEvidence"));
   EXPECT_EQ(described<JudgedAttempt>(), members_of("fetch.idl", "JudgedAttempt"));
   EXPECT_EQ(described<FitOrigin>(), members_of("fetch.idl", "FitOrigin"));
   EXPECT_EQ(described<PlanningRecord>(), members_of("report.idl", "PlanningRecord"));

@@ -13,12 +13,12 @@ namespace {
 constexpr double kCap = 100'000;
 
 /// Attempts of a planner that needs about `typical` checks and gives up at the cap.
-void add_attempts(AttemptWindow& window, Arm arm, int count, double typical,
+void add_attempts(AttemptWindow& window, SamplingMode mode, int count, double typical,
                   std::mt19937_64& generator) {
   std::lognormal_distribution<double> checks(std::log(typical), 0.7);
   for (int i = 0; i < count; ++i) {
     const double needed = checks(generator);
-    window.add(arm, needed <= kCap, static_cast<std::uint64_t>(std::min(needed, kCap)));
+    window.add(mode, needed <= kCap, static_cast<std::uint64_t>(std::min(needed, kCap)));
   }
 }
 
@@ -26,9 +26,9 @@ AttemptWindow even_attempts(int guided, std::uint64_t guided_checks, int control
                             std::uint64_t control_checks) {
   AttemptWindow window;
   for (int i = 0; i < guided; ++i)
-    window.add(Arm::Guided, true, guided_checks);
+    window.add(SamplingMode::Guided, true, guided_checks);
   for (int i = 0; i < control; ++i)
-    window.add(Arm::Control, true, control_checks);
+    window.add(SamplingMode::Control, true, control_checks);
   return window;
 }
 
@@ -36,10 +36,10 @@ double probability(const AttemptWindow& window) {
   return compare_costs(window.recent()).guided_is_cheaper();
 }
 
-std::vector<JudgedAttempt> scaled(std::vector<JudgedAttempt> recent, Arm arm,
+std::vector<JudgedAttempt> scaled(std::vector<JudgedAttempt> recent, SamplingMode mode,
                                   std::uint64_t factor) {
   for (JudgedAttempt& attempt : recent)
-    if (attempt.arm == arm)
+    if (attempt.sampling_mode == mode)
       attempt.checks *= factor;
   return recent;
 }
@@ -80,8 +80,8 @@ TEST(CostRatio, TheMedianComesToTheRatioOfTheCosts) {
 TEST(CostRatio, UnsolvedAttemptsMakeAnArmDearer) {
   AttemptWindow window;
   for (int i = 0; i < 60; ++i) {
-    window.add(Arm::Guided, i % 2 == 0, 1000);
-    window.add(Arm::Control, true, 1000);
+    window.add(SamplingMode::Guided, i % 2 == 0, 1000);
+    window.add(SamplingMode::Control, true, 1000);
   }
   EXPECT_NEAR(compare_costs(window.recent()).quantile(0), 2, 0.1);
 }
@@ -89,8 +89,8 @@ TEST(CostRatio, UnsolvedAttemptsMakeAnArmDearer) {
 TEST(CostRatio, AnArmThatSolvedNothingIsNoBargain) {
   AttemptWindow window;
   for (int i = 0; i < 30; ++i) {
-    window.add(Arm::Guided, false, 1000);
-    window.add(Arm::Control, true, 1000);
+    window.add(SamplingMode::Guided, false, 1000);
+    window.add(SamplingMode::Control, true, 1000);
   }
   EXPECT_LT(probability(window), 0.05);
 }
@@ -98,9 +98,10 @@ TEST(CostRatio, AnArmThatSolvedNothingIsNoBargain) {
 TEST(CostRatio, HowFastAPlannerChecksDoesNotMatter) {
   std::mt19937_64 generator(1);
   AttemptWindow window;
-  add_attempts(window, Arm::Guided, 12, 3000, generator);
-  add_attempts(window, Arm::Control, 7, 2500, generator);
-  const auto faster = scaled(scaled(window.recent(), Arm::Guided, 1000), Arm::Control, 1000);
+  add_attempts(window, SamplingMode::Guided, 12, 3000, generator);
+  add_attempts(window, SamplingMode::Control, 7, 2500, generator);
+  const auto faster =
+      scaled(scaled(window.recent(), SamplingMode::Guided, 1000), SamplingMode::Control, 1000);
   EXPECT_NEAR(compare_costs(faster).mean, compare_costs(window.recent()).mean, 1e-9);
   EXPECT_NEAR(compare_costs(faster).variance, compare_costs(window.recent()).variance, 1e-9);
 }
@@ -109,12 +110,12 @@ TEST(CostRatio, DearerGuidanceNeverLooksCheaper) {
   std::mt19937_64 generator(2);
   for (int run = 0; run < 100; ++run) {
     AttemptWindow window;
-    add_attempts(window, Arm::Guided, 1 + run % 20, 3000, generator);
-    add_attempts(window, Arm::Control, 1 + run % 13, 2500, generator);
+    add_attempts(window, SamplingMode::Guided, 1 + run % 20, 3000, generator);
+    add_attempts(window, SamplingMode::Control, 1 + run % 13, 2500, generator);
     double before = 1;
     for (std::uint64_t factor = 1; factor < 10'000; factor *= 3) {
       const double now =
-          compare_costs(scaled(window.recent(), Arm::Guided, factor)).guided_is_cheaper();
+          compare_costs(scaled(window.recent(), SamplingMode::Guided, factor)).guided_is_cheaper();
       ASSERT_LE(now, before + 1e-12);
       before = now;
     }
@@ -123,13 +124,13 @@ TEST(CostRatio, DearerGuidanceNeverLooksCheaper) {
 
 TEST(CostRatio, IsFiniteWhateverIsReported) {
   std::mt19937_64 generator(3);
-  std::uniform_int_distribution<int> magnitude(0, 63), arm(0, 1), count(0, 100);
+  std::uniform_int_distribution<int> magnitude(0, 63), mode(0, 1), count(0, 100);
   std::bernoulli_distribution solved(0.5);
   for (int run = 0; run < 500; ++run) {
     AttemptWindow window;
     for (int i = count(generator); i > 0; --i)
-      window.add(arm(generator) == 0 ? Arm::Guided : Arm::Control, solved(generator),
-                 (std::uint64_t{1} << magnitude(generator)) - 1);
+      window.add(mode(generator) == 0 ? SamplingMode::Guided : SamplingMode::Control,
+                 solved(generator), (std::uint64_t{1} << magnitude(generator)) - 1);
     const CostRatio ratio = compare_costs(window.recent());
     ASSERT_TRUE(std::isfinite(ratio.mean));
     ASSERT_TRUE(std::isfinite(ratio.variance));
@@ -140,11 +141,11 @@ TEST(CostRatio, IsFiniteWhateverIsReported) {
 TEST(CostRatio, AnAttemptWeighsHalfAfterAHalfLife) {
   // Two guided attempts of 1000 and 4000 checks: how far towards the newer one the cost lies says
   // how much the older one weighs.
-  const auto cost_of_guided = [](std::uint32_t newer_in_task, int newer_in_arm) {
-    std::vector<JudgedAttempt> recent = {{Arm::Guided, true, 1000, newer_in_task}};
-    for (int i = 0; i < newer_in_arm; ++i)
-      recent.push_back({Arm::Guided, true, 4000, 0});
-    const std::vector<JudgedAttempt> control(2000, {Arm::Control, true, 4000, 0});
+  const auto cost_of_guided = [](std::uint32_t newer_in_task, int newer_in_mode) {
+    std::vector<JudgedAttempt> recent = {{SamplingMode::Guided, true, 1000, newer_in_task}};
+    for (int i = 0; i < newer_in_mode; ++i)
+      recent.push_back({SamplingMode::Guided, true, 4000, 0});
+    const std::vector<JudgedAttempt> control(2000, {SamplingMode::Control, true, 4000, 0});
     recent.insert(recent.end(), control.begin(), control.end());
     const CostRatio ratio = compare_costs(recent);
     // Undo the prior: mean = (d / v + m0) / (1 / v + 1).
@@ -154,7 +155,7 @@ TEST(CostRatio, AnAttemptWeighsHalfAfterAHalfLife) {
   const auto expected = [](double older, double newer) {
     return (older * 1000 + newer * 4000) / (older + newer);
   };
-  const double one = std::exp2(-1 / kHalfLifeInArm);
+  const double one = std::exp2(-1 / kHalfLifeInMode);
   EXPECT_NEAR(cost_of_guided(0, 1), expected(one, 1), 5);
   EXPECT_NEAR(cost_of_guided(static_cast<std::uint32_t>(kHalfLifeInTask), 1), expected(one / 2, 1),
               5);
@@ -166,10 +167,10 @@ TEST(CostRatio, AChangeForTheWorseIsBelievedAfterFewAttempts) {
   for (unsigned run = 0; run < kRuns; ++run) {
     std::mt19937_64 generator(run);
     AttemptWindow window;
-    add_attempts(window, Arm::Control, 20, 5000, generator);
-    add_attempts(window, Arm::Guided, 60, 1500, generator);
+    add_attempts(window, SamplingMode::Control, 20, 5000, generator);
+    add_attempts(window, SamplingMode::Guided, 60, 1500, generator);
     EXPECT_GT(probability(window), 0.9);
-    add_attempts(window, Arm::Guided, kNew, 15'000, generator);
+    add_attempts(window, SamplingMode::Guided, kNew, 15'000, generator);
     found += probability(window) < 0.5 ? 1 : 0;
   }
   EXPECT_GE(found, kRuns * 3 / 4);
@@ -181,8 +182,8 @@ TEST(CostRatio, SteadyTasksKeepTheirBelief) {
   for (unsigned run = 0; run < kRuns; ++run) {
     std::mt19937_64 generator(1000 + run);
     AttemptWindow window;
-    add_attempts(window, Arm::Control, 20, 5000, generator);
-    add_attempts(window, Arm::Guided, 64, 1500, generator);
+    add_attempts(window, SamplingMode::Control, 20, 5000, generator);
+    add_attempts(window, SamplingMode::Guided, 64, 1500, generator);
     kept += probability(window) > 0.95 ? 1 : 0;
   }
   EXPECT_GE(kept, kRuns * 9 / 10);
@@ -196,8 +197,8 @@ TEST(CostRatio, EqualCostsAreSeldomCalledClearlyDifferent) {
   std::mt19937_64 generator(5);
   for (int i = 0; i < kRuns; ++i) {
     AttemptWindow window;
-    add_attempts(window, Arm::Control, 30, 5000, generator);
-    add_attempts(window, Arm::Guided, 30, 5000, generator);
+    add_attempts(window, SamplingMode::Control, 30, 5000, generator);
+    add_attempts(window, SamplingMode::Guided, 30, 5000, generator);
     better += probability(window) > 0.95 ? 1 : 0;
     worse += probability(window) < 0.05 ? 1 : 0;
   }

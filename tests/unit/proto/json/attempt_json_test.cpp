@@ -44,7 +44,7 @@ TEST(AttemptJson, ReadsTheLineOfTheFileFormat) {
   EXPECT_EQ(named->attempt.path->waypoints().col(2), Eigen::Vector2d(0.5, 0.6));
   const PlanningRecord& record = named->attempt.record;
   EXPECT_EQ(record.outcome, Outcome::Solved);
-  EXPECT_EQ(record.arm, Arm::Guided);
+  EXPECT_EQ(record.sampling_mode, SamplingMode::Guided);
   EXPECT_EQ(record.collision_checks, 1234U);
   EXPECT_EQ(record.distribution_id->hex(), std::string(64, 'a'));
   EXPECT_EQ(record.distribution_revision, 7U);
@@ -83,7 +83,7 @@ TEST(AttemptJson, UnknownMembersAreIgnoredAndOptionalOnesMayBeMissing) {
   ASSERT_TRUE(named) << named.error().message;
   EXPECT_FALSE(named->attempt.path);
   EXPECT_FALSE(named->attempt.T_task_base);
-  EXPECT_EQ(named->attempt.record.arm, Arm::Uniform);
+  EXPECT_EQ(named->attempt.record.sampling_mode, SamplingMode::Uniform);
 }
 
 TEST(AttemptJson, PathIsThereExactlyIfSolved) {

@@ -87,9 +87,11 @@ Distribution with_details() {
   source.tracks_through = 85;
   source.poses_on_tracks = 750;
   distribution.sources = {source};
-  distribution.advice.guided = ArmEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
+  distribution.advice.guided =
+      ModeEvidence{.attempts = 20, .solved = 18, .checks_per_solution = 45};
   distribution.advice.guided_share = 0.5;
-  distribution.advice.recent = {{Arm::Control, true, 70, 19}, {Arm::Guided, false, 45, 0}};
+  distribution.advice.recent = {{SamplingMode::Control, true, 70, 19},
+                                {SamplingMode::Guided, false, 45, 0}};
   return distribution;
 }
 

@@ -192,7 +192,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.distribution_id = Digest{};
   result.distribution_revision = 9;
   result.share = 0.75;
-  result.arm = Arm::Guided;
+  result.sampling_mode = SamplingMode::Guided;
   result.gate_fired = true;
   result.goal_checks = 20;
   result.shortcut_checks = 300;
@@ -204,7 +204,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   EXPECT_EQ(back->distribution_id, result.distribution_id);
   EXPECT_EQ(back->distribution_revision, 9U);
   EXPECT_EQ(back->share, 0.75);
-  EXPECT_EQ(back->arm, Arm::Guided);
+  EXPECT_EQ(back->sampling_mode, SamplingMode::Guided);
   EXPECT_TRUE(back->gate_fired);
   EXPECT_EQ(back->goal_checks, 20U);
   EXPECT_EQ(back->shortcut_checks, 300U);
@@ -215,12 +215,12 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
 TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   ProblemResult result;
   result.distribution_id = Digest{};
-  result.arm = Arm::Control;
+  result.sampling_mode = SamplingMode::Control;
   const std::string text = to_json(result);
   EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false})"),
             std::string::npos)
       << text;
-  EXPECT_EQ(problem_result_from_json(text)->arm, Arm::Control);
+  EXPECT_EQ(problem_result_from_json(text)->sampling_mode, SamplingMode::Control);
   const std::string broken = std::string(text).replace(text.find("control"), 7, "placebo");
   EXPECT_FALSE(problem_result_from_json(broken));
 }

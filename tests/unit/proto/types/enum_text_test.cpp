@@ -8,8 +8,9 @@ namespace {
 TEST(EnumText, EveryWordIsReadBack) {
   for (const Outcome outcome : {Outcome::Solved, Outcome::Timeout, Outcome::Failed})
     EXPECT_EQ(parse_word<Outcome>(to_text(outcome)).value(), outcome);
-  for (const Arm arm : {Arm::Guided, Arm::Control, Arm::Uniform})
-    EXPECT_EQ(parse_word<Arm>(to_text(arm)).value(), arm);
+  for (const SamplingMode arm :
+       {SamplingMode::Guided, SamplingMode::Control, SamplingMode::Uniform})
+    EXPECT_EQ(parse_word<SamplingMode>(to_text(arm)).value(), arm);
   for (const DistributionState state :
        {DistributionState::Ready, DistributionState::Failed, DistributionState::Thin})
     EXPECT_EQ(parse_word<DistributionState>(to_text(state)).value(), state);
@@ -20,11 +21,11 @@ TEST(EnumText, RefusalListsTheAllowedWords) {
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::InvalidInput);
   EXPECT_EQ(outcome.error().message, "outcome: 'Solved' is not one of solved, timeout, failed");
-  EXPECT_FALSE(parse_word<Arm>(""));
+  EXPECT_FALSE(parse_word<SamplingMode>(""));
 }
 
 TEST(EnumText, ValueOutsideTheEnumIsACallersBug) {
-  EXPECT_THROW(to_text(static_cast<Arm>(7)), std::invalid_argument);
+  EXPECT_THROW(to_text(static_cast<SamplingMode>(7)), std::invalid_argument);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ struct Model {
   double tolerance;  ///< the URDFs of UR10e and Sawyer round their angles
 };
 
-const std::vector<Model> kArms = {
+const std::vector<Model> kSamplingModes = {
     {"panda", panda_dh, 1e-12},       {"iiwa14", iiwa14_dh, 1e-12},
     {"iiwa7", iiwa7_dh, 1e-12},       {"ur10e", ur10e_dh, 3e-9},
     {"sawyer", sawyer_by_axes, 2e-5}, {"sara_like", sara_like_dh, 1e-12}};
@@ -209,9 +209,9 @@ TEST_P(ModelsWithGripper, FingersStandOpenAlikeOnEveryRobot) {
   EXPECT_TRUE(T_palm_right.isApprox(shift(0, -0.0425, 0), 1e-12));
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, Models, testing::ValuesIn(kArms), name_of);
+INSTANTIATE_TEST_SUITE_P(Arms, Models, testing::ValuesIn(kSamplingModes), name_of);
 INSTANTIATE_TEST_SUITE_P(Planar, Models, testing::ValuesIn(kPlanarArms), name_of);
-INSTANTIATE_TEST_SUITE_P(All, ModelsWithGripper, testing::ValuesIn(kArms), name_of);
+INSTANTIATE_TEST_SUITE_P(All, ModelsWithGripper, testing::ValuesIn(kSamplingModes), name_of);
 
 class PlanarModels : public Models {};
 

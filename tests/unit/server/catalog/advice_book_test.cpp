@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kProfileShare = 0.9;
 
-AttemptCost cost(Arm arm, std::uint64_t checks, Outcome outcome = Outcome::Solved) {
-  return {"shelf", {}, arm, outcome, checks};
+AttemptCost cost(SamplingMode mode, std::uint64_t checks, Outcome outcome = Outcome::Solved) {
+  return {"shelf", {}, mode, outcome, checks};
 }
 
 class AdviceBookTest : public testing::Test {
@@ -69,30 +69,30 @@ TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
   advise();
   run_later();
   for (int i = 0; i < 12; ++i) {
-    book_.add(cost(Arm::Guided, 2000));
-    book_.add(cost(Arm::Control, 1000, i < 6 ? Outcome::Solved : Outcome::Timeout));
-    book_.add(cost(Arm::Uniform, 5));
+    book_.add(cost(SamplingMode::Guided, 2000));
+    book_.add(cost(SamplingMode::Control, 1000, i < 6 ? Outcome::Solved : Outcome::Timeout));
+    book_.add(cost(SamplingMode::Uniform, 5));
   }
   const Advice advice = advise();
-  EXPECT_EQ(*advice.guided, (ArmEvidence{12, 12, 2000}));
-  EXPECT_EQ(*advice.control, (ArmEvidence{12, 6, 2000}));
+  EXPECT_EQ(*advice.guided, (ModeEvidence{12, 12, 2000}));
+  EXPECT_EQ(*advice.control, (ModeEvidence{12, 6, 2000}));
   EXPECT_EQ(version(), 25U);
   EXPECT_EQ(readings_, 1);
 }
 
 TEST_F(AdviceBookTest, RecentAttemptsGoOnFromTheStoredOnes) {
-  stored_.recent = {{Arm::Control, true, 700, 0}};
+  stored_.recent = {{SamplingMode::Control, true, 700, 0}};
   advise();
   run_later();
-  book_.add(cost(Arm::Guided, 300, Outcome::Timeout));
-  book_.add(cost(Arm::Uniform, 5));
-  book_.add(cost(Arm::Guided, 1, Outcome::Failed));  // a start in collision, say
-  EXPECT_EQ(advise().recent, (std::vector<JudgedAttempt>{{Arm::Control, true, 700, 1},
-                                                         {Arm::Guided, false, 300, 0}}));
+  book_.add(cost(SamplingMode::Guided, 300, Outcome::Timeout));
+  book_.add(cost(SamplingMode::Uniform, 5));
+  book_.add(cost(SamplingMode::Guided, 1, Outcome::Failed));  // a start in collision, say
+  EXPECT_EQ(advise().recent, (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 700, 1},
+                                                         {SamplingMode::Guided, false, 300, 0}}));
 }
 
 TEST_F(AdviceBookTest, WhatNobodyAskedForIsNotKept) {
-  book_.add(cost(Arm::Guided, 2000));
+  book_.add(cost(SamplingMode::Guided, 2000));
   EXPECT_EQ(version(), 0U);
   EXPECT_FALSE(advise().guided);
 }
@@ -102,7 +102,7 @@ TEST_F(AdviceBookTest, SumsThatWereOvertakenAreReadAgain) {
   on_read_ = [this] {
     if (readings_ == 1) {  // committed before the sums were read, told before they were taken over
       stored_.guided.attempts = 1;
-      book_.add(cost(Arm::Guided, 2000));
+      book_.add(cost(SamplingMode::Guided, 2000));
     }
   };
   run_later();
@@ -112,7 +112,7 @@ TEST_F(AdviceBookTest, SumsThatWereOvertakenAreReadAgain) {
 
 TEST_F(AdviceBookTest, ReadingEndsAlsoIfItIsAlwaysOvertaken) {
   advise();
-  on_read_ = [this] { book_.add(cost(Arm::Guided, 2000)); };
+  on_read_ = [this] { book_.add(cost(SamplingMode::Guided, 2000)); };
   run_later();
   EXPECT_EQ(version(), 1U);
 }
@@ -147,7 +147,7 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
   for (int i = 0; i < kThreads; ++i)
     threads.emplace_back([this] {
       for (int j = 0; j < kAttempts; ++j) {
-        book_.add(cost(Arm::Guided, 10));
+        book_.add(cost(SamplingMode::Guided, 10));
         book_.advise("shelf", {}, kProfileShare);
       }
     });

@@ -15,19 +15,21 @@ constexpr double kProfileShare = 0.9;
 /// Attempts as the store sums them up.
 class Ledger {
  public:
-  Ledger& add(Arm arm, int count, double checks, int solved) {
+  Ledger& add(SamplingMode mode, int count, double checks, int solved) {
     evidence::AttemptWindow window(totals_.recent);
-    store::ArmTotals& totals = arm == Arm::Guided ? totals_.guided : totals_.control;
+    store::ModeTotals& totals = mode == SamplingMode::Guided ? totals_.guided : totals_.control;
     for (int i = 0; i < count; ++i) {
       ++totals.attempts;
       totals.solved += i < solved ? 1 : 0;
       totals.checks += checks;
-      window.add(arm, i < solved, static_cast<std::uint64_t>(checks));
+      window.add(mode, i < solved, static_cast<std::uint64_t>(checks));
     }
     totals_.recent = window.recent();
     return *this;
   }
-  Ledger& add(Arm arm, int count, double checks) { return add(arm, count, checks, count); }
+  Ledger& add(SamplingMode mode, int count, double checks) {
+    return add(mode, count, checks, count);
+  }
   const store::AttemptTotals& totals() const { return totals_; }
   Advice advice() const { return advise(totals_, kProfileShare); }
 
@@ -47,42 +49,55 @@ TEST(AdviceRule, WithoutAttemptsTheProfileDecides) {
 }
 
 TEST(AdviceRule, NineAttemptsOfAnArmDecideNothingYet) {
-  EXPECT_EQ(Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 9, 10).advice().recommended_share,
+  EXPECT_EQ(Ledger()
+                .add(SamplingMode::Guided, 60, 9e6)
+                .add(SamplingMode::Control, 9, 10)
+                .advice()
+                .recommended_share,
             kProfileShare);
-  EXPECT_EQ(Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 10, 10).advice().recommended_share,
+  EXPECT_EQ(Ledger()
+                .add(SamplingMode::Guided, 60, 9e6)
+                .add(SamplingMode::Control, 10, 10)
+                .advice()
+                .recommended_share,
             0);
 }
 
 TEST(AdviceRule, WhoSamplesPerQueryGetsTheAttemptsAndTheProfilesShare) {
-  const Ledger ledger = Ledger().add(Arm::Guided, 60, 9e6).add(Arm::Control, 10, 10);
+  const Ledger ledger =
+      Ledger().add(SamplingMode::Guided, 60, 9e6).add(SamplingMode::Control, 10, 10);
   EXPECT_EQ(ledger.advice().guided_share, kProfileShare);
   EXPECT_EQ(ledger.advice().recent, ledger.totals().recent);
 }
 
 TEST(AdviceRule, EvidenceNamesCostsAttemptsRatioAndInterval) {
-  const Advice better = Ledger().add(Arm::Control, 12, 6904).add(Arm::Guided, 40, 2000).advice();
+  const Advice better =
+      Ledger().add(SamplingMode::Control, 12, 6904).add(SamplingMode::Guided, 40, 2000).advice();
   EXPECT_EQ(better.recommended_share, kProfileShare);
   EXPECT_EQ(better.evidence.find("guided 2000 checks per solution in 40 attempts, control 6904 in "
                                  "12; lately ratio 0."),
             0U)
       << better.evidence;
   EXPECT_NE(better.evidence.find("clearly better: share of the profile"), std::string::npos);
-  EXPECT_EQ(*better.guided, (ArmEvidence{40, 40, 2000}));
-  EXPECT_EQ(*better.control, (ArmEvidence{12, 12, 6904}));
-  const Advice worse = Ledger().add(Arm::Control, 12, 2000).add(Arm::Guided, 40, 6904).advice();
+  EXPECT_EQ(*better.guided, (ModeEvidence{40, 40, 2000}));
+  EXPECT_EQ(*better.control, (ModeEvidence{12, 12, 6904}));
+  const Advice worse =
+      Ledger().add(SamplingMode::Control, 12, 2000).add(SamplingMode::Guided, 40, 6904).advice();
   EXPECT_EQ(worse.recommended_share, 0);
   EXPECT_NE(worse.evidence.find("clearly worse: uniform"), std::string::npos) << worse.evidence;
 }
 
 TEST(AdviceRule, AnArmThatSolvedNothingIsNamedAndCostsMore) {
-  const Advice advice = Ledger().add(Arm::Guided, 30, 1000, 0).add(Arm::Control, 30, 1000).advice();
+  const Advice advice =
+      Ledger().add(SamplingMode::Guided, 30, 1000, 0).add(SamplingMode::Control, 30, 1000).advice();
   EXPECT_EQ(advice.recommended_share, 0);
   EXPECT_EQ(advice.guided->checks_per_solution, 0);
   EXPECT_NE(advice.evidence.find("guided none solved in 30"), std::string::npos) << advice.evidence;
 }
 
 TEST(AdviceRule, WithoutChecksThereIsNothingToCompare) {
-  const Advice advice = Ledger().add(Arm::Guided, 30, 0).add(Arm::Control, 30, 1000).advice();
+  const Advice advice =
+      Ledger().add(SamplingMode::Guided, 30, 0).add(SamplingMode::Control, 30, 1000).advice();
   EXPECT_EQ(advice.recommended_share, kProfileShare);
   EXPECT_NE(advice.evidence.find("report collision checks"), std::string::npos) << advice.evidence;
 }
@@ -92,8 +107,8 @@ TEST(AdviceRule, ShareMovesWithoutAJumpAndNeverUpAsGuidanceGetsDearer) {
   bool was_between = false;
   for (double checks = 1000; checks < 30'000; checks *= 1.005) {
     const double share = Ledger()
-                             .add(Arm::Guided, 30, checks)
-                             .add(Arm::Control, 15, 5000)
+                             .add(SamplingMode::Guided, 30, checks)
+                             .add(SamplingMode::Control, 15, 5000)
                              .advice()
                              .recommended_share;
     EXPECT_LE(share, before + 1e-9) << checks;
@@ -107,9 +122,9 @@ TEST(AdviceRule, ShareMovesWithoutAJumpAndNeverUpAsGuidanceGetsDearer) {
 
 TEST(AdviceRule, WhatWasLongAgoDoesNotDecide) {
   const double after_long_good = Ledger()
-                                     .add(Arm::Guided, 1000, 100)
-                                     .add(Arm::Control, 30, 1000)
-                                     .add(Arm::Guided, 60, 5000)
+                                     .add(SamplingMode::Guided, 1000, 100)
+                                     .add(SamplingMode::Control, 30, 1000)
+                                     .add(SamplingMode::Guided, 60, 5000)
                                      .advice()
                                      .recommended_share;
   EXPECT_EQ(after_long_good, 0);

@@ -266,7 +266,7 @@ TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
     ASSERT_LT(tries, 1000);
   std::vector<Attempt> attempts = fleet::solved(pupil_, "shelf", 20, 500);
   for (std::size_t i = 0; i < attempts.size(); ++i) {
-    attempts[i].record.arm = i % 2 == 0 ? Arm::Guided : Arm::Control;
+    attempts[i].record.sampling_mode = i % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control;
     attempts[i].record.collision_checks = i % 2 == 0 ? 900 + i : 100 + i;
   }
   report(attempts);

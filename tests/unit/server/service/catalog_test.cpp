@@ -402,7 +402,8 @@ TEST_F(CatalogTest, AReplyFromMemoryCarriesTheAdviceOfTheMoment) {
   std::vector<Attempt> attempts;
   for (int i = 0; i < 24; ++i) {
     attempts.push_back(fleet::unsolved(pupil_.digest, "shelf"));
-    attempts.back().record.arm = i % 2 == 0 ? Arm::Guided : Arm::Control;
+    attempts.back().record.sampling_mode =
+        i % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control;
     attempts.back().record.collision_checks = 100;
   }
   report(attempts);

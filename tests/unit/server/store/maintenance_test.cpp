@@ -32,7 +32,7 @@ class Maintenance : public testing::Test {
       if (number == first)
         attempt.scene = RecordedScene{
             {{"table", BoxShape{{1, 1, 0.1}}}, {"bench", BoxShape{{1, 1, 0.1}}}}, {}, {}};
-      attempt.record.arm = number % 2 == 0 ? Arm::Guided : Arm::Control;
+      attempt.record.sampling_mode = number % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control;
       test::report(*store, {attempt, test::make_unsolved(panda.digest, "shelf", 1000 + number)});
     }
     static_cast<void>(store->retire_path(test::id_from<Uuid>(first + 3)));

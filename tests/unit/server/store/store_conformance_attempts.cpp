@@ -107,16 +107,20 @@ TEST_P(StoreConformance, AnExportRefusesACursorOfSomethingElse) {
 }
 
 TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
-  const auto attempt = [this](std::uint64_t number, Arm arm, std::uint64_t checks, bool is_solved) {
+  const auto attempt = [this](std::uint64_t number, SamplingMode mode, std::uint64_t checks,
+                              bool is_solved) {
     Attempt made = is_solved ? solved(number) : test::make_unsolved(panda_.digest, "shelf", number);
-    made.record.arm = arm;
+    made.record.sampling_mode = mode;
     made.record.collision_checks = checks;
     return made;
   };
-  test::report(*store_, {attempt(1, Arm::Guided, 10, true), attempt(2, Arm::Guided, 30, false),
-                         attempt(3, Arm::Control, 100, true), attempt(4, Arm::Uniform, 7, true)});
-  test::report(*store_, {attempt(5, Arm::Guided, 20, true), attempt(1, Arm::Guided, 10, true)});
-  Attempt elsewhere = attempt(6, Arm::Guided, 1000, true);
+  test::report(
+      *store_,
+      {attempt(1, SamplingMode::Guided, 10, true), attempt(2, SamplingMode::Guided, 30, false),
+       attempt(3, SamplingMode::Control, 100, true), attempt(4, SamplingMode::Uniform, 7, true)});
+  test::report(*store_, {attempt(5, SamplingMode::Guided, 20, true),
+                         attempt(1, SamplingMode::Guided, 10, true)});
+  Attempt elsewhere = attempt(6, SamplingMode::Guided, 1000, true);
   elsewhere.task = "table";
   report(elsewhere);
   reopen();
@@ -137,41 +141,42 @@ TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
 }
 
 TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
-  const auto attempt = [this](std::uint64_t number, Arm arm, Outcome outcome) {
+  const auto attempt = [this](std::uint64_t number, SamplingMode mode, Outcome outcome) {
     Attempt made = outcome == Outcome::Solved ? solved(number)
                                               : test::make_unsolved(panda_.digest, "shelf", number);
-    made.record.arm = arm;
+    made.record.sampling_mode = mode;
     made.record.outcome = outcome;
     made.record.collision_checks = number;
     return made;
   };
-  test::report(
-      *store_,
-      {attempt(1, Arm::Control, Outcome::Solved), attempt(2, Arm::Guided, Outcome::Timeout),
-       attempt(3, Arm::Uniform, Outcome::Solved), attempt(4, Arm::Guided, Outcome::Failed),
-       attempt(5, Arm::Guided, Outcome::Solved)});
+  test::report(*store_, {attempt(1, SamplingMode::Control, Outcome::Solved),
+                         attempt(2, SamplingMode::Guided, Outcome::Timeout),
+                         attempt(3, SamplingMode::Uniform, Outcome::Solved),
+                         attempt(4, SamplingMode::Guided, Outcome::Failed),
+                         attempt(5, SamplingMode::Guided, Outcome::Solved)});
   reopen();
-  EXPECT_EQ(
-      store_->attempt_totals(panda_.digest, "shelf").recent,
-      (std::vector<JudgedAttempt>{
-          {Arm::Control, true, 1, 2}, {Arm::Guided, false, 2, 1}, {Arm::Guided, true, 5, 0}}));
+  EXPECT_EQ(store_->attempt_totals(panda_.digest, "shelf").recent,
+            (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 1, 2},
+                                        {SamplingMode::Guided, false, 2, 1},
+                                        {SamplingMode::Guided, true, 5, 0}}));
   EXPECT_TRUE(store_->attempt_totals(iiwa_.digest, "shelf").recent.empty());
 }
 
 TEST_P(StoreConformance, OfEachArmAsManyJudgedAttemptsAsCountAreRead) {
   std::vector<Attempt> attempts;
-  for (std::uint64_t i = 0; i < kJudgedAttemptsPerArm + 10; ++i) {
+  for (std::uint64_t i = 0; i < kJudgedAttemptsPerMode + 10; ++i) {
     attempts.push_back(test::make_unsolved(panda_.digest, "shelf", i + 1));
-    attempts.back().record.arm = i == 0 ? Arm::Control : Arm::Guided;
+    attempts.back().record.sampling_mode = i == 0 ? SamplingMode::Control : SamplingMode::Guided;
     attempts.back().record.outcome = Outcome::Timeout;
     attempts.back().record.collision_checks = i;
   }
   test::report(*store_, attempts);
   const std::vector<JudgedAttempt> recent = store_->attempt_totals(panda_.digest, "shelf").recent;
-  ASSERT_EQ(recent.size(), kJudgedAttemptsPerArm + 1);
-  EXPECT_EQ(recent[0], (JudgedAttempt{Arm::Control, false, 0, kJudgedAttemptsPerArm + 9}));
+  ASSERT_EQ(recent.size(), kJudgedAttemptsPerMode + 1);
+  EXPECT_EQ(recent[0],
+            (JudgedAttempt{SamplingMode::Control, false, 0, kJudgedAttemptsPerMode + 9}));
   EXPECT_EQ(recent[1].checks, 10U);
-  EXPECT_EQ(recent[1].age, kJudgedAttemptsPerArm - 1);
+  EXPECT_EQ(recent[1].age, kJudgedAttemptsPerMode - 1);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_P(StoreConformance, OneUuidForTwoBodiesIsRefusedWhateverDiffers) {
   others[3].machine = "cell 8";
   others[4].T_task_base.reset();
   others[5].record.planning_time_s += 1;
-  others[6].record.arm = Arm::Guided;
+  others[6].record.sampling_mode = SamplingMode::Guided;
   others[7].record.distribution_id.reset();
   others[8].record.planner_options += "x";
   others[9] = test::make_unsolved(panda_.digest, "shelf", 1);
@@ -146,7 +146,7 @@ TEST_P(StoreConformance, GivesAnAttemptBackAsItWas) {
   EXPECT_EQ(after->record.collision_checks, 1234U);
   EXPECT_EQ(after->record.projections, 5U);
   EXPECT_EQ(after->record.time_limit_s, 10);
-  EXPECT_EQ(after->record.arm, Arm::Control);
+  EXPECT_EQ(after->record.sampling_mode, SamplingMode::Control);
   EXPECT_EQ(after->record.share, 0.5);
   EXPECT_EQ(after->record.distribution_id, before.record.distribution_id);
   EXPECT_EQ(after->record.distribution_revision, 7U);

@@ -193,7 +193,7 @@ TEST_P(StoreConformance, KeepsWhatAFitWasAskedForAndWhatItsSourcesGave) {
   distribution.sources[0].relation = Relation::SameArm;
   distribution.sources[0].paths_used = 11;
   distribution.sources[0].mass = 0.75;
-  distribution.advice.guided = ArmEvidence{10, 5, 100};
+  distribution.advice.guided = ModeEvidence{10, 5, 100};
   store_->put_distribution(distribution);
   const std::optional<Distribution> found = store_->find_distribution(distribution.id);
   ASSERT_TRUE(found);

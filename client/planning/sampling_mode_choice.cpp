@@ -1,4 +1,4 @@
-#include "client/planning/arm_choice.hpp"
+#include "client/planning/sampling_mode_choice.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -29,19 +29,19 @@ void require_part(const char* what, double value) {
                                 std::to_string(value) + ", must be 0 to 1");
 }
 
-std::uint64_t attempts_of(const std::optional<ArmEvidence>& evidence) {
+std::uint64_t attempts_of(const std::optional<ModeEvidence>& evidence) {
   return evidence ? evidence->attempts : 0;
 }
 
 }  // namespace
 
-double guided_fraction(const Advice& advice, const ArmOptions& options) {
+double guided_fraction(const Advice& advice, const SamplingModeOptions& options) {
   const double guided_fraction = options.guided_fraction.value_or(advice.guided_share);
   require_part("share", guided_fraction);
   return guided_fraction;
 }
 
-ArmChooser::ArmChooser(const Advice& advice, const ArmOptions& options)
+SamplingModeChooser::SamplingModeChooser(const Advice& advice, const SamplingModeOptions& options)
     : options_(options),
       window_(advice.recent),
       guided_(attempts_of(advice.guided)),
@@ -50,17 +50,17 @@ ArmChooser::ArmChooser(const Advice& advice, const ArmOptions& options)
   require_part("control share", options.control_fraction.value_or(0));
 }
 
-Arm ArmChooser::choose(std::uint64_t seed) const {
+SamplingMode SamplingModeChooser::choose(std::uint64_t seed) const {
   if (is_uniform())
-    return Arm::Uniform;
+    return SamplingMode::Uniform;
   // Under Thompson sampling each query draws anew, also a problem that is planned again and again;
   // under a fixed part the same queries are control in every run.
   const std::uint64_t known = is_sampling() ? guided_ + control_ : 0;
   const double drawn = unit_interval(split_mixed(seed + split_mixed(known)));
-  return drawn < 1 - guided_part() ? Arm::Control : Arm::Guided;
+  return drawn < 1 - guided_part() ? SamplingMode::Control : SamplingMode::Guided;
 }
 
-double ArmChooser::guided_part() const {
+double SamplingModeChooser::guided_part() const {
   if (is_uniform())
     return 0;
   if (options_.control_fraction)
@@ -70,14 +70,14 @@ double ArmChooser::guided_part() const {
                     1 - floor);
 }
 
-void ArmChooser::add(Arm arm, Outcome outcome, std::uint64_t checks) {
-  if (arm == Arm::Uniform || outcome == Outcome::Failed)
+void SamplingModeChooser::add(SamplingMode mode, Outcome outcome, std::uint64_t checks) {
+  if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
     return;
-  ++(arm == Arm::Guided ? guided_ : control_);
-  window_.add(arm, outcome == Outcome::Solved, checks);
+  ++(mode == SamplingMode::Guided ? guided_ : control_);
+  window_.add(mode, outcome == Outcome::Solved, checks);
 }
 
-std::uint64_t arm_seed(const Problem& problem) {
+std::uint64_t sampling_mode_seed(const Problem& problem) {
   Fingerprint fingerprint;
   fingerprint.add(problem.seed);
   fingerprint.add(problem.name.size());
