@@ -179,7 +179,7 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
       << number_text(distribution.transfer_time_s, 2) << " s, fit "
       << number_text(distribution.fit_time_s, 2) << " s\n";
   if (distribution.fit)
-    out << "fit           " << in_words(*distribution.fit) << '\n';
+    out << "fit           " << describe(*distribution.fit) << '\n';
   out << "share         " << number_text(distribution.advice.recommended_share, 2) << " recommended"
       << (distribution.advice.evidence.empty() ? "" : ": ") << distribution.advice.evidence << '\n';
   if (const std::string selection = selection_text(distribution.selection); !selection.empty())

@@ -12,7 +12,7 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr std::uint32_t kDomain = 60, kMostDomain = 230;
+constexpr std::uint32_t kDomain = 60, kMaxDomain = 230;
 
 /// That of the environment, or kDomain. The commands share one value: CLI11 would write what the
 /// environment says over what the command line of one of them said.
@@ -24,10 +24,10 @@ std::uint32_t usual_domain() {
   std::uint32_t domain = 0;
   const char* const end = text + std::strlen(text);
   const auto [stopped, error] = std::from_chars(text, end, domain);
-  if (error != std::errc() || stopped != end || domain > kMostDomain)
+  if (error != std::errc() || stopped != end || domain > kMaxDomain)
     throw Failure(ErrorCode::InvalidInput, "KINSHIP_DOMAIN '" + std::string(text) +
                                                "' is not a DDS domain (0 to " +
-                                               std::to_string(kMostDomain) + ")");
+                                               std::to_string(kMaxDomain) + ")");
   return domain;
 }
 
@@ -45,7 +45,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--domain", options.domain,
                   "DDS domain of that server (default: KINSHIP_DOMAIN, or 60)")
-      ->check(CLI::Range(std::uint32_t{0}, kMostDomain))
+      ->check(CLI::Range(std::uint32_t{0}, kMaxDomain))
       ->capture_default_str();
   command.add_option("--threads", options.threads, "instances that are planned side by side")
       ->check(CLI::Range(1, 64))

@@ -92,7 +92,7 @@ WilcoxonSummary wilcoxon_signed_rank(const std::vector<double>& first,
   summary.rank_sum_plus = static_cast<double>(plus) / 2;
   summary.rank_sum_minus = static_cast<double>(minus) / 2;
   const std::size_t smaller = std::min(plus, minus);
-  if (values.size() <= kMostExactPairs) {
+  if (values.size() <= kMaxExactPairs) {
     summary.p = std::min(1.0, 2 * probability_up_to(ranks, smaller));
   } else {
     summary.method = WilcoxonMethod::NormalApproximation;

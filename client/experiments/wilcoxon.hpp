@@ -22,13 +22,13 @@ struct WilcoxonSummary {
 /// Pairs without a difference are dropped (Wilcoxon's own rule); equal differences share the mean
 /// of their ranks. An infinite value is worse than any finite one: such differences are the
 /// largest and equal to each other; infinite against infinite is no difference.
-/// Up to kMostExactPairs pairs, p is exact under the permutation of signs, also with shared ranks;
+/// Up to kMaxExactPairs pairs, p is exact under the permutation of signs, also with shared ranks;
 /// beyond, the normal approximation with corrections for ties and continuity.
 /// \throws std::invalid_argument if the lengths differ or a value is NaN.
 /// Source: Hollander, Wolfe, Chicken, Nonparametric Statistical Methods (2014), section 3.1.
 WilcoxonSummary wilcoxon_signed_rank(const std::vector<double>& first,
                                      const std::vector<double>& second);
 
-inline constexpr std::size_t kMostExactPairs = 200;
+inline constexpr std::size_t kMaxExactPairs = 200;
 
 }  // namespace kinship::experiments

@@ -15,9 +15,9 @@ constexpr double kPriorVariance = 1;         // of the log ratio
 constexpr double kPriorSpread = 1;           // relative variance of one attempt's cost
 constexpr double kPriorAttempts = 4;         // that the prior spread is worth
 constexpr double kPriorLogSpread = 0.5;      // variance of one attempt's log(checks)
-constexpr std::ptrdiff_t kLeastOfChange = 2, kMaxOfChange = 6;  // newest attempts, compared ...
-constexpr std::ptrdiff_t kLeastBeforeChange = 3;                // ... with those before
-constexpr double kChange = 3;                                   // standard errors
+constexpr std::ptrdiff_t kMinOfChange = 2, kMaxOfChange = 6;  // newest attempts, compared ...
+constexpr std::ptrdiff_t kMinBeforeChange = 3;                // ... with those before
+constexpr double kChange = 3;                                 // standard errors
 
 /// Mean log(checks) of one arm and the standard error of its logarithm.
 struct LogCost {
@@ -51,8 +51,8 @@ std::span<const JudgedAttempt> since_change(std::span<const JudgedAttempt> mode)
   const auto size = static_cast<std::ptrdiff_t>(mode.size());
   double greatest = kChange;
   std::ptrdiff_t kept = size;
-  for (std::ptrdiff_t newest = kLeastOfChange;
-       newest <= kMaxOfChange && size - newest >= kLeastBeforeChange; ++newest) {
+  for (std::ptrdiff_t newest = kMinOfChange;
+       newest <= kMaxOfChange && size - newest >= kMinBeforeChange; ++newest) {
     const double standard_errors = surprise(mode, newest);
     if (standard_errors > greatest) {
       greatest = standard_errors;

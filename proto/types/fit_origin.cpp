@@ -2,7 +2,7 @@
 
 namespace kinship {
 
-std::string in_words(const FitOrigin& origin) {
+std::string describe(const FitOrigin& origin) {
   std::string words;
   if (origin.from_revision > 0)
     words = "incremental from revision " + std::to_string(origin.from_revision) + ", " +

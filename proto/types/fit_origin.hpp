@@ -33,6 +33,6 @@ inline constexpr std::tuple kFieldsOf<FitOrigin>{
 
 /// E.g. "incremental from revision 4, 25 of 525 paths new" or "full (the first), 500 paths", and
 /// how many paths were transferred if those are not the new ones.
-std::string in_words(const FitOrigin& origin);
+std::string describe(const FitOrigin& origin);
 
 }  // namespace kinship

@@ -41,7 +41,7 @@ std::size_t default_workers() {
 
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
-  constexpr std::size_t kMostWorkers = 256;
+  constexpr std::size_t kMaxWorkers = 256;
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
@@ -53,7 +53,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--interface", options.network_interface,
                  "Network interface to serve, e.g. eth0; default: loopback, this machine only");
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
-      ->check(CLI::Range(std::size_t{1}, kMostWorkers))
+      ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
   app.add_option("--fit-niceness", options.fit_niceness,
                  "How far these threads step back for others on this machine")

@@ -9,7 +9,7 @@
 namespace kinship::catalog {
 namespace {
 
-constexpr int kMostReadings = 3;  // of sums that attempts keep overtaking
+constexpr int kMaxReadings = 3;  // of sums that attempts keep overtaking
 
 }  // namespace
 
@@ -77,7 +77,7 @@ void AdviceBook::add(const AttemptCost& cost) {
 }
 
 void AdviceBook::read_totals(const Key& key) {
-  for (int reading = 1; reading <= kMostReadings; ++reading) {
+  for (int reading = 1; reading <= kMaxReadings; ++reading) {
     {
       const std::lock_guard lock(mutex_);
       entries_[key].is_overtaken = false;
@@ -87,7 +87,7 @@ void AdviceBook::read_totals(const Key& key) {
       totals = read_(key.second, key.first);
     } catch (const std::exception&) {  // whoever asks next has it tried again
     }
-    if (end_reading(key, totals ? &*totals : nullptr, reading == kMostReadings))
+    if (end_reading(key, totals ? &*totals : nullptr, reading == kMaxReadings))
       return;
   }
 }

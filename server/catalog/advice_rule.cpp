@@ -27,7 +27,7 @@ std::string text(const char* format, double value) {
   return words;
 }
 
-std::string in_words(const char* mode, const char* unit, const store::ModeTotals& totals) {
+std::string describe(const char* mode, const char* unit, const store::ModeTotals& totals) {
   const std::string attempts = std::to_string(totals.attempts);
   if (totals.solved == 0)
     return std::string(mode) + " none solved in " + attempts;
@@ -35,7 +35,7 @@ std::string in_words(const char* mode, const char* unit, const store::ModeTotals
          attempts;
 }
 
-std::string in_words(const evidence::CostRatio& ratio) {
+std::string describe(const evidence::CostRatio& ratio) {
   const double better = ratio.guided_is_cheaper();
   const std::string words = text("lately ratio %.2f", ratio.quantile(0)) +
                             text(" (90 %% %.2f", ratio.quantile(-kQuantile90)) +
@@ -56,10 +56,10 @@ Advice advise(const store::AttemptTotals& totals, double profile_share) {
   advice.guided = evidence_of(totals.guided);
   advice.control = evidence_of(totals.control);
   advice.recent = totals.recent;
-  if (std::min(totals.guided.attempts, totals.control.attempts) < kLeastAttempts) {
+  if (std::min(totals.guided.attempts, totals.control.attempts) < kMinAttempts) {
     advice.evidence = std::to_string(totals.guided.attempts) + " guided and " +
                       std::to_string(totals.control.attempts) +
-                      " control attempts, compared from " + std::to_string(kLeastAttempts) +
+                      " control attempts, compared from " + std::to_string(kMinAttempts) +
                       " of each on: share of the profile";
     return advice;
   }
@@ -71,8 +71,8 @@ Advice advise(const store::AttemptTotals& totals, double profile_share) {
   }
   advice.recommended_share *=
       std::clamp((ratio.guided_is_cheaper() - kDoubt) / (1 - 2 * kDoubt), 0.0, 1.0);
-  advice.evidence = in_words("guided", " checks per solution", totals.guided) + " attempts, " +
-                    in_words("control", "", totals.control) + "; " + in_words(ratio);
+  advice.evidence = describe("guided", " checks per solution", totals.guided) + " attempts, " +
+                    describe("control", "", totals.control) + "; " + describe(ratio);
   return advice;
 }
 

@@ -6,7 +6,7 @@
 namespace kinship::catalog {
 
 /// With fewer attempts than this in either arm the profile decides on the share.
-inline constexpr std::uint64_t kLeastAttempts = 10;
+inline constexpr std::uint64_t kMinAttempts = 10;
 
 /// What the attempts of a robot and task recommend.
 ///
@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kLeastAttempts = 10;
 ///
 /// | Attempts say | Recommended share |
 /// |---|---|
-/// | an arm has fewer than kLeastAttempts, or none of late, or reports no checks | `profile_share`
+/// | an arm has fewer than kMinAttempts, or none of late, or reports no checks | `profile_share`
 /// | | p >= 0.95: clearly better | `profile_share` | | p <= 0.05: clearly worse | 0 | | otherwise |
 /// `profile_share` x (p - 0.05) / 0.9 |
 ///

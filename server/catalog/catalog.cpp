@@ -71,7 +71,7 @@ void Catalog::fetch(const FetchRequest& request, const std::string& waiter, Fetc
   if (!key)
     return done(without_distribution(FetchStatus::Refused, key.error().message));
   const Digest id = identify(*key);
-  const FetchDone answer = in_words_of(request, std::move(done));
+  const FetchDone answer = with_profile_text_of(request, std::move(done));
   // Its own experience says nothing about a distribution that is not made of it.
   Waiter who{waiter, selects(*key, key->robot) ? request.minimum_generation : 0, std::nullopt,
              answer};

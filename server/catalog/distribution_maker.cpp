@@ -15,8 +15,8 @@ namespace {
 
 /// As many as the machine runs at once: fits are at low priority, and rarely many.
 int fit_threads() {
-  constexpr unsigned kMost = 8;
-  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMost));
+  constexpr unsigned kMax = 8;
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMax));
 }
 
 }  // namespace
@@ -66,19 +66,19 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
                            std::string(failure.what());
     distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   }
-  if (outcome.remains)
-    remember(distribution, std::move(outcome.remains));
+  if (outcome.warm_state)
+    remember(distribution, std::move(outcome.warm_state));
   return distribution;
 }
 
 void DistributionMaker::remember(const Distribution& distribution,
-                                 std::shared_ptr<fitting::FitRemains> remains) const {
-  remains->revision = distribution.revision;
-  if (remains->revision == 0)
-    remains->mixture.reset();  // no revision could say what it began with
+                                 std::shared_ptr<fitting::WarmState> warm_state) const {
+  warm_state->revision = distribution.revision;
+  if (warm_state->revision == 0)
+    warm_state->mixture.reset();  // no revision could say what it began with
   if (distribution.fit && distribution.fit->from_revision == 0)
-    remains->full.revision = distribution.revision;
-  memory_.put(distribution.id, std::move(remains));
+    warm_state->full.revision = distribution.revision;
+  memory_.put(distribution.id, std::move(warm_state));
 }
 
 }  // namespace kinship::catalog

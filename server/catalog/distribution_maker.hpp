@@ -44,7 +44,7 @@ class DistributionMaker {
 
  private:
   void remember(const Distribution& distribution,
-                std::shared_ptr<fitting::FitRemains> remains) const;
+                std::shared_ptr<fitting::WarmState> warm_state) const;
 
   const Parts parts_;
   mutable fitting::FitMemory memory_;

@@ -39,7 +39,7 @@ SharedReply with_distribution(Distribution distribution) {
   return shared(std::move(reply));
 }
 
-FetchDone in_words_of(const FetchRequest& request, FetchDone done) {
+FetchDone with_profile_text_of(const FetchRequest& request, FetchDone done) {
   return [profile = request.profile, done = std::move(done)](const FetchReply& reply) {
     if (!reply.distribution || reply.distribution->profile == profile)
       return done(reply);

@@ -9,7 +9,7 @@ namespace {
 
 /// Of an average weight. No sum shows that a weight is so much and not less, and none that is
 /// divided by it overflows.
-constexpr double kLeastWeight = 1e-100;
+constexpr double kMinWeight = 1e-100;
 
 /// A column and its first joint: enough to order almost all of them without looking further away.
 struct Candidate {
@@ -62,8 +62,7 @@ DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configur
   }
   const double total = std::accumulate(distinct.weights.begin(), distinct.weights.end(), 0.0);
   for (double& weight : distinct.weights)
-    weight =
-        std::max(weight * (static_cast<double>(distinct.weights.size()) / total), kLeastWeight);
+    weight = std::max(weight * (static_cast<double>(distinct.weights.size()) / total), kMinWeight);
   return distinct;
 }
 

@@ -133,7 +133,7 @@ class Fit {
 
   /// \return nothing if there is too little to hold a part of it out.
   std::optional<ComponentSearch> search_components() const {
-    if (data_.paths() < kLeastPathsToScore)
+    if (data_.paths() < kMinPathsToScore)
       return std::nullopt;
     auto split = data_.split(held_out_paths(data_.paths(), options_.seed));
     if (!split)

@@ -50,7 +50,7 @@ struct FitSummary {
 ///
 /// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
 /// prune_components) when the others are fitted; the mixture of that K is then refitted to all.
-/// Below kLeastPathsToScore paths it is components_of_few_paths, without a curve.
+/// Below kMinPathsToScore paths it is components_of_few_paths, without a curve.
 ///
 /// A warm start adds at most kMaxNewComponents, runs EM on a sample (kIterationsBeforeMerging),
 /// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there

@@ -101,7 +101,7 @@ DistinctPoints WeightedConfigurations::part(const std::vector<std::uint8_t>& hel
 
 double log_uniform(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                    const Eigen::Matrix2Xd& limits) {
-  constexpr double kLeastWidth = 1e-6;  // of a joint that does not move
+  constexpr double kMinWidth = 1e-6;  // of a joint that does not move
   Eigen::Matrix2Xd box = limits;
   if (box.size() == 0) {
     box.resize(2, configurations.rows());
@@ -109,7 +109,7 @@ double log_uniform(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
     box.row(1) = configurations.rowwise().maxCoeff().transpose();
   }
   const Eigen::ArrayXd widths = (box.row(1) - box.row(0)).transpose().array();
-  return -widths.max(kLeastWidth).log().sum();
+  return -widths.max(kMinWidth).log().sum();
 }
 
 }  // namespace kinship::density

@@ -9,7 +9,7 @@ namespace kinship::density {
 std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed,
                                          std::uint32_t fold) {
   std::vector<std::uint8_t> held_out(count, 0);
-  if (count < kLeastPathsToScore)
+  if (count < kMinPathsToScore)
     return held_out;
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);

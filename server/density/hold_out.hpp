@@ -6,13 +6,13 @@
 namespace kinship::density {
 
 /// From so many paths on a part of them is held out to score numbers of components.
-inline constexpr std::uint32_t kLeastPathsToScore = 10;
+inline constexpr std::uint32_t kMinPathsToScore = 10;
 
 /// A path is in one of so many parts, each of which may be held out.
 inline constexpr std::uint32_t kFolds = 5;
 
 /// Which paths of `count` are held out: a fifth of them, chosen by the seed; none below
-/// kLeastPathsToScore. Whole paths, because waypoints of one path are not independent.
+/// kMinPathsToScore. Whole paths, because waypoints of one path are not independent.
 /// \param fold  which fifth, below kFolds.
 /// \return count flags.
 std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed,

@@ -161,7 +161,7 @@ class Estimate {
         mixture_of(kernels, pooled, choice.bandwidth.scale, options_.floors_of_joints),
         choice.bandwidth};
     mixture::cholesky_factors(estimate.mixture);  // throws if there is none
-    if (data_.paths() >= kLeastPathsToScore)
+    if (data_.paths() >= kMinPathsToScore)
       estimate.held_out_score = choice.score_of_first;
     return estimate;
   }
@@ -182,7 +182,7 @@ class Estimate {
   std::vector<Fold> folds() const {
     const std::uint32_t paths = data_.paths();
     std::vector<Fold> folds;
-    if (paths >= kLeastPathsToScore) {
+    if (paths >= kMinPathsToScore) {
       const std::uint32_t count = paths <= kFewPaths ? kFolds : 1;
       for (std::uint32_t fold = 0; fold < count; ++fold) {
         add_fold(held_out_paths(paths, options_.seed, fold), kFoldPoints / count, folds);

@@ -35,7 +35,7 @@ struct KernelDensity {
   Mixture mixture;  ///< at most kMaxKernels components, one covariance, means that f32 can hold
   Bandwidth bandwidth;
   /// On the first fifth of the paths (held_out_paths), of kernels of the others with the bandwidth
-  /// that was chosen; none below kLeastPathsToScore paths.
+  /// that was chosen; none below kMinPathsToScore paths.
   std::optional<double> held_out_score = {};
 };
 
@@ -45,7 +45,7 @@ struct KernelDensity {
 /// Of more than kMaxKernels configurations a sample of that size is drawn in proportion to weight,
 /// spread evenly over space. The bandwidth is the one that scores best on paths that the kernels
 /// know nothing of: a fifth of the paths (held_out_paths); up to 60 of them the mean over each
-/// fifth in turn, below kLeastPathsToScore over each path in turn; with one path it is
+/// fifth in turn, below kMinPathsToScore over each path in turn; with one path it is
 /// scale_of_one_path(d) and one cluster. Centres are rounded to f32, towards the inside of a limit
 /// they would cross. Deterministic: equal input, equal bytes, whatever the number of threads.
 /// \param configurations  d x N, at most 1e6 in magnitude, joint units.

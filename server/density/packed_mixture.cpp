@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLaneMultiple = 8;
 /// Instead of the logarithm of 0: finite, so that differences are numbers.
-constexpr double kLeastLogWeight = -1e100;
+constexpr double kMinLogWeight = -1e100;
 /// Of what the kernels read: squares of sums of products with points, and sums of them, are finite.
 constexpr double kLargestNumber = 1e120;
 
@@ -35,7 +35,7 @@ struct Whitening {
 void pack(double weight, const Whitening& whitening, const Eigen::VectorXd& mean, double* out) {
   const double* const matrix = whitening.matrix.data();
   const Eigen::Index dimension = mean.size();
-  *out++ = std::max(std::log(weight), kLeastLogWeight) + whitening.log_scale;
+  *out++ = std::max(std::log(weight), kMinLogWeight) + whitening.log_scale;
   for (Eigen::Index row = 0; row < dimension; ++row) {
     double& offset = *out++ = 0;
     for (Eigen::Index column = 0; column <= row; ++column) {

@@ -12,11 +12,11 @@
 #include "server/density/fit.hpp"
 #include "server/density/kernel_density.hpp"
 #include "server/fitting/branch_cuts.hpp"
+#include "server/fitting/describe_sources.hpp"
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/fitting/profile_advice.hpp"
 #include "server/fitting/selected_experience.hpp"
 #include "server/fitting/source_transfer.hpp"
-#include "server/fitting/source_words.hpp"
 #include "server/fitting/warm_refit.hpp"
 
 namespace kinship::fitting {
@@ -72,7 +72,7 @@ Result<density::FitSummary> fit_kernels(const Eigen::MatrixXd& configurations,
   return density::FitSummary{std::move(made.mixture), {}, {}, made.held_out_score};
 }
 
-const KnownPaths* known_of(const FitMemory::Remains& before) {
+const KnownPaths* known_of(const FitMemory::State& before) {
   return before ? &before->paths : nullptr;
 }
 
@@ -105,13 +105,13 @@ class Fit {
  private:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  void fit(Distribution& distribution, FitRemains& remains) const;
+  void fit(Distribution& distribution, WarmState& warm_state) const;
   Result<density::FitSummary> fit_mixture(Distribution& distribution,
                                           const Eigen::VectorXd& weights,
                                           const std::vector<double>& masses) const;
   FitOrigin origin(const std::string& why_full) const;
-  void leave(const Distribution& distribution, const std::vector<double>& masses,
-             FitRemains& remains) const;
+  void save(const Distribution& distribution, const std::vector<double>& masses,
+            WarmState& warm_state) const;
   void fail(Distribution& distribution, const std::string& message) const;
   double seconds_since(TimePoint begin) const {
     return std::chrono::duration<double>(context_.clock.now() - begin).count();
@@ -139,11 +139,11 @@ FitOutcome Fit::run(const std::stop_token& stop) {
   for (const SourceSummary& summary : sources_)
     distribution.sources.push_back(summary.source);
   distribution.transfer_time_s = seconds_since(begin);
-  auto remains = std::make_shared<FitRemains>();
-  remains->paths = transfer_.used();
-  fit(distribution, *remains);
+  auto warm_state = std::make_shared<WarmState>();
+  warm_state->paths = transfer_.used();
+  fit(distribution, *warm_state);
   distribution.fitted_ms = context_.clock.unix_ms();
-  return {FitOutcome::Kind::Fitted, std::move(distribution), std::move(remains)};
+  return {FitOutcome::Kind::Fitted, std::move(distribution), std::move(warm_state)};
 }
 
 FitOrigin Fit::origin(const std::string& why_full) const {
@@ -166,7 +166,7 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
   const PooledConfigurations& pool = transfer_.pool();
   const DensityParameters& parameters = key_.profile.density;
   Eigen::MatrixXd configurations = pool.configurations();
-  const FitRemains* const before = context_.before.get();
+  const WarmState* const before = context_.before.get();
   const std::string why =
       why_full({key_, transfer_.used(), sources_, masses, configurations, target_->chain}, before);
   distribution.fit = origin(why);
@@ -193,7 +193,7 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
   return density::fit_mixture(configurations, weights, options);
 }
 
-void Fit::fit(Distribution& distribution, FitRemains& remains) const {
+void Fit::fit(Distribution& distribution, WarmState& warm_state) const {
   const PooledConfigurations& pool = transfer_.pool();
   distribution.configurations = static_cast<std::uint64_t>(pool.size());
   if (pool.size() == 0)
@@ -216,34 +216,34 @@ void Fit::fit(Distribution& distribution, FitRemains& remains) const {
       is_full ? fitted->held_out_score : context_.before->full.held_out_score;
   distribution.component_scores = is_full ? fitted->curve : context_.before->full.component_scores;
   distribution.mixture = std::move(fitted).value().mixture;
-  distribution.reason = warnings_in_words(sources_, key_.T_task_base.has_value());
+  distribution.reason = describe_warnings(sources_, key_.T_task_base.has_value());
   Profile profile = key_.profile;
   profile.recommended_share = first_share(profile, distribution.state);
   distribution.advice = advice_of_profile(profile);
-  leave(distribution, masses, remains);
+  save(distribution, masses, warm_state);
 }
 
 /// For the next fit.
-void Fit::leave(const Distribution& distribution, const std::vector<double>& masses,
-                FitRemains& remains) const {
-  remains.sources = used_sources(sources_);
-  remains.mixture = distribution.mixture;
-  remains.cuts = distribution.cuts;
+void Fit::save(const Distribution& distribution, const std::vector<double>& masses,
+               WarmState& warm_state) const {
+  warm_state.sources = used_sources(sources_);
+  warm_state.mixture = distribution.mixture;
+  warm_state.cuts = distribution.cuts;
   if (distribution.fit->from_revision > 0)
-    remains.full = context_.before->full;
+    warm_state.full = context_.before->full;
   else
-    remains.full = {.revision = 0,
-                    .paths = distribution.fit->paths,
-                    .masses = used_masses(sources_, masses),
-                    .held_out_score = distribution.held_out_score,
-                    .component_scores = distribution.component_scores};
+    warm_state.full = {.revision = 0,
+                       .paths = distribution.fit->paths,
+                       .masses = used_masses(sources_, masses),
+                       .held_out_score = distribution.held_out_score,
+                       .component_scores = distribution.component_scores};
 }
 
 void Fit::fail(Distribution& distribution, const std::string& message) const {
   distribution.state = DistributionState::Failed;
   distribution.fit.reset();
-  distribution.reason = message + ": " + sources_in_words(sources_);
-  const std::string also = warnings_in_words(sources_, key_.T_task_base.has_value());
+  distribution.reason = message + ": " + describe_sources(sources_);
+  const std::string also = describe_warnings(sources_, key_.T_task_base.has_value());
   if (!also.empty())
     distribution.reason += "; " + also;
   distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);

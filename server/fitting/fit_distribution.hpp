@@ -25,7 +25,7 @@ struct FitContext {
   int fit_threads = 1;  ///< of one fit and its transfer; the result does not depend on them
   /// What the last fit of the same distribution left: its paths are not transferred again, and the
   /// mixture may start from its mixture (warm_refit.hpp). Null: everything is made anew.
-  FitMemory::Remains before = nullptr;
+  FitMemory::State before = nullptr;
 };
 
 /// A distribution is thin if fewer of its sources' poses were solved, each source counted by its
@@ -37,7 +37,7 @@ struct FitOutcome {
   Kind kind = Kind::NoExperience;
   std::optional<Distribution> distribution;  ///< present exactly if Fitted; its state may be Failed
   /// For the next fit, if Fitted; the revision of a mixture is to be filled in once it is stored.
-  std::shared_ptr<FitRemains> remains = nullptr;
+  std::shared_ptr<WarmState> warm_state = nullptr;
 };
 
 /// Reads the selected experience of a task, transfers it to the target robot and fits a mixture.

@@ -17,30 +17,30 @@ std::size_t size_of(const KnownPaths& paths) {
   return bytes;
 }
 
-FitMemory::Remains FitMemory::find(const Digest& id) {
+FitMemory::State FitMemory::find(const Digest& id) {
   const std::lock_guard lock(mutex_);
-  const Remains* const known = remains_.find(id);
+  const State* const known = states_.find(id);
   return known != nullptr ? *known : nullptr;
 }
 
-void FitMemory::put(const Digest& id, Remains remains) {
-  const std::size_t bytes = size_of(remains->paths);
+void FitMemory::put(const Digest& id, State warm_state) {
+  const std::size_t bytes = size_of(warm_state->paths);
   const std::lock_guard lock(mutex_);
   if (bytes > max_bytes_)
-    return remains_.erase(id);
-  remains_.put(id, std::move(remains), bytes);
-  while (remains_.bytes() > max_bytes_)
-    remains_.drop_oldest();
+    return states_.erase(id);
+  states_.put(id, std::move(warm_state), bytes);
+  while (states_.bytes() > max_bytes_)
+    states_.drop_oldest();
 }
 
 void FitMemory::erase(const Digest& id) {
   const std::lock_guard lock(mutex_);
-  remains_.erase(id);
+  states_.erase(id);
 }
 
 std::size_t FitMemory::bytes() const {
   const std::lock_guard lock(mutex_);
-  return remains_.bytes();
+  return states_.bytes();
 }
 
 }  // namespace kinship::fitting

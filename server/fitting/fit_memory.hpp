@@ -26,7 +26,7 @@ struct FullFit {
 };
 
 /// What a fit leaves behind for the next one of the same distribution.
-struct FitRemains {
+struct WarmState {
   KnownPaths paths;                ///< it used
   std::vector<Digest> sources;     ///< of which it used a path, ascending
   std::optional<Mixture> mixture;  ///< none: the next fit is a full one
@@ -39,17 +39,17 @@ struct FitRemains {
 /// first. In memory only: a server that starts anew makes full fits. May be shared between threads.
 class FitMemory {
  public:
-  using Remains = std::shared_ptr<const FitRemains>;
+  using State = std::shared_ptr<const WarmState>;
 
   /// About what 15 distributions of 4000 paths each leave, or 300 of 500 paths.
   static constexpr std::size_t kDefaultBytes = std::size_t{256} << 20U;
 
   explicit FitMemory(std::size_t max_bytes = kDefaultBytes) : max_bytes_(max_bytes) {}
 
-  Remains find(const Digest& id);  ///< null if there are none; the last ones used from now on
+  State find(const Digest& id);  ///< null if there are none; the last ones used from now on
 
   /// Replaces those of this distribution. What is larger than the limit is not kept.
-  void put(const Digest& id, Remains remains);
+  void put(const Digest& id, State warm_state);
 
   void erase(const Digest& id);
 
@@ -58,7 +58,7 @@ class FitMemory {
  private:
   const std::size_t max_bytes_;
   mutable std::mutex mutex_;  // guards what follows
-  LastUsed<Remains> remains_;
+  LastUsed<State> states_;
 };
 
 }  // namespace kinship::fitting

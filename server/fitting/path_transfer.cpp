@@ -14,7 +14,7 @@
 namespace kinship::fitting {
 namespace {
 
-constexpr std::size_t kMostGroup = 16;  // paths that keep the kernels of inverse kinematics busy
+constexpr std::size_t kMaxGroup = 16;  // paths that keep the kernels of inverse kinematics busy
 
 /// Pose of the source's base in the target's; exactly the identity if both stand at the same
 /// place up to snapping, so that paths of the same arm are taken over.
@@ -60,7 +60,7 @@ std::vector<PathOutcome> PathTransfer::transfer(std::span<const store::StoredPat
       unknown.push_back(i);
   // Few paths, as a refit has, are shared out; what comes of them does not depend on it.
   const std::size_t share = (unknown.size() + lanes_.size() - 1) / lanes_.size();
-  const std::size_t size = std::clamp(share, std::size_t{1}, kMostGroup);
+  const std::size_t size = std::clamp(share, std::size_t{1}, kMaxGroup);
   const std::size_t groups = (unknown.size() + size - 1) / size;
   const std::size_t lanes = std::min(lanes_.size(), groups);
   std::atomic<std::size_t> next = 0;

@@ -13,7 +13,7 @@ const PathScene& SceneFilters::find(const store::StoredPath& path) {
   if (known != scenes_.end())
     return known->second;
   PathScene scene = read(*path.scene_id);
-  if (scenes_.size() >= kMost)
+  if (scenes_.size() >= kMax)
     scenes_.clear();
   return scenes_.emplace(*path.scene_id, std::move(scene)).first->second;
 }

@@ -36,7 +36,7 @@ class SceneFilters {
   const PathScene& find(const store::StoredPath& path);
 
  private:
-  static constexpr std::size_t kMost = 64;  ///< filters in memory, about 0.1 MB each
+  static constexpr std::size_t kMax = 64;  ///< filters in memory, about 0.1 MB each
   PathScene read(std::int64_t scene_id) const;
   std::string ignored_of(const transfer::SceneFilter& filter) const;
 

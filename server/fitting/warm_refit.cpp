@@ -34,7 +34,7 @@ double largest_move(const std::vector<double>& before, const std::vector<double>
 /// Whether components can be chosen by hold-out now, which could not be done before.
 bool can_choose(const Refit& refit, const FullFit& full) {
   return refit.key.profile.density.components == 0 && full.component_scores.empty() &&
-         refit.paths.size() >= density::kLeastPathsToScore;
+         refit.paths.size() >= density::kMinPathsToScore;
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ std::vector<double> used_masses(const std::vector<SourceSummary>& sources,
   return used;
 }
 
-std::string why_full(const Refit& refit, const FitRemains* before) {
+std::string why_full(const Refit& refit, const WarmState* before) {
   if (!refit.key.profile.density.warm_refits)
     return "the profile asks for it";
   if (before == nullptr || !before->mixture)

@@ -27,7 +27,7 @@ std::vector<double> used_masses(const std::vector<SourceSummary>& sources,
 
 /// Why a fit may not start from what the one before left, in a few words; empty: it may.
 /// \param before  may be null.
-std::string why_full(const Refit& refit, const FitRemains* before);
+std::string why_full(const Refit& refit, const WarmState* before);
 
 /// From so many times the paths of the last full fit on a refit is a full one.
 inline constexpr std::uint64_t kFullFitGrowth = 2;

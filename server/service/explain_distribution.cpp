@@ -31,7 +31,7 @@ std::string label_of(const store::Store& store, const Digest& robot) {
   return robot.short_hex();
 }
 
-std::string paths_in_words(const Distribution& distribution,
+std::string describe_paths(const Distribution& distribution,
                            const std::vector<store::ExperienceSummary>& experience) {
   std::uint64_t then = 0, now = 0;
   for (const Source& source : distribution.sources)
@@ -44,7 +44,7 @@ std::string paths_in_words(const Distribution& distribution,
 std::string next_fit(const Distribution& distribution, const Explanation& explanation,
                      bool is_retired, const std::vector<store::ExperienceSummary>& experience,
                      std::int64_t now_ms) {
-  const std::string paths = " (" + paths_in_words(distribution, experience) + ")";
+  const std::string paths = " (" + describe_paths(distribution, experience) + ")";
   if (is_retired)
     return "at the next fetch: paths that it may be made of were retired, it is not served any "
            "more";

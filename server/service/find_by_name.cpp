@@ -11,7 +11,7 @@
 namespace kinship::service {
 namespace {
 
-constexpr std::size_t kLeastPrefix = 4;
+constexpr std::size_t kMinPrefix = 4;
 constexpr std::size_t kDigestDigits = 64;
 
 bool is_hexadecimal(std::string_view text) {
@@ -21,7 +21,7 @@ bool is_hexadecimal(std::string_view text) {
 
 /// \return lower-case digits, or empty if `text` is no prefix of a digest.
 std::string digest_prefix(std::string_view text) {
-  if (text.size() < kLeastPrefix || text.size() > kDigestDigits || !is_hexadecimal(text))
+  if (text.size() < kMinPrefix || text.size() > kDigestDigits || !is_hexadecimal(text))
     return {};
   std::string prefix;
   for (const char c : text)
@@ -45,10 +45,10 @@ Result<store::RobotRecord> find_robot(const store::Store& store, const std::stri
   const std::string prefix = digest_prefix(name);
   if (!prefix.empty())
     std::erase_if(robots, [&](const auto& robot) { return !begins_with(robot.digest, prefix); });
-  if (prefix.empty() && name.size() < kLeastPrefix && is_hexadecimal(name))
+  if (prefix.empty() && name.size() < kMinPrefix && is_hexadecimal(name))
     return Error{ErrorCode::NotFound, not_found("robot", name).message +
                                           "; a prefix of a digest needs at least " +
-                                          std::to_string(kLeastPrefix) + " digits"};
+                                          std::to_string(kMinPrefix) + " digits"};
   if (prefix.empty() || robots.empty())
     return not_found("robot", name);
   if (robots.size() == 1)
@@ -66,7 +66,7 @@ Result<Digest> find_distribution_id(const store::Store& store, const std::string
   if (prefix.empty())
     return Error{ErrorCode::InvalidInput,
                  "'" + name + "' is not a prefix of a distribution's id: at least " +
-                     std::to_string(kLeastPrefix) + " hexadecimal digits"};
+                     std::to_string(kMinPrefix) + " hexadecimal digits"};
   std::optional<Digest> found;
   std::string cursor;
   do {

@@ -15,7 +15,7 @@ bool has_ended(JobState state) { return state != JobState::Queued && state != Jo
 
 Error no_job(const std::string& id) { return {ErrorCode::NotFound, "no job '" + id + "'"}; }
 
-std::string in_words(JobState state) {
+std::string describe(JobState state) {
   switch (state) {
     case JobState::Queued:
       return "waits still";
@@ -202,7 +202,7 @@ Result<Jobs::RowPage> Jobs::rows(const std::string& id, std::size_t first, std::
     const Job& job = entry->job;
     if (job.state != JobState::Done)
       return Error{ErrorCode::InvalidInput,
-                   "job '" + id + "' " + in_words(job.state) +
+                   "job '" + id + "' " + describe(job.state) +
                        (has_ended(job.state) ? ": it has no rows" : ": it has no rows yet") +
                        (job.message.empty() ? "" : " (" + job.message + ")")};
     result = entry->result;

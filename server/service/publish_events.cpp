@@ -40,7 +40,7 @@ void add_part(std::string& words, std::size_t number, const char* what) {
     words += (words.empty() ? "" : ", ") + std::to_string(number) + what;
 }
 
-std::string in_words(const Fate& fate) {
+std::string describe(const Fate& fate) {
   std::string words;
   add_part(words, fate.stored, " stored");
   add_part(words, fate.recorded, " recorded");
@@ -49,7 +49,7 @@ std::string in_words(const Fate& fate) {
   return words;
 }
 
-const char* in_words(FetchStatus status) {
+const char* describe(FetchStatus status) {
   switch (status) {
     case FetchStatus::Ready:
       return "ready";
@@ -69,15 +69,15 @@ const char* in_words(FetchStatus status) {
   return "";
 }
 
-std::string in_words(const FetchReply& reply) {
-  std::string words = in_words(reply.status);
+std::string describe(const FetchReply& reply) {
+  std::string words = describe(reply.status);
   if (reply.distribution)
     return words + ": distribution " + reply.distribution->id.short_hex() + " revision " +
            std::to_string(reply.distribution->revision);
   return reply.message.empty() ? words : words + ": " + reply.message;
 }
 
-std::string in_words(const Distribution& distribution) {
+std::string describe(const Distribution& distribution) {
   std::string words = distribution.id.short_hex() + " revision " +
                       std::to_string(distribution.revision) + ": " +
                       std::to_string(distribution.configurations) + " configurations, ";
@@ -86,7 +86,7 @@ std::string in_words(const Distribution& distribution) {
                 distribution.transfer_time_s, distribution.fit_time_s);
   words += seconds;
   if (distribution.fit)
-    words += ", " + in_words(*distribution.fit);
+    words += ", " + describe(*distribution.fit);
   if (distribution.state == DistributionState::Failed)
     words += ", failed";
   return distribution.reason.empty() ? words : words + ": " + distribution.reason;
@@ -119,7 +119,7 @@ void publish_report(EventFeed& feed, const runtime::RobotRegistry& robots,
       count(fates[{costs[i].task, costs[i].robot}], receipts[i].status);
   for (const auto& [whose, fate] : fates)
     feed.tell(EventKind::Report, whose.first, name_of(robots, whose.second),
-              [&fate = fate] { return in_words(fate); });
+              [&fate = fate] { return describe(fate); });
   publish_refused(feed, receipts);
 }
 
@@ -141,13 +141,13 @@ void publish_fetch(EventFeed& feed, const std::string& robot, const std::string&
   const bool is_refused =
       reply.status == FetchStatus::Refused || reply.status == FetchStatus::UnknownRobot;
   feed.tell(is_refused ? EventKind::Refusal : EventKind::Fetch, task, robot,
-            [&] { return is_refused ? "fetch: " + in_words(reply) : in_words(reply); });
+            [&] { return is_refused ? "fetch: " + describe(reply) : describe(reply); });
 }
 
 void publish_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
                  const Distribution& distribution) {
   feed.tell(EventKind::Fit, distribution.task, name_of(robots, distribution.robot),
-            [&] { return in_words(distribution); });
+            [&] { return describe(distribution); });
 }
 
 void publish_job(EventFeed& feed, const Job& job) {

@@ -234,7 +234,7 @@ void Service::log_fit(const Distribution& distribution) const {
       "': " + std::to_string(distribution.configurations) + " configurations from " +
       std::to_string(paths) + " paths, transfer " + seconds(distribution.transfer_time_s) +
       ", fit " + seconds(distribution.fit_time_s) +
-      (distribution.fit ? ", " + in_words(*distribution.fit) : "") + (failed ? ", failed" : "") +
+      (distribution.fit ? ", " + describe(*distribution.fit) : "") + (failed ? ", failed" : "") +
       (distribution.reason.empty() ? "" : ": " + distribution.reason));
 }
 

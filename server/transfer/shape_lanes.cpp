@@ -8,7 +8,7 @@
 namespace kinship::transfer {
 namespace {
 
-constexpr double kLeastGain = 1e-3;  // share of the distance that a step has to take away
+constexpr double kMinGain = 1e-3;  // share of the distance that a step has to take away
 constexpr int kDescentIterations = 15;
 constexpr double kArrived = 1e-12;  // squared error before a last step, which squares it again
 constexpr int kEndedShare = 3;      // of the lanes at work, one in so many
@@ -150,7 +150,7 @@ void ShapeLanes::measure() {
       continue;
     Work& now = work(lane);
     const double reached_m = pull_.distance_m[lane];
-    const bool gains = reached_m <= now.distance_m * (1 - kLeastGain);
+    const bool gains = reached_m <= now.distance_m * (1 - kMinGain);
     if (reached_m < now.distance_m) {
       put(lane, now.settled);
       now.distance_m = reached_m;

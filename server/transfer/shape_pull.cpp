@@ -9,7 +9,7 @@ namespace {
 constexpr double kPoseWeight = 10;    // of the pose against the shape
 constexpr double kDamping = 0.02;     // m per joint unit
 constexpr double kLargestStep = 0.3;  // of one joint, joint units
-constexpr double kLeastPull = 1e-3;   // share of the distance that a step has to take away
+constexpr double kMinPull = 1e-3;     // share of the distance that a step has to take away
 constexpr int kPullIterations = 15;
 
 /// The step that would close the distance if shape and pose were linear in the joints, damped.
@@ -48,7 +48,7 @@ double pull_alone(const ArmPair& pair, const Eigen::Isometry3d& T_base_transfer,
     const double reached = shape_distance(motion.shape, wanted);
     if (!(reached < distance))
       break;
-    const bool goes_on = reached <= distance * (1 - kLeastPull);
+    const bool goes_on = reached <= distance * (1 - kMinPull);
     q = next;
     distance = reached;
     if (!goes_on)

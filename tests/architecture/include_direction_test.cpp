@@ -94,7 +94,7 @@ TEST(Architecture, ExternalLibrariesStayInTheirRooms) {
 }
 
 TEST(Architecture, FilesStayReadable) {
-  constexpr std::ptrdiff_t kMostLines = 500;
+  constexpr std::ptrdiff_t kMaxLines = 500;
   std::vector<std::string> roofs = kRoofs;
   roofs.emplace_back("tests");
   for (const std::string& roof : roofs)
@@ -103,7 +103,7 @@ TEST(Architecture, FilesStayReadable) {
         continue;
       std::ifstream stream(entry.path());
       const auto lines = std::count(std::istreambuf_iterator<char>(stream), {}, '\n');
-      EXPECT_LE(lines, kMostLines) << entry.path() << ": look for the second noun in it";
+      EXPECT_LE(lines, kMaxLines) << entry.path() << ": look for the second noun in it";
     }
 }
 

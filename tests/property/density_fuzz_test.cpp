@@ -25,7 +25,7 @@ namespace {
 constexpr int kCalls = 800;  // of each estimator
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+constexpr double kMin = std::numeric_limits<double>::denorm_min();
 
 /// What numbers of a call come from.
 class Draws {
@@ -51,7 +51,7 @@ class Draws {
 
 /// Points like a robot's, or not.
 Eigen::MatrixXd configurations_of(Draws& draws) {
-  constexpr std::array kScales = {1.0, 1.0, 1e-3, 1e3, 2e5, 1e-200, kLeast};
+  constexpr std::array kScales = {1.0, 1.0, 1e-3, 1e3, 2e5, 1e-200, kMin};
   constexpr std::array kOdd = {0.0,   -0.0, 1e6,      -1e6, 1e-310, 1e6 * (1 + 1e-9),
                                1e300, kNaN, kInfinity};
   constexpr std::array<Eigen::Index, 9> kCounts = {0, 2, 17, 33, 40, 41, 90, 130, 300};
@@ -81,8 +81,8 @@ Eigen::MatrixXd configurations_of(Draws& draws) {
 }
 
 Eigen::VectorXd weights_of(Draws& draws, Eigen::Index count) {
-  constexpr std::array kScales = {1.0, 1.0, 1e-9, kLeast, 1e-300, 1e300};
-  constexpr std::array kOdd = {0.0, 1e9, 1e-9, kLeast, 1e308, 1e308, -1.0, kNaN, kInfinity};
+  constexpr std::array kScales = {1.0, 1.0, 1e-9, kMin, 1e-300, 1e300};
+  constexpr std::array kOdd = {0.0, 1e9, 1e-9, kMin, 1e308, 1e308, -1.0, kNaN, kInfinity};
   if (draws.one_in(100))
     ++count;  // one too many
   const double scale = draws.any_of(kScales);
@@ -171,8 +171,7 @@ struct Floor {
 Floor floor_of(Draws& draws) {
   if (draws.one_in(60))
     return {draws.any_of(std::array{-1.0, kNaN, kInfinity}), false};
-  return {draws.one_in(3) ? draws.any_of(std::array{0.0, kLeast, 1e-300, 1e-12, 1.0, 1e300})
-                          : 1e-4};
+  return {draws.one_in(3) ? draws.any_of(std::array{0.0, kMin, 1e-300, 1e-12, 1.0, 1e300}) : 1e-4};
 }
 
 /// Whether a reason may be only that there is no such number, or too few of them.

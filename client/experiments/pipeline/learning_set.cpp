@@ -80,9 +80,9 @@ class Recording {
 
  private:
   void read() {
-    constexpr std::uint32_t kMostInstances = 100'000;
+    constexpr std::uint32_t kMaxInstances = 100'000;
     std::map<Uuid, std::uint32_t> indices;
-    for (std::uint32_t index = 0; index < kMostInstances; ++index)
+    for (std::uint32_t index = 0; index < kMaxInstances; ++index)
       indices.emplace(uuid_of(study_.name, member_.label(), index), index);
     std::ifstream stream = files::open_input(file_);
     files::for_each_line(stream, file_.string(), [&](const files::Line& line) {

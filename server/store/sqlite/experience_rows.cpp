@@ -33,14 +33,14 @@ ModeTotals read_totals(const Statement& row, int first_column) {
           row.column_real(first_column + 4)};
 }
 
-/// The newest judged attempts of each arm, oldest first. Looks at the newest kMostRows alone: an
+/// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRows alone: an
 /// arm that had no attempts among so many is as good as unknown.
 std::vector<JudgedAttempt> recent_of(Database& database, const ExperienceKey& key) {
-  constexpr std::int64_t kMostRows = 10'000;
+  constexpr std::int64_t kMaxRows = 10'000;
   const auto query = database.cached(
       "SELECT arm, outcome, collision_checks FROM attempt WHERE task_id = ? AND robot_id = ? "
       "ORDER BY id DESC LIMIT ?");
-  query->bind_all(key.task_id, key.robot_id, kMostRows);
+  query->bind_all(key.task_id, key.robot_id, kMaxRows);
   std::vector<JudgedAttempt> newest_first;
   std::size_t guided = 0, control = 0;
   std::uint32_t age = 0;

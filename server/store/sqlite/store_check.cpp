@@ -16,7 +16,7 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::size_t kMostMessages = 100;
+constexpr std::size_t kMaxMessages = 100;
 constexpr double kPagesShare = 0.5;  // of the time: SQLite's own check, which tells no progress
 constexpr double kPathsShare = 0.35;
 constexpr double kScenesShare = 0.05;
@@ -152,7 +152,7 @@ void Checker::note(const std::string& table, const std::string& message) {
   const auto found = std::ranges::find(check_.tables, table, &StoreCheck::Table::name);
   if (found != check_.tables.end())
     ++found->problems;
-  if (check_.messages.size() < kMostMessages)
+  if (check_.messages.size() < kMaxMessages)
     check_.messages.push_back((table.empty() ? "" : table + ": ") + message);
 }
 

@@ -10,7 +10,7 @@
 namespace kinship::experiments::peer_study_test {
 namespace {
 
-constexpr std::uint64_t kMost = 1000;
+constexpr std::uint64_t kMax = 1000;
 
 PeerHalves::Half half(bool solved, std::uint64_t checks) {
   return {.solved = solved, .checks = checks, .cpu_s = 1, .length = solved ? 2.0 : 0};
@@ -18,28 +18,28 @@ PeerHalves::Half half(bool solved, std::uint64_t checks) {
 
 TEST(PeerHalves, TwoThreadsAskByTurnsUntilOneHasAPath) {
   const PeerHalves halves{half(true, 100), half(true, 400)};
-  const PeerHalves::Half both = halves.both_threads(kMost);
+  const PeerHalves::Half both = halves.both_threads(kMax);
   EXPECT_TRUE(both.solved);
   EXPECT_EQ(both.checks, 200U);
   EXPECT_DOUBLE_EQ(both.cpu_s, 1.25);  // a quarter of the other's
-  EXPECT_EQ(halves.faster_thread(kMost).checks, 100U);
+  EXPECT_EQ(halves.faster_thread(kMax).checks, 100U);
 }
 
 TEST(PeerHalves, WhatGaveUpEarlyCostsWhatItHadSpent) {
   const PeerHalves halves{half(false, 30), half(true, 400)};
-  EXPECT_EQ(halves.both_threads(kMost).checks, 430U);
-  EXPECT_DOUBLE_EQ(halves.both_threads(kMost).cpu_s, 2);
-  EXPECT_EQ(halves.faster_thread(kMost).checks, 400U);
+  EXPECT_EQ(halves.both_threads(kMax).checks, 430U);
+  EXPECT_DOUBLE_EQ(halves.both_threads(kMax).cpu_s, 2);
+  EXPECT_EQ(halves.faster_thread(kMax).checks, 400U);
 }
 
 TEST(PeerHalves, TheLimitIsForBothTogether) {
   const PeerHalves halves{half(false, 900), half(true, 600)};
-  EXPECT_FALSE(halves.both_threads(kMost).solved);
-  EXPECT_EQ(halves.both_threads(kMost).checks, kMost);
-  EXPECT_TRUE(halves.faster_thread(kMost).solved);
+  EXPECT_FALSE(halves.both_threads(kMax).solved);
+  EXPECT_EQ(halves.both_threads(kMax).checks, kMax);
+  EXPECT_TRUE(halves.faster_thread(kMax).solved);
   const PeerHalves neither{half(false, 900), half(false, 10)};
-  EXPECT_FALSE(neither.faster_thread(kMost).solved);
-  EXPECT_EQ(neither.faster_thread(kMost).checks, kMost);
+  EXPECT_FALSE(neither.faster_thread(kMax).solved);
+  EXPECT_EQ(neither.faster_thread(kMax).checks, kMax);
 }
 
 using Write = std::function<void(const std::string&)>;

@@ -91,7 +91,7 @@ TEST(Wilcoxon, NormalApproximationMeetsTheExactValueAtTheBorder) {
   std::mt19937_64 generator(kSeed);
   std::normal_distribution<double> shifted(0.12, 1);
   std::vector<double> differences;
-  while (differences.size() < kMostExactPairs)
+  while (differences.size() < kMaxExactPairs)
     differences.push_back(shifted(generator));
   const auto exact = test_of_differences(differences);
   differences.push_back(1e-9);  // the smallest rank hardly matters

@@ -40,12 +40,12 @@ TEST(DistinctPoints, WithoutWeightOrUnwantedAreLeftOut) {
 TEST(DistinctPoints, WeightsAreNumbersHoweverSmallOrFarApart) {
   Eigen::MatrixXd configurations(1, 4);
   configurations << 1, 2, 3, 3;
-  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  constexpr double kMin = std::numeric_limits<double>::denorm_min();
   const DistinctPoints light =
-      distinct_points(configurations, Eigen::Vector4d(kLeast, 2 * kLeast, kLeast, 2 * kLeast));
+      distinct_points(configurations, Eigen::Vector4d(kMin, 2 * kMin, kMin, 2 * kMin));
   EXPECT_EQ(light.weights, (std::vector<double>{3.0 / 6, 6.0 / 6, 9.0 / 6}));
   const DistinctPoints apart =
-      distinct_points(configurations, Eigen::Vector4d(kLeast, 1, 1e308, 0.5e308));
+      distinct_points(configurations, Eigen::Vector4d(kMin, 1, 1e308, 0.5e308));
   EXPECT_GT(apart.weights[0], 0);
   EXPECT_LT(apart.weights[1], 1e-99);
   EXPECT_NEAR(apart.weights[2], 3, 1e-12);

@@ -12,16 +12,16 @@ Digest id_of(int number) {
 }
 
 /// One path with so many configurations of two joints.
-FitMemory::Remains remains(Eigen::Index configurations) {
+FitMemory::State warm_state(Eigen::Index configurations) {
   auto path = std::make_shared<transfer::TransferredPath>();
   path->configurations = Eigen::MatrixXd::Zero(2, configurations);
-  FitRemains remains;
-  remains.paths[1].path = path;
-  return std::make_shared<const FitRemains>(remains);
+  WarmState warm_state;
+  warm_state.paths[1].path = path;
+  return std::make_shared<const WarmState>(warm_state);
 }
 
 TEST(FitMemory, DropsWhatWasNotUsedForLongest) {
-  const FitMemory::Remains some = remains(1000);
+  const FitMemory::State some = warm_state(1000);
   FitMemory memory(3 * size_of(some->paths));
   for (const int i : {1, 2, 3})
     memory.put(id_of(i), some);
@@ -35,8 +35,8 @@ TEST(FitMemory, DropsWhatWasNotUsedForLongest) {
 
 TEST(FitMemory, ReplacesAndForgets) {
   FitMemory memory;
-  memory.put(id_of(1), remains(10));
-  const FitMemory::Remains more = remains(1000);
+  memory.put(id_of(1), warm_state(10));
+  const FitMemory::State more = warm_state(1000);
   memory.put(id_of(1), more);
   EXPECT_EQ(memory.find(id_of(1)), more);
   EXPECT_EQ(memory.bytes(), size_of(more->paths));
@@ -47,7 +47,7 @@ TEST(FitMemory, ReplacesAndForgets) {
 }
 
 TEST(FitMemory, KeepsNothingThatIsLargerThanAll) {
-  const FitMemory::Remains small = remains(10), large = remains(100'000);
+  const FitMemory::State small = warm_state(10), large = warm_state(100'000);
   FitMemory memory(2 * size_of(small->paths));
   memory.put(id_of(1), small);
   memory.put(id_of(2), small);

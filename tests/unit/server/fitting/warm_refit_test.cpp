@@ -17,10 +17,10 @@ class WarmRefit : public FitDistribution {
 
   Distribution next() {
     FitOutcome outcome = fit(key_);
-    outcome.distribution->revision = outcome.remains->revision = ++revision_;
+    outcome.distribution->revision = outcome.warm_state->revision = ++revision_;
     if (outcome.distribution->fit && outcome.distribution->fit->from_revision == 0)
-      outcome.remains->full.revision = revision_;
-    context_.before = outcome.remains;
+      outcome.warm_state->full.revision = revision_;
+    context_.before = outcome.warm_state;
     return *outcome.distribution;
   }
   /// Without anything of an earlier fit.
@@ -163,7 +163,7 @@ TEST_F(WarmRefit, AProfileMayAskForFullFitsOnly) {
 TEST_F(WarmRefit, SameHistorySameBytesOnAnyThreads) {
   report(fleet::solved(teacher_, "shelf", 40, 1));
   const Distribution first = next();
-  const FitMemory::Remains before = context_.before;
+  const FitMemory::State before = context_.before;
   report(fleet::solved(teacher_, "shelf", 4, 100));
   const Distribution one = next();
   context_.before = before;
@@ -194,15 +194,15 @@ TEST_F(WarmRefit, APathWhoseSceneCameBackIsTransferredAgain) {
   report(fleet::solved(teacher_, "shelf", 20, 1));
   next();
   // As if the first path had been transferred without the scene that it should have kept free of.
-  FitRemains other = *context_.before;
+  WarmState other = *context_.before;
   KnownPath& path = other.paths.begin()->second;
   auto unfiltered = std::make_shared<transfer::TransferredPath>(*path.path);
   path.lacks_scene = true;
-  context_.before = std::make_shared<const FitRemains>(other);
+  context_.before = std::make_shared<const WarmState>(other);
   EXPECT_EQ(next().fit, (FitOrigin{1, 1, 20, 0, 1, ""}));  // nothing came of it
   unfiltered->configurations.array() += 0.01;
   path.path = unfiltered;
-  context_.before = std::make_shared<const FitRemains>(other);
+  context_.before = std::make_shared<const WarmState>(other);
   const Distribution full = next();
   EXPECT_EQ(full.fit, origin(20, 1, "1 paths of revision 1 left out or changed"));
   expect_same(full, cold());

@@ -1,4 +1,4 @@
-#include "server/fitting/source_words.hpp"
+#include "server/fitting/describe_sources.hpp"
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -15,7 +15,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 }  // namespace
 
-std::string sources_in_words(const std::vector<SourceSummary>& sources) {
+std::string describe_sources(const std::vector<SourceSummary>& sources) {
   std::vector<std::string> parts;
   parts.reserve(sources.size());
   for (const SourceSummary& summary : sources) {
@@ -31,7 +31,7 @@ std::string sources_in_words(const std::vector<SourceSummary>& sources) {
   return joined(parts);
 }
 
-std::string warnings_in_words(const std::vector<SourceSummary>& sources, bool target_is_placed) {
+std::string describe_warnings(const std::vector<SourceSummary>& sources, bool target_is_placed) {
   std::vector<std::string> found;
   bool placed = target_is_placed, unplaced = !target_is_placed;
   for (const SourceSummary& summary : sources) {
