@@ -11,17 +11,16 @@ Digest robot(std::uint8_t number) {
   return digest;
 }
 
-/// Of robot 1, fitted to so many paths of robots 1 and 2.
+/// Of robot 1, fitted to so many paths of robots 1 and 2, at generations 3 and 7.
 Distribution fitted(std::uint64_t paths_1, std::uint64_t paths_2) {
   Distribution distribution;
   distribution.robot = robot(1);
   distribution.fitted_ms = 1'000'000;
-  for (const std::uint64_t paths : {paths_1, paths_2}) {
-    Source& source = distribution.sources.emplace_back();
-    source.robot = robot(static_cast<std::uint8_t>(distribution.sources.size()));
-    source.paths = paths;
-    source.generation = 3;
-  }
+  distribution.sources.resize(2);
+  Source& first = distribution.sources[0];
+  first.robot = robot(1), first.paths = paths_1, first.generation = 3;
+  Source& second = distribution.sources[1];
+  second.robot = robot(2), second.paths = paths_2, second.generation = 7;
   return distribution;
 }
 
