@@ -18,6 +18,8 @@ if(KINSHIP_SANITIZE)
   target_compile_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
+  # Under AddressSanitizer Eigen aligns memory by itself, and OMPL's library, which does not, then frees it.
+  target_compile_definitions(kinship_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # A quarter of all lines are includes, and most of a compilation is reading them: several sources of a target compile as

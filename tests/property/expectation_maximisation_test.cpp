@@ -66,13 +66,14 @@ TEST(ExpectationMaximisation, NeverWorsensWithoutRegularisation) {
 /// M-step's are s + 1. Half of log + s / eigenvalue is what each costs more.
 double most_lost(const Mixture& without_floor, double floor) {
   double lost = 0;
-  for (Eigen::Index k = 0; k < without_floor.size(); ++k)
-    for (double s : Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(without_floor.covariance(k))
-                        .eigenvalues()) {
+  for (Eigen::Index k = 0; k < without_floor.size(); ++k) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> scatter(without_floor.covariance(k));
+    for (double s : scatter.eigenvalues()) {
       s = std::max(s / floor, 0.0);
       const double best = std::log(std::max(s, 1.0)) + s / std::max(s, 1.0);
       lost += without_floor.weights()[k] * (std::log1p(s) + s / (1 + s) - best) / 2;
     }
+  }
   return lost;
 }
 
