@@ -84,15 +84,14 @@ function(kinship_discover_suites name timeout label)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include})
 endfunction()
 
-# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60] [NOT_SANITIZED])
+# kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60])
 #
 # One GoogleTest program. Each suite of it is a test of CTest; where a TEST takes seconds (labels property, integration,
 # faults, story) each TEST is, so that they go side by side. LABEL: unit, threads (unit tests that
 # ThreadSanitizer runs too), property, integration, story, faults, golden, architecture. The target
-# tests_LABEL builds all programs of a label; in a sanitizer build without those that are NOT_SANITIZED
-# (OMPL, or the quickstart's length). TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
+# tests_LABEL builds all programs of a label. TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
 function(kinship_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_SANITIZED" "LABEL;TIMEOUT" "SOURCES;DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;TIMEOUT" "SOURCES;DEPENDS")
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 180)
   endif()
@@ -109,9 +108,7 @@ function(kinship_test name)
   if(NOT TARGET tests_${arg_LABEL})
     add_custom_target(tests_${arg_LABEL})
   endif()
-  if(NOT (KINSHIP_SANITIZE AND arg_NOT_SANITIZED))
-    add_dependencies(tests_${arg_LABEL} ${name})
-  endif()
+  add_dependencies(tests_${arg_LABEL} ${name})
   if(arg_LABEL MATCHES "^(property|integration|faults|story)$")
     include(GoogleTest)
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
