@@ -60,7 +60,7 @@ class RecordedScenes : public testing::Test {
   void plan_and_report(const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {(directory_ / "problems.jsonl").string(),
                                           "--model",
-                                          KINSHIP_SOURCE_DIR "/robots/models/panda",
+                                          std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda",
                                           "--label",
                                           "panda",
                                           "--task",

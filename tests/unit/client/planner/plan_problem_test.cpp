@@ -278,7 +278,7 @@ TEST(PlanProblem, AGoalOfAContinuousJointMayBeBeyondHalfATurn) {
   description.urdf.replace(description.urdf.find(revolute), revolute.size(), "type='continuous'");
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
-  const PlannedRobot robot{std::move(chain), std::move(shapes)};
+  const PlannedRobot robot{chain, shapes};
   Problem problem = wall_problem();
   problem.scene.objects.clear();
   problem.start[0] = 3;

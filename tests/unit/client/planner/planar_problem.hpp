@@ -49,7 +49,7 @@ inline PlannedRobot planar_robot(const std::string& lower = "-2.8",
   const RobotDescription description = planar_description(lower, upper);
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   geometry::RobotShapes shapes = geometry::read_shapes(description, chain).value_or_throw();
-  return {std::move(chain), std::move(shapes)};
+  return {chain, shapes};
 }
 
 /// The straight line from start to goal goes through a wall in front of the arm.

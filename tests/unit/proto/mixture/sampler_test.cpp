@@ -47,7 +47,7 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& samples) {
 /// One covariance for all is the same as one each.
 TEST(Sampler, SharedCovarianceDrawsTheSame) {
   const Mixture apart = tilted_2d();
-  const Eigen::MatrixXd covariance = apart.covariance(1);
+  const Eigen::MatrixXd& covariance = apart.covariance(1);
   const Mixture shared(apart.weights(), apart.means(), {covariance});
   const Mixture repeated(apart.weights(), apart.means(), {covariance, covariance});
   ASSERT_TRUE(shared.shares_covariance());

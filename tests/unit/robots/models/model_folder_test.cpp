@@ -14,7 +14,7 @@ const std::string kNames = "label = 'r'\nbase = 'b'\ntip = 't'\n";
 const std::string kTransfer = "transfer = [0, 0, 0.5, 0, 0, 0, 1]\n";
 
 /// A folder that is deleted with all it holds.
-class ModelFolder : public testing::Test {
+class ModelFolder : public testing::Test {  // NOLINT: GoogleTest deletes it
  protected:
   ModelFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "kinship_XXXXXX").string();

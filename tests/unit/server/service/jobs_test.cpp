@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Jobs under a clock that the test sets, and work that waits until the test lets it go on.
-class JobsTest : public testing::Test {
+class JobsTest : public testing::Test {  // NOLINT: GoogleTest deletes it
  protected:
   JobsTest() { make({}); }
   ~JobsTest() override { let_go(); }

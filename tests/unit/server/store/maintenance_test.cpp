@@ -126,9 +126,10 @@ TEST_F(Maintenance, ACheckFindsDamageOfEveryKindAndNamesTheRow) {
     edit(sql);
     const StoreCheck check = check_store(file_, ignore);
     EXPECT_GT(check.problems, 0U) << sql;
-    EXPECT_TRUE(std::ranges::any_of(
-        check.messages,
-        [&](const std::string& message) { return message.find(words) != std::string::npos; }))
+    EXPECT_TRUE(std::ranges::any_of(check.messages,
+                                    [&, &words = words](const std::string& message) {
+                                      return message.find(words) != std::string::npos;
+                                    }))
         << sql << ": " << testing::PrintToString(check.messages);
     fs::copy_file(copy_, file_, fs::copy_options::overwrite_existing);
   }
@@ -199,7 +200,7 @@ TEST_F(Maintenance, EveryVerbRefusesWhatIsMissingOpenOrNoStore) {
   EXPECT_EQ(refusal([&] { restore_store(directory_ / "none", file_, ignore); }).code,
             ErrorCode::NotFound);
   std::ofstream(directory_ / "text") << "no store";
-  std::ofstream(directory_ / "empty");
+  std::ofstream(directory_ / "empty") << "";
   for (const char* const name : {"text", "empty"}) {
     for (const Error& error : each(directory_ / name))
       EXPECT_EQ(error.code, ErrorCode::Storage) << error.message;
