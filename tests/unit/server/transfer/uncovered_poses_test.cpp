@@ -71,7 +71,7 @@ class UncoveredPoses : public testing::Test {
   const kinematics::Chain arm_ = test::model_chain("panda");
   const ArmPair pair_{arm_, arm_};
   const TransferParameters parameters_{};
-  const Filters none_;
+  const Filters none_{};
   CountedFilters counted_{none_};
   std::mt19937_64 generator_{11};
 };
