@@ -24,7 +24,7 @@ endif()
 
 # A quarter of all lines are includes, and most of a compilation is reading them: several sources of a target compile as
 # one. So names in the anonymous namespaces of a library must differ. Sources with options of their own (kernels) compile
-# alone. Who edits one file all day turns it off; .ci/run compiles the newest sources so and finds what they forgot to include.
+# alone. Who edits one file all day turns it off, and sees there what a source forgot to include.
 option(KINSHIP_UNITY "Compile the sources of a target together" ON)
 function(kinship_unite target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${KINSHIP_UNITY} UNITY_BUILD_BATCH_SIZE 16)
