@@ -50,6 +50,7 @@ namespace ${NAMESPACE} {
 
 using namespace std::string_view_literals;
 
+// NOLINTNEXTLINE(readability-function-size): the texts themselves
 std::span<const ${TYPE}> ${FUNCTION}() {
   static constexpr std::array kTexts = {
 ${entries}  };

@@ -31,7 +31,7 @@ Examples:
       name the planner (without --planner: birrt, and cbirrt2 for problems with a constraint)
 
 A problem that cannot be planned (start or goal in collision, goal out of reach, wrong number of joints, a planner that
-cannot keep to a constraint) is answered with its reason, and the others are planned. proto/README.md has the formats.
+cannot keep to a constraint) is answered with its reason, and the others are planned. proto/FORMATS.md has the formats.
 
 Exit codes: 0 every line was answered (unsolved is an answer); 1 failed or interrupted, the robot was refused (its label belongs to
 another robot), no problem could be attempted, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
