@@ -31,8 +31,7 @@ std::string describe(const planning::SamplingModeChooser& sampling, double guide
          " % of the queries uniform as control";
 }
 
-std::string describe(const Distribution& distribution,
-                     const planning::SamplingModeChooser& sampling, double guided_fraction) {
+std::string describe(const Distribution& distribution) {
   std::string text =
       "distribution " + distribution.id.short_hex() + " revision " +
       std::to_string(distribution.revision) + ", " + std::to_string(distribution.mixture->size()) +
@@ -44,30 +43,51 @@ std::string describe(const Distribution& distribution,
             (source.label.empty() ? source.robot.short_hex() : source.label) + " (" +
             std::to_string(source.paths) + " paths)";
   }
-  text += "; " + describe(sampling, guided_fraction);
-  if (!distribution.advice.evidence.empty())
-    text += " (" + distribution.advice.evidence + ")";
-  if (!distribution.reason.empty())
-    text += "; warning: " + distribution.reason;
   return text;
 }
 
-GuidanceAnswer answer_with(const Distribution& distribution, const GuidanceOptions& wanted) {
-  if (!distribution.mixture || distribution.mixture->dimension() != wanted.dof)
-    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
-                                           " has no mixture over " + std::to_string(wanted.dof) +
-                                           " joints");
+std::string describe(const TaskExperience& experience) {
+  return std::to_string(experience.paths.size()) + " stored ways of the hand, chosen from " +
+         std::to_string(experience.paths_known);
+}
+
+/// Why a distribution cannot guide this robot; empty if it can.
+std::string find_fault(const Distribution& distribution, Eigen::Index dof) {
+  const std::string name = "distribution " + distribution.id.short_hex();
+  if (!distribution.mixture || distribution.mixture->dimension() != dof)
+    return name + " has no mixture over " + std::to_string(dof) + " joints";
   const double told = distribution.advice.guided_share;
   if (!(told >= 0 && told <= 1))
-    return refusal(NoGuidance::Failed, "distribution " + distribution.id.short_hex() +
-                                           " has guided share " + std::to_string(told) +
-                                           ", must be 0 to 1");
-  const double guided_fraction = planning::guided_fraction(distribution.advice, wanted.sampling);
+    return name + " has guided share " + std::to_string(told) + ", must be 0 to 1";
+  return "";
+}
+
+/// Guidance by what there is of the two.
+GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience experience,
+                           const GuidanceOptions& wanted) {
+  Advice advice;
+  advice.guided_share = advice.recommended_share = 1;
+  if (distribution != nullptr)
+    advice = distribution->advice;
   GuidanceAnswer answer;
-  answer.guidance =
-      Guidance{distribution.id, distribution.revision, *distribution.mixture, guided_fraction};
-  answer.sampling.emplace(distribution.advice, wanted.sampling);
-  answer.message = describe(distribution, *answer.sampling, guided_fraction);
+  Guidance& guidance = answer.guidance.emplace();
+  guidance.guided_fraction = planning::guided_fraction(advice, wanted.sampling);
+  if (distribution != nullptr) {
+    guidance.distribution_id = distribution->id;
+    guidance.revision = distribution->revision;
+    guidance.mixture = distribution->mixture;
+    answer.message = describe(*distribution);
+  }
+  if (experience)
+    answer.message +=
+        (answer.message.empty() ? "" : "; ") + describe(experience->experience());
+  guidance.experience = std::move(experience);
+  answer.sampling.emplace(advice, wanted.sampling);
+  answer.message += "; " + describe(*answer.sampling, guidance.guided_fraction);
+  if (!advice.evidence.empty())
+    answer.message += " (" + advice.evidence + ")";
+  if (distribution != nullptr && !distribution->reason.empty())
+    answer.message += "; warning: " + distribution->reason;
   return answer;
 }
 
@@ -75,10 +95,40 @@ std::string or_else(const std::string& message, const std::string& otherwise) {
   return message.empty() ? otherwise : message;
 }
 
+/// What is said if there is nothing to guide with.
+GuidanceAnswer without_guidance(const FetchReply& reply, const GuidanceOptions& wanted) {
+  switch (reply.status) {
+    case FetchStatus::Ready:
+      return refusal(NoGuidance::Failed, reply.distribution
+                                             ? find_fault(*reply.distribution, wanted.dof)
+                                             : "the server sent no distribution");
+    case FetchStatus::NoExperience:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply.message, "no experience with task '" + wanted.task + "'"));
+    case FetchStatus::UnknownRobot:
+      return refusal(
+          NoGuidance::NotFound,
+          or_else(reply.message, "the server does not know robot " + wanted.robot.short_hex()));
+    case FetchStatus::Failed:
+      return refusal(NoGuidance::NotFound,
+                     or_else(reply.distribution ? reply.distribution->reason : reply.message,
+                             "nothing could be transferred or fitted"));
+    case FetchStatus::Pending:
+      return refusal(NoGuidance::Failed, "the distribution is still being made after " +
+                                             std::to_string(wanted.wait.count()) + " ms");
+    case FetchStatus::Busy:
+      return refusal(NoGuidance::Failed, or_else(reply.message, "the server is busy"));
+    case FetchStatus::Refused:
+      break;
+  }
+  return refusal(NoGuidance::Failed, or_else(reply.message, "the server refused the request"));
+}
+
 }  // namespace
 
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
-                              const std::optional<Eigen::Isometry3d>& T_task_base) {
+                              const std::optional<Eigen::Isometry3d>& T_task_base,
+                              SharedExperience known) {
   FetchRequest request;
   request.task = wanted.task;
   request.robot = wanted.robot;
@@ -86,36 +136,23 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   request.profile = wanted.profile;
   request.selection = wanted.selection;
   request.deadline = wanted.wait;
-  const Result<FetchReply> reply = fetch(request);
+  if (wanted.chain) {
+    request.experience_bytes = kDefaultExperienceBytes;
+    request.known_experience = known ? known->experience().revision : 0;
+  }
+  Result<FetchReply> reply = fetch(request);
   if (!reply) {
     const bool nobody = reply.error().code == ErrorCode::Unavailable;
     return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
   }
-  switch (reply->status) {
-    case FetchStatus::Ready:
-      if (reply->distribution)
-        return answer_with(*reply->distribution, wanted);
-      return refusal(NoGuidance::Failed, "the server sent no distribution");
-    case FetchStatus::NoExperience:
-      return refusal(NoGuidance::NotFound,
-                     or_else(reply->message, "no experience with task '" + wanted.task + "'"));
-    case FetchStatus::UnknownRobot:
-      return refusal(
-          NoGuidance::NotFound,
-          or_else(reply->message, "the server does not know robot " + wanted.robot.short_hex()));
-    case FetchStatus::Failed:
-      return refusal(NoGuidance::NotFound,
-                     or_else(reply->distribution ? reply->distribution->reason : reply->message,
-                             "nothing could be transferred or fitted"));
-    case FetchStatus::Pending:
-      return refusal(NoGuidance::Failed, "the distribution is still being made after " +
-                                             std::to_string(wanted.wait.count()) + " ms");
-    case FetchStatus::Busy:
-      return refusal(NoGuidance::Failed, or_else(reply->message, "the server is busy"));
-    case FetchStatus::Refused:
-      break;
-  }
-  return refusal(NoGuidance::Failed, or_else(reply->message, "the server refused the request"));
+  if (wanted.chain && reply->experience && !reply->experience->paths.empty())
+    known = std::make_shared<planning::ExperienceGuide>(*wanted.chain,
+                                                        *std::move(reply->experience));
+  const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
+                         find_fault(*reply->distribution, wanted.dof).empty();
+  if (!is_usable && !known)
+    return without_guidance(*reply, wanted);
+  return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known), wanted);
 }
 
 GuidanceBook::Key GuidanceBook::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {
@@ -131,9 +168,11 @@ std::pair<const GuidanceAnswer&, bool> GuidanceBook::ask(
     return {known->second, false};
   GuidanceAnswer answer = server_missing_
                               ? refusal(NoGuidance::NoServer, "no server answered before")
-                              : fetch_guidance(fetch_, wanted_, T_task_base);
+                              : fetch_guidance(fetch_, wanted_, T_task_base, experience_);
   if (answer.why_not == NoGuidance::NoServer)
     server_missing_ = true;
+  if (answer.guidance)
+    experience_ = answer.guidance->experience;
   if (answer.sampling)  // of the same task and robot as those before, and newer
     sampling_ = answer.sampling;
   return {answers_.emplace(key, std::move(answer)).first->second, true};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iosfwd>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
+#include "robots/kinematics/chain.hpp"
 
 namespace kinship::planner {
 
@@ -24,6 +26,7 @@ struct GuidanceOptions {
   std::string task;
   Digest robot;
   Eigen::Index dof = 0;
+  std::optional<kinematics::Chain> chain;  ///< to follow stored ways of the hand; missing: none
   std::string profile = "default";
   Selection selection;
   planning::SamplingModeOptions sampling;
@@ -41,9 +44,14 @@ struct GuidanceAnswer {
   std::string message;  ///< for people: what was got, or why nothing
 };
 
+/// The task's experience as one robot follows it; null: none.
+using SharedExperience = std::shared_ptr<const planning::ExperienceGuide>;
+
 /// Asks once. Never throws for what a server may answer.
+/// \param known  what the robot got of the task before: kept unless there is something newer.
 GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
-                              const std::optional<Eigen::Isometry3d>& T_task_base);
+                              const std::optional<Eigen::Isometry3d>& T_task_base,
+                              SharedExperience known = nullptr);
 
 /// The guidance of a run, asked for once per distinct placement (snapped to 1 mm and 1 mrad) before
 /// planning; a missing placement is one of its own. When nobody answers once, nobody is asked
@@ -69,6 +77,7 @@ class GuidanceBook {
   Fetch fetch_;
   GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
+  SharedExperience experience_;  // of all placements
   std::optional<planning::SamplingModeChooser>
       sampling_;  // of all placements: same task, same robot
   bool server_missing_ = false;

@@ -12,9 +12,9 @@
 #include "client/planning/cbirrt2.hpp"
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/goal_configurations.hpp"
-#include "client/planning/guidance_gate.hpp"
 #include "client/planning/ompl_planner.hpp"
 #include "client/planning/planning_bounds.hpp"
+#include "client/planning/planning_budget.hpp"
 #include "client/planning/region_constraint.hpp"
 #include "client/planning/repetition_roadmap.hpp"
 #include "client/planning/shortcut.hpp"
@@ -43,14 +43,6 @@ Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matri
       kept.col(count++) = *turned;
   }
   return kept.leftCols(count);
-}
-
-planning::ConfigurationSampler make_sampler(const kinematics::Chain& chain,
-                                            const Eigen::Matrix2Xd& bounds,
-                                            const Guidance* guidance, double guided_fraction) {
-  if (guidance == nullptr || guided_fraction == 0)
-    return planning::ConfigurationSampler(bounds);
-  return {bounds, chain, guidance->mixture, guided_fraction};
 }
 
 /// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
@@ -128,15 +120,21 @@ class Planning {
     options.overshoot = settings_.overshoot;
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
-    apply_gate(goals, guidance, planned.result);
-    const auto sampler = make_sampler(robot_.chain, bounds_, guidance, planned.result.share);
+    options.track_check_fraction = settings_.tracks.check_fraction;
+    const double begin_s = planning::thread_time_s();
+    const auto sampler =
+        make_query_sampler({robot_.chain, T_task_base_, bounds_, problem_.start, goals}, guidance,
+                           settings_, planned.result);
+    const double set_up_s = planning::thread_time_s() - begin_s;
     planned.result.planner = planner_text(planner, sampler);
     const planning::PlanSummary summary = search(planner, goals, sampler, options);
     planned.outcome = outcome_of(summary);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks = summary.collision_checks;
     planned.result.projections = summary.projections;
-    planned.result.planning_time_s = summary.planning_time_s;
+    planned.result.planning_time_s = set_up_s + summary.planning_time_s;
+    planned.result.tracks_followed = summary.tracks_followed;
+    planned.result.found_by = summary.found_by;
     planned.result.reason = explain(summary.reason, summary.planner_message);
     if (summary.waypoints)
       shorten(*summary.waypoints, planned.result);
@@ -188,20 +186,6 @@ class Planning {
     result.goal_checks = goals.collision_checks;
     result.reason = explain(goals.reason);
     return std::move(goals.configurations);
-  }
-
-  /// A query that the distribution knows nothing about is planned uniformly; its arm stays.
-  void apply_gate(const Eigen::MatrixXd& goals, const Guidance* guidance,
-                  ProblemResult& result) const {
-    if (guidance == nullptr || result.share == 0)
-      return;
-    result.gate_fired =
-        planning::query_distance(robot_.chain, guidance->mixture, problem_.start, goals)
-            .is_beyond(settings_.gate_distance);
-    if (result.gate_fired) {
-      result.share = 0;
-      result.guidance_reason = "start or goals are far from all that the distribution knows";
-    }
   }
 
   void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
@@ -266,8 +250,6 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     planned.result.distribution_id = query.guidance->distribution_id;
     planned.result.distribution_revision = query.guidance->revision;
     planned.result.sampling_mode = query.sampling_mode;
-    planned.result.share =
-        query.sampling_mode == SamplingMode::Guided ? query.guidance->guided_fraction : 0;
   }
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/planner/plan_settings.hpp"
+#include "client/planner/query_sampler.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
@@ -27,22 +28,6 @@ struct PlannedRobot {
   collision::RobotSolids solids;  ///< shared by the worlds of all problems
 };
 
-/// A distribution to draw samples from.
-struct Guidance {
-  Digest distribution_id;
-  std::uint64_t revision = 0;
-  Mixture mixture;
-  double guided_fraction = 0;  ///< of samples drawn from it in a guided query
-};
-
-/// What guidance a query has, and whether it uses it.
-struct QueryGuidance {
-  const Guidance* guidance = nullptr;  ///< null: there is none
-  SamplingMode sampling_mode =
-      SamplingMode::Uniform;  ///< Guided uses it; Control and Uniform plan without
-  std::string why_not = {};   ///< for people: why there is none
-};
-
 struct PlannedProblem {
   ProblemResult result;
   std::string planner;  ///< its name; what else is to be said of it stands in the result only
@@ -56,8 +41,8 @@ struct PlannedProblem {
 /// fit the robot or the planner, or cannot be solved, is answered with its reason. Equal problem,
 /// guidance and settings give an equal path and equal checks, as long as the time limit does not
 /// end it.
-/// \param query  one that is not guided is planned exactly as if there were no guidance; so is a
-///               guided one farther than settings.gate_distance from the distribution.
+/// \param query  one that is not guided is planned exactly as if there were no guidance. Of a
+///               guided one the result says what its samples come from (make_query_sampler).
 /// \param stop   asked before every check; true gives up.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,

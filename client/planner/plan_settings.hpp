@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "client/planner/planner_choice.hpp"
+#include "client/planning/experience_guide.hpp"
 #include "client/planning/guidance_gate.hpp"
 
 namespace kinship::planner {
@@ -14,8 +15,9 @@ struct PlanSettings {
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
   std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
   int max_goals = 20;                   ///< goal configurations found for a goal pose
-  /// Guided queries farther from the distribution are planned uniformly (planning::query_distance).
+  /// Beyond it a mixture gives fewer of its samples, none far beyond (planning::query_distance).
   double gate_distance = planning::kGateDistance;
+  planning::TrackOptions tracks = {};  ///< of guided queries, where there is experience
   PlannerChoice planner = {};
 };
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -72,7 +73,7 @@ class BidirectionalSearch {
     if (auto answer = answer_at_once(start, goals, free_goals))
       return *std::move(answer);
     if (auto path = go_straight(free_goals))
-      return summary(std::move(path), NoPath::None);
+      return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
     return search();
   }
 
@@ -87,7 +88,7 @@ class BidirectionalSearch {
     for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
       free_goals.col(i) = goal_tree_.node(i);
     if (auto path = standstill())
-      return summary(std::move(path), NoPath::None);
+      return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
     return std::nullopt;
   }
 
@@ -100,8 +101,11 @@ class BidirectionalSearch {
   }
 
   /// What was planned and spent so far.
-  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason) {
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason,
+                      FoundBy found_by = FoundBy::Search) {
     PlanSummary summary;
+    summary.found_by = path ? found_by : FoundBy::Nothing;
+    summary.tracks_followed = next_track_;
     summary.waypoints = std::move(path);
     summary.reason = reason;
     summary.iterations = iterations_;
@@ -112,13 +116,15 @@ class BidirectionalSearch {
 
  private:
   PlanSummary search() {
-    std::optional<Eigen::MatrixXd> path;
-    while (!path && !budget_.exhausted()) {
-      ++iterations_;
-      path = iterate();
+    const std::uint64_t begin = budget_.checks();
+    while (!budget_.exhausted()) {
+      const Track* const track = next_track(budget_.checks() - begin);
+      auto path = track != nullptr ? follow(*track) : iterate();
+      if (path)
+        return summary(std::move(path), NoPath::None,
+                       track != nullptr ? FoundBy::Track : FoundBy::Search);
     }
-    const NoPath reason = path ? NoPath::None : budget_.reason();
-    return summary(std::move(path), reason);
+    return summary(std::nullopt, budget_.reason());
   }
 
   /// \return why there is nothing to plan, if so.
@@ -168,8 +174,38 @@ class BidirectionalSearch {
     return std::nullopt;
   }
 
+  /// The track that is followed now. \param checks  that the search has cost. \return null: none.
+  const Track* next_track(std::uint64_t checks) {
+    const QueryTracks* const tracks = sampler_.tracks();
+    if (tracks == nullptr || options_.track_check_fraction == 0 ||
+        static_cast<double>(track_checks_) >
+            options_.track_check_fraction * static_cast<double>(checks))
+      return nullptr;
+    const std::span<const Track> all = tracks->tracks();
+    return next_track_ < all.size() ? &all[next_track_++] : nullptr;
+  }
+
+  /// Extends the goal tree along a track until something is in the way, then the start tree towards
+  /// where that came. \return the path if they met.
+  std::optional<Eigen::MatrixXd> follow(const Track& track) {
+    const std::uint64_t before = budget_.checks();
+    const Eigen::VectorXd root = track.configurations.col(0);
+    Extension there{goal_tree_.nearest(root), true};
+    if (goal_tree_.node(there.node) != root)  // this goal collides
+      return std::nullopt;
+    for (Eigen::Index i = 1; i < track.configurations.cols() && there.reached; ++i)
+      there = steering_.extend(goal_tree_, there.node, track.configurations.col(i), Aim::Sample,
+                               budget_);
+    const Eigen::VectorXd tip = goal_tree_.node(there.node);
+    const Extension met =
+        steering_.extend(start_tree_, start_tree_.nearest(tip), tip, Aim::Node, budget_);
+    track_checks_ += budget_.checks() - before;
+    return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
+  }
+
   /// One extension of each tree. \return the path if they met.
   std::optional<Eigen::MatrixXd> iterate() {
+    ++iterations_;
     Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
     Tree& other = grow_start_ ? goal_tree_ : start_tree_;
     grow_start_ = !grow_start_;
@@ -218,6 +254,8 @@ class BidirectionalSearch {
   Tree goal_tree_{sampler_.bounds().cols()};
   bool grow_start_ = true;
   std::uint64_t iterations_ = 0;
+  std::size_t next_track_ = 0;
+  std::uint64_t track_checks_ = 0;
 };
 
 }  // namespace kinship::planning

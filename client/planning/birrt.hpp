@@ -10,6 +10,7 @@
 #include "client/planning/configuration_sampler.hpp"
 #include "client/planning/is_free.hpp"
 #include "client/planning/no_path.hpp"
+#include "proto/types/problem.hpp"
 
 namespace kinship::planning {
 
@@ -18,6 +19,8 @@ struct BirrtOptions {
   double overshoot = 1.5;  ///< extend towards q_near + f (q_sample - q_near), clamped to the bounds
   std::uint64_t max_checks = 100'000;
   std::chrono::duration<double> time_limit{10};  ///< wall clock
+  /// Of the checks that may have gone into following tracks when the next one is begun, 0 to 1.
+  double track_check_fraction = 0.5;
 };
 
 struct PlanSummary {
@@ -26,6 +29,8 @@ struct PlanSummary {
   std::uint64_t collision_checks = 0;  ///< configurations asked of `is_free`
   std::uint64_t projections = 0;       ///< onto a constraint
   std::uint64_t iterations = 0;
+  std::uint64_t tracks_followed = 0;     ///< of the sampler's
+  FoundBy found_by = FoundBy::Nothing;   ///< what brought the path
   double planning_time_s = 0;        ///< CPU time of the thread, sampling and projections included
   NoPath reason = NoPath::None;      ///< why unsolved
   std::string planner_message = {};  ///< what a planner of OMPL said that gave up
@@ -33,8 +38,9 @@ struct PlanSummary {
 
 /// Bi-directional RRT with greedy extension of both trees, in the style of CBiRRT2 without
 /// constraints. Every goal configuration is a root of the goal tree. First the straight lines from
-/// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then each
-/// iteration extends one tree towards a sample (overshot) until something is in the way, then the
+/// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then the
+/// sampler's tracks, if it has any, are followed from their goals on until something is in the way,
+/// each time that they have cost no more than their part of the checks. Otherwise each iteration extends one tree towards a sample (overshot) until something is in the way, then the
 /// other tree towards where that came; then they swap. After 300 samples at most nine of
 /// ten are guided, so that a mixture which does not cover the way out delays a path and never
 /// prevents it.

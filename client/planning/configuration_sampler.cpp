@@ -1,5 +1,6 @@
 #include "client/planning/configuration_sampler.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -39,24 +40,45 @@ ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinema
   turning_ = turning_joints(chain);
   mixture_ = mixture;
   guided_.emplace(mixture, draw_limits(bounds_, turning_));
-  guided_fraction_ = guided_fraction;
+  mixture_fraction_ = guided_fraction;
+}
+
+ConfigurationSampler ConfigurationSampler::with_tracks(std::shared_ptr<const QueryTracks> tracks,
+                                                       double fraction) const {
+  if (!(fraction >= 0 && fraction <= 1))
+    throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
+  ConfigurationSampler sampler = *this;
+  sampler.tracks_ = std::move(tracks);
+  sampler.track_fraction_ = fraction;
+  sampler.mixture_fraction_ = std::min(mixture_fraction_, 1 - fraction);
+  return sampler;
 }
 
 Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator,
                                              double guided_fraction) const {
   std::uniform_real_distribution<double> unit(0, 1);
-  if (guided_ && unit(generator) < guided_fraction)
-    if (auto q = sample_guided(generator))
-      return *std::move(q);
+  if (guided_ || tracks_) {
+    const double drawn = unit(generator);
+    if (drawn < guided_fraction)
+      if (auto q = sample_guided(drawn, guided_fraction, generator))
+        return *std::move(q);
+  }
   Eigen::VectorXd q(bounds_.cols());
   for (Eigen::Index i = 0; i < q.size(); ++i)
     q[i] = bounds_(0, i) + (bounds_(1, i) - bounds_(0, i)) * unit(generator);
   return q;
 }
 
+/// Tracks and mixture keep their proportion, whatever the share of both.
 std::optional<Eigen::VectorXd> ConfigurationSampler::sample_guided(
+    double drawn, double guided_fraction, std::mt19937_64& generator) const {
+  const double around_tracks = guided_fraction * track_fraction_ / this->guided_fraction();
+  return drawn < around_tracks ? tracks_->sample(generator) : sample_mixture(generator);
+}
+
+std::optional<Eigen::VectorXd> ConfigurationSampler::sample_mixture(
     std::mt19937_64& generator) const {
-  for (int draw = 0; draw < kMaxTurnDraws; ++draw) {
+  for (int draw = 0; guided_ && draw < kMaxTurnDraws; ++draw) {
     const auto q = guided_->sample(generator);
     if (!q)
       return std::nullopt;  // the mixture lies outside the bounds

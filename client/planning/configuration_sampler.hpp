@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "client/planning/planning_bounds.hpp"
+#include "client/planning/query_tracks.hpp"
 #include "proto/mixture/sampler.hpp"
 #include "proto/types/mixture.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planning {
 
-/// Where a planner's samples come from: a share of them from a mixture, the rest uniform within
-/// bounds. Immutable; may be shared.
+/// Where a planner's samples come from: a share of them from a mixture, a share from around the
+/// tracks of the query, the rest uniform within bounds. Immutable; may be shared.
 class ConfigurationSampler {
  public:
   /// Uniform.
@@ -32,15 +33,25 @@ class ConfigurationSampler {
   ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
                        const Mixture& mixture, double guided_fraction);
 
+  /// The same, with samples around tracks besides.
+  /// \param tracks    not null.
+  /// \param fraction  of all samples, 0 to 1; what the mixture has is cut down to what is left.
+  /// \throws std::invalid_argument if the fraction is none.
+  ConfigurationSampler with_tracks(std::shared_ptr<const QueryTracks> tracks,
+                                   double fraction) const;
+
   Eigen::VectorXd sample(std::mt19937_64& generator) const {
-    return sample(generator, guided_fraction_);
+    return sample(generator, guided_fraction());
   }
   /// The same with another share of guided samples; a uniform sampler has none.
   Eigen::VectorXd sample(std::mt19937_64& generator, double guided_fraction) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
-  double guided_fraction() const noexcept { return guided_fraction_; }  ///< 0 if uniform
-  /// Where guided samples come from; none if uniform.
+  /// Of all samples; 0 if uniform.
+  double guided_fraction() const noexcept { return mixture_fraction_ + track_fraction_; }
+  /// Ways to try before anything is drawn, made when first asked for; null: there are none.
+  const QueryTracks* tracks() const noexcept { return tracks_.get(); }
+  /// Where guided samples come from that do not come from tracks; none if there are none.
   const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
   /// The same posture within the bounds; empty if no turn lies there.
   std::optional<Eigen::VectorXd> moved_into_bounds(const Eigen::VectorXd& q) const {
@@ -48,13 +59,17 @@ class ConfigurationSampler {
   }
 
  private:
-  std::optional<Eigen::VectorXd> sample_guided(std::mt19937_64& generator) const;
+  std::optional<Eigen::VectorXd> sample_mixture(std::mt19937_64& generator) const;
+  std::optional<Eigen::VectorXd> sample_guided(double drawn, double guided_fraction,
+                                               std::mt19937_64& generator) const;
 
   Eigen::Matrix2Xd bounds_;
   std::optional<Mixture> mixture_;
   std::optional<mixture::Sampler> guided_;
   std::vector<bool> turning_;
-  double guided_fraction_ = 0;
+  double mixture_fraction_ = 0;
+  std::shared_ptr<const QueryTracks> tracks_;
+  double track_fraction_ = 0;
 };
 
 }  // namespace kinship::planning

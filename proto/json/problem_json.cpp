@@ -67,15 +67,19 @@ constexpr std::tuple kEffort{
     Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
     Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
 
-/// If there is a distribution.
+/// If there is a distribution or experience.
 constexpr std::tuple kGuidance{
-    Field{"distribution_id", &ProblemResult::distribution_id},
+    Field{"distribution_id", &ProblemResult::distribution_id, {.may_be_missing = true}},
     Field{"revision", &ProblemResult::distribution_revision},
     Field{"share", &ProblemResult::share, {.min = 0, .max = 1}},
     Field{"arm", &ProblemResult::sampling_mode, {.may_be_missing = true}},
-    Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}}};
+    Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}},
+    Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
+    Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},
+    Field{"tracks_followed", &ProblemResult::tracks_followed, {.may_be_missing = true}}};
 
 constexpr std::tuple kReasons{
+    Field{"found_by", &ProblemResult::found_by, {.may_be_missing = true}},
     Field{"guidance_reason",
           &ProblemResult::guidance_reason,
           {.limit = kMaxMessageBytes, .may_be_missing = true}},
@@ -88,7 +92,6 @@ ProblemResult read_problem_result(const Reader& reader) {
   if (const auto waypoints = reader.find("waypoints"))
     result.waypoints = waypoints->columns(kMaxDof, kMaxWaypoints);
   if (const auto guidance = reader.find("guidance")) {
-    static_cast<void>(guidance->at("distribution_id").digest());
     const double share = guidance->at("share").number(0, 1);
     result.sampling_mode =
         share > 0 ? SamplingMode::Guided : SamplingMode::Control;  // of older files
@@ -132,7 +135,7 @@ std::string to_json(const ProblemResult& result) {
   object["waypoints"] =
       result.waypoints ? list_of_columns(*result.waypoints) : OrderedJson(nullptr);
   object["guidance"] = nullptr;
-  if (result.distribution_id)
+  if (result.distribution_id || result.experience_revision != 0)
     add_members(result, kGuidance, object["guidance"]);
   add_members(result, kReasons, object);
   return write(object);

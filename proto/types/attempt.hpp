@@ -19,6 +19,14 @@ namespace kinship {
 
 enum class Outcome { Solved, Timeout, Failed };
 
+/// What brought a path.
+enum class FoundBy {
+  Nothing,       ///< there is none, or nobody says
+  StraightLine,  ///< before anything was drawn
+  Track,         ///< a stored way of the hand, moved onto the query
+  Search         ///< samples
+};
+
 /// How the samples of an attempt were chosen: by guidance, uniformly on purpose to compare
 /// (control), or uniformly because there was no guidance.
 enum class SamplingMode { Guided, Control, Uniform };

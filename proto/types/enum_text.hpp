@@ -31,6 +31,12 @@ struct Words<SamplingMode> {
   static constexpr std::array<std::string_view, 3> kWords = {"guided", "control", "uniform"};
 };
 template <>
+struct Words<FoundBy> {
+  static constexpr std::string_view kWhat = "found_by";
+  static constexpr std::array<std::string_view, 4> kWords = {"nothing", "straight_line", "track",
+                                                             "search"};
+};
+template <>
 struct Words<DistributionState> {
   static constexpr std::string_view kWhat = "state";
   static constexpr std::array<std::string_view, 3> kWords = {"ready", "failed", "thin"};

@@ -45,9 +45,14 @@ struct ProblemResult {
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
       SamplingMode::Uniform;  ///< with guidance: Guided, Control, or Uniform by wish
-  double share = 0;           ///< of guided samples; 0 unless Guided, and if the gate fired
-  /// Guided, but planned uniformly: start or goals are far from all that the distribution knows.
+  double share = 0;           ///< of guided samples; 0 unless Guided
+  double track_share = 0;     ///< of samples around tracks; a part of share
+  std::uint64_t experience_revision = 0;  ///< of the stored ways that tracks come from; 0: none
+  std::uint64_t tracks_followed = 0;
+  /// Guided, but with fewer samples of the mixture than wanted, or none: start or goals are far
+  /// from all that it knows.
   bool gate_fired = false;
+  FoundBy found_by = FoundBy::Nothing;
   std::string reason;                ///< why not solved
   std::string planner = {};          ///< empty if none was started
   std::string guidance_reason = {};  ///< why not guided; empty if it was

@@ -52,7 +52,11 @@ void answer_instance(const StudyMember& member, const std::vector<const Cell*>& 
 std::optional<planner::Guidance> always_guided(const Distribution& distribution, double share) {
   if (!distribution.mixture)
     return std::nullopt;
-  return planner::Guidance{distribution.id, distribution.revision, *distribution.mixture, share};
+  return planner::Guidance{.distribution_id = distribution.id,
+                           .revision = distribution.revision,
+                           .mixture = distribution.mixture,
+                           .experience = nullptr,
+                           .guided_fraction = share};
 }
 
 void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,

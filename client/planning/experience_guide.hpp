@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "client/planning/track_lanes.hpp"
+#include "proto/types/task_experience.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::planning {
+
+/// How the experience of a task is used in one query.
+struct TrackOptions {
+  std::size_t paths = 10;   ///< of the experience, the most like the query
+  std::size_t tracks = 24;  ///< at most: each path is followed from several goals
+  double deviation = 0.3;   ///< of samples from tracks, each joint, joint units
+  /// Of the guided samples, those around tracks; the others are the mixture's, if there is one.
+  double sample_fraction = 0.9;
+  double check_fraction = 0.5;  ///< see BirrtOptions::track_check_fraction
+};
+
+/// What a task's experience says about a query of one robot: the stored ways of the hand that are
+/// most like it, moved onto it and followed by the robot's arm from the query's own goal
+/// configurations. Asks no collision question. Immutable; may be shared between threads.
+class ExperienceGuide {
+ public:
+  /// \throws std::invalid_argument if a path has less than two poses.
+  ExperienceGuide(const kinematics::Chain& chain, TaskExperience experience);
+
+  /// \param T_task_base  of the robot's base.
+  /// \param bounds       2 x dof: configurations outside are left out (see planning_bounds).
+  /// \param start        dof.
+  /// \param goals        dof x n.
+  /// \return tracks from a goal towards the start, each within the bounds; the one that ends
+  ///         nearest to the start first. None without experience or goals.
+  std::vector<Track> tracks(const Eigen::Isometry3d& T_task_base, const Eigen::Matrix2Xd& bounds,
+                            const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                            const TrackOptions& options = {}) const;
+
+  const TaskExperience& experience() const noexcept { return experience_; }
+
+ private:
+  kinematics::Chain chain_;
+  inverse::Solver solver_;
+  TaskExperience experience_;
+};
+
+}  // namespace kinship::planning

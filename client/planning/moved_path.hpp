@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "proto/types/task_experience.hpp"
+
+namespace kinship::planning {
+
+/// Where a query begins and ends, as poses of the transfer frame in the task frame.
+struct PoseQuery {
+  Eigen::Isometry3d T_task_start;
+  Eigen::Isometry3d T_task_goal;
+};
+
+/// How far two poses are from each other, m: a radian counts as 0.3 m.
+double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
+
+/// Which paths are most like a query: nearest in goal, then start pose.
+/// \return indices into `paths`, the nearest first, at most `count`.
+std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const PoseQuery& query,
+                                       std::size_t count);
+
+/// The path moved onto the query: its start to the query's start, its goal to the query's goal, and
+/// what lies between by a blend of both motions, so that each end is passed as the path passed its
+/// own. Rotations by normalised linear interpolation.
+/// \return as many poses as the path has; the first and last are those of the query.
+std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery& query);
+
+}  // namespace kinship::planning
