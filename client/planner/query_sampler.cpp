@@ -49,11 +49,9 @@ planning::ConfigurationSampler make_query_sampler(const PosedQuery& query,
     return sampler;
   result.experience_revision = guidance->experience->experience().revision;
   auto tracks = std::make_shared<planning::QueryTracks>(
-      [query, guidance, options = settings.tracks] {
-        return guidance->experience->tracks(query.T_task_base, query.bounds, query.start,
-                                            query.goals, options);
-      },
-      query.bounds, settings.tracks.deviation);
+      guidance->experience,
+      planning::TrackQuery{query.T_task_base, query.bounds, query.start, query.goals},
+      settings.tracks);
   return sampler.with_tracks(std::move(tracks), result.track_share);
 }
 

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -176,13 +175,14 @@ class BidirectionalSearch {
 
   /// The track that is followed now. \param checks  that the search has cost. \return null: none.
   const Track* next_track(std::uint64_t checks) {
-    const QueryTracks* const tracks = sampler_.tracks();
+    QueryTracks* const tracks = sampler_.tracks();
     if (tracks == nullptr || options_.track_check_fraction == 0 ||
         static_cast<double>(track_checks_) >
             options_.track_check_fraction * static_cast<double>(checks))
       return nullptr;
-    const std::span<const Track> all = tracks->tracks();
-    return next_track_ < all.size() ? &all[next_track_++] : nullptr;
+    const Track* const track = tracks->track(next_track_);
+    next_track_ += track != nullptr ? 1 : 0;
+    return track;
   }
 
   /// Extends the goal tree along a track until something is in the way, then the start tree towards

@@ -43,7 +43,7 @@ ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinema
   mixture_fraction_ = guided_fraction;
 }
 
-ConfigurationSampler ConfigurationSampler::with_tracks(std::shared_ptr<const QueryTracks> tracks,
+ConfigurationSampler ConfigurationSampler::with_tracks(std::shared_ptr<QueryTracks> tracks,
                                                        double fraction) const {
   if (!(fraction >= 0 && fraction <= 1))
     throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");

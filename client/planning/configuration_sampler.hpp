@@ -15,7 +15,8 @@
 namespace kinship::planning {
 
 /// Where a planner's samples come from: a share of them from a mixture, a share from around the
-/// tracks of the query, the rest uniform within bounds. Immutable; may be shared.
+/// tracks of the query, the rest uniform within bounds. Immutable but for tracks, which
+/// are made when they are needed: may be shared, between threads if it has none.
 class ConfigurationSampler {
  public:
   /// Uniform.
@@ -37,7 +38,7 @@ class ConfigurationSampler {
   /// \param tracks    not null.
   /// \param fraction  of all samples, 0 to 1; what the mixture has is cut down to what is left.
   /// \throws std::invalid_argument if the fraction is none.
-  ConfigurationSampler with_tracks(std::shared_ptr<const QueryTracks> tracks,
+  ConfigurationSampler with_tracks(std::shared_ptr<QueryTracks> tracks,
                                    double fraction) const;
 
   Eigen::VectorXd sample(std::mt19937_64& generator) const {
@@ -50,7 +51,7 @@ class ConfigurationSampler {
   /// Of all samples; 0 if uniform.
   double guided_fraction() const noexcept { return mixture_fraction_ + track_fraction_; }
   /// Ways to try before anything is drawn, made when first asked for; null: there are none.
-  const QueryTracks* tracks() const noexcept { return tracks_.get(); }
+  QueryTracks* tracks() const noexcept { return tracks_.get(); }
   /// Where guided samples come from that do not come from tracks; none if there are none.
   const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
   /// The same posture within the bounds; empty if no turn lies there.
@@ -68,7 +69,7 @@ class ConfigurationSampler {
   std::optional<mixture::Sampler> guided_;
   std::vector<bool> turning_;
   double mixture_fraction_ = 0;
-  std::shared_ptr<const QueryTracks> tracks_;
+  std::shared_ptr<QueryTracks> tracks_;
   double track_fraction_ = 0;
 };
 

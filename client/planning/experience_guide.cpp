@@ -1,6 +1,7 @@
 #include "client/planning/experience_guide.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -29,33 +30,47 @@ ExperienceGuide::ExperienceGuide(const kinematics::Chain& chain, TaskExperience 
       throw std::invalid_argument("ExperienceGuide: a path has less than two poses");
 }
 
-std::vector<Track> ExperienceGuide::tracks(const Eigen::Isometry3d& T_task_base,
-                                           const Eigen::Matrix2Xd& bounds,
-                                           const Eigen::VectorXd& start,
-                                           const Eigen::MatrixXd& goals,
-                                           const TrackOptions& options) const {
-  if (experience_.paths.empty() || goals.cols() == 0)
-    return {};
-  const Eigen::Isometry3d T_base_task = T_task_base.inverse();
-  PoseQuery query{T_task_base * kinematics::T_base_transfer(chain_, start), {}};
-  const auto goal_count = static_cast<std::size_t>(goals.cols());
-  const std::size_t paths_per_goal =
-      std::clamp<std::size_t>(options.tracks / goal_count, 1, options.paths);
-  std::vector<PoseTrack> wanted;
-  for (Eigen::Index goal = 0; goal < goals.cols() && wanted.size() < options.tracks; ++goal) {
-    query.T_task_goal = T_task_base * kinematics::T_base_transfer(chain_, goals.col(goal));
-    for (const std::size_t path : nearest_paths(experience_.paths, query, paths_per_goal)) {
-      PoseTrack track{moved_onto(experience_.paths[path], query), goals.col(goal), start};
-      std::ranges::reverse(track.T_base_transfer);
-      for (Eigen::Isometry3d& pose : track.T_base_transfer)
-        pose = T_base_task * pose;
-      wanted.push_back(std::move(track));
-    }
+std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& query,
+                                                             const TrackOptions& options) const {
+  const Eigen::VectorXd distances = (query.goals.colwise() - query.start).colwise().norm();
+  std::vector<Eigen::Index> goals(static_cast<std::size_t>(query.goals.cols()));
+  std::iota(goals.begin(), goals.end(), Eigen::Index{0});
+  std::ranges::stable_sort(goals, {}, [&](Eigen::Index goal) { return distances[goal]; });
+  if (goals.size() > options.tracks)
+    goals.resize(options.tracks);
+
+  PoseQuery posed{query.T_task_base * kinematics::T_base_transfer(chain_, query.start), {}};
+  std::vector<std::vector<std::size_t>> paths;
+  for (const Eigen::Index goal : goals) {
+    posed.T_task_goal =
+        query.T_task_base * kinematics::T_base_transfer(chain_, query.goals.col(goal));
+    paths.push_back(nearest_paths(experience_.paths, posed, options.paths));
   }
-  std::vector<Track> tracks = follow(solver_, wanted);
+  std::vector<Choice> choices;
+  for (std::size_t rank = 0; rank < std::min(options.paths, experience_.paths.size()); ++rank)
+    for (std::size_t i = 0; i < goals.size() && choices.size() < options.tracks; ++i)
+      choices.push_back({goals[i], paths[i][rank]});
+  return choices;
+}
+
+std::vector<Track> ExperienceGuide::follow(const TrackQuery& query,
+                                           std::span<const Choice> choices) const {
+  const Eigen::Isometry3d T_base_task = query.T_task_base.inverse();
+  PoseQuery posed{query.T_task_base * kinematics::T_base_transfer(chain_, query.start), {}};
+  std::vector<PoseTrack> wanted;
+  for (const Choice& choice : choices) {
+    const Eigen::VectorXd goal = query.goals.col(choice.goal);
+    posed.T_task_goal = query.T_task_base * kinematics::T_base_transfer(chain_, goal);
+    PoseTrack track{moved_onto(experience_.paths[choice.path], posed), goal, query.start};
+    std::ranges::reverse(track.T_base_transfer);
+    for (Eigen::Isometry3d& pose : track.T_base_transfer)
+      pose = T_base_task * pose;
+    wanted.push_back(std::move(track));
+  }
+  std::vector<Track> tracks = planning::follow(solver_, wanted);
   const std::vector<bool> turning = turning_joints(chain_);
   for (Track& track : tracks)
-    keep_within(bounds, turning, track);
+    keep_within(query.bounds, turning, track);
   std::erase_if(tracks, [](const Track& track) { return track.configurations.cols() == 0; });
   std::ranges::stable_sort(tracks, {}, &Track::gap);
   return tracks;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 #include <vector>
 
 #include "client/planning/track_lanes.hpp"
@@ -20,23 +21,35 @@ struct TrackOptions {
   double check_fraction = 0.5;  ///< see BirrtOptions::track_check_fraction
 };
 
+/// A query of one robot as tracks need it.
+struct TrackQuery {
+  Eigen::Isometry3d T_task_base;
+  Eigen::Matrix2Xd bounds;  ///< 2 x dof: configurations outside are left out (planning_bounds)
+  Eigen::VectorXd start;    ///< dof
+  Eigen::MatrixXd goals;    ///< dof x n
+};
+
 /// What a task's experience says about a query of one robot: the stored ways of the hand that are
 /// most like it, moved onto it and followed by the robot's arm from the query's own goal
 /// configurations. Asks no collision question. Immutable; may be shared between threads.
 class ExperienceGuide {
  public:
+  /// One stored way, to be followed from one goal.
+  struct Choice {
+    Eigen::Index goal;
+    std::size_t path;
+  };
+
   /// \throws std::invalid_argument if a path has less than two poses.
   ExperienceGuide(const kinematics::Chain& chain, TaskExperience experience);
 
-  /// \param T_task_base  of the robot's base.
-  /// \param bounds       2 x dof: configurations outside are left out (see planning_bounds).
-  /// \param start        dof.
-  /// \param goals        dof x n.
+  /// What to follow in which order: for each goal, the nearest to the start first, the way most
+  /// like the query; then for each goal the next, and so on.
+  std::vector<Choice> choose(const TrackQuery& query, const TrackOptions& options) const;
+
   /// \return tracks from a goal towards the start, each within the bounds; the one that ends
-  ///         nearest to the start first. None without experience or goals.
-  std::vector<Track> tracks(const Eigen::Isometry3d& T_task_base, const Eigen::Matrix2Xd& bounds,
-                            const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
-                            const TrackOptions& options = {}) const;
+  ///         nearest to the start first.
+  std::vector<Track> follow(const TrackQuery& query, std::span<const Choice> choices) const;
 
   const TaskExperience& experience() const noexcept { return experience_; }
 

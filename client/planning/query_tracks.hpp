@@ -1,43 +1,41 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <random>
-#include <span>
 #include <vector>
 
-#include "client/planning/track_lanes.hpp"
+#include "client/planning/experience_guide.hpp"
 
 namespace kinship::planning {
 
-/// The tracks of one query, made when first asked for: a query that is a straight line never asks.
-/// May be shared between threads.
+/// The tracks of one query, made a few at a time when they are asked for: a query that is a straight
+/// line makes none. For one thread.
 class QueryTracks {
  public:
-  /// \param make       called at most once; each track within the bounds.
-  /// \param bounds     2 x dof, joint units.
-  /// \param deviation  of samples from the configurations of tracks, each joint, joint units.
+  /// \param guide  not null.
   /// \throws std::invalid_argument if the deviation is negative or not finite.
-  QueryTracks(std::function<std::vector<Track>()> make, Eigen::Matrix2Xd bounds,
-              double deviation);
+  QueryTracks(std::shared_ptr<const ExperienceGuide> guide, TrackQuery query,
+              const TrackOptions& options);
 
-  /// What is to be tried first comes first.
-  std::span<const Track> tracks() const;
+  /// \return null: there are no more.
+  const Track* track(std::size_t index);
 
-  /// Normal about a configuration of a track, each as likely as any other, within the bounds; empty
-  /// if there is no track, or if no draw of many lay within.
-  std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator) const;
+  /// Normal about a configuration of a track made so far, each as likely as any other, within the
+  /// bounds; empty if there is no track, or if no draw of many lay within.
+  std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator);
 
  private:
-  const std::function<std::vector<Track>()> make_;
-  const Eigen::Matrix2Xd bounds_;
-  const double deviation_;
-  mutable std::once_flag made_;
-  mutable std::vector<Track> tracks_;
-  mutable Eigen::MatrixXd configurations_;  // dof x n, of all tracks
+  void make_some();
+
+  const std::shared_ptr<const ExperienceGuide> guide_;
+  const TrackQuery query_;
+  const TrackOptions options_;
+  std::optional<std::vector<ExperienceGuide::Choice>> choices_;  // not made yet
+  std::size_t followed_ = 0;                                     // of the choices
+  std::vector<Track> tracks_;
+  std::vector<Eigen::VectorXd> configurations_;  // of all tracks
 };
 
 }  // namespace kinship::planning
