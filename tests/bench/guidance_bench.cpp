@@ -7,6 +7,7 @@
 
 #include "client/experiments/pipeline/fleet.hpp"
 #include "client/experiments/pipeline/learning_set.hpp"
+#include "client/experiments/shelf_problems.hpp"
 #include "client/experiments/studies/study.hpp"
 #include "client/planner/plan_problem.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -38,7 +39,16 @@ double quantile(std::vector<double> v, double p) { std::sort(v.begin(), v.end())
 // guidance_bench STUDY LEARNING_DIR COUNT SOURCE|all-but TARGET[,..] INSTANCES SEEDS VARIANT...
 int main(int argc, char** argv) {
   const std::string name = argv[1];
-  const Study& study = find_study(name);
+  Study shelf;
+  if (name == "shelf") {
+    shelf.name = "shelf";
+    for (const char* m : {"panda", "iiwa14", "ur10e"}) shelf.robots.push_back({m, shelf_placement(m), {}});
+    shelf.learning_instances = 60;
+    shelf.make_instances = [](const models::LoadedRobot& robot, const StudyRobot& placed) -> DrawInstance {
+      return [copy = std::make_shared<models::LoadedRobot>(robot), T = placed.T_task_base](std::uint64_t seed, std::uint32_t i) { return draw_shelf_problem(*copy, T, seed, i); };
+    };
+  }
+  const Study& study = name == "shelf" ? shelf : find_study(name);
   const auto fleet = load_fleet(study, std::string(KINSHIP_SOURCE_DIR) + "/robots/models");
   const std::size_t count = std::stoul(argv[3]);
   const std::string source = argv[4], target = argv[5];
