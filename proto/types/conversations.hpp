@@ -12,6 +12,7 @@
 #include "proto/types/distribution.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/selection.hpp"
+#include "proto/types/task_experience.hpp"
 #include "proto/types/uuid.hpp"
 
 /// What the four conversations between client and server carry, as values.
@@ -59,7 +60,9 @@ struct FetchRequest {
   std::uint64_t minimum_generation = 0;   ///< of the robot's own experience; 0: any
   std::chrono::milliseconds deadline{0};  ///< 0: answer with what is there
   Selection selection;
-  std::chrono::seconds follow{0};  ///< a lease on interest, at most kMaxFollow_s; 0: once
+  std::chrono::seconds follow{0};      ///< a lease on interest, at most kMaxFollow_s; 0: once
+  std::uint32_t experience_bytes = 0;  ///< of the task's experience at most; 0: none is wanted
+  std::uint64_t known_experience = 0;  ///< the revision the client holds: it is not sent again
 };
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
@@ -69,6 +72,8 @@ struct FetchReply {
   std::optional<Distribution> distribution;  ///< present if Ready or Failed
   std::chrono::milliseconds retry_after{0};  ///< if Busy
   std::string message;
+  /// Unless Refused or Busy: none if it was not asked for, is known already, or there is none.
+  std::optional<TaskExperience> experience;
 };
 
 enum class AdminVerb {
