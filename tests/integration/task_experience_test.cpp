@@ -147,6 +147,31 @@ TEST_F(TaskExperiences, ReachWhoWaitsForADistributionToo) {
   EXPECT_EQ(reply.experience->paths.size(), 4U);
 }
 
+TEST_F(TaskExperiences, AreHeldByAFollowerAndFollowTheirTask) {
+  report("panda", Eigen::Isometry3d::Identity(), 6, 1);
+  FetchRequest request;
+  request.task = "carry";
+  request.robot = register_model("panda");
+  request.T_task_base = Eigen::Isometry3d::Identity();
+  request.experience_bytes = kDefaultExperienceBytes;
+  const auto follower = client_.follow(request);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(120);
+  const auto first = follower->wait_for_newer(nullptr, deadline);
+  ASSERT_TRUE(first) << follower->state().reason;
+  const std::shared_ptr<const TaskExperience> held = follower->experience();
+  ASSERT_TRUE(held);
+  ASSERT_EQ(held->paths.size(), 6U);
+  AdminRequest retire;
+  retire.verb = AdminVerb::RetirePath;
+  retire.argument = held->paths[2].path.text();
+  EXPECT_EQ(client_.admin(retire).value_or_throw().status, AdminStatus::Ok);
+  const auto second = follower->wait_for_newer(first, deadline);
+  ASSERT_TRUE(second);
+  EXPECT_GT(second->revision, first->revision);
+  EXPECT_EQ(follower->experience()->paths.size(), 5U);
+  EXPECT_NE(follower->experience()->revision, held->revision);
+}
+
 TEST_F(TaskExperiences, FillAMessageWithoutBreakingIt) {
   report("panda", Eigen::Isometry3d::Identity(), 900, 3);
   const FetchReply reply = fetch(register_model("ur10e"), 0, kMaxExperienceBytes);
