@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "client/cli/experience_command.hpp"
 #include "client/cli/export_commands.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/import_command.hpp"
@@ -36,6 +37,24 @@ void add_import(CLI::App& group, Session& session) {
   });
 }
 
+void add_experience(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<ExperienceOptions>();
+  CLI::App* command =
+      add_command(group, "experience",
+                  "The paths that planners are given of a task, as ways of the transfer frame",
+                  "kinship tasks experience box_to_shelf\n"
+                  "  kinship tasks experience box_to_shelf --json --max-bytes 1048576");
+  command->add_option("task", options->task, "Its name")->required();
+  command->add_option("--max-bytes", options->max_bytes, "At most, 96 + 28 for each pose a path")
+      ->check(CLI::Range(std::uint32_t{1}, kMaxExperienceBytes))
+      ->capture_default_str();
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->json = session.json;
+    return show_experience(server, *options, session.out, session.err);
+  });
+}
+
 }  // namespace
 
 void add_paths(CLI::App& app, Session& session) {
@@ -61,6 +80,7 @@ void add_tasks(CLI::App& app, Session& session) {
   add_one(*tasks, session,
           {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
           show_task);
+  add_experience(*tasks, session);
 
   struct Options {
     std::string task;

@@ -125,6 +125,14 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     return line_->fetching.call(request, Clock::now() + line_->timeout);
   const Clock::time_point deadline = Clock::now() + request.deadline;
   std::optional<Result<FetchReply>> last;
+  std::optional<TaskExperience> experience;  // a reply that is not final may have brought it
+  const auto answer = [&]() -> Result<FetchReply> {
+    if (!*last || (*last)->experience || !experience)
+      return *std::move(last);
+    FetchReply whole = **last;
+    whole.experience = std::move(experience);
+    return whole;
+  };
   while (true) {
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
     request.deadline = server_share(std::max(left, milliseconds(1)));
@@ -133,9 +141,13 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     const bool is_worse = !reply && reply.error().code == ErrorCode::Unavailable && last;
     if (!is_worse)
       last.emplace(std::move(reply));
+    if (*last && (*last)->experience) {
+      experience = (*last)->experience;
+      request.known_experience = (*last)->experience->revision;
+    }
     const std::optional<milliseconds> pause = is_worse ? std::nullopt : pause_after(*last);
     if (!pause || Clock::now() + *pause >= deadline)
-      return *std::move(last);
+      return answer();
     std::this_thread::sleep_for(*pause);
   }
 }

@@ -64,6 +64,7 @@ class Client {
   /// Waits until the reply is final or the request's deadline has passed (then: the last Pending
   /// or Busy reply, or Unavailable if no server answered). With a deadline of 0 the server answers
   /// with what is there, and this waits for its answer up to the timeout of register and admin.
+  /// The reply has the newest experience of the task that came meanwhile, if it was asked for.
   Result<FetchReply> fetch(FetchRequest request);
 
   /// Holds the newest distribution for the request from now on. What is returned may outlive the

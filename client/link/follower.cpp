@@ -20,6 +20,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using DistributionPointer = std::shared_ptr<const Distribution>;
+using ExperiencePointer = std::shared_ptr<const TaskExperience>;
 
 constexpr std::chrono::seconds kLease = 60s;
 constexpr milliseconds kServerTime = 10s;  // for the server to make it; then it says "pending"
@@ -101,6 +102,11 @@ class Follower::Implementation {
     return newest_;
   }
 
+  ExperiencePointer experience() const {
+    const std::lock_guard lock(newest_mutex_);
+    return experience_;
+  }
+
   State state() const {
     const std::lock_guard lock(mutex_);
     return state_;
@@ -160,7 +166,10 @@ class Follower::Implementation {
         news_.clear();
         is_asking_ = true;
       }
-      Step step = judge(ask());
+      const Result<FetchReply> reply = ask();
+      if (reply && reply->experience)
+        hold(*reply->experience);
+      Step step = judge(reply);
       std::unique_lock lock(mutex_);
       is_asking_ = false;
       state_ = std::move(step.state);
@@ -181,6 +190,14 @@ class Follower::Implementation {
     } catch (const std::exception& error) {  // of Cyclone DDS: tried again
       return Error{ErrorCode::Internal, error.what()};
     }
+  }
+
+  void hold(const TaskExperience& experience) {
+    request_.known_experience = experience.revision;
+    ExperiencePointer held =
+        experience.paths.empty() ? nullptr : std::make_shared<const TaskExperience>(experience);
+    const std::lock_guard lock(newest_mutex_);
+    experience_.swap(held);  // what was held is freed outside of the lock
   }
 
   Step judge(const Result<FetchReply>& reply) {
@@ -230,11 +247,12 @@ class Follower::Implementation {
   static constexpr milliseconds kPendingPause = 100ms;
 
   const std::shared_ptr<const dds::Participant> participant_;
-  const FetchRequest request_;
+  FetchRequest request_;  // but for what is known of the experience it never changes
   const FollowOptions options_;
   milliseconds pause_{0};            // of the thread alone
-  mutable std::mutex newest_mutex_;  // guards newest_; taken last, held to copy it
+  mutable std::mutex newest_mutex_;  // guards the two; taken last, held to copy one
   DistributionPointer newest_;       // shared by all who asked for it
+  ExperiencePointer experience_;     // the same
   mutable std::mutex mutex_;         // guards what follows
   mutable std::condition_variable changed_;
   State state_;
@@ -255,6 +273,10 @@ Follower::Follower(std::shared_ptr<const dds::Participant> participant, FetchReq
 Follower::~Follower() = default;
 
 std::shared_ptr<const Distribution> Follower::newest() const { return implementation_->newest(); }
+
+std::shared_ptr<const TaskExperience> Follower::experience() const {
+  return implementation_->experience();
+}
 
 Follower::State Follower::state() const { return implementation_->state(); }
 

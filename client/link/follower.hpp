@@ -55,6 +55,11 @@ class Follower {
   /// Copies a pointer under a lock that is never held longer than that.
   std::shared_ptr<const Distribution> newest() const;
 
+  /// The experience of the task that came last, if the request asks for it: with newest(), whatever
+  /// became of that; null as long as there is none, or none any more. It is fetched anew only if it
+  /// changed. Copies a pointer like newest().
+  std::shared_ptr<const TaskExperience> experience() const;
+
   State state() const;
 
   /// Waits until newest() is another revision, or of another store epoch, than `held`, or the time

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "proto/codec/distribution_codec.hpp"
+#include "proto/codec/experience_codec.hpp"
 #include "proto/codec/reader.hpp"
 #include "proto/codec/selection_codec.hpp"
 #include "proto/codec/writer.hpp"
@@ -26,6 +27,8 @@ std::optional<Error> check(const FetchReply& reply) {
       .text("message", reply.message, kMaxMessageBytes);
   if (reply.distribution)
     rules.name(codec::check(*reply.distribution));
+  if (reply.experience)
+    rules.name(codec::check(*reply.experience));
   return rules.broken();
 }
 
@@ -38,8 +41,10 @@ std::optional<Error> check(const FetchRequest& request) {
       .text("profile", request.profile, kMaxProfileBytes)
       .between("deadline (ms)", static_cast<double>(request.deadline.count()), 0,
                static_cast<double>(kMaxFetchDeadline_ms));
-  rules.between("follow (s)", static_cast<double>(request.follow.count()), 0,
-                static_cast<double>(kMaxFollow_s));
+  rules
+      .between("follow (s)", static_cast<double>(request.follow.count()), 0,
+               static_cast<double>(kMaxFollow_s))
+      .between("experience_bytes", request.experience_bytes, 0, kMaxExperienceBytes);
   if (request.T_task_base)
     rules.pose("T_task_base", *request.T_task_base);
   return check_selection(request.selection, rules).broken();
@@ -59,6 +64,8 @@ Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchR
   wire.deadline_ms = static_cast<std::uint32_t>(request.deadline.count());
   write_selection(request.selection, arena, wire.selection);
   wire.follow_s = static_cast<std::uint32_t>(request.follow.count());
+  wire.experience_bytes = request.experience_bytes;
+  wire.known_experience = request.known_experience;
   return message;
 }
 
@@ -73,6 +80,8 @@ Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire) {
   request.deadline = std::chrono::milliseconds(wire.deadline_ms);
   request.selection = read_selection(wire.selection, reader);
   request.follow = std::chrono::seconds(wire.follow_s);
+  request.experience_bytes = wire.experience_bytes;
+  request.known_experience = wire.known_experience;
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(request))
@@ -93,6 +102,10 @@ Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchRep
   }
   wire.retry_after_ms = static_cast<std::uint32_t>(reply.retry_after.count());
   wire.message = arena.text(reply.message);
+  if (reply.experience) {
+    arena.resize(wire.experience, 1);
+    write_experience(*reply.experience, arena, wire.experience._buffer[0]);
+  }
   return limited(std::move(message));
 }
 
@@ -104,6 +117,8 @@ Result<FetchReply> decode(const kinship_wire_FetchReply& wire) {
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
   if (const auto distribution = elements(wire.distribution); !distribution.empty())
     reply.distribution = read_distribution(distribution[0], reader);
+  if (const auto experience = elements(wire.experience); !experience.empty())
+    reply.experience = read_experience(experience[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

@@ -7,14 +7,15 @@
 
 namespace kinship::codec {
 
-/// The rule of the contract that a request or a distribution breaks, if any.
+/// The rule of the contract that a request, a distribution or an experience breaks, if any.
 std::optional<Error> check(const FetchRequest& request);
 std::optional<Error> check(const Distribution& distribution);
+std::optional<Error> check(const TaskExperience& experience);
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request);
 Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire);
 
-/// \return TooLarge for a mixture that does not fit into a sample.
+/// \return TooLarge for a mixture, or an experience with it, that does not fit into a sample.
 Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchReply& reply);
 Result<FetchReply> decode(const kinship_wire_FetchReply& wire);
 

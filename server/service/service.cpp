@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "proto/types/profile_text.hpp"
+#include "server/catalog/experience_reply.hpp"
 #include "server/service/publish_events.hpp"
 
 namespace kinship::service {
@@ -24,6 +25,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       store_(std::move(store)),
       epoch_(store_->epoch()),
       robots_(*store_),
+      experience_(*store_, robots_),
       events_(options_.clock, options_.on_event),
       short_task_pool_({.threads = 1, .queue_limit = options_.short_task_queue, .niceness = 0}),
       advice_([this](const Digest& robot,
@@ -40,7 +42,11 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       ingest_(
           *store_, robots_, short_task_pool_,
           {.max_attempts = options_.max_queued_attempts,
-           .on_new_experience = [this](std::string_view task) { catalog_.new_experience(task); },
+           .on_new_experience =
+               [this](std::string_view task) {
+                 experience_.new_experience(task);
+                 catalog_.new_experience(task);
+               },
            .on_answer = [this](std::span<const catalog::AttemptCost> costs,
                                std::span<const Receipt> receipts) { answered(costs, receipts); }}),
       jobs_(options_.clock, job_options(options_)),
@@ -89,7 +95,11 @@ Administration::Parts Service::administration_parts() {
                                               : distribution.advice.recommended_share);
               },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
-          .forget_task = [this](const std::string& task) { catalog_.forget(task); },
+          .forget_task =
+              [this](const std::string& task) {
+                experience_.forget(task);
+                catalog_.forget(task);
+              },
           .on_change =
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
@@ -144,6 +154,8 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
+  if (request.experience_bytes > 0)
+    done = catalog::with_experience(experience_, request, std::move(done));
   if (!options_.on_event)
     return catalog_.fetch(request, waiter, std::move(done));
   catalog_.fetch(request, waiter,
@@ -243,6 +255,7 @@ void Service::shutdown() {
   jobs_.stop();
   short_task_pool_.stop(runtime::WorkerPool::Leftovers::Run);
   fitters_.stop(runtime::WorkerPool::Leftovers::Abandon);
+  experience_.stop();
   ingest_.drain();
 }
 

@@ -12,6 +12,7 @@
 #include "proto/types/conversations.hpp"
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
+#include "server/catalog/experience_book.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
@@ -92,6 +93,7 @@ class Service {
   const std::unique_ptr<store::Store> store_;
   const Uuid epoch_;
   runtime::RobotRegistry robots_;
+  catalog::ExperienceBook experience_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
   runtime::WorkerPool short_task_pool_;

@@ -281,7 +281,20 @@ FetchRequest every_fetch_request() {
   request.deadline = std::chrono::milliseconds(next.count());
   request.selection = every_selection();
   request.follow = std::chrono::seconds(next.count());
+  request.experience_bytes = static_cast<std::uint32_t>(next.count());
+  request.known_experience = next.count();
   return request;
+}
+
+TaskExperience every_experience() {
+  Distinct next(3100);
+  TaskExperience experience;
+  experience.revision = next.count();
+  experience.paths_known = next.count();
+  for (int i = 0; i < 2; ++i)
+    experience.paths.push_back(
+        {next.id<Digest>(), next.id<Uuid>(), {next.pose(), next.pose(), next.pose()}});
+  return experience;
 }
 
 FetchReply every_fetch_reply() {
@@ -291,6 +304,7 @@ FetchReply every_fetch_reply() {
   reply.distribution = every_distribution();
   reply.retry_after = std::chrono::milliseconds(next.count());
   reply.message = next.text("message");
+  reply.experience = every_experience();
   return reply;
 }
 

@@ -177,6 +177,25 @@ TEST_F(AdminCommands, ARetiredPathIsListedAsSuchAndNotExported) {
   EXPECT_EQ(server_.kinship({"paths", "retire", "seven"}).code, 2);
 }
 
+TEST_F(AdminCommands, TheExperienceOfATaskIsListed) {
+  teach(server_);
+  const Answer table = server_.kinship({"tasks", "experience", "sweep"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_EQ(count_lines(table.out), 8U) << table.out;
+  EXPECT_NE(table.out.find("\npanda "), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("\n6 of 6 paths\n"), std::string::npos) << table.out;
+  const std::string two = std::to_string(2 * experience_bytes(kExperiencePoses));
+  const Answer few = server_.kinship({"tasks", "experience", "sweep", "--max-bytes", two});
+  EXPECT_NE(few.out.find("\n2 of 6 paths\n"), std::string::npos) << few.out;
+  const Answer document =
+      server_.kinship({"tasks", "experience", "sweep", "--json", "--max-bytes", two});
+  EXPECT_EQ(document.code, 0) << document.err;
+  EXPECT_EQ(document.out.find("{\"revision\":\""), 0U) << document.out;
+  EXPECT_NE(document.out.find("\"paths_known\":6,\"paths\":[{\"path\":\""), std::string::npos);
+  EXPECT_EQ(server_.kinship({"tasks", "experience", "dance"}).code, 3);
+  EXPECT_EQ(server_.kinship({"tasks", "experience", "sweep", "--max-bytes", "0"}).code, 2);
+}
+
 TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
   teach(server_);
   const Answer asked = server_.kinship({"tasks", "reset", "sweep"});

@@ -108,6 +108,7 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"jobs", "cancel"},
                                                           {"robots", "register"},
                                                           {"tasks", "reset"},
+                                                          {"tasks", "experience"},
                                                           {"paths", "export"},
                                                           {"paths", "import"},
                                                           {"paths", "retire"},

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+#include "client/link/client.hpp"
+
+namespace kinship::cli {
+
+struct ExperienceOptions {
+  std::string task;
+  std::uint32_t max_bytes = kDefaultExperienceBytes;
+  bool json = false;
+};
+
+/// `tasks experience`: the ways that planners are given of a task, of which robot and report each
+/// is, from where to where.
+/// \return kNotFound if the task has none.
+int show_experience(link::Client& server, const ExperienceOptions& options, std::ostream& out,
+                    std::ostream& err);
+
+}  // namespace kinship::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "proto/types/task_experience.hpp"
+
+namespace kinship::json {
+
+/// What `tasks experience` prints. The revision is text, 16 hexadecimal digits: as a number it
+/// would not be exact in every language.
+std::string to_json(const TaskExperience& experience);
+
+}  // namespace kinship::json

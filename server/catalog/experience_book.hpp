@@ -1,0 +1,112 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "server/catalog/experience_versions.hpp"
+#include "server/fitting/experience_choice.hpp"
+#include "server/fitting/pose_path_memory.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/runtime/worker_pool.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::catalog {
+
+/// What an experience is a function of, besides the store: not the robot that asks.
+struct ExperienceKey {
+  std::string task;
+  std::vector<Digest> sources;  ///< ascending; empty: all
+  std::int64_t since_ms = 0;    ///< paths received at or after, Unix time, UTC; 0: all
+  std::uint32_t bytes = 0;      ///< at most
+
+  auto operator<=>(const ExperienceKey&) const = default;
+};
+
+/// In memory and on its way to one or many.
+using SharedChoice = std::shared_ptr<const fitting::ExperienceChoice>;
+
+/// The experience of tasks, chosen on a thread of its own, one choice at a time, so that nobody
+/// waits for a fit; kept until the experience changes. May be shared between threads; no lock is
+/// held across the store or an answer.
+class ExperienceBook {
+ public:
+  struct Limits {
+    std::size_t max_choices = 64;  ///< in memory
+    std::size_t max_waiters = 4096;
+  };
+  /// Called once, with nothing if the store cannot be read, too many wait or the server stops.
+  using Done = std::function<void(const SharedChoice&)>;
+
+  /// \param store, robots  outlive it.
+  ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots)
+      : ExperienceBook(store, robots, Limits{}) {}
+  ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits);
+  ~ExperienceBook() { stop(); }
+  ExperienceBook(const ExperienceBook&) = delete;
+  ExperienceBook& operator=(const ExperienceBook&) = delete;
+
+  /// What is in memory and up to date; null: nothing is.
+  SharedChoice find(const ExperienceKey& key);
+  /// `done` is called on this thread if it is in memory, else on the book's own or in stop(); it
+  /// must not block. What it gets has all that was reported and lacks all that was retired before.
+  void ask(const ExperienceKey& key, Done done);
+
+  void new_experience(std::string_view task);  ///< there are new paths
+  void forget(std::string_view task);          ///< paths were retired
+
+  /// Answers everybody with nothing, now and from now on, and ends the thread. Not to be called
+  /// from a `done`. A second call returns at once.
+  void stop();
+
+ private:
+  struct Waiter {
+    std::uint64_t asked_at = 0;  ///< changes of the task's experience
+    Done done;
+  };
+  struct Entry {
+    SharedChoice choice;
+    std::uint64_t chosen_at = 0;  ///< changes of the task's experience before it was read
+    bool is_working = false;
+    std::vector<Waiter> waiters;
+    std::uint64_t last_used = 0;
+  };
+
+  using ChoiceAnswers = std::vector<std::pair<Done, SharedChoice>>;
+
+  // Under the lock.
+  SharedChoice find_current(const ExperienceKey& key);
+  bool submit(const ExperienceKey& key);
+  void let_go(Entry& entry, std::uint64_t chosen_at, const SharedChoice& choice,
+              ChoiceAnswers& answers);
+  void make_room();
+
+  // On the book's thread, without the lock.
+  void choose(const ExperienceKey& key);
+  ChoiceAnswers complete(const ExperienceKey& key, const SharedChoice& choice,
+                         std::uint64_t chosen_at);
+
+  const Limits limits_;
+  const std::stop_source stop_source_;
+  fitting::PosePathMemory memory_;  // of the pool's only thread
+
+  std::mutex mutex_;  // guards what follows, but for the pool
+  ExperienceVersions versions_;
+  std::map<ExperienceKey, Entry> entries_;
+  std::size_t waiters_ = 0;
+  std::uint64_t uses_ = 0;
+  bool is_stopping_ = false;
+  runtime::WorkerPool pool_;  // last: its thread uses all of the above
+};
+
+}  // namespace kinship::catalog

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include "proto/types/task_experience.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::fitting {
+
+/// The way of the transfer frame along a stored path: up to kExperiencePoses poses in the task
+/// frame, at equal parts of the length in joint space, first and last waypoint among them. A base
+/// without a placement stands at the origin of the task.
+/// \return nothing if the robot cannot have taken the path, it has no length, or it leaves the
+///         coordinates that a pose may have.
+std::optional<PosePath> pose_path(const store::StoredPath& stored, const runtime::Robot& robot);
+
+}  // namespace kinship::fitting

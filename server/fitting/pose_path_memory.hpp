@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "server/fitting/experience_choice.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::fitting {
+
+/// The stored paths of tasks as pose paths, kept up with the store: what is known already is not
+/// read and computed again, unless paths of its robot were retired. Not shared between threads.
+class PosePathMemory {
+ public:
+  /// Of a task, and of all tasks in memory: about 50 MB. The task not asked for longest goes.
+  static constexpr std::size_t kMaxPaths = 8192;
+
+  /// \param store, robots  outlive it.
+  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots,
+                 std::size_t max_paths = kMaxPaths)
+      : store_(store), robots_(robots), max_paths_(max_paths) {}
+
+  /// The usable paths of a task now, in the order of arrival; of more than `max_paths` the newest,
+  /// as many of each robot. Robots and paths that cannot be read are left out.
+  /// \param sources   ascending; empty: all.
+  /// \param since_ms  received at or after, Unix time, UTC; 0: all.
+  /// \param stop      looked at between pages of paths: what is returned is incomplete then.
+  /// \throws Failure(Storage)
+  std::vector<SharedPosePath> read(const std::string& task, const std::vector<Digest>& sources,
+                                   std::int64_t since_ms, const std::stop_token& stop);
+
+  std::uint64_t computed() const noexcept { return computed_; }  ///< paths, since construction
+
+ private:
+  struct KnownPath {
+    std::int64_t id = 0;
+    std::int64_t received_ms = 0;
+    SharedPosePath path;
+  };
+  struct SourcePaths {
+    std::uint64_t generation = 0, retired_generation = 0;
+    std::int64_t last_id = 0;      ///< read, usable or not
+    std::size_t most = 0;          ///< that were kept of them
+    bool is_cut = false;           ///< there were more
+    std::vector<KnownPath> paths;  ///< by id
+  };
+  struct TaskPaths {
+    std::map<Digest, SourcePaths> sources;
+    std::uint64_t last_used = 0;
+  };
+
+  void update(TaskPaths& known, const std::string& task, const std::stop_token& stop);
+  void update(SourcePaths& known, const store::ExperienceSummary& now, const std::string& task,
+              std::size_t most, const std::stop_token& stop);
+  bool read_new(SourcePaths& known, const store::ExperienceSummary& now, const std::string& task,
+                std::size_t most, const std::stop_token& stop);
+  void add(SourcePaths& known, const store::StoredPath& stored, const runtime::Robot& robot);
+  void make_room(std::string_view task);
+
+  const store::Store& store_;
+  runtime::RobotRegistry& robots_;
+  const std::size_t max_paths_;
+  std::map<std::string, TaskPaths, std::less<>> tasks_;
+  std::uint64_t uses_ = 0, computed_ = 0;
+};
+
+}  // namespace kinship::fitting
