@@ -51,6 +51,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command.add_flag("--resume", options.resume, "go on with what the folder holds");
+  command
+      .add_option("--learning", options.learning,
+                  "learning instances of each robot instead of the study's; results in a folder of "
+                  "their own, <study>-N")
+      ->check(CLI::Range(1, 10'000));
   command.add_flag("--quick", options.quick,
                    "few instances, at most five minutes: shows that everything works");
 }
@@ -96,22 +101,8 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
       ->excludes(tunes);
 }
 
-}  // namespace
-
-void add_study_commands(CLI::App& app, StudyOptions& options) {
-  options.run.models = "robots/models";
-  options.run.analysis = "client/experiments/analyse.py";
-  options.run.domain = usual_domain();
-  for (const Study& study : studies()) {
-    CLI::App* const command = app.add_subcommand(study.name, study.purpose);
-    add_run_options(*command, options.run);
-    add_tuning_options(*command, options);
-    command->callback([&options, name = study.name] { options.study = name; });
-  }
-}
-
-void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
-  const Study& study = find_study(options.study);
+void run_one(const Study& study, const StudyOptions& options, std::ostream& out,
+             std::ostream& messages) {
   for (const std::string& side : options.sides)
     run_side_study(study, side, options.run, messages);
   if (!options.sides.empty())
@@ -126,6 +117,29 @@ void run_study_command(const StudyOptions& options, std::ostream& out, std::ostr
     tune_study(study, options.run, options.tuning, messages);
   else
     run_study(study, options.run, messages);
+}
+
+}  // namespace
+
+void add_study_commands(CLI::App& app, StudyOptions& options) {
+  options.run.models = "robots/models";
+  options.run.analysis = "client/experiments/analyse.py";
+  options.run.domain = usual_domain();
+  const auto add = [&](const std::string& name, const std::string& purpose) {
+    CLI::App* const command = app.add_subcommand(name, purpose);
+    add_run_options(*command, options.run);
+    add_tuning_options(*command, options);
+    command->callback([&options, name] { options.study = name; });
+  };
+  for (const std::string& family : families())
+    add(family, "every study whose name begins so, one after another");
+  for (const Study& study : studies())
+    add(study.name, study.purpose);
+}
+
+void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
+  for (const Study* const study : find_studies(options.study))
+    run_one(*study, options, out, messages);
 }
 
 }  // namespace kinship::experiments

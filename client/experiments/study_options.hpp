@@ -14,7 +14,7 @@ namespace kinship::experiments {
 
 /// What the command line says about running a study.
 struct StudyOptions {
-  std::string study;  ///< empty: none is to be run
+  std::string study;  ///< or a family of studies; empty: none is to be run
   RunOptions run;
   std::vector<std::string> sides;  ///< side studies to run, nothing else
   bool reports = false;            ///< only the report is written again
@@ -24,7 +24,7 @@ struct StudyOptions {
   std::string problems_of;                  ///< robot whose test instances are written; empty: none
 };
 
-/// A subcommand for every study.
+/// A subcommand for every study and for every family of studies.
 /// \param options  filled in when the command line is parsed; must outlive it.
 void add_study_commands(CLI::App& app, StudyOptions& options);
 

@@ -13,6 +13,7 @@
 #include "client/experiments/pipeline/side_study.hpp"
 #include "client/experiments/pipeline/study_description.hpp"
 #include "client/experiments/pipeline/study_session.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
@@ -21,7 +22,6 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr std::uint32_t kTestSeeds = 4;
 constexpr std::uint32_t kQuickInstances = 6;
 
 /// Uniform planning, named after its overshoot.

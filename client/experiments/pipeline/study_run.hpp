@@ -19,6 +19,9 @@ struct RunOptions {
   std::filesystem::path analysis;  ///< client/experiments/analyse.py
   std::uint32_t domain = 0;
   int threads = 2;
+  /// Learning instances of each robot; 0: as the study has it. Otherwise the results have a folder
+  /// of their own.
+  std::uint32_t learning = 0;
   bool resume = false;  ///< go on with what the folder holds
   bool quick = false;   ///< few instances: shows that everything works, measures nothing
 };

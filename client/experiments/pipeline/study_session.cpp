@@ -25,10 +25,15 @@ void tell(const Distribution& distribution, const std::string& target, std::ostr
   messages << std::endl;
 }
 
+std::string folder_name(const Study& study, const RunOptions& options) {
+  const std::string learning = options.learning > 0 ? "-" + std::to_string(options.learning) : "";
+  return study.name + learning + (options.quick ? "-quick" : "");
+}
+
 }  // namespace
 
 StudyFiles::StudyFiles(const Study& study, const RunOptions& options)
-    : folder(options.folder / (options.quick ? study.name + "-quick" : study.name)),
+    : folder(options.folder / folder_name(study, options)),
       learning(folder / "learning"),
       store(folder / "store" / "experience.db"),
       calibration(folder / "calibration.jsonl"),
@@ -40,8 +45,8 @@ StudyFiles::StudyFiles(const Study& study, const RunOptions& options)
       tuning_pairs(folder / "tuning.json") {}
 
 std::uint32_t learning_instances(const Study& study, const RunOptions& options) {
-  return options.quick ? std::min(kQuickLearning, study.learning_instances)
-                       : study.learning_instances;
+  const std::uint32_t wished = options.learning > 0 ? options.learning : study.learning_instances;
+  return options.quick ? std::min(kQuickLearning, wished) : wished;
 }
 
 StudySession::StudySession(const Study& study, const RunOptions& options, std::ostream& messages)

@@ -1,6 +1,5 @@
 #include "client/experiments/studies/carrying_instances.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "client/planning/region_constraint.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/inverse/solver.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -25,7 +23,6 @@ class CarryingInstances {
       : layout_(std::move(layout)),
         robot_(robot),
         T_task_base_(placed.T_task_base),
-        solver_(robot_.chain),
         starts_(robot_.chain, placed.start.size() > 0 ? placed.start : find_nominal_start()) {}
 
   Problem draw(std::uint64_t seed, std::uint32_t index) const {
@@ -54,24 +51,12 @@ class CarryingInstances {
             {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}};
   }
 
-  /// How far a configuration is from the middle of the limits, each joint by its range.
-  double off_middle(const Eigen::VectorXd& q) const {
-    const auto lower = robot_.chain.lower().array(), upper = robot_.chain.upper().array();
-    return ((q.array() - (lower + upper) / 2) / (upper - lower)).matrix().norm();
-  }
-
   Eigen::VectorXd find_nominal_start() const {
     const CarryingScene nominal = nominal_carrying_scene(layout_);
     collision::CollisionWorld world = make_world(make_problem(nominal));
-    inverse::InverseOptions options;
-    options.max_solutions = 0;  // all
-    const Eigen::Isometry3d T_base_tip =
-        T_task_base_.inverse() * nominal.T_task_pick * robot_.chain.T_tip_transfer().inverse();
-    std::optional<Eigen::VectorXd> best;
-    const inverse::InverseSolutions found = solver_.solve(T_base_tip, options);
-    for (const auto& q : found.configurations.colwise())
-      if ((!best || off_middle(q) < off_middle(*best)) && !world.collides(q))
-        best = q;
+    std::optional<Eigen::VectorXd> best =
+        find_middle_configuration(robot_.chain, T_task_base_.inverse() * nominal.T_task_pick,
+                                  [&](const Eigen::VectorXd& q) { return !world.collides(q); });
     if (!best)
       throw Failure(ErrorCode::NotFound, "robot '" + robot_.description.label +
                                              "' has no free start in '" + layout_.name +
@@ -127,7 +112,6 @@ class CarryingInstances {
   const CarryingLayout layout_;
   const models::LoadedRobot robot_;
   const Eigen::Isometry3d T_task_base_;
-  const inverse::Solver solver_;
   const StartDraws starts_;
 };
 

@@ -2,7 +2,10 @@
 
 #include <utility>
 
+#include "client/planning/goal_configurations.hpp"
+#include "client/planning/planning_bounds.hpp"
 #include "proto/types/failure.hpp"
+#include "robots/inverse/inverse.hpp"
 
 namespace kinship::experiments {
 
@@ -36,6 +39,39 @@ std::optional<Eigen::VectorXd> StartDraws::draw(const Eigen::Isometry3d& T_base_
       return q;
   }
   return std::nullopt;
+}
+
+bool has_free_goals(const kinematics::Chain& chain, const GoalPose& goal,
+                    const Eigen::VectorXd& start, const planning::IsFree& is_free) {
+  const Eigen::Matrix2Xd bounds = planning::planning_bounds(chain, start);
+  planning::GoalOptions options;
+  options.max_configurations = goal.max_goals;
+  for (std::uint32_t seed = 0; seed < kTestSeeds; ++seed) {
+    options.seed = goal.seed + seed;
+    const planning::GoalConfigurations found =
+        planning::goal_configurations(chain, goal.T_base_transfer, bounds, is_free, options);
+    if (found.configurations.cols() == 0)
+      return false;
+  }
+  return true;
+}
+
+std::optional<Eigen::VectorXd> find_middle_configuration(const kinematics::Chain& chain,
+                                                         const Eigen::Isometry3d& T_base_transfer,
+                                                         const planning::IsFree& is_free) {
+  const auto off_middle = [&](const Eigen::VectorXd& q) {
+    const auto lower = chain.lower().array(), upper = chain.upper().array();
+    return ((q.array() - (lower + upper) / 2) / (upper - lower)).matrix().norm();
+  };
+  inverse::InverseOptions options;
+  options.max_solutions = 0;  // all
+  const Eigen::Isometry3d T_base_tip = T_base_transfer * chain.T_tip_transfer().inverse();
+  const inverse::InverseSolutions found = inverse::inverse(chain, T_base_tip, options);
+  std::optional<Eigen::VectorXd> best;
+  for (const auto& q : found.configurations.colwise())
+    if ((!best || off_middle(q) < off_middle(*best)) && is_free(q))
+      best = q;
+  return best;
 }
 
 std::vector<std::string> last_links(const kinematics::Chain& chain) {

@@ -16,7 +16,8 @@
 /// What instances of all tasks have in common, whatever their scene.
 namespace kinship::experiments {
 
-inline constexpr double kTimeLimit_s = 86400;  ///< of a query: checks end it, never seconds
+inline constexpr std::uint32_t kTestSeeds = 4;  ///< queries of a test instance
+inline constexpr double kTimeLimit_s = 86400;   ///< of a query: checks end it, never seconds
 
 /// Tries an instance draw by draw until the robot can do it.
 /// \param key       its draw is where to begin.
@@ -42,6 +43,23 @@ class StartDraws {
   const inverse::Descent descent_;
   const Eigen::VectorXd nominal_;
 };
+
+/// Which of the goal configurations of a pose a query may get.
+struct GoalPose {
+  Eigen::Isometry3d T_base_transfer = Eigen::Isometry3d::Identity();
+  int max_goals = 0;       ///< PlanSettings::max_goals of the study
+  std::uint64_t seed = 0;  ///< of the instance
+};
+
+/// Whether planning finds a goal under each of the seeds that queries of an instance have.
+bool has_free_goals(const kinematics::Chain& chain, const GoalPose& goal,
+                    const Eigen::VectorXd& start, const planning::IsFree& is_free);
+
+/// The free configuration at a pose of the transfer frame that is nearest to the middle of the
+/// joints' limits; empty if there is none.
+std::optional<Eigen::VectorXd> find_middle_configuration(const kinematics::Chain& chain,
+                                                         const Eigen::Isometry3d& T_base_transfer,
+                                                         const planning::IsFree& is_free);
 
 /// The links that the last joint moves: a held object may touch them.
 std::vector<std::string> last_links(const kinematics::Chain& chain);

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <utility>
 
 #include "client/experiments/studies/cobot_studies.hpp"
+#include "client/experiments/studies/furniture_studies.hpp"
+#include "client/experiments/studies/kitting_studies.hpp"
 #include "client/experiments/studies/planar_studies.hpp"
 #include "client/experiments/studies/study.hpp"
 #include "proto/types/failure.hpp"
@@ -38,8 +41,8 @@ std::uint64_t seed_of(InstanceSet set, std::size_t robot) {
 const std::vector<Study>& studies() {
   static const std::vector<Study> kStudies = [] {
     std::vector<Study> all = planar_studies();
-    for (Study& study : cobot_studies())
-      all.push_back(std::move(study));
+    for (std::vector<Study> more : {cobot_studies(), furniture_studies(), kitting_studies()})
+      std::ranges::move(more, std::back_inserter(all));
     return all;
   }();
   return kStudies;
@@ -53,6 +56,24 @@ const Study& find_study(std::string_view name) {
     names += (names.empty() ? "" : ", ") + study.name;
   }
   throw Failure(ErrorCode::NotFound, "no study '" + std::string(name) + "'; there are " + names);
+}
+
+std::vector<std::string> families() {
+  std::vector<std::string> names;
+  for (const Study& study : studies())
+    if (!study.family.empty() && std::ranges::find(names, study.family) == names.end())
+      names.push_back(study.family);
+  return names;
+}
+
+std::vector<const Study*> find_studies(std::string_view name) {
+  std::vector<const Study*> found;
+  for (const Study& study : studies())
+    if (study.family == name && !name.empty())
+      found.push_back(&study);
+  if (found.empty())
+    found.push_back(&find_study(name));
+  return found;
 }
 
 }  // namespace kinship::experiments

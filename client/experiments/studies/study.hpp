@@ -33,8 +33,9 @@ using DrawInstance = std::function<Problem(std::uint64_t seed, std::uint32_t ind
 /// A task that several robots have learned and are tested on. Frozen once calibrated with uniform
 /// sampling: scenes, placements, seeds and numbers of instances are constants of the code.
 struct Study {
-  std::string name;     ///< also its task at the server, and its folder of results
-  std::string purpose;  ///< for the command line's help
+  std::string name;      ///< also its task at the server, and its folder of results
+  std::string purpose;   ///< for the command line's help
+  std::string family{};  ///< name that stands for it and others like it; may be empty
   std::vector<StudyRobot> robots;
   planner::PlanSettings
       settings;                 ///< of every query; the overshoot may be chosen on tuning instances
@@ -58,5 +59,12 @@ const std::vector<Study>& studies();
 
 /// \throws Failure(NotFound) that names the studies there are.
 const Study& find_study(std::string_view name);
+
+/// The names of families, each once.
+std::vector<std::string> families();
+
+/// The studies of a family in their order, or the one study of that name.
+/// \throws Failure(NotFound) that names the studies there are.
+std::vector<const Study*> find_studies(std::string_view name);
 
 }  // namespace kinship::experiments
