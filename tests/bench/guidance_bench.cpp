@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
       for (const Attempt& a : sets[f.label()]) {
         if (n++ >= count) break;
         if (!a.path) continue;
-        e.paths.push_back({f.digest, a.report_uuid, pose_path(f.robot.chain, f.placed.T_task_base, a.path->waypoints(), 40)});
+        e.paths.push_back({f.digest, a.report_uuid, pose_path(f.robot.chain, f.placed.T_task_base, a.path->waypoints(), getenv("POSES") ? atoi(getenv("POSES")) : 40)});
       }
     }
     std::vector<Variant> variants;
