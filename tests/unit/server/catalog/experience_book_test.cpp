@@ -45,6 +45,7 @@ TEST_F(Books, WhoAsksAfterARetirementGetsWhatWasReadAfterIt) {
   ASSERT_TRUE(before);
   EXPECT_TRUE(has(before, attempts[1].report_uuid));
   EXPECT_EQ(later.get()->paths.size(), 2U);
+  ASSERT_TRUE(book.find(key()));
   EXPECT_EQ(book.find(key())->paths.size(), 2U);
 }
 
