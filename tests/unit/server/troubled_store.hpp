@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <utility>
 
 #include "server/store/sqlite/database.hpp"
@@ -13,10 +14,13 @@ inline void damage_robot(const std::filesystem::path& file, const std::string& l
   database.execute("UPDATE robot SET dof = dof + 1 WHERE label = '" + label + "'");
 }
 
-/// A store that has no memory left for reports; else the real one.
+/// A store that has no memory left for reports, and where something may happen whenever paths were
+/// read; else the real one.
 class TroubledStore final : public store::Store {
  public:
-  explicit TroubledStore(Store& store) : store_(store) {}
+  explicit TroubledStore(
+      Store& store, std::function<void()> on_paths_read = [] {})
+      : store_(store), on_paths_read_(std::move(on_paths_read)) {}
 
   void commit_reports(std::vector<Attempt> /*attempts*/, ReportsDone /*done*/) override {
     throw std::bad_alloc();
@@ -39,7 +43,9 @@ class TroubledStore final : public store::Store {
   }
   std::vector<store::StoredPath> read_paths(const Digest& robot, std::string_view task,
                                             const store::PathRange& range) const override {
-    return store_.read_paths(robot, task, range);
+    std::vector<store::StoredPath> paths = store_.read_paths(robot, task, range);
+    on_paths_read_();
+    return paths;
   }
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     return store_.read_scene(scene_id);
@@ -92,6 +98,7 @@ class TroubledStore final : public store::Store {
 
  private:
   Store& store_;
+  const std::function<void()> on_paths_read_;
 };
 
 }  // namespace kinship::store

@@ -93,6 +93,13 @@ TEST(ExperienceChoice, KeepsWithinItsBytes) {
   EXPECT_EQ(choose_experience(paths, kTwoPoses).paths.size(), 1U);
   EXPECT_EQ(choose_experience(paths, 7 * kTwoPoses + 1).paths.size(), 7U);
   EXPECT_EQ(choose_experience(paths, 1000 * kTwoPoses).paths.size(), 20U);
+  std::vector<SharedPosePath> longer;
+  for (const SharedPosePath& path : paths) {
+    PosePath with_more = *path;
+    with_more.poses.resize(kExperiencePoses, with_more.poses.back());
+    longer.push_back(std::make_shared<const PosePath>(with_more));
+  }
+  EXPECT_EQ(choose_experience(longer, 3 * experience_bytes(kExperiencePoses)).paths.size(), 3U);
 }
 
 TEST(ExperienceChoice, OfFewerBytesIsTheBeginningOfIt) {

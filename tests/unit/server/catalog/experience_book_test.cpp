@@ -1,0 +1,88 @@
+#include "server/catalog/experience_book.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <future>
+
+#include "tests/unit/server/fitting/fit_fixture.hpp"
+#include "tests/unit/server/troubled_store.hpp"
+
+namespace kinship::catalog {
+namespace {
+
+class Books : public fitting::FitDistribution {
+ protected:
+  static ExperienceKey key(std::uint32_t bytes = kDefaultExperienceBytes) {
+    return {"shelf", {}, 0, bytes};
+  }
+  static std::future<SharedChoice> ask(ExperienceBook& book, const ExperienceKey& key) {
+    const auto promise = std::make_shared<std::promise<SharedChoice>>();
+    book.ask(key, [promise](const SharedChoice& choice) { promise->set_value(choice); });
+    return promise->get_future();
+  }
+  static bool has(const SharedChoice& choice, const Uuid& path) {
+    return std::any_of(choice->paths.begin(), choice->paths.end(),
+                       [&](const auto& one) { return one->path == path; });
+  }
+};
+
+TEST_F(Books, WhoAsksAfterARetirementGetsWhatWasReadAfterIt) {
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 3, 1);
+  report(attempts);
+  ExperienceBook* asked = nullptr;
+  std::future<SharedChoice> later;
+  store::TroubledStore store(*store_, [&] {
+    if (later.valid())
+      return;
+    ASSERT_TRUE(store_->retire_path(attempts[1].report_uuid));
+    asked->forget("shelf");
+    later = ask(*asked, key());
+  });
+  ExperienceBook book(store, registry_);
+  asked = &book;
+  const SharedChoice before = ask(book, key()).get();
+  ASSERT_TRUE(before);
+  EXPECT_TRUE(has(before, attempts[1].report_uuid));
+  EXPECT_EQ(later.get()->paths.size(), 2U);
+  ASSERT_TRUE(book.find(key()));
+  EXPECT_EQ(book.find(key())->paths.size(), 2U);
+}
+
+TEST_F(Books, HoldOneChoiceForAllWhoAsk) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  ExperienceBook book(*store_, registry_, {.max_choices = 2, .max_waiters = 10});
+  EXPECT_FALSE(book.find(key()));
+  const SharedChoice choice = ask(book, key()).get();
+  EXPECT_EQ(ask(book, key()).get(), choice);
+  EXPECT_EQ(book.find(key()), choice);
+  EXPECT_NE(ask(book, key(5000)).get(), choice);
+  EXPECT_TRUE(ask(book, key(6000)).get());
+  EXPECT_FALSE(book.find(key())) << "of three the one that was not asked for longest is gone";
+  EXPECT_TRUE(book.find(key(5000)));
+}
+
+TEST_F(Books, AnswerWhoWaitsWhenTheyStop) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  std::promise<void> begun, end;
+  store::TroubledStore store(*store_, [&, held = false]() mutable {
+    if (std::exchange(held, true))
+      return;
+    begun.set_value();
+    end.get_future().wait();
+  });
+  ExperienceBook book(store, registry_);
+  bool is_answered = false;
+  book.ask(key(), [&](const SharedChoice& choice) {
+    EXPECT_FALSE(choice);
+    is_answered = true;
+    end.set_value();  // the thread that stop() waits for
+  });
+  begun.get_future().wait();
+  book.stop();
+  EXPECT_TRUE(is_answered);
+  EXPECT_FALSE(ask(book, key()).get());
+}
+
+}  // namespace
+}  // namespace kinship::catalog
