@@ -33,8 +33,9 @@ def results_text(study: StudyFolder) -> str:
     text += "## What guidance was worth\n\n" + _how_measured(study)
     text += tables.summary_table(study, pairs)
     text += "![Mean collision checks by robot and guidance](checks.svg)\n\n"
-    text += ("Pair by pair: checks (mean, median, 90 % quantile over queries), ratios uniform to guided, the share of "
-             "queries that took more than twice the checks of the uniform query of the same instance and seed.\n\n")
+    text += ("Pair by pair: checks (mean, median, 95 % quantile over queries), ratios uniform to guided, the share of "
+             "queries that took more than twice the checks of the uniform query of the same instance and seed, and how "
+             "many guided queries the gate sent to uniform planning (older rows do not say).\n\n")
     text += markdown.table(tables.PAIR_HEAD, tables.pair_rows(pairs)) + tables.significance_text(pairs)
     text += "For each robot the other one whose experience helped least and most, and what the transfer left of it:\n\n"
     text += tables.loss_table(study, pairs, distributions)
@@ -62,7 +63,8 @@ def _protocol_text(study: StudyFolder, cells: Cells) -> str:
 
 
 def _how_measured(study: StudyFolder) -> str:
-    return ("Ratios are means of uniform planning by means of guided planning, geometric means over pairs. In brackets: "
+    return ("Ratios are means of uniform planning by means of guided planning, geometric means over pairs; likewise of "
+            "medians and of 95 % quantiles. *Tail held*: pairs whose 95 % quantile is not above uniform's. In brackets: "
             f"95 % percentile interval of the bootstrap, {RESAMPLES} resamples of the instances with a fixed seed. p: "
             "Wilcoxon's signed-rank test, two-sided, exact, over means of instances; of success McNemar's exact test over "
             "queries.\n\n")

@@ -226,6 +226,14 @@ void report_study(const Study& study, const RunOptions& options, std::ostream& m
            << std::endl;
 }
 
+void report_family(const std::string& family, const RunOptions& options, std::ostream& messages) {
+  const AnalysisRun run{options.analysis, options.folder, "--family=" + family};
+  if (!run_analysis(run))
+    throw Failure(ErrorCode::Internal,
+                  "the family is not analysed; to have it done: " + run.command());
+  messages << family << ": " << (options.folder / (family + ".md")).string() << std::endl;
+}
+
 void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
                          std::ostream& out) {
   const std::vector<StudyMember> fleet = load_fleet(study, options.models);
