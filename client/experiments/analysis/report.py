@@ -71,11 +71,16 @@ def _how_measured(study: StudyFolder) -> str:
 
 
 def _side_studies_text(study: StudyFolder, cells: Cells) -> str:
+    uniform = study.study["uniform"]
     there = [side for side in study.study["side_studies"] if study.has(side["name"] + ".jsonl")]
     text = ""
     if there:
-        text += ("## Side studies\n\nFurther cells over the same instances. Uniform planning is that of the test set, "
-                 "another run under another load: checks can be compared, times hardly.\n\n")
+        text += "## Side studies\n\nFurther cells over the same instances. "
+        if all((robot, uniform) in study.cells(side["name"] + ".jsonl") for side in there for robot in study.robots):
+            text += "Each has uniform planning of its own, in the same run.\n\n"
+        else:
+            text += ("Uniform planning is that of the test set, another run under another load: checks can be compared, "
+                     "times hardly.\n\n")
     for side in there:
         variants = _variants(study, cells, study.cells(side["name"] + ".jsonl"))
         text += f"### {side['name']}: {side['purpose']}\n\n" + tables.variant_table(variants, study.robots)
@@ -86,12 +91,16 @@ def _side_studies_text(study: StudyFolder, cells: Cells) -> str:
 
 
 def _variants(study: StudyFolder, cells: Cells, further: Cells) -> Sequence[tuple[str, list[Comparison]]]:
-    """Each variant of a side study against the uniform planning of the test set, in the order of the file."""
+    """Each variant of a side study against its own uniform planning, in the order of the file.
+
+    Where a log is older than that, or is of peers, against the uniform planning of the test set.
+    """
+    uniform = study.study["uniform"]
     variants: dict[str, list[Comparison]] = {}
     for robot in study.robots:
         for (known, guidance), cell in further.items():
-            if known == robot:
-                comparison = compare(cells[robot, study.study["uniform"]], cell)
+            if known == robot and guidance != uniform:
+                comparison = compare(further.get((robot, uniform), cells[robot, uniform]), cell)
                 variants.setdefault(guidance.partition("|")[2], []).append(comparison)
     for pairs in variants.values():
         order = {source: place for place, source in enumerate(study.robots)}

@@ -207,6 +207,19 @@ class TestProgram(CopiedStudy):
         for name, content in files.items():
             self.assertEqual((self.folder / name).read_bytes(), content, name)
 
+    def test_a_side_study_is_compared_with_its_own_uniform_planning(self) -> None:
+        side = list(StudyFolder(self.folder).lines("pooled.jsonl"))
+        older = report.results_text(StudyFolder(self.folder))
+        uniform = [row | {"checks": 3 * row["checks"]} for row in StudyFolder(self.folder).lines("test.jsonl")
+                   if row["guidance"] == "uniform" and row["solved"]]
+        (self.folder / "pooled.jsonl").write_text("".join(json.dumps(row) + "\n" for row in side + uniform))
+        study = StudyFolder(self.folder)
+        [(name, pairs)] = report._variants(study, study.cells("test.jsonl"), study.cells("pooled.jsonl"))
+        self.assertEqual(name, "pooled")
+        own = study.cells("pooled.jsonl")
+        self.assertTrue(all(pair.uniform.checks.mean() == own[pair.guided.robot, "uniform"].checks.mean() for pair in pairs))
+        self.assertNotEqual(report.results_text(study), older)
+
     def test_calibration(self) -> None:
         text = self.analyse(str(self.folder), "--calibration").stdout
         self.assertIn("| planar_7r_c |", text)
