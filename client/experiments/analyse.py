@@ -4,6 +4,7 @@
     analyse.py client/experiments/results/cobots     RESULTS.md, checks.svg, time.svg, clouds.png in that folder
     analyse.py FOLDER --calibration                  calibration beside the paper's figures, on standard output
     analyse.py FOLDER --tuning                       what guidance was worth in the last tuning run, likewise
+    analyse.py FOLDER --family=furniture             furniture.md in that folder, over the studies of the family in it
 
 Needs python3-numpy, python3-scipy, python3-matplotlib and python3-zstandard of Debian.
 Exit codes: 0 done, 1 failed (a package or a file is missing, or a file holds something else), 2 wrong usage.
@@ -18,18 +19,22 @@ PACKAGES = "python3-numpy python3-scipy python3-matplotlib python3-zstandard"
 def main() -> int:
     """Does what the command line says. Returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path, help="of one study: it holds study.json")
+    parser.add_argument("folder", type=pathlib.Path, help="of one study: it holds study.json; of --family: of several")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--calibration", action="store_true", help="calibration only")
     what.add_argument("--tuning", action="store_true", help="the last tuning run only")
+    what.add_argument("--family", help="the studies of this family that the folder holds")
     arguments = parser.parse_args()
     sys.dont_write_bytecode = True  # nothing is left in the source tree
     try:
-        from analysis import calibration, report, study_folder, tuning
+        from analysis import calibration, family, report, study_folder, tuning
     except ModuleNotFoundError as error:
         print(f"analyse.py: {error}; on Debian: apt-get install {PACKAGES}", file=sys.stderr)
         return 1
     try:
+        if arguments.family:
+            family.write_family(arguments.folder, arguments.family)
+            return 0
         folder = study_folder.StudyFolder(arguments.folder)
         if arguments.calibration:
             print(calibration.calibration_text(folder), end="")

@@ -1,6 +1,7 @@
 #include "client/experiments/study_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -101,6 +102,11 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
       ->excludes(tunes);
 }
 
+bool is_family(const std::string& name) {
+  const std::vector<std::string> known = families();
+  return std::ranges::find(known, name) != known.end();
+}
+
 void run_one(const Study& study, const StudyOptions& options, std::ostream& out,
              std::ostream& messages) {
   for (const std::string& side : options.sides)
@@ -140,6 +146,10 @@ void add_study_commands(CLI::App& app, StudyOptions& options) {
 void run_study_command(const StudyOptions& options, std::ostream& out, std::ostream& messages) {
   for (const Study* const study : find_studies(options.study))
     run_one(*study, options, out, messages);
+  const bool has_results = options.problems_of.empty() && options.calibration_instances == 0 &&
+                           !options.tunes && !options.run.quick && options.run.learning == 0;
+  if (is_family(options.study) && has_results)
+    report_family(options.study, options.run, messages);
 }
 
 }  // namespace kinship::experiments

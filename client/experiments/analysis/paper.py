@@ -23,14 +23,6 @@ def paper_cell(study: str, robot: str, guidance: str) -> PaperCell | None:
     return _CELLS.get((study, robot, guidance))
 
 
-def paper_uniform_checks(robot: str) -> float | None:
-    """Mean checks of uniform planning with this robot, whatever our study."""
-    for (_, known, guidance), cell in _CELLS.items():
-        if known == robot and guidance == "uniform":
-            return cell["checks"]
-    return None
-
-
 def paper_ratios(study: str, column: str, own: bool | None) -> list[float]:
     """Ratios of means, uniform to guided, of the paper's pairs; `own` None: of all."""
     return [_CELLS[study, robot, "uniform"][column] / cell[column]

@@ -33,8 +33,9 @@ def results_text(study: StudyFolder) -> str:
     text += "## What guidance was worth\n\n" + _how_measured(study)
     text += tables.summary_table(study, pairs)
     text += "![Mean collision checks by robot and guidance](checks.svg)\n\n"
-    text += ("Pair by pair: checks (mean, median, 90 % quantile over queries), ratios uniform to guided, the share of "
-             "queries that took more than twice the checks of the uniform query of the same instance and seed.\n\n")
+    text += ("Pair by pair: checks (mean, median, 95 % quantile over queries), ratios uniform to guided, the share of "
+             "queries that took more than twice the checks of the uniform query of the same instance and seed, and how "
+             "many guided queries the gate sent to uniform planning (older rows do not say).\n\n")
     text += markdown.table(tables.PAIR_HEAD, tables.pair_rows(pairs)) + tables.significance_text(pairs)
     text += "For each robot the other one whose experience helped least and most, and what the transfer left of it:\n\n"
     text += tables.loss_table(study, pairs, distributions)
@@ -62,18 +63,24 @@ def _protocol_text(study: StudyFolder, cells: Cells) -> str:
 
 
 def _how_measured(study: StudyFolder) -> str:
-    return ("Ratios are means of uniform planning by means of guided planning, geometric means over pairs. In brackets: "
+    return ("Ratios are means of uniform planning by means of guided planning, geometric means over pairs; likewise of "
+            "medians and of 95 % quantiles. *Tail held*: pairs whose 95 % quantile is not above uniform's. In brackets: "
             f"95 % percentile interval of the bootstrap, {RESAMPLES} resamples of the instances with a fixed seed. p: "
             "Wilcoxon's signed-rank test, two-sided, exact, over means of instances; of success McNemar's exact test over "
             "queries.\n\n")
 
 
 def _side_studies_text(study: StudyFolder, cells: Cells) -> str:
+    uniform = study.study["uniform"]
     there = [side for side in study.study["side_studies"] if study.has(side["name"] + ".jsonl")]
     text = ""
     if there:
-        text += ("## Side studies\n\nFurther cells over the same instances. Uniform planning is that of the test set, "
-                 "another run under another load: checks can be compared, times hardly.\n\n")
+        text += "## Side studies\n\nFurther cells over the same instances. "
+        if all((robot, uniform) in study.cells(side["name"] + ".jsonl") for side in there for robot in study.robots):
+            text += "Each has uniform planning of its own, in the same run.\n\n"
+        else:
+            text += ("Uniform planning is that of the test set, another run under another load: checks can be compared, "
+                     "times hardly.\n\n")
     for side in there:
         variants = _variants(study, cells, study.cells(side["name"] + ".jsonl"))
         text += f"### {side['name']}: {side['purpose']}\n\n" + tables.variant_table(variants, study.robots)
@@ -84,12 +91,16 @@ def _side_studies_text(study: StudyFolder, cells: Cells) -> str:
 
 
 def _variants(study: StudyFolder, cells: Cells, further: Cells) -> Sequence[tuple[str, list[Comparison]]]:
-    """Each variant of a side study against the uniform planning of the test set, in the order of the file."""
+    """Each variant of a side study against its own uniform planning, in the order of the file.
+
+    Where a log is older than that, or is of peers, against the uniform planning of the test set.
+    """
+    uniform = study.study["uniform"]
     variants: dict[str, list[Comparison]] = {}
     for robot in study.robots:
         for (known, guidance), cell in further.items():
-            if known == robot:
-                comparison = compare(cells[robot, study.study["uniform"]], cell)
+            if known == robot and guidance != uniform:
+                comparison = compare(further.get((robot, uniform), cells[robot, uniform]), cell)
                 variants.setdefault(guidance.partition("|")[2], []).append(comparison)
     for pairs in variants.values():
         order = {source: place for place, source in enumerate(study.robots)}

@@ -13,6 +13,7 @@ from .study_folder import Cell
 
 RESAMPLES = 10_000
 INTERVAL = (0.025, 0.975)  # of a 95 % interval
+TAIL = 0.95  # quantile that stands for the tail
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Comparison:
     checks: Estimate  # ratio of the means, uniform to guided
     time: Estimate  # of planning times, likewise
     median_ratio: float  # of the medians of checks over queries
+    tail_ratio: float  # of the 95 % quantiles of checks over queries
     p_checks: float  # Wilcoxon's, over means of instances
     p_time: float
     p_solved: float  # McNemar's, over queries
@@ -123,11 +125,17 @@ def compare(uniform: Cell, guided: Cell) -> Comparison:
         checks=geometric_mean([(uniform.checks, guided.checks)]),
         time=geometric_mean([(uniform.cpu_s, guided.cpu_s)]),
         median_ratio=float(np.median(uniform.checks) / np.median(guided.checks)),
+        tail_ratio=float(np.quantile(uniform.checks, TAIL) / np.quantile(guided.checks, TAIL)),
         p_checks=wilcoxon_p(uniform.checks, guided.checks),
         p_time=wilcoxon_p(uniform.cpu_s, guided.cpu_s),
         p_solved=mcnemar_p(int((guided.solved & ~uniform.solved).sum()),
                            int((uniform.solved & ~guided.solved).sum())),
         much_worse=float((guided.checks > 2 * uniform.checks).mean()))
+
+
+def mean_of_ratios(comparisons: Sequence[Comparison], name: str) -> float:
+    """Geometric mean of a ratio that has no interval: "median_ratio" or "tail_ratio"."""
+    return float(np.exp(np.log([getattr(each, name) for each in comparisons]).mean()))
 
 
 def mean_of_comparisons(comparisons: Sequence[Comparison], quantity: str) -> Estimate:

@@ -21,6 +21,8 @@ class Cell:
     cpu_s: np.ndarray  # time of the planning thread
     solved: np.ndarray
     lengths: np.ndarray  # of paths, joint units; NaN if unsolved
+    gated: np.ndarray | None = None  # 1 where the gate sent a guided query to uniform planning; NaN: not recorded
+    shares: np.ndarray | None = None  # of guided samples; NaN: not recorded
 
     def solved_text(self) -> str:
         return f"{int(self.solved.sum())}/{self.solved.size}"
@@ -84,4 +86,6 @@ class StudyFolder:
                     checks=table(lambda row: float(row["checks"] if row["solved"] else limit)),
                     cpu_s=table(lambda row: row["cpu_s"]),
                     solved=table(lambda row: row["solved"]),
-                    lengths=table(lambda row: row["length"] if row["solved"] else np.nan))
+                    lengths=table(lambda row: row["length"] if row["solved"] else np.nan),
+                    gated=table(lambda row: float(row.get("gate_fired", np.nan))),
+                    shares=table(lambda row: float(row.get("guided_share", np.nan))))

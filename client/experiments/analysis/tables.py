@@ -8,11 +8,11 @@ import numpy as np
 
 from . import markdown, paper
 from .markdown import NOTHING, p_text, percent
-from .statistics import Comparison, Estimate, compare, holm, mean_of_comparisons
+from .statistics import TAIL, Comparison, compare, holm, mean_of_comparisons, mean_of_ratios
 from .study_folder import Cell, Cells, StudyFolder
 
-TAIL = 0.9  # quantile that stands for the tail
-_TAIL_HEAD = "90 %"
+TAIL_HEAD = f"{100 * TAIL:.0f} %"
+TAIL_LIMIT = 1  # a pair whose tail ratio is below has a longer tail than uniform planning
 
 
 def source_of(cell: Cell) -> str:
@@ -26,6 +26,14 @@ def kind_of(comparison: Comparison, robots: Sequence[str]) -> str:
     if source == comparison.guided.robot:
         return "own"
     return "another robot's" if source in robots else source
+
+
+def gated_text(pairs: Iterable[Comparison]) -> str:
+    """How many guided queries the gate sent to uniform planning; nothing where rows do not say."""
+    gated = [pair.guided.gated for pair in pairs]
+    if any(each is None or np.isnan(each).any() for each in gated):
+        return NOTHING
+    return f"{int(sum(each.sum() for each in gated))}/{sum(each.size for each in gated)}"
 
 
 def compare_pairs(study: StudyFolder, cells: Cells) -> list[Comparison]:
@@ -48,24 +56,27 @@ def runs_table(study: StudyFolder) -> str:
 
 
 def calibration_table(study: StudyFolder, cells: Cells) -> str:
-    """Uniform planning of the calibration instances beside the paper's."""
+    """Uniform planning of the calibration instances, beside the paper's where the paper has the study."""
     rows, ours, theirs = [], [], []
     for robot in study.robots:
         cell = cells.get((robot, "uniform"))
         if cell is None:
             continue
-        wanted = paper.paper_uniform_checks(robot)
+        known = paper.paper_cell(study.study["study"], robot, "uniform")
+        wanted = known["checks"] if known else None
         mean = cell.checks.mean()
         rows.append([robot, f"{mean:.0f}", f"{cell.checks.std(ddof=1) if cell.checks.size > 1 else 0:.0f}",
-                     f"{np.median(cell.checks):.0f}", f"{wanted:.0f}" if wanted else NOTHING,
-                     f"{mean / wanted:.2f}" if wanted else NOTHING, cell.solved_text()])
+                     f"{np.median(cell.checks):.0f}", f"{np.quantile(cell.checks, TAIL):.0f}",
+                     f"{wanted:.0f}" if wanted else NOTHING, f"{mean / wanted:.2f}" if wanted else NOTHING,
+                     cell.solved_text()])
         if wanted:
             ours.append(mean)
             theirs.append(wanted)
     if ours:
-        rows.append(["mean over the robots", f"{np.mean(ours):.0f}", "", "", f"{np.mean(theirs):.0f}",
+        rows.append(["mean over the robots", f"{np.mean(ours):.0f}", "", "", "", f"{np.mean(theirs):.0f}",
                      f"{sum(ours) / sum(theirs):.2f}", ""])
-    return markdown.table(["robot", "mean checks", "deviation", "median", "the paper's", "of it", "solved"], rows)
+    return markdown.table(["robot", "mean checks", "deviation", "median", TAIL_HEAD, "the paper's", "of it", "solved"],
+                          rows)
 
 
 def summary_table(study: StudyFolder, pairs: Sequence[Comparison]) -> str:
@@ -78,9 +89,20 @@ def summary_table(study: StudyFolder, pairs: Sequence[Comparison]) -> str:
         least = min(chosen, key=lambda pair: pair.checks.value)
         rows.append([name, str(len(chosen)),
                      str(mean_of_comparisons(chosen, "checks")), _paper_mean(study, "checks", own),
+                     *_tail_cells(chosen),
                      f"{least.checks.value:.2f} ({least.guided.robot} from {source_of(least.guided)})",
                      str(mean_of_comparisons(chosen, "cpu_s")), _paper_mean(study, "time_s", own)])
-    return markdown.table(["experience", "pairs", "checks", "the paper's", "least", "time", "the paper's"], rows)
+    return markdown.table(["experience", "pairs", "checks", "the paper's", *_TAIL_COLUMNS, "least", "time",
+                           "the paper's"], rows)
+
+
+_TAIL_COLUMNS = ["of medians", f"of {TAIL_HEAD}", "tail held"]
+
+
+def _tail_cells(pairs: Sequence[Comparison]) -> list[str]:
+    """Geometric means of the ratios of medians and of tails, and the pairs whose tail is not above uniform's."""
+    held = sum(pair.tail_ratio >= TAIL_LIMIT for pair in pairs)
+    return [f"{mean_of_ratios(pairs, name):.2f}" for name in ("median_ratio", "tail_ratio")] + [f"{held}/{len(pairs)}"]
 
 
 def _paper_mean(study: StudyFolder, column: str, own: bool | None) -> str:
@@ -89,9 +111,9 @@ def _paper_mean(study: StudyFolder, column: str, own: bool | None) -> str:
 
 
 PAIR_HEAD = ["robot", "<experience of",
-             "uniform: mean", "median", _TAIL_HEAD, "guided: mean", "median", _TAIL_HEAD,
-             "ratio of means", "of medians", "of times", "> 2 x", "p, checks", "p, time", "solved uniform", "guided",
-             "p, solved"]
+             "uniform: mean", "median", TAIL_HEAD, "guided: mean", "median", TAIL_HEAD,
+             "ratio of means", "of medians", f"of {TAIL_HEAD}", "of times", "> 2 x", "gated", "p, checks",
+             "p, time", "solved uniform", "guided", "p, solved"]
 
 
 def pair_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
@@ -102,8 +124,9 @@ def pair_rows(pairs: Iterable[Comparison]) -> list[list[str]]:
         moments = [f"{value:.0f}" for cell in (pair.uniform, pair.guided)
                    for value in (cell.checks.mean(), np.median(cell.checks), np.quantile(cell.checks, TAIL))]
         rows.append([pair.guided.robot, source + (" (own)" if source == pair.guided.robot else ""), *moments,
-                     str(pair.checks), f"{pair.median_ratio:.2f}", f"{pair.time.value:.2f}",
-                     f"{100 * pair.much_worse:.1f} %", p_text(pair.p_checks), p_text(pair.p_time), pair.uniform.solved_text(), pair.guided.solved_text(),
+                     str(pair.checks), f"{pair.median_ratio:.2f}", f"{pair.tail_ratio:.2f}",
+                     f"{pair.time.value:.2f}", f"{100 * pair.much_worse:.1f} %", gated_text([pair]),
+                     p_text(pair.p_checks), p_text(pair.p_time), pair.uniform.solved_text(), pair.guided.solved_text(),
                      p_text(pair.p_solved)])
     return rows
 
@@ -124,8 +147,8 @@ def variant_table(variants: Sequence[tuple[str, Sequence[Comparison]]], robots: 
         for kind in dict.fromkeys(kind_of(pair, robots) for pair in pairs):
             chosen = [pair for pair in pairs if kind_of(pair, robots) == kind]
             rows.append([name, kind, str(len(chosen)), str(mean_of_comparisons(chosen, "checks")),
-                         str(mean_of_comparisons(chosen, "cpu_s"))])
-    return markdown.table(["variant", "<experience", "pairs", "checks", "time"], rows)
+                         *_tail_cells(chosen), str(mean_of_comparisons(chosen, "cpu_s"))])
+    return markdown.table(["variant", "<experience", "pairs", "checks", *_TAIL_COLUMNS, "time"], rows)
 
 
 def _sources(study: StudyFolder, distributions: Iterable[dict[str, Any]]) -> dict[tuple[str, str], dict[str, Any]]:

@@ -19,6 +19,10 @@ std::string to_json(const QueryResult& result) {
   line["projections"] = result.projections;
   line["cpu_s"] = result.cpu_s;
   line["length"] = result.length;
+  if (result.gate_fired)
+    line["gate_fired"] = *result.gate_fired;
+  if (result.guided_share)
+    line["guided_share"] = *result.guided_share;
   return line.dump();
 }
 
@@ -35,6 +39,10 @@ Result<QueryResult> query_result_from_json(std::string_view text) {
     result.projections = line.at("projections");
     result.cpu_s = line.at("cpu_s");
     result.length = line.at("length");
+    if (line.contains("gate_fired"))
+      result.gate_fired = line.at("gate_fired").get<bool>();
+    if (line.contains("guided_share"))
+      result.guided_share = line.at("guided_share").get<double>();
     return result;
   } catch (const nlohmann::json::exception& exception) {
     return Error{ErrorCode::InvalidInput, exception.what()};

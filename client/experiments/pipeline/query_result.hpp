@@ -31,6 +31,11 @@ struct QueryResult {
   std::uint64_t projections = 0;
   double cpu_s = 0;  ///< of the planning thread: sampling, projection, checks; no goal IK, no fetch
   double length = 0;  ///< of the path, joint units; 0 if unsolved
+  /// Whether a guided query was planned uniformly because its start or goals are far from all that
+  /// the distribution knows. Missing in rows that are older than it, and of peers.
+  std::optional<bool> gate_fired = std::nullopt;
+  /// Of samples: how many were drawn from the distribution, as planned. Missing likewise.
+  std::optional<double> guided_share = std::nullopt;
 };
 
 /// One line of JSON.

@@ -24,7 +24,9 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
           .goal_checks = result.goal_checks,
           .projections = result.projections,
           .cpu_s = result.planning_time_s,
-          .length = result.waypoints ? planning::path_length(*result.waypoints) : 0};
+          .length = result.waypoints ? planning::path_length(*result.waypoints) : 0,
+          .gate_fired = result.gate_fired,
+          .guided_share = result.share};
 }
 
 /// All queries of one robot and instance.

@@ -40,6 +40,8 @@ std::string describe_study(const Study& study, const std::vector<StudyMember>& f
   Json document;
   document["study"] = study.name;
   document["purpose"] = study.purpose;
+  if (!study.family.empty())
+    document["family"] = study.family;
   document["uniform"] = uniform_name(study.settings.overshoot);
   document["is_constrained"] = study.is_constrained;
   document["learning_instances"] = learning_instances;

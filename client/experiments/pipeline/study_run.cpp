@@ -66,7 +66,8 @@ std::vector<Cell> main_cells(const Study& study, StudySession& session,
   return cells;
 }
 
-/// The cells of a side study; a server is started only if there is something to fetch.
+/// The cells of a side study, and uniform ones, so that both had the same load; a server is started
+/// only if there is something to fetch.
 std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySession& session) {
   const auto is_uniform = [](const WishedCell& wished) { return wished.wish.profile.empty(); };
   if (!std::ranges::all_of(side.cells, is_uniform))
@@ -74,6 +75,8 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
   for (const SideStudy::Shortened& shortened : side.shortened)
     session.report_as(shortened.task, shortened.paths);
   std::vector<Cell> cells;
+  for (std::size_t robot = 0; robot < session.fleet().size(); ++robot)
+    cells.push_back(uniform_cell(robot, study.settings, study.settings.overshoot));
   for (const WishedCell& wished : side.cells) {
     planner::PlanSettings settings = study.settings;
     settings.overshoot = wished.overshoot;
@@ -224,6 +227,14 @@ void report_study(const Study& study, const RunOptions& options, std::ostream& m
   analyse(study, options, "");
   messages << study.name << ": " << (StudyFiles(study, options).folder / "RESULTS.md").string()
            << std::endl;
+}
+
+void report_family(const std::string& family, const RunOptions& options, std::ostream& messages) {
+  const AnalysisRun run{options.analysis, options.folder, "--family=" + family};
+  if (!run_analysis(run))
+    throw Failure(ErrorCode::Internal,
+                  "the family is not analysed; to have it done: " + run.command());
+  messages << family << ": " << (options.folder / (family + ".md")).string() << std::endl;
 }
 
 void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,

@@ -53,6 +53,10 @@ void run_side_study(const Study& study, const std::string& name, const RunOption
 /// \throws Failure(Internal) that says how to have them made if that did not succeed.
 void report_study(const Study& study, const RunOptions& options, std::ostream& messages);
 
+/// Has a table made over the kinds of a family that the folder holds, `<folder>/<family>.md`.
+/// \throws Failure(Internal) as report_study.
+void report_family(const std::string& family, const RunOptions& options, std::ostream& messages);
+
 /// Writes the test instances of one robot as problems for kinship-plan, one a line.
 void write_test_problems(const Study& study, const RunOptions& options, const std::string& robot,
                          std::ostream& out);

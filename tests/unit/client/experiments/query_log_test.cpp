@@ -57,6 +57,25 @@ TEST_F(QueryLogs, AnInterruptedRunGoesOnWhereItWas) {
   EXPECT_EQ(read_query_results(file_).size(), 3U);
 }
 
+TEST_F(QueryLogs, RowsSayWhatTheGateDidAndOlderOnesStayAsTheyAre) {
+  QueryResult gated = result_of("a", digest_of(1));
+  gated.gate_fired = true;
+  gated.guided_share = 0.25;
+  const QueryResult older = result_of("b", digest_of(1));
+  {
+    QueryLog log(file_);
+    log.add(gated);
+    log.add(older);
+  }
+  const std::vector<QueryResult> read = read_query_results(file_);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].gate_fired, true);
+  EXPECT_EQ(read[0].guided_share, 0.25);
+  EXPECT_EQ(read[1].gate_fired, std::nullopt);
+  EXPECT_EQ(read[1].guided_share, std::nullopt);
+  EXPECT_EQ(to_json(read[1]).find("gate_fired"), std::string::npos);
+}
+
 TEST_F(QueryLogs, ResultsOfAnotherDistributionAreNotTakenForThese) {
   QueryLog log(file_);
   log.add(result_of("a", digest_of(1)));

@@ -20,7 +20,7 @@ EXPERIMENTS = HERE.parents[4] / "client" / "experiments"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
-from analysis import calibration, clouds, report, statistics, tables, tuning  # noqa: E402: after the path
+from analysis import calibration, clouds, family, report, statistics, tables, tuning  # noqa: E402: after the path
 from analysis.study_folder import Cell, StudyFolder  # noqa: E402
 
 
@@ -131,6 +131,12 @@ class TestStatistics(unittest.TestCase):
         self.assertEqual(compared.p_solved, 1)
         self.assertEqual(compared.much_worse, 0.5)
 
+    def test_tails_are_compared(self) -> None:
+        compared = statistics.compare(cell("uniform", [[value] for value in range(1, 102)]),
+                                      cell("panda", [[2 * value] for value in range(1, 102)]))
+        self.assertAlmostEqual(compared.tail_ratio, 0.5)
+        self.assertAlmostEqual(statistics.mean_of_ratios([compared, compared], "tail_ratio"), 0.5)
+
     def test_different_instances_are_not_compared(self) -> None:
         with self.assertRaisesRegex(ValueError, "arm guided by 'panda' and 'uniform' have different queries"):
             statistics.compare(cell("uniform", [[1], [2]]), cell("panda", [[1]]))
@@ -157,6 +163,20 @@ class TestFiles(CopiedStudy):
     def test_a_cell_that_lacks_queries_is_refused(self) -> None:
         with self.assertRaisesRegex(ValueError, "planar_5r_a guided by 'uniform' lacks queries: go on with --resume"):
             self.write_log({}, {"seed": 1}, {"instance": "b"}).cells("log.jsonl")
+
+    def test_gated_queries_are_counted_where_every_row_says(self) -> None:
+        rows = [{"guidance": guidance, "instance": instance, "gate_fired": guidance == "panda" and instance == "a",
+                 "guided_share": 0.5} for guidance in ("uniform", "panda") for instance in ("a", "b", "c")]
+        cells = self.write_log(*rows).cells("log.jsonl")
+        pair = statistics.compare(cells["planar_5r_a", "uniform"], cells["planar_5r_a", "panda"])
+        self.assertEqual(tables.gated_text([pair]), "1/3")
+        self.assertEqual(tables.gated_text([pair, pair]), "2/6")
+        self.assertEqual(pair.guided.shares.tolist(), [[0.5]] * 3)
+        self.assertIn("1/3", tables.pair_rows([pair])[0])
+        del rows[4]["gate_fired"]  # a row of before
+        cells = self.write_log(*rows).cells("log.jsonl")
+        pair = statistics.compare(cells["planar_5r_a", "uniform"], cells["planar_5r_a", "panda"])
+        self.assertEqual(tables.gated_text([pair]), "–")
 
     def test_a_damaged_file_is_named(self) -> None:
         twin = self.folder / "test.jsonl.zst"
@@ -187,6 +207,19 @@ class TestProgram(CopiedStudy):
         for name, content in files.items():
             self.assertEqual((self.folder / name).read_bytes(), content, name)
 
+    def test_a_side_study_is_compared_with_its_own_uniform_planning(self) -> None:
+        side = list(StudyFolder(self.folder).lines("pooled.jsonl"))
+        older = report.results_text(StudyFolder(self.folder))
+        uniform = [row | {"checks": 3 * row["checks"]} for row in StudyFolder(self.folder).lines("test.jsonl")
+                   if row["guidance"] == "uniform" and row["solved"]]
+        (self.folder / "pooled.jsonl").write_text("".join(json.dumps(row) + "\n" for row in side + uniform))
+        study = StudyFolder(self.folder)
+        [(name, pairs)] = report._variants(study, study.cells("test.jsonl"), study.cells("pooled.jsonl"))
+        self.assertEqual(name, "pooled")
+        own = study.cells("pooled.jsonl")
+        self.assertTrue(all(pair.uniform.checks.mean() == own[pair.guided.robot, "uniform"].checks.mean() for pair in pairs))
+        self.assertNotEqual(report.results_text(study), older)
+
     def test_calibration(self) -> None:
         text = self.analyse(str(self.folder), "--calibration").stdout
         self.assertIn("| planar_7r_c |", text)
@@ -202,6 +235,31 @@ class TestProgram(CopiedStudy):
         self.assertEqual(len(lines), 5)
         self.assertRegex(lines[3], r"^own +checks [\d.]+ \[[\d.]+, [\d.]+\], least [\d.]+, time [\d.]+, 1 pairs$")
         self.assertEqual("\n".join(lines) + "\n", tuning.tuning_text(StudyFolder(self.folder)))
+
+    def test_family(self) -> None:
+        easy = self.folder.parent / "planar_easy"
+        shutil.copytree(self.folder, easy)
+        for folder, name in ((self.folder, "planar"), (easy, "planar_easy")):
+            study = json.loads((folder / "study.json").read_text()) | {"study": name, "family": "planar"}
+            (folder / "study.json").write_text(json.dumps(study))
+        rows = list(StudyFolder(easy).lines("test.jsonl"))
+        (easy / "test.jsonl").write_text("".join(
+            json.dumps(row | {"checks": 1 + row["checks"] % 50, "solved": True}) + "\n" for row in rows))
+        shutil.copytree(easy, self.folder.parent / "planar_easy-quick")  # is left out
+        self.assertEqual(self.analyse(str(self.folder.parent), "--family=planar").returncode, 0)
+        lines = (self.folder.parent / "planar.md").read_text(encoding="utf-8").splitlines()
+        shown = [[word.strip() for word in line.split("|")[1:-1]] for line in lines if line.startswith("| ")][2:]
+        self.assertEqual([row[:3] for row in shown], [
+            ["planar", "own", "3"], ["planar", "another robot's", "6"], ["easy", "own", "3"],
+            ["easy", "another robot's", "6"], ["all", "own", "3"], ["all", "another robot's", "6"]])
+        self.assertEqual(shown[4][3:], shown[0][3:])  # the easy kind does not count
+        self.assertNotEqual(shown[2][3:], shown[0][3:])
+        pairs = tables.compare_pairs(StudyFolder(self.folder), StudyFolder(self.folder).cells("test.jsonl"))
+        own = [pair for pair in pairs if pair.guided.guidance == pair.guided.robot]
+        self.assertEqual(shown[0][4], f"{statistics.mean_of_comparisons(own, 'checks').value:.2f}")
+        self.assertIn("no results of a study of the family 'chairs'",
+                      self.analyse(str(self.folder.parent), "--family=chairs").stderr)
+        self.assertEqual(family.find_kinds(self.folder.parent, "planar")[0].folder, self.folder)
 
     def test_says_what_to_install(self) -> None:
         result = self.analyse(str(self.folder), python=("-S",))  # without site packages
