@@ -79,8 +79,7 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
     answer.message = describe(*distribution);
   }
   if (experience)
-    answer.message +=
-        (answer.message.empty() ? "" : "; ") + describe(experience->experience());
+    answer.message += (answer.message.empty() ? "" : "; ") + describe(experience->experience());
   guidance.experience = std::move(experience);
   answer.sampling.emplace(advice, wanted.sampling);
   answer.message += "; " + describe(*answer.sampling, guidance.guided_fraction);
@@ -146,8 +145,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
   }
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
-    known = std::make_shared<planning::ExperienceGuide>(*wanted.chain,
-                                                        *std::move(reply->experience));
+    known =
+        std::make_shared<planning::ExperienceGuide>(*wanted.chain, *std::move(reply->experience));
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
                          find_fault(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known)

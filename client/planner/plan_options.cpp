@@ -43,6 +43,7 @@ struct RawOptions {
   std::string guidance;
   std::string report = "no";
   std::string record_scenes = "yes";
+  std::string tracks = "yes";
   double timeout_s = 5;
   double wait_s = 30;
   double guided_fraction = 0;
@@ -118,6 +119,11 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
                  "part of the queries planned uniformly as control (default: chosen query by query "
                  "with --guidance auto, 0 with always)")
       ->check(between(0.0, 1.0));
+  app.add_option("--tracks", raw.tracks,
+                 "guided queries follow stored ways of the hand, moved onto the query, and draw "
+                 "around them; no: samples of the mixture alone (default: yes, and no with a "
+                 "profile that begins with paper)")
+      ->check(CLI::IsMember({"yes", "no"}));
   app.add_option("--wait", raw.wait_s, "seconds to wait for a distribution that is being made")
       ->check(between(0.0, 3600.0))
       ->capture_default_str();
@@ -149,8 +155,8 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
 
 /// Options that say which distribution is wanted and how it is used.
 constexpr std::initializer_list<const char*> kOfGuidance = {
-    "--profile", "--estimator", "--sources",       "--weighting",
-    "--since",   "--share",     "--control-share", "--wait"};
+    "--profile", "--estimator",     "--sources", "--weighting", "--since",
+    "--share",   "--control-share", "--wait",    "--tracks"};
 constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
                                                            "--outbox"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};
@@ -245,6 +251,8 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
   options.guidance = guidance_of(raw, options);
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";
+  options.follow_tracks =
+      app.count("--tracks") > 0 ? raw.tracks == "yes" : !options.profile.starts_with("paper");
   require_task(app, options);
   complete_shares(app, raw, options);
   options.selection =

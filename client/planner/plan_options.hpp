@@ -30,6 +30,7 @@ struct PlanOptions {
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
+  bool follow_tracks = true;  ///< of stored ways of the hand, in guided queries
   planning::SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all

@@ -85,7 +85,8 @@ GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::C
   wanted.task = options.task;
   wanted.robot = chain.digest();
   wanted.dof = chain.dof();
-  wanted.chain = chain;
+  if (options.follow_tracks)
+    wanted.chain = chain;
   wanted.profile = options.profile;
   wanted.selection = options.selection;
   wanted.sampling = options.sampling;

@@ -22,8 +22,7 @@ double trust(const PosedQuery& query, const Mixture& mixture, double gate_distan
 
 }  // namespace
 
-planning::ConfigurationSampler make_query_sampler(const PosedQuery& query,
-                                                  const Guidance* guidance,
+planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const Guidance* guidance,
                                                   const PlanSettings& settings,
                                                   ProblemResult& result) {
   if (guidance == nullptr || result.sampling_mode != SamplingMode::Guided)

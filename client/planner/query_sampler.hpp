@@ -49,8 +49,7 @@ struct PosedQuery {
 /// (settings.gate_distance): such a mixture says little about what lies between.
 /// \param guidance  null: uniform.
 /// \param result    told: share, track_share, experience_revision, gate_fired, guidance_reason.
-planning::ConfigurationSampler make_query_sampler(const PosedQuery& query,
-                                                  const Guidance* guidance,
+planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const Guidance* guidance,
                                                   const PlanSettings& settings,
                                                   ProblemResult& result);
 

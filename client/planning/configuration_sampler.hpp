@@ -38,8 +38,7 @@ class ConfigurationSampler {
   /// \param tracks    not null.
   /// \param fraction  of all samples, 0 to 1; what the mixture has is cut down to what is left.
   /// \throws std::invalid_argument if the fraction is none.
-  ConfigurationSampler with_tracks(std::shared_ptr<QueryTracks> tracks,
-                                   double fraction) const;
+  ConfigurationSampler with_tracks(std::shared_ptr<QueryTracks> tracks, double fraction) const;
 
   Eigen::VectorXd sample(std::mt19937_64& generator) const {
     return sample(generator, guided_fraction());

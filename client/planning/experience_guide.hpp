@@ -13,8 +13,8 @@ namespace kinship::planning {
 
 /// How the experience of a task is used in one query.
 struct TrackOptions {
-  std::size_t paths = 10;   ///< of the experience, the most like the query
-  std::size_t tracks = 24;  ///< at most: each path is followed from several goals
+  std::size_t paths = 20;   ///< of the experience, the most like the query
+  std::size_t tracks = 40;  ///< at most: each path is followed from several goals
   double deviation = 0.3;   ///< of samples from tracks, each joint, joint units
   /// Of the guided samples, those around tracks; the others are the mixture's, if there is one.
   double sample_fraction = 0.9;

@@ -54,8 +54,8 @@ std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery&
   moved.reserve(path.poses.size());
   const double last = static_cast<double>(path.poses.size()) - 1;
   for (std::size_t i = 0; i < path.poses.size(); ++i)
-    moved.push_back(blended(by_start * path.poses[i], by_goal * path.poses[i],
-                            static_cast<double>(i) / last));
+    moved.push_back(
+        blended(by_start * path.poses[i], by_goal * path.poses[i], static_cast<double>(i) / last));
   return moved;
 }
 

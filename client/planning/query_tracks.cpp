@@ -18,8 +18,7 @@ QueryTracks::QueryTracks(std::shared_ptr<const ExperienceGuide> guide, TrackQuer
 void QueryTracks::make_some() {
   if (!choices_)
     choices_ = guide_->choose(query_, options_);
-  const std::size_t count =
-      std::min<std::size_t>(inverse::kLanes, choices_->size() - followed_);
+  const std::size_t count = std::min<std::size_t>(inverse::kLanes, choices_->size() - followed_);
   for (Track& track : guide_->follow(query_, std::span(*choices_).subspan(followed_, count))) {
     for (const auto& q : track.configurations.colwise())
       configurations_.emplace_back(q);

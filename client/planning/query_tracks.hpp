@@ -10,8 +10,8 @@
 
 namespace kinship::planning {
 
-/// The tracks of one query, made a few at a time when they are asked for: a query that is a straight
-/// line makes none. For one thread.
+/// The tracks of one query, made a few at a time when they are asked for: a query that is a
+/// straight line makes none. For one thread.
 class QueryTracks {
  public:
   /// \param guide  not null.

@@ -41,8 +41,7 @@ class Lanes {
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       followed[i].configurations.conservativeResize(Eigen::NoChange, kept[i]);
-      followed[i].gap =
-          (followed[i].configurations.rightCols<1>() - tracks_[i].towards).norm();
+      followed[i].gap = (followed[i].configurations.rightCols<1>() - tracks_[i].towards).norm();
     }
     return followed;
   }
@@ -99,9 +98,9 @@ std::vector<Track> follow(const inverse::Solver& solver, std::span<const PoseTra
   std::vector<Track> followed;
   followed.reserve(tracks.size());
   for (std::size_t first = 0; first < tracks.size(); first += kCount) {
-    auto some = Lanes(solver, tracks.subspan(first, std::min<std::size_t>(
-                                                        kCount, tracks.size() - first)))
-                    .run();
+    auto some =
+        Lanes(solver, tracks.subspan(first, std::min<std::size_t>(kCount, tracks.size() - first)))
+            .run();
     std::ranges::move(some, std::back_inserter(followed));
   }
   return followed;

@@ -44,9 +44,9 @@ struct ProblemResult {
   std::optional<Digest> distribution_id;     ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
-      SamplingMode::Uniform;  ///< with guidance: Guided, Control, or Uniform by wish
-  double share = 0;           ///< of guided samples; 0 unless Guided
-  double track_share = 0;     ///< of samples around tracks; a part of share
+      SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform by wish
+  double share = 0;                       ///< of guided samples; 0 unless Guided
+  double track_share = 0;                 ///< of samples around tracks; a part of share
   std::uint64_t experience_revision = 0;  ///< of the stored ways that tracks come from; 0: none
   std::uint64_t tracks_followed = 0;
   /// Guided, but with fewer samples of the mixture than wanted, or none: start or goals are far

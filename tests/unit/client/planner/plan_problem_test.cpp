@@ -40,11 +40,12 @@ int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
 }
 
 Guidance guidance_towards(const Eigen::VectorXd& q) {
-  Guidance guidance{
-      Digest{}, 5,
-      Mixture(Eigen::VectorXd::Ones(1), q, {0.25 * Eigen::MatrixXd::Identity(q.size(), q.size())}),
-      0.9};
-  guidance.distribution_id.bytes[3] = 9;
+  Guidance guidance;
+  guidance.distribution_id.emplace().bytes[3] = 9;
+  guidance.revision = 5;
+  guidance.mixture =
+      Mixture(Eigen::VectorXd::Ones(1), q, {0.25 * Eigen::MatrixXd::Identity(q.size(), q.size())});
+  guidance.guided_fraction = 0.9;
   return guidance;
 }
 
@@ -128,17 +129,81 @@ TEST(PlanProblem, AQueryThatIsNotGuidedIsPlannedAsWithoutGuidance) {
   }
 }
 
-TEST(PlanProblem, AGuidedQueryFarFromTheDistributionIsPlannedUniformlyAndStaysGuided) {
-  const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
-  const ProblemResult gated = planned(wall_problem(), {}, {&far, SamplingMode::Guided}).result;
-  EXPECT_TRUE(gated.gate_fired);
-  EXPECT_EQ(gated.sampling_mode, SamplingMode::Guided);
-  EXPECT_EQ(gated.share, 0);
-  EXPECT_EQ(gated.guidance_reason, "start or goals are far from all that the distribution knows");
-  EXPECT_EQ(gated.distribution_id, far.distribution_id);
+TEST(PlanProblem, TheFartherAQueryIsFromTheMixtureTheLessItIsGuidedByIt) {
+  const auto guided = [](double distance, double gate_distance) {
+    const Guidance away = guidance_towards(Eigen::Vector4d::Constant(distance));
+    PlanSettings settings;
+    settings.gate_distance = gate_distance;
+    return planned(wall_problem(), settings, {&away, SamplingMode::Guided}).result;
+  };
+  EXPECT_FALSE(guided(0.5, 60).gate_fired);
+  EXPECT_EQ(guided(0.5, 60).share, 0.9);
+  const ProblemResult part = guided(2.5, 60);
+  EXPECT_TRUE(part.gate_fired);
+  EXPECT_GT(part.share, 0.01);
+  EXPECT_LT(part.share, 0.9);
+  EXPECT_EQ(part.sampling_mode, SamplingMode::Guided);
+  EXPECT_EQ(part.guidance_reason, "start or goals are far from all that the distribution knows");
+
+  const ProblemResult none = guided(2.5, 1);
+  EXPECT_TRUE(none.gate_fired);
+  EXPECT_EQ(none.share, 0);
+  EXPECT_TRUE(none.distribution_id);
   const ProblemResult uniform = planned(wall_problem()).result;
-  EXPECT_EQ(gated.collision_checks, uniform.collision_checks);
-  EXPECT_EQ(*gated.waypoints, *uniform.waypoints);
+  EXPECT_EQ(none.collision_checks, uniform.collision_checks);
+  EXPECT_EQ(*none.waypoints, *uniform.waypoints);
+}
+
+/// Guidance by the way that a solved query's hand took.
+Guidance experienced(const Problem& problem, const Eigen::MatrixXd& waypoints) {
+  const kinematics::Chain chain = planar_robot().chain;
+  PosePath path;
+  const Eigen::MatrixXd along = planning::densified(waypoints, 0.1);
+  for (const auto& q : along.colwise())
+    path.poses.push_back(placement_of(problem) * kinematics::T_base_transfer(chain, q));
+  TaskExperience experience;
+  experience.revision = 77;
+  experience.paths = {path};
+  Guidance guidance;
+  guidance.experience = std::make_shared<planning::ExperienceGuide>(chain, experience);
+  guidance.guided_fraction = 1;
+  return guidance;
+}
+
+TEST(PlanProblem, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
+  const Problem problem = wall_problem();
+  const ProblemResult uniform = planned(problem).result;
+  ASSERT_TRUE(uniform.solved);
+  EXPECT_EQ(uniform.found_by, FoundBy::Search);
+  const Guidance guidance = experienced(problem, *uniform.waypoints);
+  Problem again = problem;
+  again.seed += 5;
+  const ProblemResult guided = planned(again, {}, {&guidance, SamplingMode::Guided}).result;
+  ASSERT_TRUE(guided.solved) << guided.reason;
+  EXPECT_EQ(guided.found_by, FoundBy::Track);
+  EXPECT_GE(guided.tracks_followed, 1U);
+  EXPECT_EQ(guided.experience_revision, 77U);
+  EXPECT_EQ(guided.track_share, PlanSettings().tracks.sample_fraction);
+  EXPECT_EQ(guided.share, guided.track_share);
+  EXPECT_FALSE(guided.distribution_id);
+  EXPECT_EQ(collisions_along(*guided.waypoints, again), 0);
+  EXPECT_LT(guided.collision_checks, planned(again).result.collision_checks);
+
+  const ProblemResult control = planned(again, {}, {&guidance, SamplingMode::Control}).result;
+  EXPECT_EQ(control.collision_checks, planned(again).result.collision_checks);
+  EXPECT_EQ(control.tracks_followed, 0U);
+  EXPECT_EQ(control.track_share, 0);
+}
+
+TEST(PlanProblem, WhereTheStraightLineIsFreeNoTrackIsFollowed) {
+  Problem open = wall_problem();
+  const ProblemResult solved = planned(open).result;
+  const Guidance guidance = experienced(open, *solved.waypoints);
+  open.scene.objects.clear();
+  const ProblemResult guided = planned(open, {}, {&guidance, SamplingMode::Guided}).result;
+  EXPECT_EQ(guided.found_by, FoundBy::StraightLine);
+  EXPECT_EQ(guided.tracks_followed, 0U);
+  EXPECT_EQ(guided.collision_checks, planned(open).result.collision_checks);
 }
 
 TEST(PlanProblem, TheGateCanBeLeftOpen) {
@@ -394,8 +459,8 @@ TEST(PlanProblem, ARoadmapThatLeavesTooManyKernelsToItsTreesSaysSo) {
   Guidance guidance = guidance_towards(Eigen::Vector4d(0, 2.2, 2.2, 0.5));
   constexpr Eigen::Index kKernels = 1025;
   guidance.mixture = Mixture(Eigen::VectorXd::Constant(kKernels, 1.0 / kKernels),
-                             guidance.mixture.means().col(0).replicate(1, kKernels),
-                             {guidance.mixture.covariance(0)});
+                             guidance.mixture->means().col(0).replicate(1, kKernels),
+                             {guidance.mixture->covariance(0)});
   const auto planner_with = [&](SamplingMode mode) {
     return planned(wall_problem(), settings, {&guidance, mode}).result.planner;
   };
