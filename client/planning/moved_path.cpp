@@ -53,9 +53,16 @@ std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery&
   std::vector<Eigen::Isometry3d> moved;
   moved.reserve(path.poses.size());
   const double last = static_cast<double>(path.poses.size()) - 1;
-  for (std::size_t i = 0; i < path.poses.size(); ++i)
-    moved.push_back(
-        blended(by_start * path.poses[i], by_goal * path.poses[i], static_cast<double>(i) / last));
+  static const int mode = std::getenv("BLEND") ? std::atoi(std::getenv("BLEND")) : 0;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    double w = static_cast<double>(i) / last;
+    if (mode == 1) w = w * w * (3 - 2 * w);
+    if (mode == 2) w = std::clamp((w - 0.25) / 0.5, 0.0, 1.0);
+    if (mode == 3) w = std::clamp(w / 0.5, 0.0, 1.0);
+    if (mode == 4) { w = std::clamp((w - 0.25) / 0.5, 0.0, 1.0); w = w * w * (3 - 2 * w); }
+    if (mode == 5) w = std::clamp(w / 0.25, 0.0, 1.0);
+    moved.push_back(blended(by_start * path.poses[i], by_goal * path.poses[i], w));
+  }
   return moved;
 }
 

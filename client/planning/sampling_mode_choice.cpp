@@ -66,7 +66,7 @@ double SamplingModeChooser::guided_part() const {
   if (options_.control_fraction)
     return 1 - *options_.control_fraction;
   const double floor = control_ < kEarlyControls ? kEarlyControlFloor : kLateControlFloor;
-  return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper(), kGuidedFloor,
+  return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper, kGuidedFloor,
                     1 - floor);
 }
 

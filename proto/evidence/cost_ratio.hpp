@@ -6,46 +6,48 @@
 
 namespace kinship::evidence {
 
-/// What is believed of log(cost of a guided query / cost of a uniform one): a normal distribution.
+/// What is believed of log(cost of a uniform query / cost of a guided one): above 0 guidance helps.
 struct CostRatio {
   double mean = 0;
   double variance = 1;
-  bool is_compared = false;  ///< whether both arms had attempts with checks; else it is the prior
+  double guided_is_cheaper = 0.5;  ///< probability, 0 to 1
+  bool is_compared = false;  ///< whether both modes had attempts with checks; else it is the prior
 
-  double guided_is_cheaper() const;  ///< probability, 0 to 1
-  double quantile(
-      double deviates) const;  ///< of the ratio itself, standard deviates from its median
+  /// Of the ratio itself, standard deviates from its median; as if the belief were normal.
+  double quantile(double deviates) const;
 };
 
-/// How evidence ages: an attempt weighs half as much after so many others.
-inline constexpr double kHalfLifeInMode = 40;   ///< newer attempts of the same arm
-inline constexpr double kHalfLifeInTask = 150;  ///< newer attempts of either arm
+/// An attempt weighs half as much after so many others of either mode.
+inline constexpr double kHalfLife = 400;
 
 /// What judged attempts say about the worth of guidance.
 ///
-/// The cost of an arm is its collision checks / its solutions, both summed with weights
-/// 2^(-newer of the arm / kHalfLifeInMode) 2^(-newer of either / kHalfLifeInTask): an unsolved
-/// attempt is censored, so its checks count and it adds no solution; an arm without solutions
-/// counts as if it had one. log(cost) is taken as normal; its variance is, by the delta method for
-/// a ratio of two correlated means,
+/// The checks of an attempt are log-normal about the level of the task, which both modes share and
+/// which may wander, and the effect of guidance:
 ///
-///     (cv(checks)^2 + cv(solved)^2 - 2 cov(checks, solved) / (means)) / sum of weights
+///     log(checks) = level -+ log(ratio) / 2 + noise,   - guided, + control
 ///
-/// with cv = standard deviation / mean, the numerator drawn towards 1 as by 4 further attempts
-/// (what planners' checks have mostly). The difference of both arms meets a prior: the ratio is
-/// 0.7, give or take a factor e.
+/// A Kalman filter (drift_filter.hpp) follows level and effect through the attempts, so each is
+/// compared with its neighbours in time: what makes the task dearer for both modes moves the level
+/// and leaves the ratio. How fast level and effect wander is not known: six answers are followed
+/// side by side, from "not at all" to "any moment", and averaged by how well they foretold the
+/// attempts. Nothing is dropped; an attempt's weight is 2^(-age / kHalfLife).
 ///
-/// **A task that changes.** If the newest 2 to 6 attempts of an arm lie more than 3 standard errors
-/// from those before, in their mean log(checks), those before count no more: guidance that has gone
-/// wrong is found out in a few queries, not in a half-life.
+/// - An unsolved attempt is censored: it would have needed its checks or more.
+/// - One report moves little: log(checks) is brought to within 3.5 robust standard deviations of
+///   the median of all, and to within 3 of what a filter foretold.
+/// - Attempts without checks are left out. Without any of a mode the answer is the prior: a ratio
+///   of 1 / 0.7, give or take a factor e.
 ///
-/// Scaling the checks of both arms changes nothing, and dearer guided attempts never make guidance
-/// look cheaper.
+/// Compared are typical queries (geometric means), not sums: a few very dear queries of one mode
+/// weigh no more than as many that are clearly dearer. Checks of both modes times any factor change
+/// nothing.
 ///
-/// \param recent  oldest first.
-/// Source of the variance: Casella and Berger, Statistical Inference (2002), example 5.5.27. Of
-/// discounting under change: Garivier and Moulines, On Upper-Confidence Bound Policies for
-/// Switching Bandit Problems (2011).
+/// \param recent  oldest first, age falling.
+/// Sources: West and Harrison, Bayesian Forecasting and Dynamic Models (1997), section 4.5 (filter
+/// with unknown variance) and 12.2 (several models side by side); Raftery et al., Online Prediction
+/// Under Model Uncertainty via Dynamic Model Averaging (2010); Huber, Robust Statistics (1981),
+/// section 1.7 (bounding).
 CostRatio compare_costs(std::span<const JudgedAttempt> recent);
 
 }  // namespace kinship::evidence

@@ -27,7 +27,8 @@ inline constexpr std::tuple kFieldsOf<ModeEvidence>{
     Field{"attempts", &ModeEvidence::attempts}, Field{"solved", &ModeEvidence::solved},
     Field{"checks_per_solution", &ModeEvidence::checks_per_solution, {.min = 0}}};
 
-inline constexpr std::size_t kJudgedAttemptsPerMode = 64;  ///< the newest ones; older are forgotten
+inline constexpr std::size_t kJudgedAttemptsPerMode =
+    128;  ///< the newest ones; older are forgotten
 
 /// One attempt of a (task, robot) from which the worth of guidance is judged: guided, or uniform
 /// although guidance was there (control). One that could not be planned at all (start in collision,

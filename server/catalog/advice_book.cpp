@@ -1,38 +1,77 @@
 #include "server/catalog/advice_book.hpp"
 
 #include <optional>
+#include <set>
 #include <utility>
 
-#include "proto/evidence/attempt_window.hpp"
 #include "server/catalog/advice_rule.hpp"
 
 namespace kinship::catalog {
 namespace {
 
-constexpr int kMaxReadings = 3;  // of sums that attempts keep overtaking
+constexpr int kMaxReadings = 3;               // of sums that attempts keep overtaking
+constexpr std::size_t kMaxContexts = 10'000;  // clients may name what distributions they like
+
+/// Those that attempts name, each once.
+std::vector<Digest> distributions_of(const std::vector<store::KnownAttempt>& attempts) {
+  std::set<Digest> distributions;
+  for (const store::KnownAttempt& attempt : attempts)
+    if (attempt.distribution_id)
+      distributions.insert(*attempt.distribution_id);
+  return {distributions.begin(), distributions.end()};
+}
+
+/// An attempt more.
+void count(const AttemptCost& cost, store::AttemptTotals& totals) {
+  const bool is_solved = cost.outcome == Outcome::Solved;
+  const auto checks = static_cast<double>(cost.checks);
+  store::ModeTotals& mode =
+      cost.sampling_mode == SamplingMode::Guided ? totals.guided : totals.control;
+  ++mode.attempts;
+  mode.solved += is_solved ? 1 : 0;
+  mode.checks += checks;
+  mode.checks_squared += checks * checks;
+  mode.checks_of_solved += is_solved ? checks : 0;
+  if (cost.outcome == Outcome::Failed)
+    return;
+  add_newest(
+      totals.recent,
+      {.judged = {.sampling_mode = cost.sampling_mode, .solved = is_solved, .checks = cost.checks},
+       .planner = cost.planner,
+       .distribution_id = cost.distribution_id});
+}
 
 }  // namespace
 
 AttemptCost cost_of(const Attempt& attempt) {
-  return {attempt.task, attempt.robot, attempt.record.sampling_mode, attempt.record.outcome,
-          attempt.record.collision_checks};
+  return {attempt.task,
+          attempt.robot,
+          attempt.record.sampling_mode,
+          attempt.record.outcome,
+          attempt.record.collision_checks,
+          attempt.record.planner,
+          attempt.record.distribution_id};
 }
 
-Advice AdviceBook::advise(const std::string& task, const Digest& robot, double profile_share) {
+Advice AdviceBook::advise(const std::string& task, const Digest& robot, const Context& context,
+                          double profile_share) {
   const Key key(task, robot);
   std::optional<store::AttemptTotals> totals;
+  JudgedAttempts judged;
   bool begins = false;
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[key];
-    if (entry.state == State::Read)
+    if (entry.state == State::Read) {
       totals = entry.totals;
+      judged = judged_attempts(context, contexts_, entry.totals.recent);
+    }
     begins = entry.state == State::Unread;
     if (begins)
       entry.state = State::Reading;
   }
   if (totals)
-    return catalog::advise(*totals, profile_share);
+    return catalog::advise(*totals, std::move(judged), profile_share);
   if (begins && !later_([this, key] { read_totals(key); }))
     end_reading(key, nullptr, true);  // whoever asks next has it tried again
   Advice advice;
@@ -51,29 +90,43 @@ std::uint64_t AdviceBook::version(const std::string& task, const Digest& robot) 
 void AdviceBook::add(const AttemptCost& cost) {
   if (cost.sampling_mode == SamplingMode::Uniform)
     return;
-  const std::lock_guard lock(mutex_);
-  const auto found = entries_.find({cost.task, cost.robot});
-  if (found == entries_.end())
-    return;
-  Entry& entry = found->second;
-  entry.is_overtaken = true;
-  if (entry.state != State::Read)
-    return;
-  store::ModeTotals& mode =
-      cost.sampling_mode == SamplingMode::Guided ? entry.totals.guided : entry.totals.control;
-  const auto checks = static_cast<double>(cost.checks);
-  ++mode.attempts;
-  const bool solved = cost.outcome == Outcome::Solved;
-  mode.solved += solved ? 1 : 0;
-  mode.checks += checks;
-  mode.checks_squared += checks * checks;
-  mode.checks_of_solved += solved ? checks : 0;
-  if (cost.outcome != Outcome::Failed) {
-    evidence::AttemptWindow window(std::move(entry.totals.recent));
-    window.add(cost.sampling_mode, solved, cost.checks);
-    entry.totals.recent = window.recent();
+  const Key key(cost.task, cost.robot);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(key);
+    if (found == entries_.end())
+      return;
+    found->second.is_overtaken = true;
+    if (found->second.state != State::Read)
+      return;
+    count(cost, found->second.totals);
+    ++found->second.version;
   }
-  ++entry.version;
+  if (cost.distribution_id && !knows_context(*cost.distribution_id))
+    later_([this, key, id = *cost.distribution_id] { find_contexts(key, {id}); });
+}
+
+bool AdviceBook::knows_context(const Digest& distribution) const {
+  const std::lock_guard lock(mutex_);
+  return contexts_.contains(distribution);
+}
+
+void AdviceBook::find_contexts(const Key& key, const std::vector<Digest>& distributions) {
+  for (const Digest& id : distributions) {
+    if (knows_context(id))
+      continue;
+    std::optional<Context> found;
+    try {
+      found = find_context_(id);
+    } catch (const std::exception&) {  // the next attempt that names it has it tried again
+      continue;
+    }
+    const std::lock_guard lock(mutex_);
+    if (contexts_.size() >= kMaxContexts)
+      contexts_.clear();
+    contexts_[id] = found.value_or(Context{});
+    ++entries_[key].version;
+  }
 }
 
 void AdviceBook::read_totals(const Key& key) {
@@ -87,6 +140,8 @@ void AdviceBook::read_totals(const Key& key) {
       totals = read_(key.second, key.first);
     } catch (const std::exception&) {  // whoever asks next has it tried again
     }
+    if (totals)
+      find_contexts(key, distributions_of(totals->recent));
     if (end_reading(key, totals ? &*totals : nullptr, reading == kMaxReadings))
       return;
   }

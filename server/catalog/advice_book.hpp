@@ -4,12 +4,15 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "proto/types/advice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
+#include "server/catalog/judged_attempts.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::catalog {
@@ -21,6 +24,8 @@ struct AttemptCost {
   SamplingMode sampling_mode = SamplingMode::Uniform;
   Outcome outcome = Outcome::Failed;
   std::uint64_t checks = 0;
+  std::string planner = {};
+  std::optional<Digest> distribution_id = {};
 };
 
 AttemptCost cost_of(const Attempt& attempt);
@@ -31,20 +36,27 @@ AttemptCost cost_of(const Attempt& attempt);
 ///
 /// Attempts that are committed while the sums are read have them read again, a few times; an
 /// attempt of that moment may in the end count twice or not at all, until the next start.
+///
+/// Distributions that attempts name are looked up in the background, once; until then they are of
+/// an unknown context.
 class AdviceBook {
  public:
   /// Reads the sums from the store; may throw.
   using Read = std::function<store::AttemptTotals(const Digest& robot, const std::string& task)>;
+  /// What made a distribution; nothing if nobody knows it. May throw.
+  using FindContext = std::function<std::optional<Context>(const Digest& distribution_id)>;
   /// Has a function called soon on another thread. \return false if there is no room for it.
   using Later = std::function<bool(std::function<void()>)>;
 
-  AdviceBook(Read read, Later later) : read_(std::move(read)), later_(std::move(later)) {}
+  AdviceBook(Read read, FindContext find_context, Later later)
+      : read_(std::move(read)), find_context_(std::move(find_context)), later_(std::move(later)) {}
   AdviceBook(const AdviceBook&) = delete;
   AdviceBook& operator=(const AdviceBook&) = delete;
 
-  /// The advice of now (advice_rule.hpp). The first time, and as long as the store has not
-  /// answered: `profile_share`, and the sums are read.
-  Advice advise(const std::string& task, const Digest& robot, double profile_share);
+  /// The advice of now (advice_rule.hpp) for guidance of a context. The first time, and as long as
+  /// the store has not answered: `profile_share`, and the sums are read.
+  Advice advise(const std::string& task, const Digest& robot, const Context& context,
+                double profile_share);
 
   /// Grows whenever advise() may say something else than before; 0: nothing is known yet.
   std::uint64_t version(const std::string& task, const Digest& robot) const;
@@ -64,11 +76,15 @@ class AdviceBook {
 
   void read_totals(const Key& key);
   bool end_reading(const Key& key, const store::AttemptTotals* totals, bool is_last_try);
+  void find_contexts(const Key& key, const std::vector<Digest>& distributions);
+  bool knows_context(const Digest& distribution) const;
 
   const Read read_;
+  const FindContext find_context_;
   const Later later_;
   mutable std::mutex mutex_;  // guards what follows
   std::map<Key, Entry> entries_;
+  Contexts contexts_;
 };
 
 }  // namespace kinship::catalog

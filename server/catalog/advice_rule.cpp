@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "proto/evidence/cost_ratio.hpp"
 
 namespace kinship::catalog {
 namespace {
 
-constexpr double kDoubt = 0.05;         // of being right that is left where it is called clear
+// Probabilities that guidance is cheaper. That of none is the higher for what the prior adds to it.
+constexpr double kNoShare = 0.4, kFullShare = 0.7;
 constexpr double kQuantile90 = 1.6449;  // two-sided, of the normal distribution
 
 std::optional<ModeEvidence> evidence_of(const store::ModeTotals& totals) {
@@ -36,41 +38,40 @@ std::string describe(const char* mode, const char* unit, const store::ModeTotals
 }
 
 std::string describe(const evidence::CostRatio& ratio) {
-  const double better = ratio.guided_is_cheaper();
-  const std::string words = text("lately ratio %.2f", ratio.quantile(0)) +
+  const double better = ratio.guided_is_cheaper;
+  const std::string words = "typical ratio uniform / guided " + text("%.2f", ratio.quantile(0)) +
                             text(" (90 %% %.2f", ratio.quantile(-kQuantile90)) +
                             text(" to %.2f)", ratio.quantile(kQuantile90));
-  if (better >= 1 - kDoubt)
-    return words + ", clearly better: share of the profile";
-  if (better <= kDoubt)
-    return words + ", clearly worse: uniform";
+  if (better >= kFullShare)
+    return words + ", better: share of the profile";
+  if (better <= kNoShare)
+    return words + ", worse: uniform";
   return words + ", undecided: part of the profile's share";
 }
 
 }  // namespace
 
-Advice advise(const store::AttemptTotals& totals, double profile_share) {
+Advice advise(const store::AttemptTotals& totals, JudgedAttempts judged, double profile_share) {
   Advice advice;
   advice.guided_share = std::clamp(profile_share, 0.0, 1.0);
   advice.recommended_share = advice.guided_share;
   advice.guided = evidence_of(totals.guided);
   advice.control = evidence_of(totals.control);
-  advice.recent = totals.recent;
-  if (std::min(totals.guided.attempts, totals.control.attempts) < kMinAttempts) {
-    advice.evidence = std::to_string(totals.guided.attempts) + " guided and " +
-                      std::to_string(totals.control.attempts) +
-                      " control attempts, compared from " + std::to_string(kMinAttempts) +
-                      " of each on: share of the profile";
+  advice.recent = std::move(judged.attempts);
+  if (std::min(judged.guided, judged.control) < kMinAttempts) {
+    advice.evidence = std::to_string(judged.guided) + " guided and " +
+                      std::to_string(judged.control) +
+                      " control attempts with this profile and these engines, compared from " +
+                      std::to_string(kMinAttempts) + " of each on: share of the profile";
     return advice;
   }
-  const evidence::CostRatio ratio = evidence::compare_costs(totals.recent);
+  const evidence::CostRatio ratio = evidence::compare_costs(advice.recent);
   if (!ratio.is_compared) {
-    advice.evidence =
-        "an arm has no attempts of late that report collision checks: share of the profile";
+    advice.evidence = "a mode has no attempts that report collision checks: share of the profile";
     return advice;
   }
   advice.recommended_share *=
-      std::clamp((ratio.guided_is_cheaper() - kDoubt) / (1 - 2 * kDoubt), 0.0, 1.0);
+      std::clamp((ratio.guided_is_cheaper - kNoShare) / (kFullShare - kNoShare), 0.0, 1.0);
   advice.evidence = describe("guided", " checks per solution", totals.guided) + " attempts, " +
                     describe("control", "", totals.control) + "; " + describe(ratio);
   return advice;

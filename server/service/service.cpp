@@ -30,6 +30,12 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       short_task_pool_({.threads = 1, .queue_limit = options_.short_task_queue, .niceness = 0}),
       advice_([this](const Digest& robot,
                      const std::string& task) { return store_->attempt_totals(robot, task); },
+              [this](const Digest& id) -> std::optional<catalog::Context> {
+                const auto distribution = store_->find_distribution(id);
+                if (!distribution)
+                  return std::nullopt;
+                return catalog::Context{distribution->engines, distribution->profile};
+              },
               [this](std::function<void()> run) {
                 return short_task_pool_.submit(runtime::WorkerPool::Priority::Background,
                                                {.run = std::move(run), .abandon = {}});
@@ -67,7 +73,8 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
   catalog.wake = options.wake;
   catalog.advice.advise = [this](const std::string& task, const Digest& robot,
                                  const Profile& profile) {
-    return advice_.advise(task, robot, profile.recommended_share);
+    return advice_.advise(task, robot, {fitting::engines(), profile.name},
+                          profile.recommended_share);
   };
   catalog.advice.version = [this](const std::string& task, const Digest& robot) {
     return advice_.version(task, robot);
@@ -91,6 +98,7 @@ Administration::Parts Service::administration_parts() {
               [this](const Distribution& distribution) {
                 const Result<Profile> profile = profile_from_text(distribution.profile);
                 return advice_.advise(distribution.task, distribution.robot,
+                                      {distribution.engines, distribution.profile},
                                       profile ? fitting::first_share(*profile, distribution.state)
                                               : distribution.advice.recommended_share);
               },

@@ -59,10 +59,23 @@ struct ModeTotals {
   double checks_of_solved = 0;  ///< of the solved ones alone
 };
 
+/// A judged attempt and what it was planned with.
+struct KnownAttempt {
+  JudgedAttempt judged;
+  std::string planner = {};
+  std::optional<Digest> distribution_id = {};  ///< missing: the client did not say
+
+  bool operator==(const KnownAttempt&) const = default;
+};
+
+/// So many of each sampling mode are known, whatever they were planned with: more than are judged,
+/// which are those of one planner.
+inline constexpr std::size_t kKnownAttemptsPerMode = 2 * kJudgedAttemptsPerMode;
+
 /// The attempts of one robot and task, by arm.
 struct AttemptTotals {
   ModeTotals guided, control;
-  std::vector<JudgedAttempt> recent;  ///< the newest kJudgedAttemptsPerMode of each, oldest first
+  std::vector<KnownAttempt> recent;  ///< the newest kKnownAttemptsPerMode of each, oldest first
 };
 
 struct StoreStatus {

@@ -40,6 +40,7 @@ BENCHES = [
     bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread"),
     bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),
     bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
+    bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1),
     bench("command", "command_bench", "One-shot commands against a local server"),
     bench("large-store", "large_store_bench", "A store of 1 000 000 paths", repeats=1, minutes=60, is_long=True),
     bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True),

@@ -1,4 +1,4 @@
-"""Ratios of guided to uniform planning, their intervals and tests.
+"""Ratios of uniform to guided planning, their intervals and tests.
 
 Instances are the sample; queries of one instance are not replicates of a test.
 """

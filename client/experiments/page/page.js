@@ -182,7 +182,7 @@
                                           s.poses ? percent(s.poses_solved / s.poses) : ""])]);
     byId("distribution-note").textContent =
       `Distribution ${distribution.id}, revision ${distribution.revision}, profile \u201c${distribution.profile}\u201d: transfer ` +
-      `${fixed(distribution.transfer_time_s, 2)} s, fit ${fixed(distribution.fit_time_s, 2)} s. Recommended share of guided samples: ${fixed(distribution.share, 2)}.`;
+      `${fixed(distribution.transfer_time_s, 2)} s, fit ${fixed(distribution.fit_time_s, 2)} s. What the server advises from the attempts above: share of guided samples ${fixed(data.advice.share, 2)}: ${data.advice.evidence}.`;
     byId("footer").textContent =
       "Written by deploy/quickstart from the run's own files. The page holds everything it needs and loads nothing. " +
       "Drawn with three.js (MIT) and Vega (BSD 3-clause).";

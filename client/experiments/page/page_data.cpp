@@ -191,6 +191,7 @@ PageData read_run(const RunFolder& run) {
   const Problem problem = read_problems(run.folder / (run.robot + ".problems.jsonl")).front();
   data.scene = problem.scene;
   data.distribution = read_distribution(run.folder / "distribution.json");
+  data.advice = read_distribution(run.folder / "advice.json").advice;
   add_samples(robot, problem, data);
   const auto uniform = read_results(run.folder / (run.robot + "-uniform.results.jsonl"));
   const auto guided = read_results(run.folder / (run.robot + "-guided.results.jsonl"));

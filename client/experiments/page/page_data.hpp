@@ -17,7 +17,8 @@ namespace kinship::experiments {
 struct RunFolder {
   std::filesystem::path folder;    ///< ROBOT.problems.jsonl, ROBOT.results.jsonl of the fleet;
                                    ///< ROBOT-uniform.results.jsonl, ROBOT-guided.results.jsonl and
-                                   ///< distribution.json of the new robot
+                                   ///< distribution.json of the new robot, advice.json, which is
+                                   ///< the same fetched after its attempts
   std::filesystem::path models;    ///< folder of model folders
   std::vector<std::string> fleet;  ///< names of the experienced robots' model folders
   std::string robot;               ///< of the new robot's
@@ -48,6 +49,7 @@ struct PageData {
   std::string robot;  ///< label of the new robot
   Scene scene;        ///< one instance of its problems
   Distribution distribution;
+  Advice advice;                            ///< what the server makes of the new robot's attempts
   Poses samples;                            ///< of the distribution
   double free_share = 0;                    ///< of the samples, in the scene, 0 to 1
   double uniform_free_share = 0;            ///< of as many uniform ones

@@ -101,7 +101,6 @@ std::string json_of(const Distribution& distribution) {
          ",\"components\":" + std::to_string(distribution.mixture->size()) +
          ",\"joints\":" + std::to_string(distribution.mixture->dimension()) +
          ",\"configurations\":" + std::to_string(distribution.configurations) +
-         ",\"share\":" + number(distribution.advice.recommended_share) +
          ",\"transfer_time_s\":" + number(distribution.transfer_time_s) +
          ",\"fit_time_s\":" + number(distribution.fit_time_s) + ",\"sources\":" +
          list(distribution.sources, [](const Source& source) { return json_of(source); }) + "}";
@@ -130,6 +129,8 @@ std::string to_json(const PageData& data) {
          list(data.scene.objects, [](const SceneObject& object) { return json_of(object); }) +
          ",\n\"distribution\":" + json_of(data.distribution) +
          ",\n\"samples\":" + json_of(data.samples) +
+         ",\n\"advice\":{\"share\":" + number(data.advice.recommended_share) +
+         ",\"evidence\":" + quoted(data.advice.evidence) + "}" +
          ",\n\"free_share\":" + number(data.free_share) +
          ",\"uniform_free_share\":" + number(data.uniform_free_share) +
          ",\n\"postures\":" + list(data.postures, bones) +

@@ -35,25 +35,30 @@ ModeTotals read_totals(const Statement& row, int first_column) {
 
 /// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRows alone: an
 /// arm that had no attempts among so many is as good as unknown.
-std::vector<JudgedAttempt> recent_of(Database& database, const ExperienceKey& key) {
+std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key) {
   constexpr std::int64_t kMaxRows = 10'000;
   const auto query = database.cached(
-      "SELECT arm, outcome, collision_checks FROM attempt WHERE task_id = ? AND robot_id = ? "
-      "ORDER BY id DESC LIMIT ?");
+      "SELECT arm, outcome, collision_checks, planner, distribution_digest FROM attempt "
+      "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
   query->bind_all(key.task_id, key.robot_id, kMaxRows);
-  std::vector<JudgedAttempt> newest_first;
+  std::vector<KnownAttempt> newest_first;
   std::size_t guided = 0, control = 0;
   std::uint32_t age = 0;
-  while (std::min(guided, control) < kJudgedAttemptsPerMode && query->step()) {
+  while (std::min(guided, control) < kKnownAttemptsPerMode && query->step()) {
     const SamplingMode mode = mode_of(query->column_integer(0));
     const Outcome outcome = outcome_of(query->column_integer(1));
     if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
       continue;
-    if ((mode == SamplingMode::Guided ? guided : control)++ < kJudgedAttemptsPerMode)
-      newest_first.push_back({.sampling_mode = mode,
-                              .solved = outcome == Outcome::Solved,
-                              .checks = count_of(*query, 2),
-                              .age = age});
+    if ((mode == SamplingMode::Guided ? guided : control)++ < kKnownAttemptsPerMode) {
+      KnownAttempt known{.judged = {.sampling_mode = mode,
+                                    .solved = outcome == Outcome::Solved,
+                                    .checks = count_of(*query, 2),
+                                    .age = age},
+                         .planner = std::string(query->column_text(3))};
+      if (!query->column_is_null(4))
+        known.distribution_id = id_of<Digest>(query->column_blob(4));
+      newest_first.push_back(std::move(known));
+    }
     ++age;
   }
   return {newest_first.rbegin(), newest_first.rend()};

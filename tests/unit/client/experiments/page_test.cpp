@@ -36,6 +36,10 @@ class Page : public testing::Test {
     write_results("ur10e", "ur10e-uniform", {4000, 6000});
     write_results("ur10e", "ur10e-guided", {1000, 3000});
     std::ofstream(run_.folder / "distribution.json") << json::to_json(distribution());
+    Distribution advised = distribution();
+    advised.advice.recommended_share = 0.25;
+    advised.advice.evidence = "guided 1 in 2";
+    std::ofstream(run_.folder / "advice.json") << json::to_json(advised);
   }
 
   Problem problem(const std::string& robot, std::size_t number) const {
@@ -124,6 +128,8 @@ TEST_F(Page, CarriesItsDataAsOneDocument) {
   EXPECT_EQ(data["uniform_checks"]["mean"], 5000);
   EXPECT_EQ(data["distribution"]["configurations"], 12'345);
   EXPECT_EQ(data["distribution"]["sources"][0]["label"], "panda");
+  EXPECT_EQ(data["advice"]["share"], 0.25) << "of now, not of the fetch before the attempts";
+  EXPECT_EQ(data["advice"]["evidence"], "guided 1 in 2");
   EXPECT_EQ(data["scene"][0]["name"], "</script><b>");
 }
 

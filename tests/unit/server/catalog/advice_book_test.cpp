@@ -6,14 +6,17 @@
 #include <vector>
 
 #include "proto/types/failure.hpp"
+#include "tests/support/store_values.hpp"
 
 namespace kinship::catalog::advice_book_test {
 namespace {
 
 constexpr double kProfileShare = 0.9;
+const Digest kDistribution = test::id_from<Digest>(1);
+const Context kContext{"engines 2", "default"};
 
 AttemptCost cost(SamplingMode mode, std::uint64_t checks, Outcome outcome = Outcome::Solved) {
-  return {"shelf", {}, mode, outcome, checks};
+  return {"shelf", {}, mode, outcome, checks, "birrt", kDistribution};
 }
 
 class AdviceBookTest : public testing::Test {
@@ -24,11 +27,15 @@ class AdviceBookTest : public testing::Test {
     for (const auto& run : waiting)
       run();
   }
-  Advice advise() { return book_.advise("shelf", {}, kProfileShare); }
+  Advice advise() { return book_.advise("shelf", {}, kContext, kProfileShare); }
   std::uint64_t version() const { return book_.version("shelf", {}); }
 
   store::AttemptTotals stored_;
   int readings_ = 0;
+  std::function<std::optional<Context>(const Digest&)> find_context_ =
+      [](const Digest& id) -> std::optional<Context> {
+    return id == kDistribution ? std::optional(kContext) : std::nullopt;
+  };
   std::function<void()> on_read_ = [] {};
   std::vector<std::function<void()>> waiting_;
   bool has_room_ = true;
@@ -37,6 +44,7 @@ class AdviceBookTest : public testing::Test {
                      on_read_();
                      return stored_;
                    },
+                   [this](const Digest& id) { return find_context_(id); },
                    [this](std::function<void()> run) {
                      if (has_room_)
                        waiting_.push_back(std::move(run));
@@ -81,7 +89,7 @@ TEST_F(AdviceBookTest, CommittedAttemptsAreAddedToTheirArm) {
 }
 
 TEST_F(AdviceBookTest, RecentAttemptsGoOnFromTheStoredOnes) {
-  stored_.recent = {{SamplingMode::Control, true, 700, 0}};
+  stored_.recent = {{{SamplingMode::Control, true, 700, 0}, "birrt", kDistribution}};
   advise();
   run_later();
   book_.add(cost(SamplingMode::Guided, 300, Outcome::Timeout));
@@ -89,6 +97,32 @@ TEST_F(AdviceBookTest, RecentAttemptsGoOnFromTheStoredOnes) {
   book_.add(cost(SamplingMode::Guided, 1, Outcome::Failed));  // a start in collision, say
   EXPECT_EQ(advise().recent, (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 700, 1},
                                                          {SamplingMode::Guided, false, 300, 0}}));
+}
+
+TEST_F(AdviceBookTest, DistributionsThatAttemptsNameAreLookedUpBehindTheirBack) {
+  const Digest newer = test::id_from<Digest>(2);
+  int look_ups = 0;
+  find_context_ = [&](const Digest&) -> std::optional<Context> {
+    if (++look_ups == 1)
+      throw Failure(ErrorCode::Storage, "disk");
+    return kContext;
+  };
+  advise();
+  run_later();
+  AttemptCost attempt = cost(SamplingMode::Guided, 300);
+  attempt.distribution_id = newer;
+  book_.add(attempt);
+  EXPECT_EQ(look_ups, 0) << "nobody waits for the store";
+  EXPECT_EQ(advise().recent.back().age, kAgeOfUnknown) << "of an unknown context until then";
+  run_later();
+  book_.add(attempt);  // the first look-up failed
+  const std::uint64_t before = version();
+  run_later();
+  EXPECT_GT(version(), before);
+  EXPECT_EQ(advise().recent.back().age, 0U);
+  book_.add(attempt);
+  run_later();
+  EXPECT_EQ(look_ups, 2);
 }
 
 TEST_F(AdviceBookTest, WhatNobodyAskedForIsNotKept) {
@@ -148,7 +182,7 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
     threads.emplace_back([this] {
       for (int j = 0; j < kAttempts; ++j) {
         book_.add(cost(SamplingMode::Guided, 10));
-        book_.advise("shelf", {}, kProfileShare);
+        book_.advise("shelf", {}, kContext, kProfileShare);
       }
     });
   for (std::thread& thread : threads)

@@ -12,29 +12,31 @@ namespace {
 
 constexpr double kProfileShare = 0.9;
 
-/// Attempts as the store sums them up.
+/// Attempts of one context as the store sums them up.
 class Ledger {
  public:
   Ledger& add(SamplingMode mode, int count, double checks, int solved) {
-    evidence::AttemptWindow window(totals_.recent);
     store::ModeTotals& totals = mode == SamplingMode::Guided ? totals_.guided : totals_.control;
     for (int i = 0; i < count; ++i) {
       ++totals.attempts;
+      ++(mode == SamplingMode::Guided ? judged_.guided : judged_.control);
       totals.solved += i < solved ? 1 : 0;
       totals.checks += checks;
-      window.add(mode, i < solved, static_cast<std::uint64_t>(checks));
+      window_.add(mode, i < solved, static_cast<std::uint64_t>(checks));
     }
-    totals_.recent = window.recent();
+    judged_.attempts = window_.recent();
     return *this;
   }
   Ledger& add(SamplingMode mode, int count, double checks) {
     return add(mode, count, checks, count);
   }
-  const store::AttemptTotals& totals() const { return totals_; }
-  Advice advice() const { return advise(totals_, kProfileShare); }
+  const JudgedAttempts& judged() const { return judged_; }
+  Advice advice() const { return advise(totals_, judged_, kProfileShare); }
 
  private:
   store::AttemptTotals totals_;
+  JudgedAttempts judged_;
+  evidence::AttemptWindow window_;
 };
 
 TEST(AdviceRule, WithoutAttemptsTheProfileDecides) {
@@ -44,8 +46,10 @@ TEST(AdviceRule, WithoutAttemptsTheProfileDecides) {
   EXPECT_FALSE(advice.guided);
   EXPECT_FALSE(advice.control);
   EXPECT_TRUE(advice.recent.empty());
-  EXPECT_EQ(advice.evidence,
-            "0 guided and 0 control attempts, compared from 10 of each on: share of the profile");
+  EXPECT_EQ(
+      advice.evidence,
+      "0 guided and 0 control attempts with this profile and these engines, compared from 10 of "
+      "each on: share of the profile");
 }
 
 TEST(AdviceRule, NineAttemptsOfAnArmDecideNothingYet) {
@@ -67,7 +71,7 @@ TEST(AdviceRule, WhoSamplesPerQueryGetsTheAttemptsAndTheProfilesShare) {
   const Ledger ledger =
       Ledger().add(SamplingMode::Guided, 60, 9e6).add(SamplingMode::Control, 10, 10);
   EXPECT_EQ(ledger.advice().guided_share, kProfileShare);
-  EXPECT_EQ(ledger.advice().recent, ledger.totals().recent);
+  EXPECT_EQ(ledger.advice().recent, ledger.judged().attempts);
 }
 
 TEST(AdviceRule, EvidenceNamesCostsAttemptsRatioAndInterval) {
@@ -75,16 +79,16 @@ TEST(AdviceRule, EvidenceNamesCostsAttemptsRatioAndInterval) {
       Ledger().add(SamplingMode::Control, 12, 6904).add(SamplingMode::Guided, 40, 2000).advice();
   EXPECT_EQ(better.recommended_share, kProfileShare);
   EXPECT_EQ(better.evidence.find("guided 2000 checks per solution in 40 attempts, control 6904 in "
-                                 "12; lately ratio 0."),
+                                 "12; typical ratio uniform / guided "),
             0U)
       << better.evidence;
-  EXPECT_NE(better.evidence.find("clearly better: share of the profile"), std::string::npos);
+  EXPECT_NE(better.evidence.find("better: share of the profile"), std::string::npos);
   EXPECT_EQ(*better.guided, (ModeEvidence{40, 40, 2000}));
   EXPECT_EQ(*better.control, (ModeEvidence{12, 12, 6904}));
   const Advice worse =
       Ledger().add(SamplingMode::Control, 12, 2000).add(SamplingMode::Guided, 40, 6904).advice();
   EXPECT_EQ(worse.recommended_share, 0);
-  EXPECT_NE(worse.evidence.find("clearly worse: uniform"), std::string::npos) << worse.evidence;
+  EXPECT_NE(worse.evidence.find("worse: uniform"), std::string::npos) << worse.evidence;
 }
 
 TEST(AdviceRule, AnArmThatSolvedNothingIsNamedAndCostsMore) {
@@ -106,28 +110,17 @@ TEST(AdviceRule, ShareMovesWithoutAJumpAndNeverUpAsGuidanceGetsDearer) {
   double before = kProfileShare;
   bool was_between = false;
   for (double checks = 1000; checks < 30'000; checks *= 1.005) {
-    const double share = Ledger()
-                             .add(SamplingMode::Guided, 30, checks)
-                             .add(SamplingMode::Control, 15, 5000)
-                             .advice()
-                             .recommended_share;
+    Ledger ledger;
+    for (int i = 0; i < 15; ++i)
+      ledger.add(SamplingMode::Guided, 2, checks).add(SamplingMode::Control, 1, 5000);
+    const double share = ledger.advice().recommended_share;
     EXPECT_LE(share, before + 1e-9) << checks;
-    EXPECT_NEAR(share, before, 0.03) << checks;
+    EXPECT_NEAR(share, before, 0.1) << checks;
     was_between = was_between || (share > 0.3 && share < 0.6);
     before = share;
   }
   EXPECT_TRUE(was_between);
   EXPECT_EQ(before, 0);
-}
-
-TEST(AdviceRule, WhatWasLongAgoDoesNotDecide) {
-  const double after_long_good = Ledger()
-                                     .add(SamplingMode::Guided, 1000, 100)
-                                     .add(SamplingMode::Control, 30, 1000)
-                                     .add(SamplingMode::Guided, 60, 5000)
-                                     .advice()
-                                     .recommended_share;
-  EXPECT_EQ(after_long_good, 0);
 }
 
 }  // namespace

@@ -262,24 +262,30 @@ TEST_F(AdministrationChanges, AnExplanationGivesTheAdviceOfNow) {
     const AdminPage page = ask(AdminVerb::ExplainDistribution, id);
     return row<Explanation>(page).distribution.advice;
   };
-  for (int tries = 0; advice_now().evidence.starts_with("attempts are being counted"); ++tries)
-    ASSERT_LT(tries, 1000);
+  // What is read from the store is read in the background.
+  const auto advice_without = [&](const char* beginning) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    Advice advice = advice_now();
+    while (advice.evidence.starts_with(beginning) && std::chrono::steady_clock::now() < end)
+      advice = advice_now();
+    return advice;
+  };
+  advice_without("attempts are being counted");
   std::vector<Attempt> attempts = fleet::solved(pupil_, "shelf", 20, 500);
   for (std::size_t i = 0; i < attempts.size(); ++i) {
     attempts[i].record.sampling_mode = i % 2 == 0 ? SamplingMode::Guided : SamplingMode::Control;
     attempts[i].record.collision_checks = i % 2 == 0 ? 900 + i : 100 + i;
+    attempts[i].record.distribution_id = fetched().id;  // what it does not name is judged weakly
   }
   report(attempts);
-  const Advice advice = advice_now();
+  const Advice advice = advice_without("0 guided");
   EXPECT_EQ(advice.recommended_share, 0) << advice.evidence;
   EXPECT_EQ(advice.guided.value().attempts, 10U);
   EXPECT_EQ(advice.control.value().checks_per_solution, 110);
   report(attempts);  // duplicates
   EXPECT_EQ(advice_now().guided.value().attempts, 10U);
   start();  // the store has them, too
-  for (int tries = 0; advice_now().evidence.starts_with("attempts are being counted"); ++tries)
-    ASSERT_LT(tries, 1000);
-  EXPECT_EQ(advice_now().evidence, advice.evidence);
+  EXPECT_EQ(advice_without("attempts are being counted").evidence, advice.evidence);
 }
 
 TEST_F(AdministrationChanges, WhoWaitsForAJobIsToldAtTheDeadlineHowItStands) {

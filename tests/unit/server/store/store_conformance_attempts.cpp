@@ -141,12 +141,18 @@ TEST_P(StoreConformance, SumsUpWhatTheArmsOfARobotAndTaskCost) {
 }
 
 TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
-  const auto attempt = [this](std::uint64_t number, SamplingMode mode, Outcome outcome) {
+  const Digest distribution = test::id_from<Digest>(99);
+  const auto attempt = [this, distribution](std::uint64_t number, SamplingMode mode,
+                                            Outcome outcome) {
     Attempt made = outcome == Outcome::Solved ? solved(number)
                                               : test::make_unsolved(panda_.digest, "shelf", number);
     made.record.sampling_mode = mode;
     made.record.outcome = outcome;
     made.record.collision_checks = number;
+    made.record.planner = number == 5 ? "rrtc" : "birrt";
+    made.record.distribution_id.reset();
+    if (number == 5)
+      made.record.distribution_id = distribution;
     return made;
   };
   test::report(*store_, {attempt(1, SamplingMode::Control, Outcome::Solved),
@@ -155,28 +161,29 @@ TEST_P(StoreConformance, TheNewestJudgedAttemptsComeOldestFirstWithTheirAge) {
                          attempt(4, SamplingMode::Guided, Outcome::Failed),
                          attempt(5, SamplingMode::Guided, Outcome::Solved)});
   reopen();
-  EXPECT_EQ(store_->attempt_totals(panda_.digest, "shelf").recent,
-            (std::vector<JudgedAttempt>{{SamplingMode::Control, true, 1, 2},
-                                        {SamplingMode::Guided, false, 2, 1},
-                                        {SamplingMode::Guided, true, 5, 0}}));
+  EXPECT_EQ(
+      store_->attempt_totals(panda_.digest, "shelf").recent,
+      (std::vector<KnownAttempt>{{{SamplingMode::Control, true, 1, 2}, "birrt", {}},
+                                 {{SamplingMode::Guided, false, 2, 1}, "birrt", {}},
+                                 {{SamplingMode::Guided, true, 5, 0}, "rrtc", distribution}}));
   EXPECT_TRUE(store_->attempt_totals(iiwa_.digest, "shelf").recent.empty());
 }
 
 TEST_P(StoreConformance, OfEachArmAsManyJudgedAttemptsAsCountAreRead) {
   std::vector<Attempt> attempts;
-  for (std::uint64_t i = 0; i < kJudgedAttemptsPerMode + 10; ++i) {
+  for (std::uint64_t i = 0; i < kKnownAttemptsPerMode + 10; ++i) {
     attempts.push_back(test::make_unsolved(panda_.digest, "shelf", i + 1));
     attempts.back().record.sampling_mode = i == 0 ? SamplingMode::Control : SamplingMode::Guided;
     attempts.back().record.outcome = Outcome::Timeout;
     attempts.back().record.collision_checks = i;
   }
   test::report(*store_, attempts);
-  const std::vector<JudgedAttempt> recent = store_->attempt_totals(panda_.digest, "shelf").recent;
-  ASSERT_EQ(recent.size(), kJudgedAttemptsPerMode + 1);
-  EXPECT_EQ(recent[0],
-            (JudgedAttempt{SamplingMode::Control, false, 0, kJudgedAttemptsPerMode + 9}));
-  EXPECT_EQ(recent[1].checks, 10U);
-  EXPECT_EQ(recent[1].age, kJudgedAttemptsPerMode - 1);
+  const std::vector<KnownAttempt> recent = store_->attempt_totals(panda_.digest, "shelf").recent;
+  ASSERT_EQ(recent.size(), kKnownAttemptsPerMode + 1);
+  EXPECT_EQ(recent[0].judged,
+            (JudgedAttempt{SamplingMode::Control, false, 0, kKnownAttemptsPerMode + 9}));
+  EXPECT_EQ(recent[1].judged.checks, 10U);
+  EXPECT_EQ(recent[1].judged.age, kKnownAttemptsPerMode - 1);
 }
 
 }  // namespace
