@@ -27,8 +27,7 @@ planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const
                                                   ProblemResult& result) {
   if (guidance == nullptr || result.sampling_mode != SamplingMode::Guided)
     return planning::ConfigurationSampler(query.bounds);
-  const bool has_tracks =
-      guidance->experience != nullptr && !guidance->experience->experience().paths.empty();
+  const bool has_tracks = guidance->experience != nullptr;
   result.track_share = has_tracks ? guidance->guided_fraction * settings.tracks.sample_fraction : 0;
   const double rest = guidance->guided_fraction - result.track_share;
   double mixture_share = 0;

@@ -47,21 +47,27 @@ std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& q
     paths.push_back(nearest_paths(experience_.paths, posed, options.paths));
   }
   std::vector<Choice> choices;
+  if (options.retreat_m)
+    for (const Eigen::Index goal : goals)
+      choices.push_back({goal, std::nullopt});
   for (std::size_t rank = 0; rank < std::min(options.paths, experience_.paths.size()); ++rank)
-    for (std::size_t i = 0; i < goals.size() && choices.size() < options.tracks; ++i)
+    for (std::size_t i = 0; i < goals.size(); ++i)
       choices.push_back({goals[i], paths[i][rank]});
+  choices.resize(std::min(choices.size(), options.tracks));
   return choices;
 }
 
-std::vector<Track> ExperienceGuide::follow(const TrackQuery& query,
-                                           std::span<const Choice> choices) const {
+std::vector<Track> ExperienceGuide::follow(const TrackQuery& query, std::span<const Choice> choices,
+                                           const TrackOptions& options) const {
+  const PosePath without_experience = retreat(options.retreat_m.value_or(0));
   const Eigen::Isometry3d T_base_task = query.T_task_base.inverse();
   PoseQuery posed{query.T_task_base * kinematics::T_base_transfer(chain_, query.start), {}};
   std::vector<PoseTrack> wanted;
   for (const Choice& choice : choices) {
     const Eigen::VectorXd goal = query.goals.col(choice.goal);
     posed.T_task_goal = query.T_task_base * kinematics::T_base_transfer(chain_, goal);
-    PoseTrack track{moved_onto(experience_.paths[choice.path], posed), goal, query.start};
+    const PosePath& path = choice.path ? experience_.paths[*choice.path] : without_experience;
+    PoseTrack track{moved_onto(path, posed), goal, query.start};
     std::ranges::reverse(track.T_base_transfer);
     for (Eigen::Isometry3d& pose : track.T_base_transfer)
       pose = T_base_task * pose;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace kinship::planning {
 struct TrackOptions {
   std::size_t paths = 20;   ///< of the experience, the most like the query
   std::size_t tracks = 40;  ///< at most: each path is followed from several goals
-  double deviation = 0.3;   ///< of samples from tracks, each joint, joint units
+  /// Before the stored ways one is tried that needs no experience: see `retreat`; m.
+  std::optional<double> retreat_m = 0.4;
+  double deviation = 0.3;  ///< of samples from tracks, each joint, joint units
   /// Of the guided samples, those around tracks; the others are the mixture's, if there is one.
   double sample_fraction = 0.9;
   double check_fraction = 0.5;  ///< see BirrtOptions::track_check_fraction
@@ -34,22 +37,23 @@ struct TrackQuery {
 /// configurations. Asks no collision question. Immutable; may be shared between threads.
 class ExperienceGuide {
  public:
-  /// One stored way, to be followed from one goal.
+  /// One way, to be followed from one goal.
   struct Choice {
     Eigen::Index goal;
-    std::size_t path;
+    std::optional<std::size_t> path;  ///< of the experience; missing: the retreat
   };
 
   /// \throws std::invalid_argument if a path has less than two poses.
   ExperienceGuide(const kinematics::Chain& chain, TaskExperience experience);
 
-  /// What to follow in which order: for each goal, the nearest to the start first, the way most
-  /// like the query; then for each goal the next, and so on.
+  /// What to follow in which order: for each goal, the nearest to the start first, the retreat;
+  /// then for each goal the stored way most like the query, then the next, and so on.
   std::vector<Choice> choose(const TrackQuery& query, const TrackOptions& options) const;
 
   /// \return tracks from a goal towards the start, each within the bounds; the one that ends
   ///         nearest to the start first.
-  std::vector<Track> follow(const TrackQuery& query, std::span<const Choice> choices) const;
+  std::vector<Track> follow(const TrackQuery& query, std::span<const Choice> choices,
+                            const TrackOptions& options) const;
 
   const TaskExperience& experience() const noexcept { return experience_; }
 

@@ -8,6 +8,7 @@ namespace kinship::planning {
 namespace {
 
 constexpr double kRadian_m = 0.3;
+constexpr double kAllGoals = 0.5;  // share of the path after which it moves with the goal alone
 
 /// Between two poses: a at 0, b at 1.
 Eigen::Isometry3d blended(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double weight) {
@@ -29,6 +30,17 @@ double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   const double cosine = ((a.linear().transpose() * b.linear()).trace() - 1) / 2;
   return (a.translation() - b.translation()).norm() +
          kRadian_m * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+PosePath retreat(double distance_m) {
+  constexpr double kRetreating = 0.5;  // share of the path
+  PosePath path;
+  for (int i = 0; i < kExperiencePoses; ++i) {
+    const double left = 1 - i / (kExperiencePoses - 1.0);
+    path.poses.emplace_back(
+        Eigen::Translation3d(0, 0, -distance_m * std::min(left / kRetreating, 1.0)));
+  }
+  return path;
 }
 
 std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const PoseQuery& query,
@@ -53,15 +65,10 @@ std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery&
   std::vector<Eigen::Isometry3d> moved;
   moved.reserve(path.poses.size());
   const double last = static_cast<double>(path.poses.size()) - 1;
-  static const int mode = std::getenv("BLEND") ? std::atoi(std::getenv("BLEND")) : 0;
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    double w = static_cast<double>(i) / last;
-    if (mode == 1) w = w * w * (3 - 2 * w);
-    if (mode == 2) w = std::clamp((w - 0.25) / 0.5, 0.0, 1.0);
-    if (mode == 3) w = std::clamp(w / 0.5, 0.0, 1.0);
-    if (mode == 4) { w = std::clamp((w - 0.25) / 0.5, 0.0, 1.0); w = w * w * (3 - 2 * w); }
-    if (mode == 5) w = std::clamp(w / 0.25, 0.0, 1.0);
-    moved.push_back(blended(by_start * path.poses[i], by_goal * path.poses[i], w));
+    const double share = static_cast<double>(i) / last;
+    moved.push_back(blended(by_start * path.poses[i], by_goal * path.poses[i],
+                            std::min(share / kAllGoals, 1.0)));
   }
   return moved;
 }

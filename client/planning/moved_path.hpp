@@ -21,10 +21,16 @@ double pose_distance_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 std::vector<std::size_t> nearest_paths(const std::vector<PosePath>& paths, const PoseQuery& query,
                                        std::size_t count);
 
-/// The path moved onto the query: its start to the query's start, its goal to the query's goal, and
-/// what lies between by a blend of both motions, so that each end is passed as the path passed its
-/// own. Rotations by normalised linear interpolation.
+/// The path moved onto the query: its start to the query's start, its goal to the query's goal. The
+/// first half blends from one motion to the other, the second half is moved with the goal alone, as
+/// the way around a goal is mostly narrower than that around a start. Rotations by normalised
+/// linear interpolation.
 /// \return as many poses as the path has; the first and last are those of the query.
 std::vector<Eigen::Isometry3d> moved_onto(const PosePath& path, const PoseQuery& query);
+
+/// A way that needs no experience: the hand comes straight to where it is `distance_m` before its
+/// goal, against the z axis of the transfer frame, which points out of the palm, and from there
+/// straight to the goal. With 0 it comes straight all the way.
+PosePath retreat(double distance_m);
 
 }  // namespace kinship::planning

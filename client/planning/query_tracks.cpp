@@ -19,7 +19,8 @@ void QueryTracks::make_some() {
   if (!choices_)
     choices_ = guide_->choose(query_, options_);
   const std::size_t count = std::min<std::size_t>(inverse::kLanes, choices_->size() - followed_);
-  for (Track& track : guide_->follow(query_, std::span(*choices_).subspan(followed_, count))) {
+  for (Track& track :
+       guide_->follow(query_, std::span(*choices_).subspan(followed_, count), options_)) {
     for (const auto& q : track.configurations.colwise())
       configurations_.emplace_back(q);
     tracks_.push_back(std::move(track));

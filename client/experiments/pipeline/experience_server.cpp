@@ -45,7 +45,7 @@ void ExperienceServer::report(const std::vector<Attempt>& attempts) {
           "the server did not take attempt " + receipt.report_uuid.text() + ": " + receipt.message);
 }
 
-Distribution ExperienceServer::fetch(const DistributionWish& wish) {
+Fetched ExperienceServer::fetch(const DistributionWish& wish) {
   const StudyMember& target = fleet_.at(wish.target);
   FetchRequest request;
   request.task = wish.task;
@@ -56,14 +56,16 @@ Distribution ExperienceServer::fetch(const DistributionWish& wish) {
     request.selection.sources.push_back(fleet_.at(source).digest);
   std::ranges::sort(request.selection.sources);
   request.deadline = 60s;
+  request.experience_bytes = kDefaultExperienceBytes;
   while (true) {
-    const FetchReply reply = client_.fetch(request).value_or_throw();
+    FetchReply reply = client_.fetch(request).value_or_throw();
     if (reply.status == FetchStatus::Pending || reply.status == FetchStatus::Busy)
       continue;
     if (!reply.distribution)
       throw Failure(ErrorCode::NotFound, "no distribution of task '" + wish.task + "' for robot '" +
                                              target.label() + "': " + reply.message);
-    return *reply.distribution;
+    return {*std::move(reply.distribution),
+            std::move(reply.experience).value_or(TaskExperience{})};
   }
 }
 

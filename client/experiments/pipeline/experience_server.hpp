@@ -10,6 +10,7 @@
 #include "client/link/client.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/task_experience.hpp"
 
 namespace kinship::experiments {
 
@@ -19,6 +20,12 @@ struct DistributionWish {
   std::size_t target = 0;            ///< index into the fleet
   std::vector<std::size_t> sources;  ///< indices into the fleet
   std::string profile = "default";
+};
+
+/// What came of a wish.
+struct Fetched {
+  Distribution distribution;  ///< Failed ones have the reason and no mixture
+  TaskExperience experience;  ///< of the same sources, as any client gets it
 };
 
 /// A kinshipd that this program started, and the line to it.
@@ -33,9 +40,8 @@ class ExperienceServer {
   void report(const std::vector<Attempt>& attempts);
 
   /// Waits until it is made.
-  /// \return the distribution; Failed ones have the reason and no mixture.
   /// \throws Failure if the server refuses the wish or does not answer.
-  Distribution fetch(const DistributionWish& wish);
+  Fetched fetch(const DistributionWish& wish);
 
  private:
   const std::vector<StudyMember>& fleet_;

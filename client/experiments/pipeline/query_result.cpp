@@ -23,6 +23,10 @@ std::string to_json(const QueryResult& result) {
     line["gate_fired"] = *result.gate_fired;
   if (result.guided_share)
     line["guided_share"] = *result.guided_share;
+  if (result.track_share)
+    line["track_share"] = *result.track_share;
+  if (result.found_by)
+    line["found_by"] = to_text(*result.found_by);
   return line.dump();
 }
 
@@ -43,6 +47,10 @@ Result<QueryResult> query_result_from_json(std::string_view text) {
       result.gate_fired = line.at("gate_fired").get<bool>();
     if (line.contains("guided_share"))
       result.guided_share = line.at("guided_share").get<double>();
+    if (line.contains("track_share"))
+      result.track_share = line.at("track_share").get<double>();
+    if (line.contains("found_by"))
+      result.found_by = enum_from_text<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
     return result;
   } catch (const nlohmann::json::exception& exception) {
     return Error{ErrorCode::InvalidInput, exception.what()};

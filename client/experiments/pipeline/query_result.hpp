@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 
@@ -34,8 +35,11 @@ struct QueryResult {
   /// Whether a guided query was planned uniformly because its start or goals are far from all that
   /// the distribution knows. Missing in rows that are older than it, and of peers.
   std::optional<bool> gate_fired = std::nullopt;
-  /// Of samples: how many were drawn from the distribution, as planned. Missing likewise.
+  /// Of samples: how many were guided, as planned. Missing likewise.
   std::optional<double> guided_share = std::nullopt;
+  /// Of samples: how many were drawn around tracks. Missing in rows that are older than it.
+  std::optional<double> track_share = std::nullopt;
+  std::optional<FoundBy> found_by = std::nullopt;  ///< missing likewise
 };
 
 /// One line of JSON.

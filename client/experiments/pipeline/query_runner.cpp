@@ -26,7 +26,9 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
           .cpu_s = result.planning_time_s,
           .length = result.waypoints ? planning::path_length(*result.waypoints) : 0,
           .gate_fired = result.gate_fired,
-          .guided_share = result.share};
+          .guided_share = result.share,
+          .track_share = result.track_share,
+          .found_by = result.found_by};
 }
 
 /// All queries of one robot and instance.
@@ -51,14 +53,29 @@ void answer_instance(const StudyMember& member, const std::vector<const Cell*>& 
 
 }  // namespace
 
-std::optional<planner::Guidance> always_guided(const Distribution& distribution, double share) {
-  if (!distribution.mixture)
-    return std::nullopt;
-  return planner::Guidance{.distribution_id = distribution.id,
-                           .revision = distribution.revision,
-                           .mixture = distribution.mixture,
-                           .experience = nullptr,
-                           .guided_fraction = share};
+bool guide_by(Guide guide, const StudyMember& member, const Fetched& fetched, double share,
+              Cell& cell) {
+  const bool needs_mixture = guide == Guide::All || guide == Guide::Mixture;
+  const bool needs_ways = guide == Guide::All || guide == Guide::Tracks;
+  if ((needs_mixture && !fetched.distribution.mixture) ||
+      (needs_ways && fetched.experience.paths.empty()))
+    return false;
+  planner::Guidance& guidance = cell.guidance.emplace();
+  guidance.guided_fraction = share;
+  guidance.distribution_id = fetched.distribution.id;
+  guidance.revision = fetched.distribution.revision;
+  if (needs_mixture)
+    guidance.mixture = fetched.distribution.mixture;
+  if (guide == Guide::Mixture)
+    return true;
+  guidance.experience = std::make_shared<planning::ExperienceGuide>(
+      member.robot.chain, needs_ways ? fetched.experience : TaskExperience{});
+  planning::TrackOptions& tracks = cell.settings.tracks;
+  if (guide == Guide::Tracks)
+    tracks.retreat_m = std::nullopt;
+  if (guide == Guide::Straight)
+    tracks.retreat_m = 0;
+  return true;
 }
 
 void run_queries(const std::vector<StudyMember>& fleet, const std::vector<Cell>& cells,

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "client/experiments/pipeline/experience_server.hpp"
 #include "client/experiments/pipeline/fleet.hpp"
 #include "client/experiments/pipeline/query_log.hpp"
-#include "proto/types/distribution.hpp"
 
 namespace kinship::experiments {
 
@@ -19,10 +19,21 @@ struct Cell {
   std::optional<planner::Guidance> guidance;  ///< missing: uniform
 };
 
-/// Guidance for every query, as `kinship-plan --guidance always --control-share 0` has it.
+/// What guides the queries of a cell.
+enum class Guide {
+  All,       ///< as `kinship-plan --guidance always` has it: tracks, and the mixture beside them
+  Mixture,   ///< samples of the distribution alone, as the paper has it: `--tracks no`
+  Tracks,    ///< stored ways of the hand alone, without the retreat that needs none
+  Straight,  ///< no experience: the hand goes straight to its goal
+  Retreat    ///< no experience: the hand comes along its palm
+};
+
+/// Sets what a cell is guided by.
 /// \param share  of guided samples; 0 to 1.
-/// \return       missing if the distribution has no mixture.
-std::optional<planner::Guidance> always_guided(const Distribution& distribution, double share);
+/// \return       whether there is what the guide needs: without a mixture, or without a stored way,
+///               a cell cannot be.
+bool guide_by(Guide guide, const StudyMember& member, const Fetched& fetched, double share,
+              Cell& cell);
 
 /// Which instances are planned, and how often.
 struct QueryPlan {

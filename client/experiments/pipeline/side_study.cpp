@@ -41,6 +41,8 @@ SideStudy pooled(const Study& study) {
         {cell_name(kOthers, "pooled"), others, study.settings.overshoot, study.guided_share});
     side.cells.push_back(
         {cell_name(kAll, "pooled"), all, study.settings.overshoot, study.guided_share});
+    for (WishedCell& cell : side.cells)
+      cell.guide = Guide::All;
   }
   return side;
 }
@@ -80,8 +82,11 @@ SideStudy sizes(const Study& study) {
       continue;
     const std::string task = study.name + "_" + std::to_string(count);
     side.shortened.push_back({task, count});
-    append(cells_of_pairs(study, std::to_string(count) + " instances", "default", task),
-           side.cells);
+    std::vector<WishedCell> cells =
+        cells_of_pairs(study, std::to_string(count) + " instances", "default", task);
+    for (WishedCell& cell : cells)
+      cell.guide = Guide::All;
+    append(std::move(cells), side.cells);
   }
   return side;
 }
@@ -109,6 +114,30 @@ SideStudy inverse(const Study& study) {
                           {study.name, robot, {robot}, "default,take_over=0"},
                           study.settings.overshoot,
                           study.guided_share});
+  return side;
+}
+
+/// What each guide is worth by itself, and what needs no experience at all.
+SideStudy guides(const Study& study) {
+  SideStudy side{"guides",
+                 "the mixture alone, stored ways of the hand alone, and what needs no experience",
+                 {},
+                 {}};
+  for (const auto& [guide, variant] : {std::pair{Guide::Mixture, "mixture"},
+                                       std::pair{Guide::Tracks, "stored ways"}}) {
+    std::vector<WishedCell> cells = cells_of_pairs(study, variant, "default", study.name);
+    for (WishedCell& cell : cells)
+      cell.guide = guide;
+    append(std::move(cells), side.cells);
+  }
+  for (const auto& [guide, variant] :
+       {std::pair{Guide::Straight, "straight way of the hand"}, std::pair{Guide::Retreat, "retreat"}})
+    for (std::size_t robot = 0; robot < study.robots.size(); ++robot) {
+      WishedCell cell{cell_name(kNobody, variant), {study.name, robot, {robot}, "default"},
+                      study.settings.overshoot, study.guided_share};
+      cell.guide = guide;
+      side.cells.push_back(std::move(cell));
+    }
   return side;
 }
 
@@ -154,7 +183,7 @@ std::string uniform_name(double overshoot) {
 std::vector<SideStudy> side_studies(const Study& study) {
   std::vector<SideStudy> sides = {pooled(study),    components(study), paper(study),
                                   scenes(study),    sizes(study),      inverse(study),
-                                  overshoot(study), roadmap(study)};
+                                  overshoot(study), roadmap(study), guides(study)};
   if (!study.is_constrained)
     sides.push_back(ompl_peers(study));
   return sides;

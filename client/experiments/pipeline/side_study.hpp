@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/experiments/pipeline/experience_server.hpp"
+#include "client/experiments/pipeline/query_runner.hpp"
 #include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
@@ -18,6 +18,7 @@ struct WishedCell {
   double overshoot = 1;
   double share = 1;  ///< of guided samples
   planner::PlannerKind planner = planner::PlannerKind::ByProblem;
+  Guide guide = Guide::Mixture;
 };
 
 /// Further cells over the test instances: what the main tables do not tell.
@@ -48,6 +49,7 @@ std::string cell_name(const std::string& sources, const std::string& variant);
 std::string uniform_name(double overshoot);
 
 inline constexpr const char* kOthers = "the others";  ///< experience of all but the robot itself
+inline constexpr const char* kNobody = "nobody";      ///< no experience
 inline constexpr const char* kAll = "all";            ///< and its own
 
 }  // namespace kinship::experiments

@@ -39,13 +39,12 @@ std::vector<Cell> uniform_cells(std::size_t robot, const planner::PlanSettings& 
   return cells;
 }
 
-std::optional<Cell> guided_cell(std::size_t robot, std::string name, planner::PlanSettings settings,
-                                const Distribution& distribution, double share) {
-  settings.shortcut_checks = 0;
-  std::optional<planner::Guidance> guidance = always_guided(distribution, share);
-  if (!guidance)
+std::optional<Cell> guided_cell(const StudyMember& member, Guide guide, Cell cell,
+                                const Fetched& fetched, double share) {
+  cell.settings.shortcut_checks = 0;
+  if (!guide_by(guide, member, fetched, share, cell))
     return std::nullopt;
-  return Cell{robot, std::move(name), settings, std::move(guidance)};
+  return cell;
 }
 
 /// The cells of the main tables: uniform, and guided by each robot alone.
@@ -56,10 +55,11 @@ std::vector<Cell> main_cells(const Study& study, StudySession& session,
     for (Cell& cell : uniform_cells(target, study.settings))
       cells.push_back(std::move(cell));
     for (std::size_t source = 0; source < session.fleet().size(); ++source) {
-      const Distribution distribution = session.fetch({study.name, target, {source}, "default"});
-      distributions << json::to_json(distribution) << '\n';
-      if (auto cell = guided_cell(target, session.fleet()[source].label(), study.settings,
-                                  distribution, study.guided_share))
+      const Fetched fetched = session.fetch({study.name, target, {source}, "default"});
+      distributions << json::to_json(fetched.distribution) << '\n';
+      if (auto cell = guided_cell(session.fleet()[target], Guide::All,
+                                  {target, session.fleet()[source].label(), study.settings, {}},
+                                  fetched, study.guided_share))
         cells.push_back(*std::move(cell));
     }
   }
@@ -84,7 +84,8 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
     if (is_uniform(wished)) {
       cells.push_back(uniform_cell(wished.wish.target, settings, wished.overshoot));
       cells.back().name = wished.name;
-    } else if (auto cell = guided_cell(wished.wish.target, wished.name, settings,
+    } else if (auto cell = guided_cell(session.fleet()[wished.wish.target], wished.guide,
+                                       {wished.wish.target, wished.name, settings, {}},
                                        session.fetch(wished.wish), wished.share)) {
       cells.push_back(*std::move(cell));
     }
@@ -175,7 +176,7 @@ std::string tuning_name(const std::string& source, const TuningOptions& tuning, 
                         const Distribution& distribution) {
   return source + " " + tuning.profile + " " + distribution.id.short_hex() + " r" +
          std::to_string(distribution.revision) + " f" +
-         formatted("%g s%g", overshoot, tuning.share);
+         formatted("%g s%g g%d", overshoot, tuning.share, static_cast<int>(tuning.guide));
 }
 
 }  // namespace
@@ -262,10 +263,11 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
     for (Cell& cell : uniform_cells(target, settings))
       cells.push_back(std::move(cell));
     for (const NamedSources& sources : chosen_sources(session.fleet(), tuning.sources, target)) {
-      const Distribution distribution =
-          session.fetch({study.name, target, sources.robots, tuning.profile});
-      const std::string name = tuning_name(sources.name, tuning, settings.overshoot, distribution);
-      if (auto cell = guided_cell(target, name, settings, distribution, tuning.share)) {
+      const Fetched fetched = session.fetch({study.name, target, sources.robots, tuning.profile});
+      const std::string name =
+          tuning_name(sources.name, tuning, settings.overshoot, fetched.distribution);
+      if (auto cell = guided_cell(session.fleet()[target], tuning.guide, {target, name, settings, {}},
+                                  fetched, tuning.share)) {
         cells.push_back(*std::move(cell));
         compared["pairs"].push_back(
             {{"robot", label}, {"source", sources.name}, {"guidance", name}});

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/experiments/pipeline/query_runner.hpp"
 #include "client/experiments/studies/study.hpp"
 
 namespace kinship::experiments {
@@ -31,6 +32,7 @@ struct TuningOptions {
   std::string profile = "default";
   std::optional<double> overshoot;
   double share = 1;  ///< of guided samples; the rest is uniform
+  Guide guide = Guide::All;
   std::uint32_t instances = 30;
   std::uint32_t seeds = 2;
   std::vector<std::string> targets, sources;  ///< labels; empty: all. A source may be kOtherRobots

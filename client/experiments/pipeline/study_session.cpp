@@ -92,10 +92,10 @@ void StudySession::report_as(const std::string& task, std::size_t count) {
     server_->report(renamed(attempts, task, count));
 }
 
-Distribution StudySession::fetch(const DistributionWish& wish) {
-  Distribution distribution = server_->fetch(wish);
-  tell(distribution, fleet_.at(wish.target).label(), messages_);
-  return distribution;
+Fetched StudySession::fetch(const DistributionWish& wish) {
+  Fetched fetched = server_->fetch(wish);
+  tell(fetched.distribution, fleet_.at(wish.target).label(), messages_);
+  return fetched;
 }
 
 void StudySession::run(const std::string& stage, const std::vector<Cell>& cells, QueryPlan plan,

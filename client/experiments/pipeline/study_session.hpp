@@ -59,7 +59,7 @@ class StudySession {
   void report_as(const std::string& task, std::size_t count);
 
   /// After learn(). \return what the server made of it; told on `messages`.
-  Distribution fetch(const DistributionWish& wish);
+  Fetched fetch(const DistributionWish& wish);
 
   /// \param stage  for messages.
   void run(const std::string& stage, const std::vector<Cell>& cells, QueryPlan plan, QueryLog& log);

@@ -47,8 +47,8 @@ ExperienceGuide guide_of(const kinematics::Chain& chain, std::vector<PosePath> p
 }
 
 std::vector<Track> tracks_of(const ExperienceGuide& guide, const TrackQuery& query,
-                             const TrackOptions& options = {}) {
-  return guide.follow(query, guide.choose(query, options));
+                             const TrackOptions& options = {.retreat_m = {}}) {
+  return guide.follow(query, guide.choose(query, options), options);
 }
 
 TEST(ExperienceGuide, TheHandKeepsToTheMovedPathFromTheGoalToTheStart) {
@@ -95,14 +95,14 @@ TEST(ExperienceGuide, TakesEveryGoalBeforeASecondPathAndNotMoreThanItMay) {
   TrackQuery query = motion.query();
   query.goals = motion.goal.replicate(1, 3);
   query.goals.col(0) += Eigen::VectorXd::Constant(7, 0.2);  // the farthest
-  const auto choices = guide.choose(query, {.paths = 2, .tracks = 5});
+  const auto choices = guide.choose(query, {.paths = 2, .tracks = 5, .retreat_m = {}});
   ASSERT_EQ(choices.size(), 5U);
   EXPECT_EQ(choices[0].goal, 1);
   EXPECT_EQ(choices[2].goal, 0);
   EXPECT_EQ(choices[2].path, choices[0].path);
   EXPECT_NE(choices[3].path, choices[0].path);
-  EXPECT_EQ(guide.choose(query, {.paths = 2, .tracks = 100}).size(), 6U);
-  EXPECT_EQ(guide.choose(query, {.paths = 9, .tracks = 2}).size(), 2U);
+  EXPECT_EQ(guide.choose(query, {.paths = 2, .tracks = 100, .retreat_m = {}}).size(), 6U);
+  EXPECT_EQ(guide.choose(query, {.paths = 9, .tracks = 2, .retreat_m = {}}).size(), 2U);
 }
 
 TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
@@ -111,6 +111,23 @@ TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
   TrackQuery nowhere = motion.query();
   nowhere.goals.resize(7, 0);
   EXPECT_TRUE(tracks_of(guide_of(motion.chain, {motion.path()}), nowhere).empty());
+}
+
+TEST(ExperienceGuide, TheRetreatComesBeforeStoredWaysAndNeedsNone) {
+  const Motion motion = panda_motion();
+  const auto with = guide_of(motion.chain, {motion.path()}).choose(motion.query(), {});
+  ASSERT_EQ(with.size(), 2U);
+  EXPECT_FALSE(with[0].path);
+  EXPECT_EQ(with[1].path, 0U);
+  const ExperienceGuide none = guide_of(motion.chain, {});
+  const std::vector<Track> tracks = tracks_of(none, motion.query(), {});
+  ASSERT_EQ(tracks.size(), 1U);
+  // Close to the goal the hand moves along the palm's axis.
+  const Eigen::Isometry3d goal = motion.hand(motion.goal);
+  const Eigen::Vector3d before =
+      goal.inverse() * motion.hand(tracks[0].configurations.col(3)).translation();
+  EXPECT_LT(before.z(), -0.02);
+  EXPECT_LT(before.head<2>().norm(), 0.02);
 }
 
 TEST(ExperienceGuide, RefusesAPathOfOnePose) {
@@ -125,6 +142,7 @@ TEST(QueryTracks, SamplesLieAroundTheTracksAndWithinTheBounds) {
   auto guide = std::make_shared<ExperienceGuide>(guide_of(motion.chain, {motion.path()}));
   const TrackQuery query = motion.query();
   TrackOptions options;
+  options.retreat_m = {};
   options.deviation = 0.1;
   auto tracks = std::make_shared<QueryTracks>(guide, query, options);
   ASSERT_NE(tracks->track(0), nullptr);
@@ -151,7 +169,7 @@ TEST(QueryTracks, SamplesLieAroundTheTracksAndWithinTheBounds) {
 TEST(QueryTracks, AMixtureKeepsWhatTheTracksLeave) {
   const Motion motion = panda_motion();
   auto guide = std::make_shared<ExperienceGuide>(guide_of(motion.chain, {}));
-  auto tracks = std::make_shared<QueryTracks>(guide, motion.query(), TrackOptions{});
+  auto tracks = std::make_shared<QueryTracks>(guide, motion.query(), TrackOptions{.retreat_m = {}});
   const Mixture at_start(Eigen::VectorXd::Ones(1), motion.start,
                          {1e-6 * Eigen::MatrixXd::Identity(7, 7)});
   const ConfigurationSampler sampler =

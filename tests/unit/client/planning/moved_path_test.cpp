@@ -49,7 +49,8 @@ TEST(MovedPath, NearTheGoalThePathKeepsItsWayRelativeToIt) {
   const std::size_t before = path.poses.size() - 2;
   const Eigen::Isometry3d wanted = goal * path.poses.back().inverse() * path.poses[before];
   const Eigen::Isometry3d stored = path.poses[before];
-  EXPECT_LT(pose_distance_m(moved[before], wanted), 0.2 * pose_distance_m(stored, wanted));
+  EXPECT_LT(pose_distance_m(moved[before], wanted), 1e-9);
+  EXPECT_GT(pose_distance_m(stored, wanted), 0.1);
 }
 
 TEST(MovedPath, TheNearestPathsComeFirst) {
@@ -61,6 +62,18 @@ TEST(MovedPath, TheNearestPathsComeFirst) {
   EXPECT_EQ(nearest_paths(paths, query, 3), (std::vector<std::size_t>{1, 3, 2}));
   EXPECT_EQ(nearest_paths(paths, query, 9).size(), 4U);
   EXPECT_TRUE(nearest_paths({}, query, 3).empty());
+}
+
+TEST(MovedPath, ARetreatComesAlongThePalmAndAStraightWayDoesNotTurnBack) {
+  const PoseQuery query{pose(0, 0, 0, 0), pose(1, 0, 0, 0.5)};
+  const auto along = moved_onto(retreat(0.4), query);
+  const std::size_t half = along.size() / 2;
+  const Eigen::Vector3d before = query.T_task_goal.inverse() * along[half].translation();
+  EXPECT_TRUE(before.isApprox(Eigen::Vector3d(0, 0, before.z()), 1e-6)) << before.transpose();
+  EXPECT_LT(before.z(), -0.35);
+  EXPECT_TRUE(along.front().isApprox(query.T_task_start, 1e-9));
+  for (const Eigen::Isometry3d& straight : moved_onto(retreat(0), query))
+    EXPECT_NEAR(straight.translation().tail<2>().norm(), 0, 1e-9);
 }
 
 TEST(MovedPath, ARadianCountsAs30Centimetres) {
