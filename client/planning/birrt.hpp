@@ -29,8 +29,8 @@ struct PlanSummary {
   std::uint64_t collision_checks = 0;  ///< configurations asked of `is_free`
   std::uint64_t projections = 0;       ///< onto a constraint
   std::uint64_t iterations = 0;
-  std::uint64_t tracks_followed = 0;     ///< of the sampler's
-  FoundBy found_by = FoundBy::Nothing;   ///< what brought the path
+  std::uint64_t tracks_followed = 0;    ///< of the sampler's
+  FoundBy found_by = FoundBy::Nothing;  ///< what brought the path
   double planning_time_s = 0;        ///< CPU time of the thread, sampling and projections included
   NoPath reason = NoPath::None;      ///< why unsolved
   std::string planner_message = {};  ///< what a planner of OMPL said that gave up
@@ -40,8 +40,9 @@ struct PlanSummary {
 /// constraints. Every goal configuration is a root of the goal tree. First the straight lines from
 /// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then the
 /// sampler's tracks, if it has any, are followed from their goals on until something is in the way,
-/// each time that they have cost no more than their part of the checks. Otherwise each iteration extends one tree towards a sample (overshot) until something is in the way, then the
-/// other tree towards where that came; then they swap. After 300 samples at most nine of
+/// each time that they have cost no more than their part of the checks. Otherwise each iteration
+/// extends the tree with fewer nodes towards a sample (overshot) until something is in the way and,
+/// if it came anywhere, the other tree towards where that was. After 300 samples at most nine of
 /// ten are guided, so that a mixture which does not cover the way out delays a path and never
 /// prevents it.
 /// Every waypoint was checked, start and goal included. A start that is a free goal is answered
