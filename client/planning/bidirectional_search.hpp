@@ -214,7 +214,7 @@ class BidirectionalSearch {
     const Eigen::Index near = grown.nearest(sample);
     const Extension there =
         steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
-    if (there.node == near)  // the other tree was extended towards it when it was new
+    if (there.node == near)  // nothing new to go to
       return std::nullopt;
     const Eigen::VectorXd tip = grown.node(there.node);
     const Extension met = steering_.extend(other, other.nearest(tip), tip, Aim::Node, budget_);
