@@ -51,7 +51,7 @@ PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goal
   return summary;
 }
 
-/// Two trees, from the start and from every goal, extended in turn.
+/// Two trees, from the start and from every goal, of which the smaller one is extended.
 /// \tparam Steering  goes from a node to a target as far as it can:
 ///         `Extension extend(Tree&, Eigen::Index from, const Eigen::VectorXd& target, Aim,
 ///         PlanningBudget&)`.
@@ -203,22 +203,24 @@ class BidirectionalSearch {
     return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
   }
 
-  /// One extension of each tree. \return the path if they met.
+  /// Extends the smaller tree towards a sample, then the other towards where that came. \return the
+  /// path if they met.
   std::optional<Eigen::MatrixXd> iterate() {
     ++iterations_;
-    Tree& grown = grow_start_ ? start_tree_ : goal_tree_;
-    Tree& other = grow_start_ ? goal_tree_ : start_tree_;
-    grow_start_ = !grow_start_;
+    const bool start_grows = start_tree_.size() <= goal_tree_.size();
+    Tree& grown = start_grows ? start_tree_ : goal_tree_;
+    Tree& other = start_grows ? goal_tree_ : start_tree_;
     const Eigen::VectorXd sample = sampler_.sample(generator_, guided_fraction());
     const Eigen::Index near = grown.nearest(sample);
     const Extension there =
         steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
+    if (there.node == near)  // nothing new to go to
+      return std::nullopt;
     const Eigen::VectorXd tip = grown.node(there.node);
     const Extension met = steering_.extend(other, other.nearest(tip), tip, Aim::Node, budget_);
     if (!met.reached)
       return std::nullopt;
-    const bool start_grew = &grown == &start_tree_;
-    return join(start_grew ? there.node : met.node, start_grew ? met.node : there.node);
+    return join(start_grows ? there.node : met.node, start_grows ? met.node : there.node);
   }
 
   /// A query that the mixture has not solved soon may need what it does not cover, and without any
@@ -252,7 +254,6 @@ class BidirectionalSearch {
   std::mt19937_64& generator_;
   Tree start_tree_{sampler_.bounds().cols()};
   Tree goal_tree_{sampler_.bounds().cols()};
-  bool grow_start_ = true;
   std::uint64_t iterations_ = 0;
   std::size_t next_track_ = 0;
   std::uint64_t track_checks_ = 0;

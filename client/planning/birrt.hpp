@@ -41,13 +41,16 @@ struct PlanSummary {
 /// the start to the goals are tried, the nearest first, until they have cost 100 checks. Then the
 /// sampler's tracks, if it has any, are followed from their goals on until something is in the way,
 /// each time that they have cost no more than their part of the checks. Otherwise each iteration
-/// extends one tree towards a sample (overshot) until something is in the way, then the other tree
-/// towards where that came; then they swap. After 300 samples at most nine of ten are guided, so
-/// that a mixture which does not cover the way out delays a path and never prevents it. Every
-/// waypoint was checked, start and goal included. A start that is a free goal is answered with
-/// [start, goal], without an iteration. Equal seed, equal path, as long as the time limit does not
-/// end it. \param start  dof. \param goals  dof x n; colliding ones are left out. \throws
-/// std::invalid_argument if sizes differ, a value is not finite, the step not positive or
+/// extends the tree with fewer nodes towards a sample (overshot) until something is in the way and,
+/// if it came anywhere, the other tree towards where that was. After 300 samples at most nine of
+/// ten are guided, so that a mixture which does not cover the way out delays a path and never
+/// prevents it.
+/// Every waypoint was checked, start and goal included. A start that is a free goal is answered
+/// with [start, goal], without an iteration.
+/// Equal seed, equal path, as long as the time limit does not end it.
+/// \param start  dof.
+/// \param goals  dof x n; colliding ones are left out.
+/// \throws std::invalid_argument if sizes differ, a value is not finite, the step not positive or
 ///         the overshoot below 1.
 /// Source: Berenson, Srinivasa, Kuffner, Task Space Regions (2011), algorithm 1.
 PlanSummary plan_birrt(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "client/planning/nearest_nodes.hpp"
+
 namespace kinship::planning {
 
-/// A tree of configurations grown from one or more roots. Nearest neighbours by a linear scan over
-/// contiguous storage in single precision, which beats a search structure up to some ten thousand
-/// nodes.
+/// A tree of configurations grown from one or more roots.
 class Tree {
  public:
   explicit Tree(Eigen::Index dof);
@@ -18,7 +18,7 @@ class Tree {
 
   /// Index of the node nearest to q (Euclidean, joint units; the first of equals), to single
   /// precision.
-  Eigen::Index nearest(const Eigen::VectorXd& q) const;
+  Eigen::Index nearest(const Eigen::VectorXd& q) const { return nearest_.find(q); }
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }
   Eigen::VectorXd node(Eigen::Index index) const { return nodes_.col(index); }
@@ -29,8 +29,8 @@ class Tree {
  private:
   static constexpr Eigen::Index kFirstCapacity = 1024;
 
-  Eigen::MatrixXd nodes_;    // dof x capacity
-  Eigen::ArrayXXf scanned_;  // capacity x dof: one column per joint, so that it is vectorised
+  Eigen::MatrixXd nodes_;  // dof x capacity
+  NearestNodes nearest_;
   std::vector<Eigen::Index> parents_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/types/enum_text.hpp"
+
 namespace kinship::experiments {
 
 std::string to_json(const QueryResult& result) {
@@ -50,7 +52,7 @@ Result<QueryResult> query_result_from_json(std::string_view text) {
     if (line.contains("track_share"))
       result.track_share = line.at("track_share").get<double>();
     if (line.contains("found_by"))
-      result.found_by = enum_from_text<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
+      result.found_by = parse_word<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
     return result;
   } catch (const nlohmann::json::exception& exception) {
     return Error{ErrorCode::InvalidInput, exception.what()};

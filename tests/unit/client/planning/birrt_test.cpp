@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <limits>
+#include <vector>
 
 #include "tests/support/planar_arm.hpp"
 #include "tests/unit/client/planning/wall_world.hpp"
@@ -103,6 +104,24 @@ TEST(Birrt, EndsInAnyOfTheGoals) {
   ASSERT_TRUE(summary.waypoints);
   const Eigen::VectorXd end = summary.waypoints->rightCols(1);
   EXPECT_TRUE(end == goals.col(1) || end == goals.col(2));
+}
+
+TEST(Birrt, TheSmallerTreeGrowsAndABlockedExtensionCostsOneCheck) {
+  // The start cannot move, so its tree stays the smaller one.
+  std::vector<Eigen::VectorXd> asked;
+  const IsFree is_free = [&](const Eigen::VectorXd& q) {
+    asked.push_back(q);
+    return q == kStart || q[0] > 0;
+  };
+  const ConfigurationSampler sampler(square_bounds());
+  BirrtOptions limited = options();
+  limited.max_checks = 500;
+  std::mt19937_64 generator(8);
+  const PlanSummary summary = plan_birrt(kStart, kGoal, is_free, sampler, limited, generator);
+  EXPECT_EQ(summary.reason, NoPath::MaxChecks);
+  EXPECT_EQ(summary.iterations, 500U - 3) << "start, goal and the straight line cost one each";
+  for (const Eigen::VectorXd& q : asked)
+    EXPECT_TRUE(q == kGoal || (q - kStart).norm() < limited.step + 1e-9);
 }
 
 TEST(Birrt, SamplesInTheGapMakeItFast) {

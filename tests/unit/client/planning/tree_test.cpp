@@ -2,35 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 namespace kinship::planning::tree_test {
 namespace {
-
-constexpr std::uint64_t kSeed = 5;
-
-TEST(Tree, NearestIsTheNearestOfAll) {
-  std::mt19937_64 generator(kSeed);
-  std::uniform_real_distribution<double> joint(-3, 3);
-  const auto random = [&] {
-    return Eigen::VectorXd::NullaryExpr(7, [&] { return joint(generator); }).eval();
-  };
-  Tree tree(7);
-  std::vector<Eigen::VectorXd> nodes;
-  for (int i = 0; i < 3000; ++i) {  // more than the first capacity
-    nodes.emplace_back(random());
-    EXPECT_EQ(tree.add(nodes.back(), i - 1), i);
-  }
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::VectorXd q = random();
-    const auto nearest = std::min_element(nodes.begin(), nodes.end(),
-                                          [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-                                            return (a - q).squaredNorm() < (b - q).squaredNorm();
-                                          });
-    EXPECT_EQ(tree.nearest(q), nearest - nodes.begin());
-    EXPECT_EQ(tree.node(tree.nearest(q)), *nearest);
-  }
-}
 
 TEST(Tree, BranchLeadsFromANodeToItsRoot) {
   Tree tree(1);
