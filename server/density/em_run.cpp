@@ -28,7 +28,8 @@ EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options)
   EmRun run{std::move(start), {}};
   Expectation current = expectation(run.mixture, points, options.computation);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    run.mixture = maximisation(current.moments, points.offset(), options.floors);
+    run.mixture =
+        maximisation(current.moments, points.offset(), options.floors, options.prior_scatter);
     const double before = current.mean_log_likelihood;
     current = expectation(run.mixture, points, options.computation);
     run.log_likelihoods.push_back(current.mean_log_likelihood);
