@@ -33,7 +33,8 @@ Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::u
                       const EmOptions& options);
 
 /// EM until the gain falls below the tolerance.
-/// With a prior this is the gain of the likelihood alone, which may fall while the posterior rises.
+/// With a prior that is the gain of the posterior: from clusters made without it the likelihood
+/// falls.
 EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options);
 
 }  // namespace kinship::density

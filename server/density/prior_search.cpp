@@ -11,7 +11,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr std::array kPriors = {80.0, 40.0, 20.0, 10.0, 5.0, 2.5, 0.0};
+constexpr std::array kPriors = {160.0, 80.0, 40.0, 20.0, 10.0, 5.0, 2.5, 0.0};
 constexpr int kIterationsPerPrior = 5;
 
 }  // namespace
