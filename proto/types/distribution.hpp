@@ -59,8 +59,8 @@ struct Distribution {
   std::uint64_t configurations = 0;  ///< number the mixture was fitted to
   std::optional<Mixture> mixture;    ///< present exactly unless Failed
   Eigen::Matrix2Xd limits;           ///< 2 x dof: lower, upper; joint units
-  /// Where the number of components was chosen: the highest score of `component_scores`. Both are
-  /// those of the last full fit.
+  /// Where the number of components was chosen: the highest score of `component_scores`; where a
+  /// prior or a bandwidth was, its. Both are those of the last full fit.
   std::optional<double> held_out_score;
   /// Of the moment it was sent, not of the fit.
   Advice advice;

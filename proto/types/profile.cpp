@@ -20,7 +20,8 @@ std::optional<Profile> find_profile(std::string_view name) {
                      .covariance_floor = 1e-4,
                      .equal_path_weights = false,
                      .weighting = Weighting::Paths,
-                     .warm_refits = false};
+                     .warm_refits = false,
+                     .prior = 0};
     paper.recommended_share = 1;
     paper.thin_share = 1;
     return paper;

@@ -62,6 +62,9 @@ enum class Estimator : std::uint8_t {
   Kernels,  ///< one Gaussian at each configuration, all with one covariance
 };
 
+/// As DensityParameters::prior: chosen by how well held-out paths are described.
+inline constexpr double kChosenPrior = -1;
+
 /// How configurations become a mixture.
 struct DensityParameters {
   /// K, lowered if there are too few configurations. 0: chosen by how well held-out paths are
@@ -74,7 +77,10 @@ struct DensityParameters {
   /// Whether a refit may start from the mixture before it; otherwise every fit is a full one, and
   /// depends on the paths alone.
   bool warm_refits = true;
-  Estimator estimator = Estimator::Mixture;  ///< Kernels need no `components`
+  Estimator estimator = Estimator::Mixture;  ///< Kernels need no `components` and no `prior`
+  /// How strongly covariances are drawn towards what they have in common: as so many configurations
+  /// in each component would (server/density). 0: not.
+  double prior = kChosenPrior;
 
   bool operator==(const DensityParameters&) const = default;
 };
@@ -87,7 +93,8 @@ inline constexpr std::tuple kFieldsOf<DensityParameters>{
     Field{"equal_path_weights", &DensityParameters::equal_path_weights, between(0, 1)},
     Field{"weighting", &DensityParameters::weighting},
     Field{"warm_refits", &DensityParameters::warm_refits, between(0, 1)},
-    Field{"estimator", &DensityParameters::estimator, {.min = 0, .max = 1, .mark = "kernels"}}};
+    Field{"estimator", &DensityParameters::estimator, {.min = 0, .max = 1, .mark = "kernels"}},
+    Field{"prior", &DensityParameters::prior, between(0, 10'000)}};
 
 /// A named set of parameters. Its values, not its name, identify a distribution.
 struct Profile {

@@ -30,7 +30,7 @@ Error refusal(std::string_view text, const std::string& why) {
 }
 
 /// The value of an option, or nothing if the text is none within its limits. `auto` components are
-/// 0, which stands for "choose it".
+/// 0 and an `auto` prior is kChosenPrior, which stand for "choose it".
 template <typename Of, typename T>
 std::optional<T> value_of(const Field<Of, T>& option, std::string_view text) {
   if constexpr (std::is_enum_v<T>) {
@@ -39,6 +39,9 @@ std::optional<T> value_of(const Field<Of, T>& option, std::string_view text) {
   } else {
     if (text == "auto" && option.name == "components")
       return T{0};
+    if constexpr (std::is_same_v<T, double>)
+      if (text == "auto" && option.name == "prior")
+        return kChosenPrior;
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() ||

@@ -17,15 +17,15 @@ constexpr double kLowScore_nats = 1;  // below the best
 
 }  // namespace
 
-ComponentSearch prune_components(const BlockPoints& training, const BlockPoints& held_out,
-                                 Eigen::Index most, double log_uniform, std::uint64_t seed,
+ComponentSearch prune_components(Mixture start, const BlockPoints& training,
+                                 const BlockPoints& held_out, double log_uniform,
                                  const EmOptions& options) {
   const auto score_of = [&](const Mixture& mixture) {
     return mean_log_density(mixture, held_out, kBackgroundShare, log_uniform, options.computation);
   };
   EmOptions step_options = options;
   step_options.max_iterations = std::min(options.max_iterations, kIterationsPerStep);
-  Mixture current = run_em(start_mixture(training, most, seed, options), training, options).mixture;
+  Mixture current = run_em(std::move(start), training, options).mixture;
   ComponentSearch search{{}, current, score_of(current)};
   search.curve.push_back({static_cast<int>(current.size()), search.best_score});
   int low = 0;

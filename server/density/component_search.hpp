@@ -22,10 +22,10 @@ inline constexpr double kBackgroundShare = 0.01;
 
 /// Fits many components, then merges them down step by step, with EM in between, and scores each
 /// step on the held-out points. Ends early where scores are low or merging fails.
-/// \param most  components to begin with, at least 1.
+/// \param start  of the components to begin with.
 /// \param log_uniform  u as above, logarithm.
-ComponentSearch prune_components(const BlockPoints& training, const BlockPoints& held_out,
-                                 Eigen::Index most, double log_uniform, std::uint64_t seed,
+ComponentSearch prune_components(Mixture start, const BlockPoints& training,
+                                 const BlockPoints& held_out, double log_uniform,
                                  const EmOptions& options);
 
 }  // namespace kinship::density

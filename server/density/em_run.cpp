@@ -1,5 +1,6 @@
 #include "server/density/em_run.hpp"
 
+#include <Eigen/Cholesky>
 #include <random>
 #include <utility>
 
@@ -9,6 +10,16 @@ namespace kinship::density {
 namespace {
 
 constexpr int kLloydIterations = 10;
+
+/// Per point, nats, but for a constant.
+double log_prior(const Mixture& mixture, const BlockPoints& points, const EmOptions& options) {
+  if (options.prior_scatter.size() == 0)
+    return 0;
+  double sum = 0;
+  for (Eigen::Index k = 0; k < mixture.size(); ++k)
+    sum -= 0.5 * mixture.covariance(k).llt().solve(options.prior_scatter).trace();
+  return sum / points.total_weight();
+}
 
 }  // namespace
 
@@ -27,12 +38,15 @@ Mixture start_mixture(const BlockPoints& all_points, Eigen::Index components, st
 EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options) {
   EmRun run{std::move(start), {}};
   Expectation current = expectation(run.mixture, points, options.computation);
+  double posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    run.mixture = maximisation(current.moments, points.offset(), options.floors);
-    const double before = current.mean_log_likelihood;
+    run.mixture =
+        maximisation(current.moments, points.offset(), options.floors, options.prior_scatter);
+    const double before = posterior;
     current = expectation(run.mixture, points, options.computation);
     run.log_likelihoods.push_back(current.mean_log_likelihood);
-    if (current.mean_log_likelihood - before < options.tolerance)
+    posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
+    if (posterior - before < options.tolerance)
       break;
   }
   return run;

@@ -10,12 +10,13 @@
 
 namespace kinship::density {
 
-/// When to stop, and what to add to variances.
+/// When to stop, and what to add to variances and covariances.
 struct EmOptions {
   Eigen::VectorXd floors;  ///< d, squared joint units
   int max_iterations = 50;
   double tolerance = 1e-3;  ///< mean log-likelihood, nats
   Computation computation = {};
+  Eigen::MatrixXd prior_scatter = {};  ///< d x d, as maximisation() takes it; empty: no prior
 };
 
 struct EmRun {
@@ -26,11 +27,14 @@ struct EmRun {
 /// A start is made of so many points.
 inline constexpr Eigen::Index kSamplePoints = 20'000;
 
-/// The mixture of at most `components` k-means clusters of (a sample of) the points.
+/// The mixture of at most `components` k-means clusters of (a sample of) the points, without a
+/// prior.
 Mixture start_mixture(const BlockPoints& points, Eigen::Index components, std::uint64_t seed,
                       const EmOptions& options);
 
 /// EM until the gain falls below the tolerance.
+/// With a prior that is the gain of the posterior: from clusters made without it the likelihood
+/// falls.
 EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options);
 
 }  // namespace kinship::density

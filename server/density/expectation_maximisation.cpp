@@ -217,7 +217,7 @@ Eigen::VectorXd log_densities(const Mixture& mixture, const BlockPoints& points,
 }
 
 Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
-                     const Eigen::VectorXd& floors) {
+                     const Eigen::VectorXd& floors, const Eigen::MatrixXd& prior_scatter) {
   const Eigen::Index dimension = moments.dimension;
   const double least_mass =
       std::min(static_cast<double>(dimension + 1), moments.sums.row(0).maxCoeff());
@@ -243,6 +243,8 @@ Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
         covariance(j, i) = covariance(i, j);
       }
     covariance.diagonal() = covariance.diagonal().cwiseMax(0) + floors;
+    if (prior_scatter.size() > 0)
+      covariance += prior_scatter / mass;
     covariances.push_back(std::move(covariance));
   }
   return {weights / weights.sum(), std::move(means), std::move(covariances)};

@@ -10,6 +10,7 @@
 #include "server/density/em_run.hpp"
 #include "server/density/fit_input.hpp"
 #include "server/density/merge.hpp"
+#include "server/density/prior_search.hpp"
 
 namespace kinship::density {
 namespace {
@@ -23,6 +24,8 @@ void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
       !std::isfinite(options.covariance_floor))
     throw std::invalid_argument(
         "fit_mixture: need components >= 0, a finite covariance_floor >= 0");
+  if (options.prior != kChosenPrior && !(options.prior >= 0 && std::isfinite(options.prior)))
+    throw std::invalid_argument("fit_mixture: need a finite prior >= 0, or kChosenPrior");
   if (options.max_iterations < 0 || std::isnan(options.tolerance))
     throw std::invalid_argument("fit_mixture: need max_iterations >= 0, a tolerance");
   const Eigen::VectorXd& floors = options.floors_of_joints;
@@ -36,17 +39,23 @@ void check_options(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
         "fit_mixture: need a mixture before of as many joints, and a flag per configuration");
   if (warm && !(warm->mixture.means().cwiseAbs().maxCoeff() <= 2 * kLargestValue))
     throw std::invalid_argument("fit_mixture: means of the mixture before exceed configurations");
-  if (options.components == 0 && !warm &&
+  if (warm && warm->prior_scatter.size() > 0 &&
+      (warm->prior_scatter.rows() != configurations.rows() ||
+       warm->prior_scatter.cols() != configurations.rows() || !warm->prior_scatter.allFinite()))
+    throw std::invalid_argument("fit_mixture: need a finite prior scatter of as many joints");
+  if ((options.components == 0 || options.prior == kChosenPrior) && !warm &&
       !are_paths_of(options.path_of_configuration, configurations.cols()))
     throw std::invalid_argument(
-        "fit_mixture: to choose K, the path of each configuration, counted from 0 without gaps");
+        "fit_mixture: to choose K or a prior, the path of each configuration, counted from 0 "
+        "without gaps");
 }
 
 EmOptions em_options(Eigen::Index dimension, const FitOptions& options) {
   return {options.floors_of_joints.size() > 0
               ? options.floors_of_joints
               : Eigen::VectorXd::Constant(dimension, options.covariance_floor),
-          options.max_iterations, options.tolerance, options.computation};
+          options.max_iterations, options.tolerance, options.computation,
+          options.warm_start ? options.warm_start->prior_scatter : Eigen::MatrixXd{}};
 }
 
 /// The points that may have so many components: at least 2 (d + 1) each.
@@ -70,11 +79,26 @@ BlockPoints sample_of(BlockPoints points, Eigen::Index components) {
                                       : std::move(points);
 }
 
+/// The same for a part of the points that so much of their weight has.
+EmOptions for_share(EmOptions em, double share) {
+  em.prior_scatter *= share;
+  return em;
+}
+
+double share_of(const BlockPoints& part, const BlockPoints& points) {
+  return part.total_weight() / points.total_weight();
+}
+
+FitSummary summary_of(EmRun run, const EmOptions& em) {
+  FitSummary summary{std::move(run.mixture), std::move(run.log_likelihoods)};
+  summary.prior_scatter = em.prior_scatter;
+  return summary;
+}
+
 FitSummary refined(Mixture start, const BlockPoints& points, EmOptions em) {
   if (is_large(points, start.size()))
     em.max_iterations = std::min(em.max_iterations, kFullPasses);
-  EmRun run = run_em(std::move(start), points, em);
-  return {std::move(run.mixture), std::move(run.log_likelihoods)};
+  return summary_of(run_em(std::move(start), points, em), em);
 }
 
 /// One fit on its way. The arguments outlive it.
@@ -92,23 +116,101 @@ class Fit {
       return run_warm(std::move(all), *options_.warm_start);
     if (options_.components > 0)
       return run_fixed(std::move(all), options_.components);
-    const std::optional<ComponentSearch> search = search_components();
-    if (!search)
+    auto split = data_.paths() < kMinPathsToScore
+                     ? std::nullopt
+                     : data_.split(held_out_paths(data_.paths(), options_.seed));
+    if (!split)  // too little to hold a part of it out
       return run_fixed(std::move(all), components_of_few_paths(data_.paths()));
-    FitSummary summary = refined(search->best, data_.blocks_of(std::move(all)), em_);
-    summary.curve = search->curve;
-    summary.held_out_score = search->best_score;
-    return summary;
+    return run_searched(std::move(all), std::move(*split));
   }
 
  private:
+  struct Prior {
+    double value = 0;
+    std::optional<double> score = {};  // if it was chosen where paths are scored
+  };
+
   FitSummary run_fixed(DistinctPoints all, int wanted) const {
+    const Prior prior = find_prior(wanted);
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
     const BlockPoints points = data_.blocks_of(std::move(all));
     Mixture start = start_mixture(points, components, options_.seed, em_);
-    if (is_large(points, components))
-      start = run_em(std::move(start), sample_of(points, components), em_).mixture;
-    return refined(std::move(start), points, em_);
+    const EmOptions em = with_prior(prior, start);
+    if (is_large(points, components)) {
+      const BlockPoints sample = thinned(points, sample_size(components));
+      start = run_em(std::move(start), sample, for_share(em, share_of(sample, points))).mixture;
+    }
+    FitSummary summary = refined(std::move(start), points, em);
+    summary.prior = prior.value;
+    summary.held_out_score = prior.score;
+    return summary;
+  }
+
+  /// With as many components as score best on the paths held out.
+  FitSummary run_searched(DistinctPoints all, WeightedConfigurations::Split split) const {
+    const Prior prior = find_prior(kMaxTriedComponents);
+    const Eigen::Index most =
+        components_for(split.training, configurations_.rows(), kMaxTriedComponents);
+    const BlockPoints training = data_.blocks_of(std::move(split.training));
+    const BlockPoints sample = sample_of(training, most);
+    Mixture start = start_mixture(sample, most, options_.seed, em_);
+    const EmOptions em = with_prior(prior, start);
+    const ComponentSearch search = prune_components(
+        std::move(start), sample, sample_of(data_.blocks_of(std::move(split.held_out)), most),
+        log_uniform(configurations_, options_.limits), for_share(em, share_of(sample, training)));
+    FitSummary summary = refined(search.best, data_.blocks_of(std::move(all)), em);
+    summary.curve = search.curve;
+    summary.held_out_score = search.best_score;
+    summary.prior = prior.value;
+    return summary;
+  }
+
+  EmOptions with_prior(const Prior& prior, const Mixture& clusters) const {
+    EmOptions em = em_;
+    em.prior_scatter = prior_scatter(clusters, prior.value);
+    return em;
+  }
+
+  Prior find_prior(Eigen::Index wanted) const {
+    if (options_.prior != kChosenPrior)
+      return {options_.prior};
+    const std::vector<PriorFold> folds = prior_folds(wanted);
+    if (folds.empty())
+      return {kPriorOfOnePath};
+    const PriorChoice choice =
+        choose_prior(folds, log_uniform(configurations_, options_.limits), options_.seed, em_);
+    if (data_.paths() < kMinPathsToScore)
+      return {choice.prior};
+    return {choice.prior, choice.score_of_first};
+  }
+
+  /// None if the first one has too little on either side: its score is told. No more of them than
+  /// have half of kPriorPoints together.
+  std::vector<PriorFold> prior_folds(Eigen::Index wanted) const {
+    const auto parts = folds_of(data_.paths(), options_.seed);
+    std::vector<PriorFold> folds;
+    Eigen::Index points = 0;
+    for (const std::vector<std::uint8_t>& held_out : parts) {
+      if (points >= kPriorPoints / 2)
+        break;
+      auto split = data_.split(held_out);
+      if (split) {
+        folds.push_back(prior_fold(std::move(*split), wanted));
+        points += folds.back().training.size();
+      } else if (folds.empty() && data_.paths() >= kMinPathsToScore) {
+        break;
+      }
+    }
+    return folds;
+  }
+
+  PriorFold prior_fold(WeightedConfigurations::Split split, Eigen::Index wanted) const {
+    const Eigen::Index components = components_for(split.training, configurations_.rows(), wanted);
+    const BlockPoints all = data_.blocks_of(std::move(split.training));
+    BlockPoints training = thinned(all, kPriorPoints);
+    const double share = share_of(training, all);
+    return {std::move(training), components, share,
+            thinned(data_.blocks_of(std::move(split.held_out)), kPriorPoints / 4)};
   }
 
   /// With at most as many components as the configurations can carry. The mixture before is nearly
@@ -121,28 +223,14 @@ class Fit {
     EmOptions few = em_;
     if (start.size() > components) {
       few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
-      start = run_em(std::move(start), thinned(points, sample_size(components)), few).mixture;
+      const BlockPoints sample = thinned(points, sample_size(components));
+      start = run_em(std::move(start), sample, for_share(few, share_of(sample, points))).mixture;
       start = merged(start, components);
     }
     few.max_iterations = points.size() > sample_size(components)
                              ? std::min(em_.max_iterations, kWarmPasses)
                              : em_.max_iterations;
-    EmRun run = run_em(std::move(start), points, few);
-    return {std::move(run.mixture), std::move(run.log_likelihoods)};
-  }
-
-  /// \return nothing if there is too little to hold a part of it out.
-  std::optional<ComponentSearch> search_components() const {
-    if (data_.paths() < kMinPathsToScore)
-      return std::nullopt;
-    auto split = data_.split(held_out_paths(data_.paths(), options_.seed));
-    if (!split)
-      return std::nullopt;
-    const Eigen::Index most =
-        components_for(split->training, configurations_.rows(), kMaxTriedComponents);
-    return prune_components(sample_of(data_.blocks_of(std::move(split->training)), most),
-                            sample_of(data_.blocks_of(std::move(split->held_out)), most), most,
-                            log_uniform(configurations_, options_.limits), options_.seed, em_);
+    return summary_of(run_em(std::move(start), points, few), few);
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;

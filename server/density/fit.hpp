@@ -21,18 +21,23 @@ struct FitOptions {
   double covariance_floor = 1e-4;  ///< added to each variance, squared joint units
   /// d, instead of covariance_floor, where joints have different units; empty: all the same.
   Eigen::VectorXd floors_of_joints = {};
+  /// How strongly covariances are drawn towards what the k-means clusters have in common: as so
+  /// many points in each component would (prior_scatter). 0: not. kChosenPrior: chosen by hold-out
+  /// of paths.
+  double prior = 0;
   int max_iterations = 50;  ///< 0: the start as it is
   double tolerance = 1e-3;  ///< stop when the mean log-likelihood gains less, nats
   std::uint64_t seed = 0;
   Computation computation = {};
-  /// N, counted from 0 without gaps: which path each configuration comes from. Needed to choose K.
+  /// N, counted from 0 without gaps: which path each configuration comes from. Needed to choose K
+  /// or a prior.
   std::vector<std::uint32_t> path_of_configuration = {};
   /// 2 x d, lower and upper, joint units: within them scores have their uniform background. Empty:
   /// the box of the configurations.
   Eigen::Matrix2Xd limits = {};
   /// Where most of the configurations were fitted before: EM begins with that mixture and clusters
   /// of what it does not know, which are merged down again. With components = 0, K stays what it
-  /// was. Empty: a full fit.
+  /// was, and the prior does in any case. Empty: a full fit.
   std::optional<WarmStart> warm_start = {};
 };
 
@@ -43,7 +48,11 @@ struct FitSummary {
   std::vector<double> log_likelihoods;
   /// If K was chosen by hold-out: what was tried, from most components to fewest.
   std::vector<ComponentScore> curve = {};
-  std::optional<double> held_out_score = {};  ///< the highest of them
+  /// Of the fifth of the paths that held_out_paths() names: the highest of the curve, or that of
+  /// the prior that was chosen.
+  std::optional<double> held_out_score = {};
+  double prior = 0;                    ///< that was used; 0 after a warm start
+  Eigen::MatrixXd prior_scatter = {};  ///< d x d, for a warm start; empty: there was no prior
 };
 
 /// Fits a Gaussian mixture with full covariances: k-means++ start, Lloyd iterations, EM.
@@ -51,6 +60,9 @@ struct FitSummary {
 /// A K that is to be chosen is the one that scores best on a fifth of the paths (held_out_paths,
 /// prune_components) when the others are fitted; the mixture of that K is then refitted to all.
 /// Below kMinPathsToScore paths it is components_of_few_paths, without a curve.
+///
+/// A prior that is to be chosen is the one of choose_prior() on at most kPriorPoints of the paths'
+/// points, with as many components as the fit has; kPriorOfOnePath where nothing can be held out.
 ///
 /// A warm start adds at most kMaxNewComponents, runs EM on a sample (kIterationsBeforeMerging),
 /// merges down to K and runs EM again, at most kWarmPasses times where the sample is not all there
@@ -76,12 +88,13 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
                                const FitOptions& options);
 
 inline constexpr Eigen::Index kSamplePointsPerComponent = 400;
+inline constexpr Eigen::Index kPriorPoints = 8'000;
 inline constexpr int kFullPasses = 6;
 
 /// K where there are too few paths to choose it: one per four paths, at least 1.
 int components_of_few_paths(std::uint32_t paths);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kDensityVersion = 3;
+inline constexpr int kDensityVersion = 4;
 
 }  // namespace kinship::density

@@ -23,4 +23,18 @@ std::vector<std::uint8_t> held_out_paths(std::uint32_t count, std::uint64_t seed
   return held_out;
 }
 
+std::vector<std::vector<std::uint8_t>> folds_of(std::uint32_t paths, std::uint64_t seed) {
+  std::vector<std::vector<std::uint8_t>> folds;
+  if (paths >= kMinPathsToScore) {
+    for (std::uint32_t fold = 0; fold < (paths <= kFewPaths ? kFolds : 1); ++fold)
+      folds.push_back(held_out_paths(paths, seed, fold));
+    return folds;
+  }
+  for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
+    folds.emplace_back(paths, std::uint8_t{0});
+    folds.back()[path] = 1;
+  }
+  return folds;
+}
+
 }  // namespace kinship::density

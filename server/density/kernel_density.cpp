@@ -25,8 +25,6 @@ constexpr std::array kClusters = {1, 4, 16, 64};
 /// Falling by about the square root of 2.
 constexpr std::array kScales = {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625};
 constexpr Eigen::Index kFoldPoints = 1000;  // of all folds together
-/// Up to here each fifth is held out in turn: one alone is too few paths to choose by.
-constexpr std::uint32_t kFewPaths = 60;
 constexpr double kLowClusterScore_nats =
     0.25;  // below the best of the clusters: narrower is no better
 
@@ -181,20 +179,12 @@ class Estimate {
 
   std::vector<Fold> folds() const {
     const std::uint32_t paths = data_.paths();
+    const std::vector<std::vector<std::uint8_t>> parts = folds_of(paths, options_.seed);
     std::vector<Fold> folds;
-    if (paths >= kMinPathsToScore) {
-      const std::uint32_t count = paths <= kFewPaths ? kFolds : 1;
-      for (std::uint32_t fold = 0; fold < count; ++fold) {
-        add_fold(held_out_paths(paths, options_.seed, fold), kFoldPoints / count, folds);
-        if (folds.empty())
-          break;  // the score that is told is that of the first
-      }
-      return folds;
-    }
-    for (std::uint32_t path = 0; paths > 1 && path < paths; ++path) {
-      std::vector<std::uint8_t> held_out(paths, 0);
-      held_out[path] = 1;
-      add_fold(held_out, kFoldPoints / paths, folds);
+    for (const std::vector<std::uint8_t>& held_out : parts) {
+      add_fold(held_out, kFoldPoints / static_cast<Eigen::Index>(parts.size()), folds);
+      if (folds.empty() && paths >= kMinPathsToScore)
+        break;  // the score that is told is that of the first
     }
     return folds;
   }

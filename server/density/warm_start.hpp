@@ -15,6 +15,7 @@ struct WarmStart {
   Mixture mixture;  ///< of the fit before: as many joints, means at most twice the largest value
   /// N: not 0 for a configuration that `mixture` was not fitted to.
   std::vector<std::uint8_t> is_new;
+  Eigen::MatrixXd prior_scatter = {};  ///< of the fit before; empty: it had no prior
 };
 
 /// The mixture before, and beside it a few clusters of the new configurations that it describes

@@ -182,13 +182,15 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
                         .limits = distribution.limits});
   density::FitOptions options;
   options.components = parameters.components;
+  options.prior = parameters.prior;
   options.floors_of_joints = covariance_floors(target_->chain, parameters);
   options.seed = key_.profile.seed;
   options.limits = distribution.limits;
   options.computation.threads = context_.fit_threads;
   if (why.empty())
-    options.warm_start = {*before->mixture, new_configurations(pool, before->paths)};
-  else if (options.components == 0)
+    options.warm_start = {*before->mixture, new_configurations(pool, before->paths),
+                          before->full.prior_scatter};
+  else if (options.components == 0 || options.prior == kChosenPrior)
     options.path_of_configuration = pool.path_of_configuration();
   return density::fit_mixture(configurations, weights, options);
 }
@@ -215,12 +217,14 @@ void Fit::fit(Distribution& distribution, WarmState& warm_state) const {
   distribution.held_out_score =
       is_full ? fitted->held_out_score : context_.before->full.held_out_score;
   distribution.component_scores = is_full ? fitted->curve : context_.before->full.component_scores;
+  const Eigen::MatrixXd prior_scatter = fitted->prior_scatter;
   distribution.mixture = std::move(fitted).value().mixture;
   distribution.reason = describe_warnings(sources_, key_.T_task_base.has_value());
   Profile profile = key_.profile;
   profile.recommended_share = first_share(profile, distribution.state);
   distribution.advice = advice_of_profile(profile);
   save(distribution, masses, warm_state);
+  warm_state.full.prior_scatter = prior_scatter;
 }
 
 /// For the next fit.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,7 @@ struct FullFit {
   std::vector<double> masses;  ///< of the sources, in their order
   std::optional<double> held_out_score;
   std::vector<ComponentScore> component_scores;
+  Eigen::MatrixXd prior_scatter = {};  ///< that covariances had besides; empty: none
 };
 
 /// What a fit leaves behind for the next one of the same distribution.

@@ -2,17 +2,26 @@
 // paper has, in bundles of curves. CPU time of the process, one thread each.
 //
 //   fit_bench em [--no-references]    an iteration, beside scikit-learn and Armadillo from the same
-//   start fit_bench fit [--no-references]   whole fits, beside one of scikit-learn; a sample
+//                                     start
+//   fit_bench fit [--no-references]   whole fits, beside one of scikit-learn; a sample
+//   fit_bench scores [ROWS.csv...]    how well the default profile describes held-out paths, beside
+//                                     a grid; of files of `kinship configurations export`, or of
+//                                     few and many of the same bundles
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "proto/mixture/sampler.hpp"
 #include "server/density/em_run.hpp"
 #include "server/density/fit.hpp"
+#include "server/density/fit_input.hpp"
 #include "tests/bench/bundles.hpp"
+#include "tests/bench/exported_rows.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/reference.hpp"
@@ -155,6 +164,91 @@ void sample(const Eigen::MatrixXd& configurations) {
          .note = "mean of joint 1 " + number(sum / (5 * kSamples))});
 }
 
+/// The mean over five folds of paths of the mean log density of what is held out, nats.
+double held_out_score(const Rows& rows, density::FitOptions options) {
+  const std::uint32_t paths = 1 + *std::max_element(rows.path_of.begin(), rows.path_of.end());
+  double sum = 0;
+  for (std::uint32_t fold = 0; fold < density::kFolds; ++fold) {
+    // Another seed than that of fits, so that what they hold out by themselves is none of it.
+    std::vector<std::uint8_t> is_held_out = density::held_out_paths(paths, 12345, fold);
+    const Rows held_out = rows_of(rows, is_held_out);
+    for (std::uint8_t& flag : is_held_out)
+      flag = flag == 0 ? 1 : 0;
+    const Rows training = rows_of(rows, is_held_out);
+    options.path_of_configuration = training.path_of;
+    const Mixture mixture = density::fit_mixture(training.configurations, training.weights, options)
+                                .value_or_throw()
+                                .mixture;
+    const density::DistinctPoints points =
+        density::distinct_points(held_out.configurations, held_out.weights);
+    sum += density::mean_log_density(
+        mixture,
+        {held_out.configurations, points, density::mean_of(held_out.configurations, points)}, 0, 0,
+        {});
+  }
+  return sum / density::kFolds;
+}
+
+density::FitOptions default_options(double prior) {
+  const DensityParameters parameters;
+  return {.components = parameters.components,
+          .covariance_floor = parameters.covariance_floor,
+          .prior = prior};
+}
+
+void score(const std::string& name, const Rows& rows) {
+  Reference best{"", -1e300};
+  for (const double floor : {1e-4, 1e-3, 1e-2, 4e-2})
+    for (const int components : {1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 100}) {
+      const double score =
+          held_out_score(rows, {.components = components, .covariance_floor = floor});
+      if (score > best.value)
+        best = {"grid, K = " + std::to_string(components) + ", floor " + number(floor), score};
+    }
+  print({.name = name + ": held-out paths",
+         .value = held_out_score(rows, default_options(kChosenPrior)),
+         .unit = "nats",
+         .better = Better::Higher,
+         .reference = best,
+         .budget = best.value - 0.1,
+         .note = "without a prior " + number(held_out_score(rows, default_options(0)))});
+  const auto taken_s = [&rows](double prior) {
+    density::FitOptions options = default_options(prior);
+    options.path_of_configuration = rows.path_of;
+    return least_s(3, process_cpu_s, [&] {
+      density::fit_mixture(rows.configurations, rows.weights, options).value_or_throw();
+    });
+  };
+  print({.name = name + ": fit",
+         .value = 1e3 * taken_s(kChosenPrior),
+         .unit = "ms",
+         .reference = Reference{"without a prior", 1e3 * taken_s(0)},
+         .ratio_budget = 1.5,
+         .note = std::to_string(rows.path_of.size()) + " configurations"});
+}
+
+/// Every tenth waypoint of bundles.
+Rows rows_of_bundles(Eigen::Index paths) {
+  const Eigen::MatrixXd all = bundles(paths * kPointsPerBundlePath, kDof);
+  std::vector<Eigen::Index> columns;
+  Rows rows;
+  for (Eigen::Index i = 0; i < all.cols(); i += 10) {
+    columns.push_back(i);
+    rows.path_of.push_back(static_cast<std::uint32_t>(i / kPointsPerBundlePath));
+  }
+  rows.configurations = all(Eigen::all, columns);
+  rows.weights.setOnes(static_cast<Eigen::Index>(columns.size()));
+  return rows;
+}
+
+void scores(const std::vector<std::string>& files) {
+  for (const std::string& file : files)
+    score(file, read_rows(file));
+  if (files.empty())
+    for (const Eigen::Index paths : {50, 500})
+      score(std::to_string(paths) + " paths of bundles", rows_of_bundles(paths));
+}
+
 int run(const std::string& what, bool has_references) {
   const Eigen::MatrixXd configurations = bundles(kConfigurations, kDof);
   const Case references(configurations);
@@ -177,6 +271,12 @@ int run(const std::string& what, bool has_references) {
 }  // namespace kinship::bench
 
 int main(int argc, char** argv) {
+  if (argc > 1 && argv[1] == std::string_view("scores")) {
+    std::vector<std::string> files(argv + 2, argv + argc);
+    std::erase(files, "--no-references");
+    kinship::bench::scores(files);
+    return 0;
+  }
   return kinship::bench::run(argc > 1 ? argv[1] : "em",
                              kinship::bench::wants_references(argc, argv));
 }

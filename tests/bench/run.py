@@ -32,6 +32,7 @@ def bench(name, program, title, arguments=(), repeats=3, minutes=5, is_long=Fals
 BENCHES = [
     bench("em", "fit_bench", "EM, N = 72 160, d = 7, CPU time", ["em"]),
     bench("fit", "fit_bench", "Fits, N = 72 160, d = 7, CPU time, and samples", ["fit"], repeats=1),
+    bench("scores", "fit_bench", "Held-out paths of bundles, mean log density, and fits", ["scores"], repeats=1),
     bench("inverse", "inverse_bench", "Inverse kinematics, L = 8, d = 0.2, reachable poses, one thread"),
     bench("transfer", "transfer_bench", "Transfer between the five cobots, two threads"),
     bench("cold-fetch", "cold_fetch_bench", "Distributions that have to be made, over DDS"),

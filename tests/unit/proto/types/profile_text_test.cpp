@@ -37,6 +37,14 @@ TEST(ProfileText, ComponentsAreChosenByAuto) {
   EXPECT_FALSE(profile_from_text("default,tracks=auto"));
 }
 
+TEST(ProfileText, APriorIsChosenByAutoAndThePaperHasNone) {
+  EXPECT_EQ(profile_from_text("default")->density.prior, kChosenPrior);
+  EXPECT_EQ(profile_from_text("paper")->density.prior, 0);
+  EXPECT_EQ(profile_from_text("paper,prior=auto")->density.prior, kChosenPrior);
+  EXPECT_EQ(profile_from_text("default,prior=40")->density.prior, 40);
+  EXPECT_FALSE(profile_from_text("default,prior=-1"));
+}
+
 TEST(ProfileText, EstimatorIsAWord) {
   EXPECT_EQ(profile_from_text("default,estimator=kde")->density.estimator, Estimator::Kernels);
   EXPECT_EQ(profile_from_text("default,estimator=kde,estimator=gmm")->density.estimator,

@@ -15,10 +15,10 @@
 /// The ways from configurations to a mixture, behind one call, for laws that all of them keep.
 namespace kinship::density::test {
 
-enum class Way { GivenComponents, ChosenComponents, WarmStart, Kernels };
+enum class Way { GivenComponents, ChosenComponents, ChosenPrior, WarmStart, Kernels };
 
-inline constexpr Way kWays[] = {Way::GivenComponents, Way::ChosenComponents, Way::WarmStart,
-                                Way::Kernels};
+inline constexpr Way kWays[] = {Way::GivenComponents, Way::ChosenComponents, Way::ChosenPrior,
+                                Way::WarmStart, Way::Kernels};
 
 inline std::string name_of(Way way) {
   switch (way) {
@@ -26,6 +26,8 @@ inline std::string name_of(Way way) {
       return "GivenComponents";
     case Way::ChosenComponents:
       return "ChosenComponents";
+    case Way::ChosenPrior:
+      return "ChosenPrior";
     case Way::WarmStart:
       return "WarmStart";
     case Way::Kernels:
@@ -76,10 +78,11 @@ inline Sample sample_of(std::string name, const Eigen::MatrixXd& points) {
 
 inline FitOptions fit_options(Way way, const Sample& sample, const Computation& computation) {
   FitOptions options;
-  options.components = way == Way::GivenComponents ? kComponents : 0;
+  options.components = way == Way::GivenComponents || way == Way::ChosenPrior ? kComponents : 0;
+  options.prior = way == Way::ChosenPrior ? kChosenPrior : 0;
   options.covariance_floor = kFloor;
   options.computation = computation;
-  if (way == Way::ChosenComponents)
+  if (way == Way::ChosenComponents || way == Way::ChosenPrior)
     options.path_of_configuration = sample.path_of;
   if (way == Way::WarmStart && sample.before)
     options.warm_start = {*sample.before, sample.is_new};

@@ -30,6 +30,8 @@ TEST_F(FitOfComponents, ComponentsAreChosenIfAsked) {
   EXPECT_EQ(fitted(key).mixture->means(), chosen.mixture->means());
   key.profile.density.components = 2;
   EXPECT_TRUE(fitted(key).component_scores.empty());
+  EXPECT_TRUE(fitted(key).held_out_score);  // of the prior
+  key.profile.density.prior = 0;
   EXPECT_FALSE(fitted(key).held_out_score);
 }
 

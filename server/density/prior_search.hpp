@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "proto/types/mixture.hpp"
+#include "server/density/block_points.hpp"
+#include "server/density/em_run.hpp"
+
+namespace kinship::density {
+
+/// Points that are fitted, and points of other paths that score them.
+struct PriorFold {
+  BlockPoints training;
+  Eigen::Index components = 0;  ///< that the training points may have
+  double share =
+      1;  ///< of the points they stand for that they are: what mass a prior has shrinks by
+  BlockPoints held_out;
+};
+
+struct PriorChoice {
+  double prior = 0;
+  /// Nats, the first fold's; none if no prior could be computed with, and it is 0.
+  std::optional<double> score_of_first = {};
+};
+
+/// The scatter that `prior` points have which lie like those of clusters: prior times the mean
+/// covariance of the components, each counted by its weight.
+/// \return d x d, or empty for a prior of 0.
+Eigen::MatrixXd prior_scatter(const Mixture& clusters, double prior);
+
+/// Chooses the prior by mean score over the folds: from a strong one down, each with a few
+/// iterations of EM from the same k-means clusters; ends where scores fall.
+/// \param folds        at least one.
+/// \param log_uniform  the score's background, see mean_log_density.
+PriorChoice choose_prior(const std::vector<PriorFold>& folds, double log_uniform,
+                         std::uint64_t seed, const EmOptions& options);
+
+/// Where nothing can be held out.
+inline constexpr double kPriorOfOnePath = 40;
+
+}  // namespace kinship::density
