@@ -29,7 +29,8 @@ planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const
     return planning::ConfigurationSampler(query.bounds);
   const bool has_tracks = guidance->experience != nullptr;
   result.track_share = has_tracks ? guidance->guided_fraction * settings.tracks.sample_fraction : 0;
-  const double rest = guidance->guided_fraction - result.track_share;
+  const double rest =
+      guidance->guided_fraction * (has_tracks ? settings.tracks.mixture_fraction : 1);
   double mixture_share = 0;
   if (guidance->mixture && rest > 0) {
     const double part = trust(query, *guidance->mixture, settings.gate_distance);

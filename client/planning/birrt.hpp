@@ -20,7 +20,7 @@ struct BirrtOptions {
   std::uint64_t max_checks = 100'000;
   std::chrono::duration<double> time_limit{10};  ///< wall clock
   /// Of the checks that may have gone into following tracks when the next one is begun, 0 to 1.
-  double track_check_fraction = 0.5;
+  double track_check_fraction = 0.3;
 };
 
 struct PlanSummary {

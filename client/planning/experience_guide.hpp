@@ -19,9 +19,11 @@ struct TrackOptions {
   /// Before the stored ways one is tried that needs no experience: see `retreat`; m.
   std::optional<double> retreat_m = 0.4;
   double deviation = 0.3;  ///< of samples from tracks, each joint, joint units
-  /// Of the guided samples, those around tracks; the others are the mixture's, if there is one.
-  double sample_fraction = 0.9;
-  double check_fraction = 0.5;  ///< see BirrtOptions::track_check_fraction
+  /// Of the guided samples: those around tracks, and those of the mixture where there is one; the
+  /// others are uniform.
+  double sample_fraction = 0.5;
+  double mixture_fraction = 0.2;
+  double check_fraction = 0.3;  ///< see BirrtOptions::track_check_fraction
 };
 
 /// A query of one robot as tracks need it.

@@ -154,58 +154,6 @@ TEST(PlanProblem, TheFartherAQueryIsFromTheMixtureTheLessItIsGuidedByIt) {
   EXPECT_EQ(*none.waypoints, *uniform.waypoints);
 }
 
-/// Guidance by the way that a solved query's hand took.
-Guidance experienced(const Problem& problem, const Eigen::MatrixXd& waypoints) {
-  const kinematics::Chain chain = planar_robot().chain;
-  PosePath path;
-  const Eigen::MatrixXd along = planning::densified(waypoints, 0.1);
-  for (const auto& q : along.colwise())
-    path.poses.push_back(placement_of(problem) * kinematics::T_base_transfer(chain, q));
-  TaskExperience experience;
-  experience.revision = 77;
-  experience.paths = {path};
-  Guidance guidance;
-  guidance.experience = std::make_shared<planning::ExperienceGuide>(chain, experience);
-  guidance.guided_fraction = 1;
-  return guidance;
-}
-
-TEST(PlanProblem, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
-  const Problem problem = wall_problem();
-  const ProblemResult uniform = planned(problem).result;
-  ASSERT_TRUE(uniform.solved);
-  EXPECT_EQ(uniform.found_by, FoundBy::Search);
-  const Guidance guidance = experienced(problem, *uniform.waypoints);
-  Problem again = problem;
-  again.seed += 5;
-  const ProblemResult guided = planned(again, {}, {&guidance, SamplingMode::Guided}).result;
-  ASSERT_TRUE(guided.solved) << guided.reason;
-  EXPECT_EQ(guided.found_by, FoundBy::Track);
-  EXPECT_GE(guided.tracks_followed, 1U);
-  EXPECT_EQ(guided.experience_revision, 77U);
-  EXPECT_EQ(guided.track_share, PlanSettings().tracks.sample_fraction);
-  EXPECT_EQ(guided.share, guided.track_share);
-  EXPECT_FALSE(guided.distribution_id);
-  EXPECT_EQ(collisions_along(*guided.waypoints, again), 0);
-  EXPECT_LT(guided.collision_checks, planned(again).result.collision_checks);
-
-  const ProblemResult control = planned(again, {}, {&guidance, SamplingMode::Control}).result;
-  EXPECT_EQ(control.collision_checks, planned(again).result.collision_checks);
-  EXPECT_EQ(control.tracks_followed, 0U);
-  EXPECT_EQ(control.track_share, 0);
-}
-
-TEST(PlanProblem, WhereTheStraightLineIsFreeNoTrackIsFollowed) {
-  Problem open = wall_problem();
-  const ProblemResult solved = planned(open).result;
-  const Guidance guidance = experienced(open, *solved.waypoints);
-  open.scene.objects.clear();
-  const ProblemResult guided = planned(open, {}, {&guidance, SamplingMode::Guided}).result;
-  EXPECT_EQ(guided.found_by, FoundBy::StraightLine);
-  EXPECT_EQ(guided.tracks_followed, 0U);
-  EXPECT_EQ(guided.collision_checks, planned(open).result.collision_checks);
-}
-
 TEST(PlanProblem, TheGateCanBeLeftOpen) {
   const Guidance far = guidance_towards(Eigen::Vector4d(2.5, 2.5, 2.5, 2.5));
   PlanSettings open;

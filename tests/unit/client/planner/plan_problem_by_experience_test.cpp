@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "client/planner/plan_problem.hpp"
+#include "client/planning/path_vertices.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/unit/client/planner/planar_problem.hpp"
+
+namespace kinship::planner::plan_problem_by_experience_test {
+namespace {
+
+using test::planar_robot;
+using test::wall_problem;
+
+PlannedProblem planned(const Problem& problem, const PlanSettings& settings = {},
+                       const QueryGuidance& query = {}) {
+  return plan_problem(planar_robot(), problem, query, settings, [] { return false; });
+}
+
+Eigen::Isometry3d placement_of(const Problem& problem) {
+  return problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
+}
+
+bool is_free_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
+  const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
+  const PlannedRobot robot = planar_robot();
+  collision::CollisionWorld world(robot.solids, {placement_of(problem), problem.scene, {}, {}});
+  for (Eigen::Index i = 0; i < path.cols(); ++i)
+    if (world.collides(path.col(i)))
+      return false;
+  return true;
+}
+
+/// Guidance by the way that a solved query's hand took.
+Guidance experienced(const Problem& problem, const Eigen::MatrixXd& waypoints) {
+  const kinematics::Chain chain = planar_robot().chain;
+  PosePath path;
+  const Eigen::MatrixXd along = planning::densified(waypoints, 0.1);
+  for (const auto& q : along.colwise())
+    path.poses.push_back(placement_of(problem) * kinematics::T_base_transfer(chain, q));
+  TaskExperience experience;
+  experience.revision = 77;
+  experience.paths = {path};
+  Guidance guidance;
+  guidance.experience = std::make_shared<planning::ExperienceGuide>(chain, experience);
+  guidance.guided_fraction = 1;
+  return guidance;
+}
+
+TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
+  Problem problem = wall_problem();
+  problem.seed += 1;
+  const ProblemResult uniform = planned(problem).result;
+  ASSERT_TRUE(uniform.solved);
+  EXPECT_EQ(uniform.found_by, FoundBy::Search);
+  const Guidance guidance = experienced(problem, *uniform.waypoints);
+  Problem again = problem;
+  again.seed += 5;
+  const ProblemResult guided = planned(again, {}, {&guidance, SamplingMode::Guided}).result;
+  ASSERT_TRUE(guided.solved) << guided.reason;
+  EXPECT_EQ(guided.found_by, FoundBy::Track);
+  EXPECT_GE(guided.tracks_followed, 1U);
+  EXPECT_EQ(guided.experience_revision, 77U);
+  EXPECT_EQ(guided.track_share, PlanSettings().tracks.sample_fraction);
+  EXPECT_EQ(guided.share, guided.track_share);
+  EXPECT_FALSE(guided.distribution_id);
+  EXPECT_TRUE(is_free_along(*guided.waypoints, again));
+  EXPECT_LT(guided.collision_checks, planned(again).result.collision_checks);
+
+  const ProblemResult control = planned(again, {}, {&guidance, SamplingMode::Control}).result;
+  EXPECT_EQ(control.collision_checks, planned(again).result.collision_checks);
+  EXPECT_EQ(control.tracks_followed, 0U);
+  EXPECT_EQ(control.track_share, 0);
+}
+
+TEST(PlanProblemByExperience, WhereTheStraightLineIsFreeNoTrackIsFollowed) {
+  Problem open = wall_problem();
+  const ProblemResult solved = planned(open).result;
+  const Guidance guidance = experienced(open, *solved.waypoints);
+  open.scene.objects.clear();
+  const ProblemResult guided = planned(open, {}, {&guidance, SamplingMode::Guided}).result;
+  EXPECT_EQ(guided.found_by, FoundBy::StraightLine);
+  EXPECT_EQ(guided.tracks_followed, 0U);
+  EXPECT_EQ(guided.collision_checks, planned(open).result.collision_checks);
+}
+
+}  // namespace
+}  // namespace kinship::planner::plan_problem_by_experience_test
