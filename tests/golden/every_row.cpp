@@ -235,6 +235,10 @@ ProblemResult every_problem_result() {
   result.sampling_mode = SamplingMode::Control;
   result.share = next.share() / 2;
   result.gate_fired = true;
+  result.track_share = 0.25;
+  result.experience_revision = 12;
+  result.tracks_followed = 3;
+  result.found_by = FoundBy::Track;
   result.reason = next.text("reason");
   result.planner = next.text("planner");
   result.guidance_reason = next.text("reason");

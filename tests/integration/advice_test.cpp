@@ -170,7 +170,8 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   report_misleading_paths(client);
 
   Counts guided, control;
-  for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0.5"})) {
+  for (const ProblemResult& result :
+       plan({"--guidance", "require", "--tracks", "no", "--control-share", "0.5"})) {
     ASSERT_TRUE(result.sampling_mode == SamplingMode::Guided ||
                 result.sampling_mode == SamplingMode::Control);
     EXPECT_EQ(result.share, result.sampling_mode == SamplingMode::Guided ? 0.9 : 0);
@@ -191,7 +192,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   EXPECT_LT(advice.recommended_share, 0.1) << advice.evidence;
 
   Counts still_guided;
-  for (const ProblemResult& result : plan({}))
+  for (const ProblemResult& result : plan({"--tracks", "no"}))
     if (result.sampling_mode == SamplingMode::Guided)
       still_guided.add(result);
   EXPECT_LT(still_guided.attempts, kProblems / 2) << "each machine goes on from what all know";
@@ -207,7 +208,8 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
 
   std::size_t guided = 0;
   std::vector<std::uint64_t> checks;
-  for (const ProblemResult& result : plan({"--guidance", "require", "--control-share", "0"})) {
+  for (const ProblemResult& result :
+       plan({"--guidance", "require", "--tracks", "no", "--control-share", "0"})) {
     guided += result.sampling_mode == SamplingMode::Guided ? 1 : 0;
     EXPECT_TRUE(result.gate_fired);
     EXPECT_EQ(result.share, 0);

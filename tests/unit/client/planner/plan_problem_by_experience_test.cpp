@@ -58,7 +58,11 @@ TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
   const Guidance guidance = experienced(problem, *uniform.waypoints);
   Problem again = problem;
   again.seed += 5;
-  const ProblemResult guided = planned(again, {}, {&guidance, SamplingMode::Guided}).result;
+  PlanSettings tracks_first;
+  tracks_first.tracks.check_fraction = 1;
+  tracks_first.tracks.retreat_m = std::nullopt;
+  const ProblemResult guided =
+      planned(again, tracks_first, {&guidance, SamplingMode::Guided}).result;
   ASSERT_TRUE(guided.solved) << guided.reason;
   EXPECT_EQ(guided.found_by, FoundBy::Track);
   EXPECT_GE(guided.tracks_followed, 1U);

@@ -178,11 +178,12 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
   ProblemResult result;
   result.name = "shelf 7";
   result.reason = "time limit";
-  EXPECT_EQ(to_json(result),
-            R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
-            R"("shortcut_checks":0,"projections":0,)"
-            R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,)"
-            R"("guidance_reason":"","planner":"","reason":"time limit"})");
+  EXPECT_EQ(
+      to_json(result),
+      R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
+      R"("shortcut_checks":0,"projections":0,)"
+      R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,"found_by":"nothing",)"
+      R"("guidance_reason":"","planner":"","reason":"time limit"})");
 }
 
 TEST(ProblemJson, GuidedResultIsReadBack) {
@@ -193,6 +194,10 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.distribution_revision = 9;
   result.share = 0.75;
   result.sampling_mode = SamplingMode::Guided;
+  result.track_share = 0.25;
+  result.experience_revision = 12;
+  result.tracks_followed = 3;
+  result.found_by = FoundBy::Track;
   result.gate_fired = true;
   result.goal_checks = 20;
   result.shortcut_checks = 300;
@@ -205,6 +210,10 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   EXPECT_EQ(back->distribution_revision, 9U);
   EXPECT_EQ(back->share, 0.75);
   EXPECT_EQ(back->sampling_mode, SamplingMode::Guided);
+  EXPECT_EQ(back->track_share, 0.25);
+  EXPECT_EQ(back->experience_revision, 12U);
+  EXPECT_EQ(back->tracks_followed, 3U);
+  EXPECT_EQ(back->found_by, FoundBy::Track);
   EXPECT_TRUE(back->gate_fired);
   EXPECT_EQ(back->goal_checks, 20U);
   EXPECT_EQ(back->shortcut_checks, 300U);
@@ -217,7 +226,8 @@ TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   result.distribution_id = Digest{};
   result.sampling_mode = SamplingMode::Control;
   const std::string text = to_json(result);
-  EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false})"),
+  EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false,)"
+                      R"("track_share":0.0,"experience_revision":0,"tracks_followed":0})"),
             std::string::npos)
       << text;
   EXPECT_EQ(problem_result_from_json(text)->sampling_mode, SamplingMode::Control);
