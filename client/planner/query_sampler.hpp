@@ -44,11 +44,12 @@ struct PosedQuery {
   const Eigen::MatrixXd& goals;    ///< dof x n
 };
 
-/// Where the samples of a guided query come from: of those that guidance may have, tracks and
+/// Where the samples of a guided query come from. Of those that guidance may have, tracks and
 /// mixture have their parts (settings.tracks), or the mixture all where there are no tracks. A
-/// mixture that the query is far from gives less the farther it is (settings.gate_distance): such a
-/// mixture says little about what lies between. \param guidance  null: uniform. \param result told:
-/// share, track_share, experience_revision, gate_fired, guidance_reason.
+/// mixture that the query is far from gives fewer, the fewer the farther (settings.gate_distance):
+/// it says little about what lies between.
+/// \param guidance  null: uniform.
+/// \param result    told: share, track_share, experience_revision, gate_fired, guidance_reason.
 planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const Guidance* guidance,
                                                   const PlanSettings& settings,
                                                   ProblemResult& result);

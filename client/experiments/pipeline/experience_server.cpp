@@ -64,8 +64,7 @@ Fetched ExperienceServer::fetch(const DistributionWish& wish) {
     if (!reply.distribution)
       throw Failure(ErrorCode::NotFound, "no distribution of task '" + wish.task + "' for robot '" +
                                              target.label() + "': " + reply.message);
-    return {*std::move(reply.distribution),
-            std::move(reply.experience).value_or(TaskExperience{})};
+    return {*std::move(reply.distribution), std::move(reply.experience).value_or(TaskExperience{})};
   }
 }
 

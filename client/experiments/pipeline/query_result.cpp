@@ -52,7 +52,8 @@ Result<QueryResult> query_result_from_json(std::string_view text) {
     if (line.contains("track_share"))
       result.track_share = line.at("track_share").get<double>();
     if (line.contains("found_by"))
-      result.found_by = parse_word<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
+      result.found_by =
+          parse_word<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
     return result;
   } catch (const nlohmann::json::exception& exception) {
     return Error{ErrorCode::InvalidInput, exception.what()};

@@ -123,18 +123,20 @@ SideStudy guides(const Study& study) {
                  "the mixture alone, stored ways of the hand alone, and what needs no experience",
                  {},
                  {}};
-  for (const auto& [guide, variant] : {std::pair{Guide::Mixture, "mixture"},
-                                       std::pair{Guide::Tracks, "stored ways"}}) {
+  for (const auto& [guide, variant] :
+       {std::pair{Guide::Mixture, "mixture"}, std::pair{Guide::Tracks, "stored ways"}}) {
     std::vector<WishedCell> cells = cells_of_pairs(study, variant, "default", study.name);
     for (WishedCell& cell : cells)
       cell.guide = guide;
     append(std::move(cells), side.cells);
   }
-  for (const auto& [guide, variant] :
-       {std::pair{Guide::Straight, "straight way of the hand"}, std::pair{Guide::Retreat, "retreat"}})
+  for (const auto& [guide, variant] : {std::pair{Guide::Straight, "straight way of the hand"},
+                                       std::pair{Guide::Retreat, "retreat"}})
     for (std::size_t robot = 0; robot < study.robots.size(); ++robot) {
-      WishedCell cell{cell_name(kNobody, variant), {study.name, robot, {robot}, "default"},
-                      study.settings.overshoot, study.guided_share};
+      WishedCell cell{cell_name(kNobody, variant),
+                      {study.name, robot, {robot}, "default"},
+                      study.settings.overshoot,
+                      study.guided_share};
       cell.guide = guide;
       side.cells.push_back(std::move(cell));
     }
@@ -183,7 +185,7 @@ std::string uniform_name(double overshoot) {
 std::vector<SideStudy> side_studies(const Study& study) {
   std::vector<SideStudy> sides = {pooled(study),    components(study), paper(study),
                                   scenes(study),    sizes(study),      inverse(study),
-                                  overshoot(study), roadmap(study), guides(study)};
+                                  overshoot(study), roadmap(study),    guides(study)};
   if (!study.is_constrained)
     sides.push_back(ompl_peers(study));
   return sides;

@@ -266,8 +266,8 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
       const Fetched fetched = session.fetch({study.name, target, sources.robots, tuning.profile});
       const std::string name =
           tuning_name(sources.name, tuning, settings.overshoot, fetched.distribution);
-      if (auto cell = guided_cell(session.fleet()[target], tuning.guide, {target, name, settings, {}},
-                                  fetched, tuning.share)) {
+      if (auto cell = guided_cell(session.fleet()[target], tuning.guide,
+                                  {target, name, settings, {}}, fetched, tuning.share)) {
         cells.push_back(*std::move(cell));
         compared["pairs"].push_back(
             {{"robot", label}, {"source", sources.name}, {"guidance", name}});
