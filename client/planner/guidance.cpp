@@ -139,14 +139,13 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
     request.experience_bytes = kDefaultExperienceBytes;
     request.known_experience = known ? known->experience().revision : 0;
   }
-  Result<FetchReply> reply = fetch(request);
+  const Result<FetchReply> reply = fetch(request);
   if (!reply) {
     const bool nobody = reply.error().code == ErrorCode::Unavailable;
     return refusal(nobody ? NoGuidance::NoServer : NoGuidance::Failed, reply.error().message);
   }
   if (wanted.chain && reply->experience && !reply->experience->paths.empty())
-    known =
-        std::make_shared<planning::ExperienceGuide>(*wanted.chain, *std::move(reply->experience));
+    known = std::make_shared<planning::ExperienceGuide>(*wanted.chain, *reply->experience);
   const bool is_usable = reply->status == FetchStatus::Ready && reply->distribution &&
                          find_fault(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known)
