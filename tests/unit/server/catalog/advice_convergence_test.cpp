@@ -134,10 +134,12 @@ TEST(AdviceConvergence, WhatMakesNoDifferenceDoesNotSwing) {
       side = now;
     }
   }
+  constexpr double kRuns = 50;
+  constexpr double kMovesOfDraw = kAttempts / 2.0, kHundredsOfDraw = kAttempts / 200.0;
   std::printf("share moves by %.4f an attempt, swings %.2f times in 100\n",
-              moved / 50 / (kAttempts / 2), swings / 50 / (kAttempts / 200));
-  EXPECT_LT(moved / 50 / (kAttempts / 2), 0.05);
-  EXPECT_LT(swings / 50 / (kAttempts / 200.0), 2);
+              moved / kRuns / kMovesOfDraw, swings / kDraws / kHundredsOfDraw);
+  EXPECT_LT(moved / kRuns / kMovesOfDraw, 0.05);
+  EXPECT_LT(swings / kRuns / kHundredsOfDraw, 2);
 }
 
 }  // namespace
