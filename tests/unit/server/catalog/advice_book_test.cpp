@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -23,7 +24,10 @@ class AdviceBookTest : public testing::Test {
  protected:
   void run_later() {
     std::vector<std::function<void()>> waiting;
-    waiting.swap(waiting_);
+    {
+      const std::scoped_lock lock(mutex_);
+      waiting.swap(waiting_);
+    }
     for (const auto& run : waiting)
       run();
   }
@@ -37,6 +41,7 @@ class AdviceBookTest : public testing::Test {
     return id == kDistribution ? std::optional(kContext) : std::nullopt;
   };
   std::function<void()> on_read_ = [] {};
+  std::mutex mutex_;  ///< of `waiting_`: several threads may hand over at once
   std::vector<std::function<void()>> waiting_;
   bool has_room_ = true;
   AdviceBook book_{[this](const Digest&, const std::string&) {
@@ -46,6 +51,7 @@ class AdviceBookTest : public testing::Test {
                    },
                    [this](const Digest& id) { return find_context_(id); },
                    [this](std::function<void()> run) {
+                     const std::scoped_lock lock(mutex_);
                      if (has_room_)
                        waiting_.push_back(std::move(run));
                      return has_room_;
