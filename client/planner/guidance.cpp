@@ -17,7 +17,7 @@ std::string formatted(const char* format, double value) {
 }
 
 /// How the run's queries will be planned.
-std::string describe(const planning::SamplingModeChooser& sampling, double guided_fraction) {
+std::string describe(const SamplingModeChooser& sampling, double guided_fraction) {
   constexpr double kPercent = 100;
   const double guided = sampling.guided_part();
   if (guided_fraction == 0)
@@ -71,7 +71,7 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
     advice = distribution->advice;
   GuidanceAnswer answer;
   Guidance& guidance = answer.guidance.emplace();
-  guidance.guided_fraction = planning::guided_fraction(advice, wanted.sampling);
+  guidance.guided_fraction = planner::guided_fraction(advice, wanted.sampling);
   if (distribution != nullptr) {
     guidance.distribution_id = distribution->id;
     guidance.revision = distribution->revision;
@@ -183,7 +183,7 @@ QueryGuidance GuidanceBook::choose(const Problem& problem) const {
   if (!known->second.guidance)
     return {.why_not = known->second.message};
   return {.guidance = &*known->second.guidance,
-          .sampling_mode = sampling_->choose(planning::sampling_mode_seed(problem))};
+          .sampling_mode = sampling_->choose(sampling_mode_seed(problem))};
 }
 
 void GuidanceBook::add(const PlannedProblem& planned) {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "client/planner/plan_problem.hpp"
-#include "client/planning/sampling_mode_choice.hpp"
+#include "client/planner/sampling_mode_choice.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
@@ -29,7 +29,7 @@ struct GuidanceOptions {
   std::optional<kinematics::Chain> chain;  ///< to follow stored ways of the hand; missing: none
   std::string profile = "default";
   Selection selection;
-  planning::SamplingModeOptions sampling;
+  SamplingModeOptions sampling;
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 
@@ -39,7 +39,7 @@ enum class NoGuidance { None, NoServer, NotFound, Failed };
 /// What came of asking for one placement.
 struct GuidanceAnswer {
   std::optional<Guidance> guidance;
-  std::optional<planning::SamplingModeChooser> sampling;  ///< present exactly if there is guidance
+  std::optional<SamplingModeChooser> sampling;  ///< present exactly if there is guidance
   NoGuidance why_not = NoGuidance::None;
   std::string message;  ///< for people: what was got, or why nothing
 };
@@ -77,9 +77,8 @@ class GuidanceBook {
   Fetch fetch_;
   GuidanceOptions wanted_;
   std::map<Key, GuidanceAnswer> answers_;
-  SharedExperience experience_;  // of all placements
-  std::optional<planning::SamplingModeChooser>
-      sampling_;  // of all placements: same task, same robot
+  SharedExperience experience_;                  // of all placements
+  std::optional<SamplingModeChooser> sampling_;  // of all placements: same task, same robot
   bool server_missing_ = false;
 };
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/planner/plan_settings.hpp"
-#include "client/planning/sampling_mode_choice.hpp"
+#include "client/planner/sampling_mode_choice.hpp"
 #include "proto/types/selection.hpp"
 #include "robots/models/robot_arguments.hpp"
 
@@ -31,7 +31,7 @@ struct PlanOptions {
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
   bool follow_tracks = true;  ///< of stored ways of the hand, in guided queries
-  planning::SamplingModeOptions sampling;
+  SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all
   bool report = false;

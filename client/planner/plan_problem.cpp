@@ -7,18 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "client/ompl/ompl_planner.hpp"
 #include "client/planner/problem_mismatch.hpp"
-#include "client/planning/birrt.hpp"
-#include "client/planning/cbirrt2.hpp"
-#include "client/planning/configuration_sampler.hpp"
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/ompl_planner.hpp"
-#include "client/planning/planning_bounds.hpp"
-#include "client/planning/planning_budget.hpp"
-#include "client/planning/region_constraint.hpp"
-#include "client/planning/repetition_roadmap.hpp"
-#include "client/planning/shortcut.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/cbirrt2.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/planning_budget.hpp"
+#include "robots/planning/region_constraint.hpp"
+#include "robots/planning/repetition_roadmap.hpp"
+#include "robots/planning/shortcut.hpp"
 
 namespace kinship::planner {
 namespace {

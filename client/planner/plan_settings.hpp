@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "client/planner/planner_choice.hpp"
-#include "client/planning/experience_guide.hpp"
-#include "client/planning/guidance_gate.hpp"
+#include "robots/planning/experience_guide.hpp"
+#include "robots/planning/guidance_gate.hpp"
 
 namespace kinship::planner {
 

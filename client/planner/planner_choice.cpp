@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "client/planning/ompl_planner.hpp"
+#include "client/ompl/ompl_planner.hpp"
 
 namespace kinship::planner {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/planning/guidance_gate.hpp"
+#include "robots/planning/guidance_gate.hpp"
 
 namespace kinship::planner {
 namespace {

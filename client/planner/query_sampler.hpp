@@ -7,13 +7,13 @@
 #include <string>
 
 #include "client/planner/plan_settings.hpp"
-#include "client/planning/configuration_sampler.hpp"
-#include "client/planning/experience_guide.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/experience_guide.hpp"
 
 namespace kinship::planner {
 

@@ -46,6 +46,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string inverse = "robots/inverse";
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
+  const std::string planning = "robots/planning";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -56,11 +57,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string files = "client/files";
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
-  const std::string planning = "client/planning";
+  const std::string ompl = "client/ompl";
   const std::string planner = "client/planner";
-  const std::set<std::string> planner_programs = {link,    arguments, files,    planning,
-                                                  inverse, collision, geometry, kinematics,
-                                                  models,  mixture,   json,     types};
+  const std::set<std::string> planner_programs = {
+      link,      arguments, files,      planning, ompl,    evidence, inverse,
+      collision, geometry,  kinematics, models,   mixture, json,     types};
   std::set<std::string> experiments = planner_programs;
   experiments.insert(planner);
   return std::map<std::string, AllowedEdges>{
@@ -76,6 +77,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL"}}},
+      {planning,
+       {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen", "nanoflann"}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -86,10 +89,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
+      {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
-      {planning,
-       {{inverse, collision, geometry, kinematics, mixture, evidence, types},
-        {"Eigen", "nanoflann", "OMPL"}}},
       {"client/cli",
        {{link, arguments, files, inverse, geometry, kinematics, models, mixture, json, types},
         {"Eigen", "CLI11"}}},

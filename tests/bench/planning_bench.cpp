@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "client/planning/cbirrt2.hpp"
-#include "client/planning/ompl_planner.hpp"
-#include "client/planning/state_space.hpp"
+#include "client/ompl/ompl_planner.hpp"
+#include "client/ompl/state_space.hpp"
+#include "robots/planning/cbirrt2.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/shelf_cell.hpp"

@@ -3,10 +3,10 @@
 #include <random>
 #include <string>
 
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/planning_bounds.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/geometry/link_shapes.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
 #include "tests/support/robots.hpp"
 
 /// A cell of 12 boxes (table, shelf of three by two compartments, four posts) in which a cobot

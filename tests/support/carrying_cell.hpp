@@ -5,10 +5,10 @@
 #include <random>
 #include <string>
 
-#include "client/planning/region_constraint.hpp"
 #include "proto/types/task_space_region.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::test {
 

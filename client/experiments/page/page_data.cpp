@@ -9,8 +9,6 @@
 #include "client/experiments/page/bones.hpp"
 #include "client/experiments/result_file.hpp"
 #include "client/files/lines.hpp"
-#include "client/planning/configuration_sampler.hpp"
-#include "client/planning/path_vertices.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
@@ -18,6 +16,8 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/path_vertices.hpp"
 
 namespace kinship::experiments {
 namespace {

@@ -10,13 +10,13 @@
 #include "client/experiments/pipeline/parallel_for.hpp"
 #include "client/experiments/pipeline/peer_process.hpp"
 #include "client/experiments/pipeline/side_study.hpp"
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/ompl_planner.hpp"
-#include "client/planning/path_vertices.hpp"
-#include "client/planning/planning_bounds.hpp"
-#include "client/planning/planning_budget.hpp"
+#include "client/ompl/ompl_planner.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/path_vertices.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/planning_budget.hpp"
 
 namespace kinship::experiments {
 namespace {

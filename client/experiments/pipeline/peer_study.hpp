@@ -8,7 +8,7 @@
 #include "client/experiments/pipeline/fleet.hpp"
 #include "client/experiments/pipeline/query_log.hpp"
 #include "client/experiments/pipeline/query_runner.hpp"
-#include "client/planning/ompl_experience.hpp"
+#include "client/ompl/ompl_experience.hpp"
 #include "proto/types/attempt.hpp"
 
 namespace kinship::experiments {

@@ -1,8 +1,8 @@
 #include "client/experiments/pipeline/query_runner.hpp"
 
 #include "client/experiments/pipeline/parallel_for.hpp"
-#include "client/planning/path_vertices.hpp"
 #include "proto/types/failure.hpp"
+#include "robots/planning/path_vertices.hpp"
 
 namespace kinship::experiments {
 namespace {

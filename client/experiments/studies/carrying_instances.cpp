@@ -6,11 +6,11 @@
 
 #include "client/experiments/studies/instance_draws.hpp"
 #include "client/experiments/studies/instance_random.hpp"
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/planning_bounds.hpp"
-#include "client/planning/region_constraint.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::experiments {
 namespace {

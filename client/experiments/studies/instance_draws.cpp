@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/planning_bounds.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/inverse/inverse.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
 
 namespace kinship::experiments {
 

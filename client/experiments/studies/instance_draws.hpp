@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "client/experiments/studies/instance_random.hpp"
-#include "client/planning/is_free.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/inverse/descent.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/is_free.hpp"
 
 /// What instances of all tasks have in common, whatever their scene.
 namespace kinship::experiments {

@@ -6,12 +6,12 @@
 #include <tuple>
 
 #include "client/experiments/studies/carrying_instances.hpp"
-#include "client/planning/planning_bounds.hpp"
-#include "client/planning/region_constraint.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/region_constraint.hpp"
 
 namespace kinship::experiments::carrying_scene_test {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "client/experiments/studies/furniture_instances.hpp"
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/planning_bounds.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
 
 namespace kinship::experiments::furniture_scene_test {
 namespace {

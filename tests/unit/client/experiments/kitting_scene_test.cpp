@@ -6,12 +6,12 @@
 #include <string>
 
 #include "client/experiments/studies/kitting_instances.hpp"
-#include "client/planning/goal_configurations.hpp"
-#include "client/planning/planning_bounds.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
 
 namespace kinship::experiments::kitting_scene_test {
 namespace {

@@ -77,7 +77,7 @@ TEST(FetchGuidance, TellsIdRevisionSourcesAndShare) {
 }
 
 TEST(FetchGuidance, TellsHowTheQueriesAreDivided) {
-  const auto tail = [](const planning::SamplingModeOptions& sampling) {
+  const auto tail = [](const SamplingModeOptions& sampling) {
     GuidanceOptions told = wanted();
     told.sampling = sampling;
     const std::string message = answer_to(ready(), told).message;

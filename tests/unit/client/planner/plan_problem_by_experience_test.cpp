@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "client/planner/plan_problem.hpp"
-#include "client/planning/path_vertices.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/path_vertices.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::planner::plan_problem_by_experience_test {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "client/planning/path_vertices.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/planning/path_vertices.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::planner::plan_problem_test {

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/spaces/constraint/ProjectedStateSpace.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "robots/planning/constrained_stepper.hpp"
+
+namespace kinship::planning {
+
+/// Configurations along a task space region as a projected space of OMPL whose steps are those of
+/// plan_cbirrt2, so that its motions keep what plan_cbirrt2 promises: at most `step` apart, within
+/// the tolerances of RegionConstraint at and between waypoints. (OMPL's own steps may be twice as
+/// long, and what lies between them is not looked at.)
+/// Not shared between threads.
+class RegionStateSpace : public ompl::base::ProjectedStateSpace {
+ public:
+  /// \param ambient  from make_state_space.
+  /// \param region   borrowed: must outlive this; counts the projections.
+  RegionStateSpace(const ompl::base::StateSpacePtr& ambient, RegionConstraint& region, double step);
+
+  /// The configurations from one to another along the region, both included; the same ones in
+  /// either direction. Not checked for collisions.
+  /// \return dof x n, n >= 1; empty if the way gets stuck.
+  std::optional<Eigen::MatrixXd> way(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+
+  bool discreteGeodesic(const ompl::base::State* from, const ompl::base::State* to,
+                        bool interpolate, std::vector<ompl::base::State*>* geodesic) const override;
+
+  /// As far along the region as it goes, where `to` cannot be reached.
+  void interpolate(const ompl::base::State* from, const ompl::base::State* to, double share,
+                   ompl::base::State* state) const override;
+
+  bool holds(const Eigen::VectorXd& q) const { return region_.holds(q); }
+
+ private:
+  RegionConstraint& region_;
+  mutable ConstrainedStepper stepper_;  // OMPL asks for ways by const methods
+};
+
+/// Whether the way between two states of a RegionStateSpace is free, the second state included.
+/// (OMPL's own validator of constrained motions never asks about the second state.)
+class RegionMotionValidator : public ompl::base::MotionValidator {
+ public:
+  explicit RegionMotionValidator(const ompl::base::SpaceInformationPtr& information);
+
+  bool checkMotion(const ompl::base::State* from, const ompl::base::State* to) const override;
+  bool checkMotion(const ompl::base::State* from, const ompl::base::State* to,
+                   std::pair<ompl::base::State*, double>& last_valid) const override;
+
+ private:
+  const RegionStateSpace& space_;
+};
+
+/// \param state  of a constrained space.
+Eigen::VectorXd to_constrained_configuration(const ompl::base::State& state);
+
+}  // namespace kinship::planning

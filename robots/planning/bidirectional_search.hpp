@@ -1,0 +1,262 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/planning_budget.hpp"
+#include "robots/planning/region_constraint.hpp"
+#include "robots/planning/tree.hpp"
+
+/// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
+namespace kinship::planning {
+
+/// Where an extension of a tree came.
+struct Extension {
+  Eigen::Index node = 0;  ///< the last one
+  bool reached = false;   ///< the target
+};
+
+/// What an extension aims at: a sample may lie anywhere, a node of the other tree is a valid
+/// configuration.
+enum class Aim { Sample, Node };
+
+/// \throws std::invalid_argument as plan_birrt says; `planner` names it.
+void check_arguments(const char* planner, const Eigen::VectorXd& start,
+                     const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
+                     const BirrtOptions& options);
+
+/// The goals that hold a constraint.
+/// \return empty, with a reason as plan_cbirrt2 says, if the start or all goals do not.
+std::optional<Eigen::MatrixXd> holding(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                                       const RegionConstraint& constraint, NoPath& reason);
+
+/// Plans along a constraint to the goals that hold it, and counts the projections.
+/// \param plan  called with these goals, dof x n; returns a PlanSummary.
+template <typename Plan>
+PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const RegionConstraint& constraint, Plan plan) {
+  PlanSummary summary;
+  const auto reachable = holding(start, goals, constraint, summary.reason);
+  if (!reachable)
+    return summary;
+  const std::uint64_t before = constraint.projections();
+  summary = plan(*reachable);
+  summary.projections = constraint.projections() - before;
+  return summary;
+}
+
+/// Two trees, from the start and from every goal, of which the smaller one is extended.
+/// \tparam Steering  goes from a node to a target as far as it can:
+///         `Extension extend(Tree&, Eigen::Index from, const Eigen::VectorXd& target, Aim,
+///         PlanningBudget&)`.
+template <typename Steering>
+class BidirectionalSearch {
+ public:
+  BidirectionalSearch(const ConfigurationSampler& sampler, const BirrtOptions& options,
+                      Steering& steering, PlanningBudget& budget, std::mt19937_64& generator)
+      : sampler_(sampler),
+        options_(options),
+        steering_(steering),
+        budget_(budget),
+        generator_(generator) {}
+
+  /// Plants both trees and extends them until they meet or the budget is used up.
+  PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    Eigen::MatrixXd free_goals;
+    if (auto answer = answer_at_once(start, goals, free_goals))
+      return *std::move(answer);
+    if (auto path = go_straight(free_goals))
+      return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
+    return search();
+  }
+
+  /// Plants both trees. \return the summary if there is nothing to search for.
+  std::optional<PlanSummary> answer_at_once(const Eigen::VectorXd& start,
+                                            const Eigen::MatrixXd& goals,
+                                            Eigen::MatrixXd& free_goals) {
+    const NoPath reason = plant(start, goals);
+    if (reason != NoPath::None)
+      return summary(std::nullopt, reason);
+    free_goals.resize(goals.rows(), goal_tree_.size());
+    for (Eigen::Index i = 0; i < goal_tree_.size(); ++i)
+      free_goals.col(i) = goal_tree_.node(i);
+    if (auto path = standstill())
+      return summary(std::move(path), NoPath::None, FoundBy::StraightLine);
+    return std::nullopt;
+  }
+
+  /// The same from trees that have been begun: the start or the free goals and what can be reached
+  /// from them; all of it was checked.
+  PlanSummary run_from(Tree start_tree, Tree goal_tree) {
+    start_tree_ = std::move(start_tree);
+    goal_tree_ = std::move(goal_tree);
+    return search();
+  }
+
+  /// What was planned and spent so far.
+  PlanSummary summary(std::optional<Eigen::MatrixXd> path, NoPath reason,
+                      FoundBy found_by = FoundBy::Search) {
+    PlanSummary summary;
+    summary.found_by = path ? found_by : FoundBy::Nothing;
+    summary.tracks_followed = next_track_;
+    summary.waypoints = std::move(path);
+    summary.reason = reason;
+    summary.iterations = iterations_;
+    summary.collision_checks = budget_.checks();
+    summary.planning_time_s = budget_.thread_time_s();
+    return summary;
+  }
+
+ private:
+  PlanSummary search() {
+    const std::uint64_t begin = budget_.checks();
+    while (!budget_.exhausted()) {
+      const Track* const track = next_track(budget_.checks() - begin);
+      auto path = track != nullptr ? follow(*track) : iterate();
+      if (path)
+        return summary(std::move(path), NoPath::None,
+                       track != nullptr ? FoundBy::Track : FoundBy::Search);
+    }
+    return summary(std::nullopt, budget_.reason());
+  }
+
+  /// \return why there is nothing to plan, if so.
+  NoPath plant(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
+    if (goals.cols() == 0)
+      return NoPath::NoGoal;
+    if (!budget_.is_free(start))
+      return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
+    start_tree_.add(start, -1);
+    for (Eigen::Index i = 0; i < goals.cols(); ++i)
+      if (budget_.is_free(goals.col(i)))
+        goal_tree_.add(goals.col(i), -1);
+    if (budget_.exhausted())
+      return budget_.reason();
+    return goal_tree_.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
+  }
+
+  /// The path of a start that is a goal already.
+  std::optional<Eigen::MatrixXd> standstill() const {
+    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd goal = goal_tree_.node(goal_tree_.nearest(start));
+    if (goal != start)
+      return std::nullopt;
+    Eigen::MatrixXd path(start.size(), 2);
+    path << start, goal;
+    return path;
+  }
+
+  /// Extends the start tree from its root towards one goal after the other, the nearest first.
+  /// Where nothing is in the way, no sample can do better. \return the path to the first one
+  /// reached.
+  std::optional<Eigen::MatrixXd> go_straight(const Eigen::MatrixXd& goals) {
+    const Eigen::VectorXd start = start_tree_.node(0);
+    const Eigen::VectorXd distances = (goals.colwise() - start).colwise().norm();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(goals.cols()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::ranges::stable_sort(order, {}, [&](Eigen::Index goal) { return distances[goal]; });
+    constexpr std::uint64_t kMaxChecks = 100;
+    const std::uint64_t end = budget_.checks() + kMaxChecks;
+    for (const Eigen::Index goal : order) {
+      if (budget_.checks() >= end || budget_.exhausted())
+        return std::nullopt;
+      const Extension there = steering_.extend(start_tree_, 0, goals.col(goal), Aim::Node, budget_);
+      if (there.reached)
+        return join(there.node, goal);
+    }
+    return std::nullopt;
+  }
+
+  /// The track that is followed now. \param checks  that the search has cost. \return null: none.
+  const Track* next_track(std::uint64_t checks) {
+    QueryTracks* const tracks = sampler_.tracks();
+    if (tracks == nullptr || options_.track_check_fraction == 0 ||
+        static_cast<double>(track_checks_) >
+            options_.track_check_fraction * static_cast<double>(checks))
+      return nullptr;
+    const Track* const track = tracks->track(next_track_);
+    next_track_ += track != nullptr ? 1 : 0;
+    return track;
+  }
+
+  /// Extends the goal tree along a track until something is in the way, then the start tree towards
+  /// where that came. \return the path if they met.
+  std::optional<Eigen::MatrixXd> follow(const Track& track) {
+    const std::uint64_t before = budget_.checks();
+    const Eigen::VectorXd root = track.configurations.col(0);
+    Extension there{goal_tree_.nearest(root), true};
+    if (goal_tree_.node(there.node) != root)  // this goal collides
+      return std::nullopt;
+    for (Eigen::Index i = 1; i < track.configurations.cols() && there.reached; ++i)
+      there = steering_.extend(goal_tree_, there.node, track.configurations.col(i), Aim::Sample,
+                               budget_);
+    const Eigen::VectorXd tip = goal_tree_.node(there.node);
+    const Extension met =
+        steering_.extend(start_tree_, start_tree_.nearest(tip), tip, Aim::Node, budget_);
+    track_checks_ += budget_.checks() - before;
+    return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
+  }
+
+  /// Extends the smaller tree towards a sample, then the other towards where that came. \return the
+  /// path if they met.
+  std::optional<Eigen::MatrixXd> iterate() {
+    ++iterations_;
+    const bool start_grows = start_tree_.size() <= goal_tree_.size();
+    Tree& grown = start_grows ? start_tree_ : goal_tree_;
+    Tree& other = start_grows ? goal_tree_ : start_tree_;
+    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_fraction());
+    const Eigen::Index near = grown.nearest(sample);
+    const Extension there =
+        steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
+    if (there.node == near)  // nothing new to go to
+      return std::nullopt;
+    const Eigen::VectorXd tip = grown.node(there.node);
+    const Extension met = steering_.extend(other, other.nearest(tip), tip, Aim::Node, budget_);
+    if (!met.reached)
+      return std::nullopt;
+    return join(start_grows ? there.node : met.node, start_grows ? met.node : there.node);
+  }
+
+  /// A query that the mixture has not solved soon may need what it does not cover, and without any
+  /// uniform samples no patience would find that.
+  double guided_fraction() const {
+    constexpr std::uint64_t kPatience = 300;  // samples
+    constexpr double kLateFraction = 0.9;
+    return iterations_ <= kPatience ? sampler_.guided_fraction()
+                                    : std::min(sampler_.guided_fraction(), kLateFraction);
+  }
+
+  Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {
+    const Eigen::VectorXd target = near + options_.overshoot * (sample - near);
+    return target.cwiseMax(sampler_.bounds().row(0).transpose())
+        .cwiseMin(sampler_.bounds().row(1).transpose());
+  }
+
+  /// The path over two nodes that hold the same configuration.
+  Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const {
+    const Eigen::MatrixXd from_start = start_tree_.branch(start_node).rowwise().reverse();
+    const Eigen::MatrixXd to_goal = goal_tree_.branch(goal_node);
+    Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);
+    path << from_start, to_goal.rightCols(to_goal.cols() - 1);
+    return path;
+  }
+
+  const ConfigurationSampler& sampler_;
+  const BirrtOptions& options_;
+  Steering& steering_;
+  PlanningBudget& budget_;
+  std::mt19937_64& generator_;
+  Tree start_tree_{sampler_.bounds().cols()};
+  Tree goal_tree_{sampler_.bounds().cols()};
+  std::uint64_t iterations_ = 0;
+  std::size_t next_track_ = 0;
+  std::uint64_t track_checks_ = 0;
+};
+
+}  // namespace kinship::planning

@@ -1,0 +1,33 @@
+#include "robots/planning/birrt.hpp"
+
+#include <stdexcept>
+
+#include "robots/planning/bidirectional_search.hpp"
+#include "robots/planning/steering.hpp"
+
+namespace kinship::planning {
+void check_arguments(const char* planner, const Eigen::VectorXd& start,
+                     const Eigen::MatrixXd& goals, const ConfigurationSampler& sampler,
+                     const BirrtOptions& options) {
+  const auto refuse = [&](const char* what) {
+    throw std::invalid_argument(std::string(planner) + ": " + what);
+  };
+  const Eigen::Index dof = sampler.bounds().cols();
+  if (dof < 1 || start.size() != dof || (goals.cols() > 0 && goals.rows() != dof))
+    refuse("start, goals and bounds differ in size");
+  if (!start.allFinite() || !goals.allFinite())
+    refuse("start or goals are not finite");
+  if (!(options.step > 0) || !(options.overshoot >= 1))
+    refuse("step must be positive, overshoot at least 1");
+}
+
+PlanSummary plan_birrt(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals,
+                       const IsFree& is_free, const ConfigurationSampler& sampler,
+                       const BirrtOptions& options, std::mt19937_64& generator) {
+  check_arguments("plan_birrt", start, goals, sampler, options);
+  PlanningBudget budget(is_free, options.max_checks, options.time_limit);
+  StraightSteering steering(start.size(), options.step);
+  return BidirectionalSearch(sampler, options, steering, budget, generator).run(start, goals);
+}
+
+}  // namespace kinship::planning

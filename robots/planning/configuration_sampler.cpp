@@ -1,0 +1,91 @@
+#include "robots/planning/configuration_sampler.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "robots/planning/planning_bounds.hpp"
+
+namespace kinship::planning {
+namespace {
+
+constexpr int kMaxTurnDraws = 100;
+
+/// The bounds, but none for turning joints.
+Eigen::Matrix2Xd draw_limits(const Eigen::Matrix2Xd& bounds, const std::vector<bool>& turning) {
+  Eigen::Matrix2Xd limits = bounds;
+  for (Eigen::Index i = 0; i < limits.cols(); ++i)
+    if (turning[static_cast<std::size_t>(i)])
+      limits.col(i) << -std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::infinity();
+  return limits;
+}
+
+}  // namespace
+
+ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds) : bounds_(std::move(bounds)) {
+  turning_.assign(static_cast<std::size_t>(bounds_.cols()), false);
+  if (!bounds_.allFinite() || (bounds_.row(0).array() > bounds_.row(1).array()).any())
+    throw std::invalid_argument("ConfigurationSampler: bounds are not finite or crossed");
+}
+
+ConfigurationSampler::ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
+                                           const Mixture& mixture, double guided_fraction)
+    : ConfigurationSampler(std::move(bounds)) {
+  if (mixture.dimension() != bounds_.cols() || chain.dof() != bounds_.cols())
+    throw std::invalid_argument("ConfigurationSampler: chain, mixture and bounds differ in size");
+  if (!(guided_fraction >= 0 && guided_fraction <= 1))
+    throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
+  turning_ = turning_joints(chain);
+  mixture_ = mixture;
+  guided_.emplace(mixture, draw_limits(bounds_, turning_));
+  mixture_fraction_ = guided_fraction;
+}
+
+ConfigurationSampler ConfigurationSampler::with_tracks(std::shared_ptr<QueryTracks> tracks,
+                                                       double fraction) const {
+  if (!(fraction >= 0 && fraction <= 1))
+    throw std::invalid_argument("ConfigurationSampler: share is not between 0 and 1");
+  ConfigurationSampler sampler = *this;
+  sampler.tracks_ = std::move(tracks);
+  sampler.track_fraction_ = fraction;
+  sampler.mixture_fraction_ = std::min(mixture_fraction_, 1 - fraction);
+  return sampler;
+}
+
+Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator,
+                                             double guided_fraction) const {
+  std::uniform_real_distribution<double> unit(0, 1);
+  if (guided_ || tracks_) {
+    const double drawn = unit(generator);
+    if (drawn < guided_fraction)
+      if (auto q = sample_guided(drawn, guided_fraction, generator))
+        return *std::move(q);
+  }
+  Eigen::VectorXd q(bounds_.cols());
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    q[i] = bounds_(0, i) + (bounds_(1, i) - bounds_(0, i)) * unit(generator);
+  return q;
+}
+
+/// Tracks and mixture keep their proportion, whatever the share of both.
+std::optional<Eigen::VectorXd> ConfigurationSampler::sample_guided(
+    double drawn, double guided_fraction, std::mt19937_64& generator) const {
+  const double around_tracks = guided_fraction * track_fraction_ / this->guided_fraction();
+  return drawn < around_tracks ? tracks_->sample(generator) : sample_mixture(generator);
+}
+
+std::optional<Eigen::VectorXd> ConfigurationSampler::sample_mixture(
+    std::mt19937_64& generator) const {
+  for (int draw = 0; guided_ && draw < kMaxTurnDraws; ++draw) {
+    const auto q = guided_->sample(generator);
+    if (!q)
+      return std::nullopt;  // the mixture lies outside the bounds
+    if (auto turned = turned_into(bounds_, turning_, *q))
+      return turned;
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinship::planning

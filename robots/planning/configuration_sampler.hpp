@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "proto/mixture/sampler.hpp"
+#include "proto/types/mixture.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/query_tracks.hpp"
+
+namespace kinship::planning {
+
+/// Where a planner's samples come from: a share of them from a mixture, a share from around the
+/// tracks of the query, the rest uniform within bounds. Immutable but for tracks, which
+/// are made when they are needed: may be shared, between threads if it has none.
+class ConfigurationSampler {
+ public:
+  /// Uniform.
+  /// \param bounds  2 x dof: lower, upper, joint units (see planning_bounds).
+  /// \throws std::invalid_argument if a bound is not finite or a lower one exceeds its upper.
+  explicit ConfigurationSampler(Eigen::Matrix2Xd bounds);
+
+  /// Guided samples follow the mixture truncated to the bounds. Joints wider than a turn know no
+  /// limits in the draw; they are moved by full turns into the bounds afterwards, and the draw is
+  /// repeated if no turn lies there. If nothing comes out, the sample is uniform.
+  /// \param chain  says which joints may be moved by full turns.
+  /// \param guided_fraction  of the samples, 0 to 1.
+  /// \throws std::invalid_argument also if dimensions differ or the share is none.
+  /// \throws Failure(Internal) if a covariance is not positive definite.
+  ConfigurationSampler(Eigen::Matrix2Xd bounds, const kinematics::Chain& chain,
+                       const Mixture& mixture, double guided_fraction);
+
+  /// The same, with samples around tracks besides.
+  /// \param tracks    not null.
+  /// \param fraction  of all samples, 0 to 1; what the mixture has is cut down to what is left.
+  /// \throws std::invalid_argument if the fraction is none.
+  ConfigurationSampler with_tracks(std::shared_ptr<QueryTracks> tracks, double fraction) const;
+
+  Eigen::VectorXd sample(std::mt19937_64& generator) const {
+    return sample(generator, guided_fraction());
+  }
+  /// The same with another share of guided samples; a uniform sampler has none.
+  Eigen::VectorXd sample(std::mt19937_64& generator, double guided_fraction) const;
+
+  const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
+  /// Of all samples; 0 if uniform.
+  double guided_fraction() const noexcept { return mixture_fraction_ + track_fraction_; }
+  /// Ways to try before anything is drawn, made when first asked for; null: there are none.
+  QueryTracks* tracks() const noexcept { return tracks_.get(); }
+  /// Where guided samples come from that do not come from tracks; none if there are none.
+  const std::optional<Mixture>& mixture() const noexcept { return mixture_; }
+  /// The same posture within the bounds; empty if no turn lies there.
+  std::optional<Eigen::VectorXd> moved_into_bounds(const Eigen::VectorXd& q) const {
+    return turned_into(bounds_, turning_, q);
+  }
+
+ private:
+  std::optional<Eigen::VectorXd> sample_mixture(std::mt19937_64& generator) const;
+  std::optional<Eigen::VectorXd> sample_guided(double drawn, double guided_fraction,
+                                               std::mt19937_64& generator) const;
+
+  Eigen::Matrix2Xd bounds_;
+  std::optional<Mixture> mixture_;
+  std::optional<mixture::Sampler> guided_;
+  std::vector<bool> turning_;
+  double mixture_fraction_ = 0;
+  std::shared_ptr<QueryTracks> tracks_;
+  double track_fraction_ = 0;
+};
+
+}  // namespace kinship::planning

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "robots/kinematics/chain.hpp"
+#include "robots/planning/is_free.hpp"
+#include "robots/planning/no_path.hpp"
+
+namespace kinship::planning {
+
+struct GoalOptions {
+  int max_configurations = 20;  ///< all branches count: a single goal may lie behind an obstacle
+  double min_distance = 0.3;    ///< between two of them, Euclidean, 1 m = 1 rad
+  std::uint64_t seed = 0;
+};
+
+struct GoalConfigurations {
+  Eigen::MatrixXd configurations;      ///< dof x n, n >= 0: free and within the bounds
+  int found = 0;                       ///< by inverse kinematics, before bounds and collisions
+  int within_bounds = 0;               ///< of these
+  std::uint64_t collision_checks = 0;  ///< counted apart from the plan's
+  NoPath reason = NoPath::None;        ///< why there are none
+};
+
+/// Goal configurations of a plan that shall bring the transfer frame to a pose. Where none of
+/// `max_configurations` is free, a redundant arm is asked for further ones, up to ten times.
+/// \param T_base_goal  pose of the transfer frame in the base link, m.
+/// \param bounds       2 x dof (see planning_bounds); solutions are moved by full turns into them.
+GoalConfigurations goal_configurations(const kinematics::Chain& chain,
+                                       const Eigen::Isometry3d& T_base_goal,
+                                       const Eigen::Matrix2Xd& bounds, const IsFree& is_free,
+                                       const GoalOptions& options = {});
+
+}  // namespace kinship::planning

@@ -1,0 +1,214 @@
+#include "robots/planning/region_constraint.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "proto/types/turn.hpp"
+
+namespace kinship::planning {
+namespace {
+
+using Vector6 = RegionConstraint::Vector6;
+
+constexpr int kMaxIterations = 12;
+constexpr double kAimed = 0.5 * RegionConstraint::kWaypointTolerance;
+constexpr double kMarginOfWidth = 0.05, kMaxMargin = 0.02;  // m or rad
+constexpr double kSquaredDamping = 1e-4;  // of singular values about 1 (m or rad per joint unit)
+constexpr double kMinCosine = 1e-3;       // of the pitch: its derivative is unbounded at 90 degrees
+
+/// Angles without a bound on one side are bounded by half a turn there; those that may go round
+/// by nothing.
+Eigen::Matrix<double, 2, 6> with_angles_in_a_turn(Eigen::Matrix<double, 2, 6> bounds) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 3; i < 6; ++i) {
+    if (std::isfinite(bounds(0, i)) != std::isfinite(bounds(1, i)))
+      bounds.col(i) << std::max(bounds(0, i), -M_PI), std::min(bounds(1, i), M_PI);
+    if (bounds(1, i) - bounds(0, i) >= kTurn)
+      bounds.col(i) << -kInfinity, kInfinity;
+  }
+  return bounds;
+}
+
+double beyond(double value, double lower, double upper) {
+  return value > upper ? value - upper : std::min(value - lower, 0.0);
+}
+
+double angle_beyond(double angle, double lower, double upper) {
+  if (std::isinf(lower))
+    return 0;
+  const double middle = (lower + upper) / 2;
+  return beyond(middle + wrapped(angle - middle), lower, upper);
+}
+
+Eigen::Vector3d angles_beyond(const Eigen::Vector3d& angles,
+                              const Eigen::Matrix<double, 2, 6>& bounds) {
+  Eigen::Vector3d excess;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    excess[i] = angle_beyond(angles[i], bounds(0, 3 + i), bounds(1, 3 + i));
+  return excess;
+}
+
+/// A rotation that takes the z-axis to a unit vector.
+Eigen::Isometry3d z_to(const Eigen::Vector3d& axis) {
+  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
+}
+
+}  // namespace
+
+TaskSpaceRegion upright_region(double tilt_rad) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion region;
+  region.T_region_end.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+  region.bounds.row(0) << -kInfinity, -kInfinity, -kInfinity, -tilt_rad, -tilt_rad, -kInfinity;
+  region.bounds.row(1) = -region.bounds.row(0);
+  return region;
+}
+
+RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpaceRegion& region,
+                                   const Eigen::Isometry3d& T_task_base,
+                                   const Eigen::Matrix2Xd& bounds)
+    : region_bounds_(with_angles_in_a_turn(region.bounds)), bounds_(bounds) {
+  if (const auto fault = find_fault(region))
+    throw std::invalid_argument("RegionConstraint: " + *fault);
+  if (bounds.cols() != chain.dof())
+    throw std::invalid_argument("RegionConstraint: bounds and chain differ in size");
+  const Vector6 widths = (region_bounds_.row(1) - region_bounds_.row(0)).transpose();
+  margin_ = (kMarginOfWidth * widths).cwiseMin(kMaxMargin);
+  Eigen::Isometry3d T = region.T_task_region.inverse() * T_task_base;  // before the next joint
+  for (const kinematics::Joint& joint : chain.joints()) {
+    const Eigen::Isometry3d T_joint_z = z_to(joint.axis);
+    T = T * joint.T_previous_joint * T_joint_z;
+    segments_.push_back(
+        {T.linear(), T.translation(), joint.type == kinematics::JointType::Prismatic});
+    T = T_joint_z.inverse();
+  }
+  T = T * chain.T_last_tip() * chain.T_tip_transfer() * region.T_region_end.inverse();
+  R_end_ = T.linear();
+  p_end_ = T.translation();
+}
+
+void RegionConstraint::sweep(const Eigen::VectorXd& q, Sweep& along) const {
+  const auto count = static_cast<Eigen::Index>(segments_.size());
+  along.origins.resize(3, count);
+  along.axes.resize(3, count);
+  Eigen::Matrix3d R = segments_.front().R;
+  Eigen::Vector3d p = segments_.front().p;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Segment& segment = segments_[static_cast<std::size_t>(i)];
+    if (i > 0) {
+      p += R * segment.p;
+      R = (R * segment.R).eval();
+    }
+    along.origins.col(i) = p;
+    along.axes.col(i) = R.col(2);
+    if (segment.prismatic) {
+      p += q[i] * R.col(2);
+      continue;
+    }
+    const double c = std::cos(q[i]), s = std::sin(q[i]);
+    const Eigen::Vector3d x = R.col(0);
+    R.col(0) = c * x + s * R.col(1);
+    R.col(1) = c * R.col(1) - s * x;
+  }
+  along.p = p + R * p_end_;
+  along.R.noalias() = R * R_end_;
+}
+
+Vector6 RegionConstraint::excess(const Sweep& along, bool& flipped) const {
+  Vector6 result;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    result[i] = beyond(along.p[i], region_bounds_(0, i), region_bounds_(1, i));
+  const Eigen::Matrix3d& R = along.R;
+  const double roll = std::atan2(R(2, 1), R(2, 2));
+  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  const Eigen::Vector3d one = angles_beyond({roll, pitch, yaw}, region_bounds_);
+  result.tail<3>() = one;
+  flipped = false;
+  if (one.squaredNorm() == 0)
+    return result;
+  const Eigen::Vector3d other =
+      angles_beyond({roll + M_PI, M_PI - pitch, yaw + M_PI}, region_bounds_);
+  flipped = other.squaredNorm() < one.squaredNorm();
+  if (flipped)
+    result.tail<3>() = other;
+  return result;
+}
+
+Vector6 RegionConstraint::excess(const Eigen::VectorXd& q) const {
+  Sweep along;
+  sweep(q, along);
+  bool flipped = false;
+  return excess(along, flipped);
+}
+
+void RegionConstraint::derive(const Sweep& along, bool flipped, Matrix6& derivative) const {
+  const Eigen::Matrix3d& R = along.R;
+  const double cos_pitch = std::max(std::hypot(R(0, 0), R(1, 0)), kMinCosine);
+  const double sin_pitch = -R(2, 0);
+  const double cos_yaw = R(0, 0) / cos_pitch, sin_yaw = R(1, 0) / cos_pitch;
+  Eigen::Matrix3d rates;  // of roll, pitch, yaw, per angular velocity
+  rates << cos_yaw / cos_pitch, sin_yaw / cos_pitch, 0,  //
+      -sin_yaw, cos_yaw, 0,                              //
+      cos_yaw * sin_pitch / cos_pitch, sin_yaw * sin_pitch / cos_pitch, 1;
+  if (flipped)
+    rates.row(1) = -rates.row(1);
+  derivative.resize(6, along.axes.cols());
+  for (Eigen::Index i = 0; i < along.axes.cols(); ++i) {
+    const Eigen::Vector3d axis = along.axes.col(i);
+    if (segments_[static_cast<std::size_t>(i)].prismatic) {
+      derivative.col(i) << axis, Eigen::Vector3d::Zero();
+      continue;
+    }
+    derivative.col(i).head<3>() = axis.cross(along.p - along.origins.col(i));
+    derivative.col(i).tail<3>().noalias() = rates * axis;
+  }
+}
+
+RegionConstraint::Matrix6 RegionConstraint::derivative(const Eigen::VectorXd& q) const {
+  Sweep along;
+  sweep(q, along);
+  bool flipped = false;
+  excess(along, flipped);
+  Matrix6 result;
+  derive(along, flipped, result);
+  return result;
+}
+
+bool RegionConstraint::project(Eigen::VectorXd& q) {
+  ++projections_;
+  Sweep along;
+  Matrix6 J;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxJoints> active;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> residual;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> normal;
+  for (int iteration = 0;; ++iteration) {
+    sweep(q, along);
+    bool flipped = false;
+    const Vector6 outside = excess(along, flipped);
+    if (outside.squaredNorm() <= kAimed * kAimed)
+      return true;
+    if (iteration == kMaxIterations)
+      return false;
+    derive(along, flipped, J);
+    const Eigen::Index count = (outside.array() != 0).count();
+    active.resize(count, q.size());
+    residual.resize(count);
+    for (Eigen::Index i = 0, row = 0; i < 6; ++i)
+      if (outside[i] != 0) {
+        active.row(row) = J.row(i);
+        residual[row++] = outside[i] + std::copysign(margin_[i], outside[i]);
+      }
+    normal.noalias() = active.lazyProduct(active.transpose());
+    normal.diagonal().array() += kSquaredDamping;
+    normal.llt().solveInPlace(residual);
+    q -= active.transpose().lazyProduct(residual);
+    q = q.cwiseMax(bounds_.row(0).transpose()).cwiseMin(bounds_.row(1).transpose());
+  }
+}
+
+}  // namespace kinship::planning
