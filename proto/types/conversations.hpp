@@ -10,6 +10,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/selection.hpp"
 #include "proto/types/task_experience.hpp"
@@ -63,6 +64,8 @@ struct FetchRequest {
   std::chrono::seconds follow{0};      ///< a lease on interest, at most kMaxFollow_s; 0: once
   std::uint32_t experience_bytes = 0;  ///< of the task's experience at most; 0: none is wanted
   std::uint64_t known_experience = 0;  ///< the revision the client holds: it is not sent again
+  /// The reply waits, until the deadline at most, for a complete rehearsal. Needs experience_bytes.
+  bool rehearsed = false;
 };
 
 enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refused, Failed };
@@ -74,6 +77,9 @@ struct FetchReply {
   std::string message;
   /// Unless Refused or Busy: none if it was not asked for, is known already, or there is none.
   std::optional<TaskExperience> experience;
+  /// Of this robot where it stands; none if no experience was asked for, or nothing was rehearsed
+  /// yet.
+  std::optional<Rehearsal> rehearsal = {};
 };
 
 enum class AdminVerb {

@@ -10,6 +10,7 @@
 #include "proto/types/distribution.hpp"
 #include "proto/types/profile.hpp"
 #include "proto/types/publications.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
 
@@ -35,6 +36,13 @@ struct Words<FoundBy> {
   static constexpr std::string_view kWhat = "found_by";
   static constexpr std::array<std::string_view, 4> kWords = {"nothing", "straight_line", "track",
                                                              "search"};
+};
+template <>
+struct Words<Guide> {
+  static constexpr std::string_view kWhat = "guide";
+  static constexpr std::array<std::string_view, 8> kWords = {
+      "none",    "retreat",         "ways",         "retreat+ways",
+      "mixture", "retreat+mixture", "ways+mixture", "retreat+ways+mixture"};
 };
 template <>
 struct Words<DistributionState> {

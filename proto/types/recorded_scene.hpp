@@ -11,6 +11,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/scene.hpp"
+#include "proto/types/task_space_region.hpp"
 
 namespace kinship {
 
@@ -28,6 +29,8 @@ struct RecordedScene {
   std::vector<HeldObject> held;
   /// Names of objects or held things that may touch, e.g. what stands on a table when it is taken.
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
+  /// Where the transfer frame had to stay along the whole path; in the task frame.
+  std::optional<TaskSpaceRegion> constraint = {};
 };
 
 /// A shape as numbers, for messages and blobs: index into the variant, and sizes in m; sizes that

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship {
+
+/// What guides a query: any of three things, or nothing. The retreat backs out along the palm first
+/// and needs no experience; ways are stored ones of the hand, moved onto the query; the mixture is
+/// the distribution's. As bits: 1, 2, 4.
+enum class Guide {
+  None,
+  Retreat,
+  Ways,
+  RetreatWays,
+  Mixture,
+  RetreatMixture,
+  WaysMixture,
+  All,
+};
+
+constexpr bool has_retreat(Guide guide) { return (static_cast<unsigned>(guide) & 1U) != 0; }
+constexpr bool has_ways(Guide guide) { return (static_cast<unsigned>(guide) & 2U) != 0; }
+constexpr bool has_mixture(Guide guide) { return (static_cast<unsigned>(guide) & 4U) != 0; }
+
+/// What it cost to plan recorded queries again with one guide.
+struct GuideCost {
+  Guide guide = Guide::None;
+  std::uint64_t plans = 0;   ///< one that was given up early has fewer than the others
+  std::uint64_t solved = 0;  ///< of them, within the limit of a rehearsal
+  double mean_checks = 0;    ///< of all plans: one that was not solved counts what it had spent
+  double median_checks = 0;
+
+  bool operator==(const GuideCost&) const = default;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<GuideCost>{
+    Field{"guide", &GuideCost::guide, {.max = static_cast<double>(Guide::All)}},
+    Field{"plans", &GuideCost::plans}, Field{"solved", &GuideCost::solved},
+    Field{"mean_checks", &GuideCost::mean_checks, {.min = 0}},
+    Field{"median_checks", &GuideCost::median_checks, {.min = 0}}};
+
+inline constexpr std::size_t kMaxGuideCosts = 8;
+
+/// What a server found by planning a task's recorded queries again: for one robot at one placement,
+/// with the guidance that it would give, each query without the path that once answered it.
+struct Rehearsal {
+  Guide guide = Guide::All;     ///< the one to use
+  bool is_complete = false;     ///< false: there is more to come
+  std::uint64_t queries = 0;    ///< recorded ones that were planned again
+  std::uint64_t left_out = 0;   ///< whose start or goal this robot cannot take where it stands
+  double processor_time_s = 0;  ///< that it took the server
+  std::vector<GuideCost> costs = {};
+  std::string message = {};  ///< why there is no more to say, for people
+
+  bool operator==(const Rehearsal&) const = default;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<Rehearsal>{
+    Field{"guide", &Rehearsal::guide, {.max = static_cast<double>(Guide::All)}},
+    Field{"is_complete", &Rehearsal::is_complete},
+    Field{"queries", &Rehearsal::queries},
+    Field{"left_out", &Rehearsal::left_out},
+    Field{"processor_time_s", &Rehearsal::processor_time_s, {.min = 0}},
+    Field{"costs", &Rehearsal::costs, {.limit = kMaxGuideCosts}},
+    Field{"message", &Rehearsal::message, {.limit = kMaxMessageBytes}}};
+
+}  // namespace kinship
