@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/arguments/command_options.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
@@ -74,6 +75,16 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
   add("--overshoot", tuning.overshoot, "of uniform and guided queries")
       ->check(CLI::Range(1.0, 10.0));
   add("--share", tuning.share, "of guided samples")->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option_function<std::string>(
+          "--guide",
+          [&tuning](const std::string& word) {
+            tuning.guide = parse_word<Guide>(word).value_or_throw();
+          },
+          "what guides a query (default: what the server finds by rehearsal)")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end())))
+      ->needs(tunes);
   add("--instances", tuning.instances, "tuning instances")->check(CLI::Range(1, 10'000));
   add("--seeds", tuning.seeds, "queries per instance")->check(CLI::Range(1, 100));
   add("--robots", tuning.targets, "robots that plan (default: all)")->delimiter(',');

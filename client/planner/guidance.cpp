@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "proto/types/enum_text.hpp"
+
 namespace kinship::planner {
 namespace {
 
@@ -51,6 +53,15 @@ std::string describe(const TaskExperience& experience) {
          std::to_string(experience.paths_known);
 }
 
+/// "rehearsed on 50 queries: guide retreat+ways".
+std::string describe(const Rehearsal& rehearsal) {
+  if (!rehearsal.message.empty())
+    return rehearsal.message;
+  return "rehearsed on " + std::to_string(rehearsal.queries) + " recorded queries" +
+         (rehearsal.is_complete ? "" : " so far") + ": guide " +
+         std::string(to_text(rehearsal.guide));
+}
+
 /// Why a distribution cannot guide this robot; empty if it can.
 std::string find_fault(const Distribution& distribution, Eigen::Index dof) {
   const std::string name = "distribution " + distribution.id.short_hex();
@@ -64,14 +75,19 @@ std::string find_fault(const Distribution& distribution, Eigen::Index dof) {
 
 /// Guidance by what there is of the two.
 GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience experience,
-                           const GuidanceOptions& wanted) {
+                           const Rehearsal* rehearsal, const GuidanceOptions& wanted) {
+  const Guide guide = wanted.guide.value_or(rehearsal != nullptr ? rehearsal->guide : Guide::All);
+  SamplingModeOptions sampling = wanted.sampling;
+  if (guide == Guide::None)
+    sampling.guided_fraction = 0;
   Advice advice;
   advice.guided_share = advice.recommended_share = 1;
   if (distribution != nullptr)
     advice = distribution->advice;
   GuidanceAnswer answer;
   Guidance& guidance = answer.guidance.emplace();
-  guidance.guided_fraction = planner::guided_fraction(advice, wanted.sampling);
+  guidance.guided_fraction = planner::guided_fraction(advice, sampling);
+  guidance.guide = guide;
   if (distribution != nullptr) {
     guidance.distribution_id = distribution->id;
     guidance.revision = distribution->revision;
@@ -80,8 +96,10 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
   }
   if (experience)
     answer.message += (answer.message.empty() ? "" : "; ") + describe(experience->experience());
+  if (rehearsal != nullptr && !wanted.guide)
+    answer.message += "; " + describe(*rehearsal);
   guidance.experience = std::move(experience);
-  answer.sampling.emplace(advice, wanted.sampling);
+  answer.sampling.emplace(advice, sampling);
   answer.message += "; " + describe(*answer.sampling, guidance.guided_fraction);
   if (!advice.evidence.empty())
     answer.message += " (" + advice.evidence + ")";
@@ -138,6 +156,7 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
   if (wanted.chain) {
     request.experience_bytes = kDefaultExperienceBytes;
     request.known_experience = known ? known->experience().revision : 0;
+    request.rehearsed = wanted.rehearsed;
   }
   const Result<FetchReply> reply = fetch(request);
   if (!reply) {
@@ -150,7 +169,8 @@ GuidanceAnswer fetch_guidance(const Fetch& fetch, const GuidanceOptions& wanted,
                          find_fault(*reply->distribution, wanted.dof).empty();
   if (!is_usable && !known)
     return without_guidance(*reply, wanted);
-  return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known), wanted);
+  return answer_with(is_usable ? &*reply->distribution : nullptr, std::move(known),
+                     reply->rehearsal ? &*reply->rehearsal : nullptr, wanted);
 }
 
 GuidanceBook::Key GuidanceBook::key_of(const std::optional<Eigen::Isometry3d>& T_task_base) {

@@ -30,6 +30,8 @@ struct GuidanceOptions {
   std::string profile = "default";
   Selection selection;
   SamplingModeOptions sampling;
+  std::optional<Guide> guide;  ///< missing: what the server found by rehearsal, else all there is
+  bool rehearsed = false;      ///< wait for a rehearsal, as for a distribution
   std::chrono::milliseconds wait{30000};  ///< for a distribution that is still being made
 };
 

@@ -8,6 +8,7 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
 
@@ -37,13 +38,19 @@ Exit codes: 0 every line was answered (unsolved is an answer); 1 failed or inter
 another robot), no problem could be attempted, or a report could not be kept; 2 wrong usage; 3 a file or folder does not exist, or
 no such task or distribution (--guidance require); 4 no server answered (--guidance require).)";
 
+std::vector<std::string> guide_words() {
+  std::vector<std::string> words(Words<Guide>::kWords.begin(), Words<Guide>::kWords.end());
+  words.emplace_back("auto");
+  return words;
+}
+
 /// Options as the command line has them, to be looked at once all are known.
 struct RawOptions {
   std::string planner;
   std::string guidance;
   std::string report = "no";
   std::string record_scenes = "yes";
-  std::string tracks = "yes";
+  std::string guide = "auto";
   double timeout_s = 5;
   double wait_s = 30;
   double guided_fraction = 0;
@@ -119,11 +126,16 @@ void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
                  "part of the queries planned uniformly as control (default: chosen query by query "
                  "with --guidance auto, 0 with always)")
       ->check(between(0.0, 1.0));
-  app.add_option("--tracks", raw.tracks,
-                 "guided queries follow stored ways of the hand, moved onto the query, and draw "
-                 "around them; no: samples of the mixture alone (default: yes, and no with a "
-                 "profile that begins with paper)")
-      ->check(CLI::IsMember({"yes", "no"}));
+  app.add_option("--guide", raw.guide,
+                 "what guides a query: retreat, ways (stored ways of the hand, moved onto it), "
+                 "mixture (samples of the distribution), any of them joined by +, or none; auto: "
+                 "what the server found best by planning recorded queries again, else all three "
+                 "(default: auto, and mixture with a profile that begins with paper)")
+      ->check(CLI::IsMember(guide_words()));
+  app.add_flag(
+      "--rehearsed", options.rehearsed,
+      "wait for the server's rehearsal too, which takes seconds to minutes, once per robot, "
+      "task and placement");
   app.add_option("--wait", raw.wait_s, "seconds to wait for a distribution that is being made")
       ->check(between(0.0, 3600.0))
       ->capture_default_str();
@@ -156,7 +168,7 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
 /// Options that say which distribution is wanted and how it is used.
 constexpr std::initializer_list<const char*> kOfGuidance = {
     "--profile", "--estimator",     "--sources", "--weighting", "--since",
-    "--share",   "--control-share", "--wait",    "--tracks"};
+    "--share",   "--control-share", "--wait",    "--guide",     "--rehearsed"};
 constexpr std::initializer_list<const char*> kOfReports = {"--machine", "--record-scenes",
                                                            "--outbox"};
 constexpr std::initializer_list<const char*> kOfServer = {"--server", "--domain", "--timeout"};
@@ -251,8 +263,10 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
   options.guidance = guidance_of(raw, options);
   options.report = raw.report == "yes";
   options.record_scenes = raw.record_scenes == "yes";
-  options.follow_tracks =
-      app.count("--tracks") > 0 ? raw.tracks == "yes" : !options.profile.starts_with("paper");
+  if (raw.guide != "auto")
+    options.guide = parse_word<Guide>(raw.guide).value_or_throw();
+  else if (app.count("--guide") == 0 && options.profile.starts_with("paper"))
+    options.guide = Guide::Mixture;
   require_task(app, options);
   complete_shares(app, raw, options);
   options.selection =

@@ -30,7 +30,8 @@ struct PlanOptions {
   std::string task;
   GuidanceMode guidance = GuidanceMode::Auto;
   std::string profile = "default";
-  bool follow_tracks = true;  ///< of stored ways of the hand, in guided queries
+  std::optional<Guide> guide;  ///< missing: what the server found by rehearsal, else all there is
+  bool rehearsed = false;      ///< wait for a rehearsal, as for a distribution
   SamplingModeOptions sampling;
   Selection selection;               ///< without its sources
   std::vector<std::string> sources;  ///< labels or digests of its sources; empty: all

@@ -67,6 +67,8 @@ std::string why_unguided(const QueryGuidance& query) {
     case SamplingMode::Guided:
       break;
   }
+  if (query.guidance->guide == Guide::None)
+    return "by rehearsal nothing is better than uniform planning";
   return query.guidance->guided_fraction == 0 ? "the share of guided samples is 0" : "";
 }
 
@@ -123,7 +125,7 @@ class Planning {
     options.track_check_fraction = settings_.tracks.check_fraction;
     const double begin_s = planning::thread_time_s();
     const auto sampler =
-        make_query_sampler({robot_.chain, T_task_base_, bounds_, problem_.start, goals}, guidance,
+        make_query_sampler(robot_.chain, {T_task_base_, bounds_, problem_.start, goals}, guidance,
                            settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
     const planning::PlanSummary summary = search(planner, goals, sampler, options);

@@ -85,8 +85,10 @@ GuidanceOptions guidance_options(const PlanOptions& options, const kinematics::C
   wanted.task = options.task;
   wanted.robot = chain.digest();
   wanted.dof = chain.dof();
-  if (options.follow_tracks)
+  if (options.guide != Guide::Mixture)
     wanted.chain = chain;
+  wanted.guide = options.guide;
+  wanted.rehearsed = options.rehearsed;
   wanted.profile = options.profile;
   wanted.selection = options.selection;
   wanted.sampling = options.sampling;

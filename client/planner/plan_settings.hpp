@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "client/planner/planner_choice.hpp"
-#include "robots/planning/experience_guide.hpp"
-#include "robots/planning/guidance_gate.hpp"
+#include "robots/planning/guided_sampler.hpp"
 
 namespace kinship::planner {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,6 +24,7 @@ struct Guidance {
   std::optional<Mixture> mixture;
   std::shared_ptr<const planning::ExperienceGuide> experience;  ///< null: none
   double guided_fraction = 0;  ///< of the samples of a guided query
+  Guide guide = Guide::All;    ///< what of them a guided query uses
 };
 
 /// What guidance a query has, and whether it uses it.
@@ -35,22 +35,13 @@ struct QueryGuidance {
   std::string why_not = {};   ///< for people: why there is none
 };
 
-/// One query as its sampler needs it.
-struct PosedQuery {
-  const kinematics::Chain& chain;
-  Eigen::Isometry3d T_task_base;
-  const Eigen::Matrix2Xd& bounds;  ///< 2 x dof
-  const Eigen::VectorXd& start;    ///< dof
-  const Eigen::MatrixXd& goals;    ///< dof x n
-};
-
-/// Where the samples of a guided query come from. Of those that guidance may have, tracks and
-/// mixture have their parts (settings.tracks), or the mixture all where there are no tracks. A
-/// mixture that the query is far from gives fewer, the fewer the farther (settings.gate_distance):
-/// it says little about what lies between.
+/// Where the samples of a guided query come from: planning::guided_sampler.
 /// \param guidance  null: uniform.
-/// \param result    told: share, track_share, experience_revision, gate_fired, guidance_reason.
-planning::ConfigurationSampler make_query_sampler(const PosedQuery& query, const Guidance* guidance,
+/// \param result    told: guide, share, track_share, experience_revision, gate_fired,
+///                  guidance_reason.
+planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain,
+                                                  const planning::TrackQuery& query,
+                                                  const Guidance* guidance,
                                                   const PlanSettings& settings,
                                                   ProblemResult& result);
 

@@ -76,7 +76,8 @@ constexpr std::tuple kGuidance{
     Field{"gate_fired", &ProblemResult::gate_fired, {.may_be_missing = true}},
     Field{"track_share", &ProblemResult::track_share, {.min = 0, .max = 1, .may_be_missing = true}},
     Field{"experience_revision", &ProblemResult::experience_revision, {.may_be_missing = true}},
-    Field{"tracks_followed", &ProblemResult::tracks_followed, {.may_be_missing = true}}};
+    Field{"tracks_followed", &ProblemResult::tracks_followed, {.may_be_missing = true}},
+    Field{"guide", &ProblemResult::guide, {.may_be_missing = true}}};
 
 constexpr std::tuple kReasons{
     Field{"found_by", &ProblemResult::found_by, {.may_be_missing = true}},

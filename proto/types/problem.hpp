@@ -10,6 +10,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/scene.hpp"
 #include "proto/types/task_space_region.hpp"
 
@@ -46,6 +47,7 @@ struct ProblemResult {
   SamplingMode sampling_mode =
       SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform by wish
   double share = 0;                       ///< of guided samples; 0 unless Guided
+  Guide guide = Guide::None;              ///< that a guided query had
   double track_share = 0;                 ///< of samples around tracks; a part of share
   std::uint64_t experience_revision = 0;  ///< of the stored ways that tracks come from; 0: none
   std::uint64_t tracks_followed = 0;

@@ -30,6 +30,18 @@ ExperienceGuide::ExperienceGuide(const kinematics::Chain& chain, TaskExperience 
       throw std::invalid_argument("ExperienceGuide: a path has less than two poses");
 }
 
+std::vector<std::size_t> ExperienceGuide::nearest(const PoseQuery& query, std::size_t count,
+                                                  const std::optional<Uuid>& without) const {
+  if (count == 0)
+    return {};
+  std::vector<std::size_t> paths =
+      nearest_paths(experience_.paths, query, without ? count + 1 : count);
+  std::erase_if(paths, [&](std::size_t path) { return experience_.paths[path].path == without; });
+  if (paths.size() > count)
+    paths.pop_back();
+  return paths;
+}
+
 std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& query,
                                                              const TrackOptions& options) const {
   const Eigen::VectorXd distances = (query.goals.colwise() - query.start).colwise().norm();
@@ -44,15 +56,16 @@ std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& q
   for (const Eigen::Index goal : goals) {
     posed.T_task_goal =
         query.T_task_base * kinematics::T_base_transfer(chain_, query.goals.col(goal));
-    paths.push_back(nearest_paths(experience_.paths, posed, options.paths));
+    paths.push_back(nearest(posed, options.paths, query.without));
   }
   std::vector<Choice> choices;
   if (options.retreat_m)
     for (const Eigen::Index goal : goals)
       choices.push_back({goal, std::nullopt});
-  for (std::size_t rank = 0; rank < std::min(options.paths, experience_.paths.size()); ++rank)
+  for (std::size_t rank = 0; rank < options.paths; ++rank)
     for (std::size_t i = 0; i < goals.size(); ++i)
-      choices.push_back({goals[i], paths[i][rank]});
+      if (rank < paths[i].size())
+        choices.push_back({goals[i], paths[i][rank]});
   choices.resize(std::min(choices.size(), options.tracks));
   return choices;
 }

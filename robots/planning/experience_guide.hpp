@@ -8,6 +8,7 @@
 #include "proto/types/task_experience.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/moved_path.hpp"
 #include "robots/planning/track_lanes.hpp"
 
 namespace kinship::planning {
@@ -32,6 +33,8 @@ struct TrackQuery {
   Eigen::Matrix2Xd bounds;  ///< 2 x dof: configurations outside are left out (planning_bounds)
   Eigen::VectorXd start;    ///< dof
   Eigen::MatrixXd goals;    ///< dof x n
+  /// A stored path that is not followed: the one that answered this query, if it is planned again.
+  std::optional<Uuid> without = {};
 };
 
 /// What a task's experience says about a query of one robot: the stored ways of the hand that are
@@ -60,6 +63,9 @@ class ExperienceGuide {
   const TaskExperience& experience() const noexcept { return experience_; }
 
  private:
+  std::vector<std::size_t> nearest(const PoseQuery& query, std::size_t count,
+                                   const std::optional<Uuid>& without) const;
+
   kinematics::Chain chain_;
   inverse::Solver solver_;
   TaskExperience experience_;

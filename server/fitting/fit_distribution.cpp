@@ -97,8 +97,10 @@ class Fit {
       : key_(key),
         context_(context),
         target_(context.robots.find(key.robot).value_or_throw()),
-        transfer_(context.store, context.robots, key, *target_, known_of(context.before),
-                  context.fit_threads) {}
+        transfer_(context.store, context.robots, key, *target_,
+                  {.known = known_of(context.before),
+                   .threads = context.fit_threads,
+                   .leaves_out = context.leaves_out}) {}
 
   FitOutcome run(const std::stop_token& stop);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -26,6 +27,9 @@ struct FitContext {
   /// What the last fit of the same distribution left: its paths are not transferred again, and the
   /// mixture may start from its mixture (warm_refit.hpp). Null: everything is made anew.
   FitMemory::State before = nullptr;
+  /// Paths that are not used, by the report that brought them; empty: all are. What is left out is
+  /// not told: such a distribution is for comparisons.
+  std::function<bool(const Uuid& report)> leaves_out = {};
 };
 
 /// A distribution is thin if fewer of its sources' poses were solved, each source counted by its

@@ -58,12 +58,13 @@ Source source_of(const store::ExperienceSummary& experience) {
 
 SourceTransfer::SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
                                const DistributionKey& key, const runtime::Robot& target,
-                               const KnownPaths* known, int threads)
+                               const Options& options)
     : store_(store),
       robots_(robots),
       key_(key),
       target_(target),
-      transfer_(store, key, target, known, threads),
+      leaves_out_(options.leaves_out),
+      transfer_(store, key, target, options.known, options.threads),
       pool_(target.chain.dof()) {}
 
 std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience) const {
@@ -102,8 +103,9 @@ void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted
   std::uint64_t index = 0;
   if (count > 0)
     visit_pages(store_, robot.digest, key_, [&](std::vector<store::StoredPath> page) {
-      std::erase_if(page, [&](const store::StoredPath&) {
-        const bool is_wanted = index < count && is_chosen(index, count, wanted);
+      std::erase_if(page, [&](const store::StoredPath& stored) {
+        const bool is_wanted = index < count && is_chosen(index, count, wanted) &&
+                               !(leaves_out_ && leaves_out_(stored.report_uuid));
         ++index;
         return !is_wanted;
       });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -33,13 +34,20 @@ Source source_of(const store::ExperienceSummary& experience);
 /// Reads the paths of source robots and transfers them into a pool of the target's configurations.
 class SourceTransfer {
  public:
+  struct Options {
+    /// Of an earlier fit of the same key: taken over where the store still has them. Outlives the
+    /// transfer, may be null.
+    const KnownPaths* known = nullptr;
+    int threads = 1;  ///< that transfer; what comes out does not depend on them
+    std::function<bool(const Uuid& report)> leaves_out = {};  ///< see FitContext
+  };
+
   /// \param robots, store, key, target  outlive it.
-  /// \param known    of an earlier fit of the same key: taken over where the store still has them.
-  ///                 Outlives it, may be null.
-  /// \param threads  that transfer; what comes out does not depend on them.
   SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
-                 const DistributionKey& key, const runtime::Robot& target,
-                 const KnownPaths* known = nullptr, int threads = 1);
+                 const DistributionKey& key, const runtime::Robot& target)
+      : SourceTransfer(store, robots, key, target, Options{}) {}
+  SourceTransfer(const store::Store& store, runtime::RobotRegistry& robots,
+                 const DistributionKey& key, const runtime::Robot& target, const Options& options);
 
   /// How many paths of the source the key wants.
   std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
@@ -67,6 +75,7 @@ class SourceTransfer {
   runtime::RobotRegistry& robots_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
+  const std::function<bool(const Uuid& report)> leaves_out_;
   PathTransfer transfer_;
   PooledConfigurations pool_;
   KnownPaths used_;

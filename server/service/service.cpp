@@ -6,6 +6,7 @@
 
 #include "proto/types/profile_text.hpp"
 #include "server/catalog/experience_reply.hpp"
+#include "server/rehearsal/rehearsal_reply.hpp"
 #include "server/service/publish_events.hpp"
 
 namespace kinship::service {
@@ -45,12 +46,14 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
                 .niceness = options_.fit_niceness}),
       catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock},
                catalog_options(options_)),
+      rehearsals_({*store_, robots_, options_.clock, experience_}, rehearsal_options()),
       ingest_(
           *store_, robots_, short_task_pool_,
           {.max_attempts = options_.max_queued_attempts,
            .on_new_experience =
                [this](std::string_view task) {
                  experience_.new_experience(task);
+                 rehearsals_.new_experience(task);
                  catalog_.new_experience(task);
                },
            .on_answer = [this](std::span<const catalog::AttemptCost> costs,
@@ -82,6 +85,14 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
   return catalog;
 }
 
+rehearsal::RehearsalBookOptions Service::rehearsal_options() const {
+  rehearsal::RehearsalBookOptions options;
+  options.processor_fraction = options_.rehearsal_fraction;
+  options.wake = options_.wake;
+  options.log = options_.log;
+  return options;
+}
+
 Jobs::Options Service::job_options(const ServiceOptions& options) {
   return {.limits = options.jobs,
           .niceness = options.fit_niceness,
@@ -106,6 +117,7 @@ Administration::Parts Service::administration_parts() {
           .forget_task =
               [this](const std::string& task) {
                 experience_.forget(task);
+                rehearsals_.forget(task);
                 catalog_.forget(task);
               },
           .on_change =
@@ -163,7 +175,9 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
   if (request.experience_bytes > 0)
-    done = catalog::with_experience(experience_, request, std::move(done));
+    done =
+        rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
+                                  catalog::with_experience(experience_, request, std::move(done)));
   if (!options_.on_event)
     return catalog_.fetch(request, waiter, std::move(done));
   catalog_.fetch(request, waiter,
@@ -193,12 +207,16 @@ void Service::administer(AdminRequest request, const std::string& request_key,
 
 std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {
   const std::optional<catalog::Catalog::TimePoint> fetch = catalog_.next_deadline();
-  const std::optional<catalog::Catalog::TimePoint> job = jobs_.next_deadline();
-  return fetch && job ? std::min(fetch, job) : fetch ? fetch : job;
+  std::optional<catalog::Catalog::TimePoint> next = fetch;
+  for (const auto& other : {jobs_.next_deadline(), rehearsals_.next_deadline()})
+    if (other && (!next || *other < *next))
+      next = other;
+  return next;
 }
 
 void Service::expire(catalog::Catalog::TimePoint now) {
   catalog_.expire(now);
+  rehearsals_.expire(now);
   jobs_.expire(now);
 }
 
@@ -260,6 +278,7 @@ void Service::log_fit(const Distribution& distribution) const {
 
 void Service::shutdown() {
   catalog_.stop();
+  rehearsals_.stop();
   jobs_.stop();
   short_task_pool_.stop(runtime::WorkerPool::Leftovers::Run);
   fitters_.stop(runtime::WorkerPool::Leftovers::Abandon);

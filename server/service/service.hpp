@@ -13,6 +13,7 @@
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
 #include "server/catalog/experience_book.hpp"
+#include "server/rehearsal/rehearsal_book.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
@@ -29,6 +30,7 @@ struct ServiceOptions {
   std::size_t fit_threads = 1;
   std::size_t fit_queue = 256;          ///< fits that wait; more are answered Busy
   int fit_niceness = 10;                ///< so that planners on the same machine come first
+  double rehearsal_fraction = 0.1;      ///< see RehearsalBookOptions::processor_fraction
   std::size_t short_task_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
   std::size_t max_queued_attempts = 4096;
   catalog::DistributionCache::Limits memory;
@@ -82,6 +84,7 @@ class Service {
 
  private:
   catalog::Catalog::Options catalog_options(const ServiceOptions& options);
+  rehearsal::RehearsalBookOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
   Administration::Parts administration_parts();
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
@@ -100,6 +103,7 @@ class Service {
   catalog::AdviceBook advice_;
   runtime::WorkerPool fitters_;
   catalog::Catalog catalog_;
+  rehearsal::RehearsalBook rehearsals_;
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;

@@ -1,5 +1,7 @@
 #include "server/transfer/scene_filter.hpp"
 
+#include <set>
+
 #include "robots/collision/always_touching.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "server/transfer/collision_filter.hpp"
@@ -31,7 +33,28 @@ collision::Surroundings surroundings_of(const kinematics::Chain& robot, const Re
   return surroundings;
 }
 
+/// \param body  of which no two links are looked at together.
+std::set<std::pair<std::string, std::string>> touching_everywhere(
+    const kinematics::Chain& robot, const geometry::RobotShapes& body,
+    const collision::Surroundings& surroundings) {
+  collision::CollisionWorld world(robot, body, surroundings);
+  return collision::always_touching(robot, kSamples, kAlways, [&world](const Eigen::VectorXd& q) {
+    return world.find_contacts(q);
+  });
+}
+
 }  // namespace
+
+collision::Surroundings recorded_surroundings(const kinematics::Chain& robot,
+                                              const geometry::RobotShapes& shapes,
+                                              const RecordedScene& scene,
+                                              const Eigen::Isometry3d& T_task_base) {
+  collision::Surroundings surroundings = surroundings_of(robot, scene, T_task_base);
+  for (const auto& names : touching_everywhere(
+           robot, without_self_collision(shapes, robot.links().size()), surroundings))
+    surroundings.allowed_collisions.push_back(names);
+  return surroundings;
+}
 
 SceneFilter scene_filter(const kinematics::Chain& robot, const geometry::RobotShapes& shapes,
                          const RecordedScene& scene, const Eigen::Isometry3d& T_task_base) {
@@ -40,10 +63,7 @@ SceneFilter scene_filter(const kinematics::Chain& robot, const geometry::RobotSh
     return filter;
   const geometry::RobotShapes body = without_self_collision(shapes, robot.links().size());
   collision::Surroundings surroundings = surroundings_of(robot, scene, T_task_base);
-  collision::CollisionWorld world(robot, body, surroundings);
-  for (const auto& names : collision::always_touching(
-           robot, kSamples, kAlways,
-           [&world](const Eigen::VectorXd& q) { return world.find_contacts(q); })) {
+  for (const auto& names : touching_everywhere(robot, body, surroundings)) {
     filter.always_touching.push_back(names);
     surroundings.allowed_collisions.push_back(names);
   }

@@ -6,11 +6,21 @@
 #include <vector>
 
 #include "proto/types/recorded_scene.hpp"
+#include "robots/collision/collision_world.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "server/transfer/filters.hpp"
 
 namespace kinship::transfer {
+
+/// What surrounds a robot that stands among recorded objects and holds in its transfer frame what
+/// was held. Pairs that touch in at least 38 of 40 random configurations within the limits may
+/// touch, as a base and the table below it (seeded: equal input, equal answers). \param scene keeps
+/// the rules of check_scene().
+collision::Surroundings recorded_surroundings(const kinematics::Chain& robot,
+                                              const geometry::RobotShapes& shapes,
+                                              const RecordedScene& scene,
+                                              const Eigen::Isometry3d& T_task_base);
 
 /// A filter made of a recorded scene for one robot.
 struct SceneFilter {

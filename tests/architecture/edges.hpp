@@ -53,6 +53,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string runtime = "server/runtime";
   const std::string fitting = "server/fitting";
   const std::string catalog = "server/catalog";
+  const std::string rehearsal = "server/rehearsal";
   const std::string service = "server/service";
   const std::string files = "client/files";
   const std::string arguments = "client/arguments";
@@ -85,7 +86,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},
       {fitting, {{runtime, store, transfer, density, inverse, kinematics, types}, {"Eigen"}}},
       {catalog, {{fitting, runtime, store, evidence, types}, {"Eigen"}}},
-      {service, {{catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
+      {rehearsal,
+       {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
+        {"Eigen"}}},
+      {service,
+       {{rehearsal, catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
       {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

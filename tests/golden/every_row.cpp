@@ -238,6 +238,7 @@ ProblemResult every_problem_result() {
   result.track_share = 0.25;
   result.experience_revision = 12;
   result.tracks_followed = 3;
+  result.guide = Guide::RetreatWays;
   result.found_by = FoundBy::Track;
   result.reason = next.text("reason");
   result.planner = next.text("planner");

@@ -171,7 +171,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
 
   Counts guided, control;
   for (const ProblemResult& result :
-       plan({"--guidance", "require", "--tracks", "no", "--control-share", "0.5"})) {
+       plan({"--guidance", "require", "--guide", "mixture", "--control-share", "0.5"})) {
     ASSERT_TRUE(result.sampling_mode == SamplingMode::Guided ||
                 result.sampling_mode == SamplingMode::Control);
     EXPECT_EQ(result.share, result.sampling_mode == SamplingMode::Guided ? 0.9 : 0);
@@ -192,7 +192,7 @@ TEST_F(Advised, MisleadingGuidanceLosesItsShareToTheControls) {
   EXPECT_LT(advice.recommended_share, 0.1) << advice.evidence;
 
   Counts still_guided;
-  for (const ProblemResult& result : plan({"--tracks", "no"}))
+  for (const ProblemResult& result : plan({"--guide", "mixture"}))
     if (result.sampling_mode == SamplingMode::Guided)
       still_guided.add(result);
   EXPECT_LT(still_guided.attempts, kProblems / 2) << "each machine goes on from what all know";
@@ -209,7 +209,7 @@ TEST_F(Advised, FarGuidanceIsPlannedUniformlyAndJudgedAsGuided) {
   std::size_t guided = 0;
   std::vector<std::uint64_t> checks;
   for (const ProblemResult& result :
-       plan({"--guidance", "require", "--tracks", "no", "--control-share", "0"})) {
+       plan({"--guidance", "require", "--guide", "mixture", "--control-share", "0"})) {
     guided += result.sampling_mode == SamplingMode::Guided ? 1 : 0;
     EXPECT_TRUE(result.gate_fired);
     EXPECT_EQ(result.share, 0);

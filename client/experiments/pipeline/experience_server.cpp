@@ -57,6 +57,7 @@ Fetched ExperienceServer::fetch(const DistributionWish& wish) {
   std::ranges::sort(request.selection.sources);
   request.deadline = 60s;
   request.experience_bytes = kDefaultExperienceBytes;
+  request.rehearsed = wish.rehearsed;
   while (true) {
     FetchReply reply = client_.fetch(request).value_or_throw();
     if (reply.status == FetchStatus::Pending || reply.status == FetchStatus::Busy)
@@ -64,7 +65,10 @@ Fetched ExperienceServer::fetch(const DistributionWish& wish) {
     if (!reply.distribution)
       throw Failure(ErrorCode::NotFound, "no distribution of task '" + wish.task + "' for robot '" +
                                              target.label() + "': " + reply.message);
-    return {*std::move(reply.distribution), std::move(reply.experience).value_or(TaskExperience{})};
+    if (wish.rehearsed && !(reply.rehearsal && reply.rehearsal->is_complete))
+      continue;
+    return {*std::move(reply.distribution), std::move(reply.experience).value_or(TaskExperience{}),
+            std::move(reply.rehearsal)};
   }
 }
 

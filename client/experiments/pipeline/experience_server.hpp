@@ -10,6 +10,7 @@
 #include "client/link/client.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/task_experience.hpp"
 
 namespace kinship::experiments {
@@ -20,12 +21,14 @@ struct DistributionWish {
   std::size_t target = 0;            ///< index into the fleet
   std::vector<std::size_t> sources;  ///< indices into the fleet
   std::string profile = "default";
+  bool rehearsed = true;  ///< wait for the server's rehearsal
 };
 
 /// What came of a wish.
 struct Fetched {
   Distribution distribution;  ///< Failed ones have the reason and no mixture
   TaskExperience experience;  ///< of the same sources, as any client gets it
+  std::optional<Rehearsal> rehearsal;
 };
 
 /// A kinshipd that this program started, and the line to it.

@@ -29,6 +29,8 @@ std::string to_json(const QueryResult& result) {
     line["track_share"] = *result.track_share;
   if (result.found_by)
     line["found_by"] = to_text(*result.found_by);
+  if (result.guide)
+    line["guide"] = to_text(*result.guide);
   return line.dump();
 }
 
@@ -54,6 +56,8 @@ Result<QueryResult> query_result_from_json(std::string_view text) {
     if (line.contains("found_by"))
       result.found_by =
           parse_word<FoundBy>(line.at("found_by").get<std::string>()).value_or_throw();
+    if (line.contains("guide"))
+      result.guide = parse_word<Guide>(line.at("guide").get<std::string>()).value_or_throw();
     return result;
   } catch (const nlohmann::json::exception& exception) {
     return Error{ErrorCode::InvalidInput, exception.what()};

@@ -8,6 +8,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/result.hpp"
 
 namespace kinship::experiments {
@@ -40,6 +41,7 @@ struct QueryResult {
   /// Of samples: how many were drawn around tracks. Missing in rows that are older than it.
   std::optional<double> track_share = std::nullopt;
   std::optional<FoundBy> found_by = std::nullopt;  ///< missing likewise
+  std::optional<Guide> guide = std::nullopt;       ///< of a guided one; missing likewise
 };
 
 /// One line of JSON.

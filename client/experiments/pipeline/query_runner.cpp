@@ -28,7 +28,8 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
           .gate_fired = result.gate_fired,
           .guided_share = result.share,
           .track_share = result.track_share,
-          .found_by = result.found_by};
+          .found_by = result.found_by,
+          .guide = cell.guidance ? std::optional(result.guide) : std::nullopt};
 }
 
 /// All queries of one robot and instance.
@@ -53,28 +54,21 @@ void answer_instance(const StudyMember& member, const std::vector<const Cell*>& 
 
 }  // namespace
 
-bool guide_by(Guide guide, const StudyMember& member, const Fetched& fetched, double share,
-              Cell& cell) {
-  const bool needs_mixture = guide == Guide::All || guide == Guide::Mixture;
-  const bool needs_ways = guide == Guide::All || guide == Guide::Tracks;
-  if ((needs_mixture && !fetched.distribution.mixture) ||
-      (needs_ways && fetched.experience.paths.empty()))
+bool guide_by(std::optional<Guide> guide, const StudyMember& member, const Fetched& fetched,
+              double share, Cell& cell) {
+  if (!guide)
+    guide = fetched.rehearsal ? fetched.rehearsal->guide : Guide::All;
+  if ((has_mixture(*guide) && !fetched.distribution.mixture) ||
+      (has_ways(*guide) && fetched.experience.paths.empty()))
     return false;
   planner::Guidance& guidance = cell.guidance.emplace();
+  guidance.guide = *guide;
   guidance.guided_fraction = share;
   guidance.distribution_id = fetched.distribution.id;
   guidance.revision = fetched.distribution.revision;
-  if (needs_mixture)
-    guidance.mixture = fetched.distribution.mixture;
-  if (guide == Guide::Mixture)
-    return true;
+  guidance.mixture = fetched.distribution.mixture;
   guidance.experience = std::make_shared<planning::ExperienceGuide>(
-      member.robot.chain, needs_ways ? fetched.experience : TaskExperience{});
-  planning::TrackOptions& tracks = cell.settings.tracks;
-  if (guide == Guide::Tracks)
-    tracks.retreat_m = std::nullopt;
-  if (guide == Guide::Straight)
-    tracks.retreat_m = 0;
+      member.robot.chain, has_ways(*guide) ? fetched.experience : TaskExperience{});
   return true;
 }
 

@@ -19,21 +19,13 @@ struct Cell {
   std::optional<planner::Guidance> guidance;  ///< missing: uniform
 };
 
-/// What guides the queries of a cell.
-enum class Guide {
-  All,       ///< as `kinship-plan --guidance always` has it: tracks, and the mixture beside them
-  Mixture,   ///< samples of the distribution alone, as the paper has it: `--tracks no`
-  Tracks,    ///< stored ways of the hand alone, without the retreat that needs none
-  Straight,  ///< no experience: the hand goes straight to its goal
-  Retreat    ///< no experience: the hand comes along its palm
-};
-
 /// Sets what a cell is guided by.
+/// \param guide  missing: what the server found by rehearsal, as `kinship-plan --rehearsed` has it.
 /// \param share  of guided samples; 0 to 1.
 /// \return       whether there is what the guide needs: without a mixture, or without a stored way,
 ///               a cell cannot be.
-bool guide_by(Guide guide, const StudyMember& member, const Fetched& fetched, double share,
-              Cell& cell);
+bool guide_by(std::optional<Guide> guide, const StudyMember& member, const Fetched& fetched,
+              double share, Cell& cell);
 
 /// Which instances are planned, and how often.
 struct QueryPlan {

@@ -42,7 +42,7 @@ SideStudy pooled(const Study& study) {
     side.cells.push_back(
         {cell_name(kAll, "pooled"), all, study.settings.overshoot, study.guided_share});
     for (WishedCell& cell : side.cells)
-      cell.guide = Guide::All;
+      cell.guide.reset();
   }
   return side;
 }
@@ -85,7 +85,7 @@ SideStudy sizes(const Study& study) {
     std::vector<WishedCell> cells =
         cells_of_pairs(study, std::to_string(count) + " instances", "default", task);
     for (WishedCell& cell : cells)
-      cell.guide = Guide::All;
+      cell.guide.reset();
     append(std::move(cells), side.cells);
   }
   return side;
@@ -124,20 +124,23 @@ SideStudy guides(const Study& study) {
                  {},
                  {}};
   for (const auto& [guide, variant] :
-       {std::pair{Guide::Mixture, "mixture"}, std::pair{Guide::Tracks, "stored ways"}}) {
+       {std::pair{Guide::Mixture, "mixture"}, std::pair{Guide::Ways, "stored ways"}}) {
     std::vector<WishedCell> cells = cells_of_pairs(study, variant, "default", study.name);
     for (WishedCell& cell : cells)
       cell.guide = guide;
     append(std::move(cells), side.cells);
   }
-  for (const auto& [guide, variant] : {std::pair{Guide::Straight, "straight way of the hand"},
-                                       std::pair{Guide::Retreat, "retreat"}})
+  const std::optional<double> as_planners_have_it;
+  for (const auto& [retreat_m, variant] :
+       {std::pair{std::optional(0.0), "straight way of the hand"},
+        std::pair{as_planners_have_it, "retreat"}})
     for (std::size_t robot = 0; robot < study.robots.size(); ++robot) {
       WishedCell cell{cell_name(kNobody, variant),
                       {study.name, robot, {robot}, "default"},
                       study.settings.overshoot,
                       study.guided_share};
-      cell.guide = guide;
+      cell.guide = Guide::Retreat;
+      cell.retreat_m = retreat_m;
       side.cells.push_back(std::move(cell));
     }
   return side;

@@ -18,7 +18,8 @@ struct WishedCell {
   double overshoot = 1;
   double share = 1;  ///< of guided samples
   planner::PlannerKind planner = planner::PlannerKind::ByProblem;
-  Guide guide = Guide::Mixture;
+  std::optional<Guide> guide = Guide::Mixture;  ///< missing: what the server found by rehearsal
+  std::optional<double> retreat_m = {};         ///< missing: as planners have it
 };
 
 /// Further cells over the test instances: what the main tables do not tell.

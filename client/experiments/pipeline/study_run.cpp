@@ -17,6 +17,7 @@
 #include "client/files/output_file.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
+#include "proto/types/enum_text.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::experiments {
@@ -39,7 +40,7 @@ std::vector<Cell> uniform_cells(std::size_t robot, const planner::PlanSettings& 
   return cells;
 }
 
-std::optional<Cell> guided_cell(const StudyMember& member, Guide guide, Cell cell,
+std::optional<Cell> guided_cell(const StudyMember& member, std::optional<Guide> guide, Cell cell,
                                 const Fetched& fetched, double share) {
   cell.settings.shortcut_checks = 0;
   if (!guide_by(guide, member, fetched, share, cell))
@@ -57,13 +58,20 @@ std::vector<Cell> main_cells(const Study& study, StudySession& session,
     for (std::size_t source = 0; source < session.fleet().size(); ++source) {
       const Fetched fetched = session.fetch({study.name, target, {source}, "default"});
       distributions << json::to_json(fetched.distribution) << '\n';
-      if (auto cell = guided_cell(session.fleet()[target], Guide::All,
+      if (auto cell = guided_cell(session.fleet()[target], std::nullopt,
                                   {target, session.fleet()[source].label(), study.settings, {}},
                                   fetched, study.guided_share))
         cells.push_back(*std::move(cell));
     }
   }
   return cells;
+}
+
+/// Only whose guide is not given waits for a rehearsal.
+DistributionWish rehearsed_if_needed(const WishedCell& wished) {
+  DistributionWish wish = wished.wish;
+  wish.rehearsed = !wished.guide.has_value();
+  return wish;
 }
 
 /// The cells of a side study, and uniform ones, so that both had the same load; a server is started
@@ -81,12 +89,14 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
     planner::PlanSettings settings = study.settings;
     settings.overshoot = wished.overshoot;
     settings.planner.kind = wished.planner;
+    if (wished.retreat_m)
+      settings.tracks.retreat_m = wished.retreat_m;
     if (is_uniform(wished)) {
       cells.push_back(uniform_cell(wished.wish.target, settings, wished.overshoot));
       cells.back().name = wished.name;
     } else if (auto cell = guided_cell(session.fleet()[wished.wish.target], wished.guide,
                                        {wished.wish.target, wished.name, settings, {}},
-                                       session.fetch(wished.wish), wished.share)) {
+                                       session.fetch(rehearsed_if_needed(wished)), wished.share)) {
       cells.push_back(*std::move(cell));
     }
   }
@@ -176,7 +186,8 @@ std::string tuning_name(const std::string& source, const TuningOptions& tuning, 
                         const Distribution& distribution) {
   return source + " " + tuning.profile + " " + distribution.id.short_hex() + " r" +
          std::to_string(distribution.revision) + " f" +
-         formatted("%g s%g g%d", overshoot, tuning.share, static_cast<int>(tuning.guide));
+         formatted("%g s%g ", overshoot, tuning.share) +
+         (tuning.guide ? std::string(to_text(*tuning.guide)) : "rehearsed");
 }
 
 }  // namespace
@@ -263,7 +274,8 @@ void tune_study(const Study& study, const RunOptions& options, const TuningOptio
     for (Cell& cell : uniform_cells(target, settings))
       cells.push_back(std::move(cell));
     for (const NamedSources& sources : chosen_sources(session.fleet(), tuning.sources, target)) {
-      const Fetched fetched = session.fetch({study.name, target, sources.robots, tuning.profile});
+      const Fetched fetched = session.fetch(
+          {study.name, target, sources.robots, tuning.profile, !tuning.guide.has_value()});
       const std::string name =
           tuning_name(sources.name, tuning, settings.overshoot, fetched.distribution);
       if (auto cell = guided_cell(session.fleet()[target], tuning.guide,

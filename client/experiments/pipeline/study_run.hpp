@@ -31,8 +31,8 @@ struct RunOptions {
 struct TuningOptions {
   std::string profile = "default";
   std::optional<double> overshoot;
-  double share = 1;  ///< of guided samples; the rest is uniform
-  Guide guide = Guide::All;
+  double share = 1;            ///< of guided samples; the rest is uniform
+  std::optional<Guide> guide;  ///< missing: what the server found by rehearsal
   std::uint32_t instances = 30;
   std::uint32_t seeds = 2;
   std::vector<std::string> targets, sources;  ///< labels; empty: all. A source may be kOtherRobots

@@ -197,6 +197,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   result.track_share = 0.25;
   result.experience_revision = 12;
   result.tracks_followed = 3;
+  result.guide = Guide::RetreatWays;
   result.found_by = FoundBy::Track;
   result.gate_fired = true;
   result.goal_checks = 20;
@@ -213,6 +214,7 @@ TEST(ProblemJson, GuidedResultIsReadBack) {
   EXPECT_EQ(back->track_share, 0.25);
   EXPECT_EQ(back->experience_revision, 12U);
   EXPECT_EQ(back->tracks_followed, 3U);
+  EXPECT_EQ(back->guide, Guide::RetreatWays);
   EXPECT_EQ(back->found_by, FoundBy::Track);
   EXPECT_TRUE(back->gate_fired);
   EXPECT_EQ(back->goal_checks, 20U);
@@ -226,9 +228,10 @@ TEST(ProblemJson, AControlResultTellsTheGuidanceItDidNotUse) {
   result.distribution_id = Digest{};
   result.sampling_mode = SamplingMode::Control;
   const std::string text = to_json(result);
-  EXPECT_NE(text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false,)"
-                      R"("track_share":0.0,"experience_revision":0,"tracks_followed":0})"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find(R"("revision":0,"share":0.0,"arm":"control","gate_fired":false,)"
+                R"("track_share":0.0,"experience_revision":0,"tracks_followed":0,"guide":"none"})"),
+      std::string::npos)
       << text;
   EXPECT_EQ(problem_result_from_json(text)->sampling_mode, SamplingMode::Control);
   const std::string broken = std::string(text).replace(text.find("control"), 7, "placebo");

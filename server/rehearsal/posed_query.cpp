@@ -1,0 +1,59 @@
+#include "server/rehearsal/posed_query.hpp"
+
+#include <utility>
+
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "server/transfer/scene_filter.hpp"
+
+namespace kinship::rehearsal {
+namespace {
+
+/// Of the configurations with the hand at the recorded start.
+std::optional<Eigen::VectorXd> find_start(const runtime::Robot& robot,
+                                          const Eigen::Isometry3d& T_base_start,
+                                          const planning::IsFree& is_free) {
+  const Eigen::VectorXd middle = (robot.chain.lower() + robot.chain.upper()) / 2;
+  const planning::GoalConfigurations found = planning::goal_configurations(
+      robot.chain, T_base_start, planning::planning_bounds(robot.chain, middle), is_free);
+  if (found.configurations.cols() == 0)
+    return std::nullopt;
+  Eigen::Index nearest = 0;
+  (found.configurations.colwise() - middle).colwise().norm().minCoeff(&nearest);
+  return found.configurations.col(nearest);
+}
+
+}  // namespace
+
+std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
+                                     const Eigen::Isometry3d& T_task_base,
+                                     const RecordedQuery& recorded) {
+  PosedQuery posed;
+  posed.world = std::make_unique<collision::CollisionWorld>(
+      robot.chain, robot.shapes,
+      recorded.scene
+          ? transfer::recorded_surroundings(robot.chain, robot.shapes, *recorded.scene, T_task_base)
+          : collision::Surroundings{T_task_base, {}, {}, {}});
+  const Eigen::Isometry3d T_base_task = T_task_base.inverse();
+  const std::optional<TaskSpaceRegion> region =
+      recorded.scene ? recorded.scene->constraint : std::nullopt;
+  const planning::IsFree is_free = [&posed](const Eigen::VectorXd& q) {
+    return !posed.world->collides(q);
+  };
+  const std::optional<Eigen::VectorXd> start =
+      recorded.start ? recorded.start
+                     : find_start(robot, T_base_task * recorded.T_task_start, is_free);
+  if (!start || !is_free(*start))
+    return std::nullopt;
+  const Eigen::Matrix2Xd bounds = planning::planning_bounds(robot.chain, *start);
+  if (region)
+    posed.constraint.emplace(robot.chain, *region, T_task_base, bounds);
+  planning::GoalConfigurations goals = planning::goal_configurations(
+      robot.chain, T_base_task * recorded.T_task_goal, bounds, is_free);
+  if (goals.configurations.cols() == 0)
+    return std::nullopt;
+  posed.query = {T_task_base, bounds, *start, std::move(goals.configurations), recorded.path};
+  return posed;
+}
+
+}  // namespace kinship::rehearsal

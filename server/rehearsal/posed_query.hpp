@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "robots/collision/collision_world.hpp"
+#include "robots/planning/experience_guide.hpp"
+#include "robots/planning/region_constraint.hpp"
+#include "server/rehearsal/recorded_query.hpp"
+#include "server/runtime/robot_registry.hpp"
+
+namespace kinship::rehearsal {
+
+/// A recorded query as one robot has to answer it where it stands.
+struct PosedQuery {
+  planning::TrackQuery query;  ///< `without` is the path that once answered it
+  std::unique_ptr<collision::CollisionWorld> world;
+  std::optional<planning::RegionConstraint> constraint;
+};
+
+/// Start and goals in the recorded scene. A robot whose own path this is starts as it did; another
+/// one at the free configuration with the hand where it was that is nearest to the middle of its
+/// joints. Goals are all free configurations with the hand where it came, up to 20. What touches
+/// wherever the robot goes, as a base and the table it stands on, may touch.
+/// \param T_task_base  of the robot's base in the task frame.
+/// \return nothing if it has no start or no goal.
+std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
+                                     const Eigen::Isometry3d& T_task_base,
+                                     const RecordedQuery& recorded);
+
+}  // namespace kinship::rehearsal

@@ -1,0 +1,305 @@
+#include "server/rehearsal/rehearsal_book.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <future>
+#include <string>
+
+#include "proto/types/enum_text.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/planning/planning_budget.hpp"
+#include "server/fitting/fit_distribution.hpp"
+#include "server/fitting/selected_experience.hpp"
+
+namespace kinship::rehearsal {
+namespace {
+
+constexpr int kNiceness = 19;
+constexpr std::size_t kMaxQueued = 1024;
+
+std::uint64_t count_selected(const store::Store& store, const fitting::DistributionKey& key) {
+  return fitting::count_paths(fitting::selected_experience(key, store.experience(key.task)));
+}
+
+/// The mixture of the paths that are not in one half; nothing if none can be fitted.
+std::optional<Mixture> fit_without(std::size_t half, const fitting::DistributionKey& key,
+                                   const RehearsalBook::Parts& parts, const std::stop_token& stop) {
+  const fitting::FitOutcome outcome = fitting::fit_distribution(
+      key,
+      {.store = parts.store,
+       .robots = parts.robots,
+       .clock = parts.clock,
+       .leaves_out = [half](const Uuid& report) { return half_of(report) == half; }},
+      stop);
+  return outcome.distribution ? outcome.distribution->mixture : std::nullopt;
+}
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", value);
+  return text;
+}
+
+}  // namespace
+
+RehearsalBook::RehearsalBook(const Parts& parts, RehearsalBookOptions options)
+    : parts_(parts),
+      options_(std::move(options)),
+      pool_({.threads = 1, .queue_limit = kMaxQueued, .niceness = kNiceness}) {}
+
+SharedRehearsal RehearsalBook::ask(const RehearsalKey& key) {
+  const std::lock_guard lock(mutex_);
+  if (is_stopping_ || options_.processor_fraction == 0)
+    return nullptr;
+  const SharedRehearsal known = use(key).known;
+  make_room();
+  return known;
+}
+
+void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, Done done) {
+  SharedRehearsal known;
+  bool waits = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!is_stopping_ && options_.processor_fraction > 0) {
+      Entry& entry = use(key);
+      known = entry.known;
+      waits = entry.is_working && waiters_ < options_.max_waiters;
+      if (waits) {
+        entry.waiters.push_back({deadline, std::move(done)});
+        ++waiters_;
+      }
+      make_room();
+    }
+  }
+  if (!waits)
+    return done(known);
+  urgent_.notify_all();
+  options_.wake();
+}
+
+RehearsalBook::Entry& RehearsalBook::use(const RehearsalKey& key) {
+  const Digest id = identify(key.distribution);
+  Entry& entry = entries_[id];
+  entry.key = key;
+  entry.last_used = ++uses_;
+  const bool is_current = entry.known && !entry.is_lost &&
+                          entry.looked_at == versions_.of(key.distribution.task).changes;
+  if (!is_current && !entry.is_working)
+    entry.is_working = pool_.submit(runtime::WorkerPool::Priority::Background,
+                                    {.run = [this, id] { work(id); }, .abandon = {}});
+  return entry;
+}
+
+std::optional<RehearsalBook::TimePoint> RehearsalBook::next_deadline() const {
+  const std::lock_guard lock(mutex_);
+  std::optional<TimePoint> next;
+  for (const auto& [id, entry] : entries_)
+    for (const Waiter& waiter : entry.waiters)
+      next = next ? std::min(*next, waiter.deadline) : waiter.deadline;
+  return next;
+}
+
+void RehearsalBook::expire(TimePoint now) {
+  WaiterAnswers answers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, entry] : entries_) {
+      const auto late =
+          std::stable_partition(entry.waiters.begin(), entry.waiters.end(),
+                                [&](const Waiter& waiter) { return waiter.deadline > now; });
+      for (auto waiter = late; waiter != entry.waiters.end(); ++waiter)
+        answers.emplace_back(std::move(waiter->done), entry.known);
+      waiters_ -= static_cast<std::size_t>(entry.waiters.end() - late);
+      entry.waiters.erase(late, entry.waiters.end());
+    }
+  }
+  for (const auto& [done, known] : answers)
+    done(known);
+}
+
+void RehearsalBook::new_experience(std::string_view task) {
+  const std::lock_guard lock(mutex_);
+  versions_.grew(task);
+}
+
+void RehearsalBook::forget(std::string_view task) {
+  const std::lock_guard lock(mutex_);
+  versions_.lost(task);
+  for (auto& [id, entry] : entries_)
+    entry.is_lost = entry.is_lost || entry.key.distribution.task == task;
+}
+
+SharedRehearsal RehearsalBook::find(const Digest& distribution) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(distribution);
+  return found == entries_.end() ? nullptr : found->second.known;
+}
+
+RehearsalTotals RehearsalBook::totals() const {
+  const std::lock_guard lock(mutex_);
+  RehearsalTotals totals = totals_;
+  totals.queued = static_cast<std::uint64_t>(
+      std::ranges::count_if(entries_, [](const auto& each) { return each.second.is_working; }));
+  return totals;
+}
+
+void RehearsalBook::work(const Digest& id) {
+  Entry before;
+  std::uint64_t changes = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    Entry& entry = entries_[id];
+    before.key = entry.key;
+    before.known = entry.known;
+    before.paths = entry.paths;
+    before.is_lost = entry.is_lost;
+    entry.is_lost = false;
+    changes = versions_.of(entry.key.distribution.task).changes;
+  }
+  try {
+    if (is_out_of_date(before.key, before))
+      rehearse(id, before.key);
+  } catch (
+      const std::exception& exception) {  // the store cannot be read: who asks next tries again
+    options_.log("rehearsal " + id.short_hex() + ": " + exception.what());
+  }
+  WaiterAnswers answers;
+  {
+    const std::lock_guard lock(mutex_);
+    Entry& entry = entries_[id];
+    entry.looked_at = changes;
+    entry.is_working = false;
+    let_go(entry, answers);
+    make_room();
+  }
+  for (const auto& [done, known] : answers)
+    done(known);
+}
+
+bool RehearsalBook::is_out_of_date(const RehearsalKey& key, const Entry& entry) {
+  constexpr std::uint64_t kLeastGrowth = 10, kPartOfGrowth = 5;
+  if (!entry.known || entry.is_lost)
+    return true;
+  const std::uint64_t now = count_selected(parts_.store, key.distribution);
+  return now >= entry.paths + std::max(kLeastGrowth, entry.paths / kPartOfGrowth);
+}
+
+Result<Subject> RehearsalBook::subject_of(const RehearsalKey& key) {
+  const std::stop_token stop = stop_source_.get_token();
+  Subject subject;
+  const auto robot = parts_.robots.find(key.distribution.robot);
+  if (!robot)
+    return robot.error();
+  subject.robot = *robot;
+  if (subject.robot->shapes.shapes.empty())
+    return Error{ErrorCode::InvalidInput,
+                 "the server knows no shapes of robot '" + subject.robot->label + "'"};
+  subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  subject.recorded =
+      read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
+  std::promise<catalog::SharedChoice> chosen;
+  parts_.experience.ask(
+      {key.distribution.task, key.distribution.sources, key.distribution.since_ms,
+       key.experience_bytes},
+      [&chosen](const catalog::SharedChoice& choice) { chosen.set_value(choice); });
+  const catalog::SharedChoice ways = chosen.get_future().get();
+  subject.experience = std::make_shared<const planning::ExperienceGuide>(
+      subject.robot->chain, ways ? to_experience(*ways) : TaskExperience{});
+  for (std::size_t half = 0; half < kHalves; ++half)
+    subject.mixtures.at(half) = fit_without(half, key.distribution, parts_, stop);
+  return subject;
+}
+
+void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
+  const double begin_s = planning::thread_time_s();
+  const std::uint64_t paths = count_selected(parts_.store, key.distribution);
+  Rehearsal result;
+  result.is_complete = true;
+  if (Result<Subject> subject = subject_of(key)) {
+    Rehearsing rehearsing(*std::move(subject), options_.plan);
+    double rested_s = planning::thread_time_s();
+    std::size_t kept_rounds = 0;
+    while (!stop_source_.stop_requested() && rehearsing.step()) {
+      const double now_s = planning::thread_time_s();
+      if (rehearsing.rounds() > kept_rounds) {
+        kept_rounds = rehearsing.rounds();
+        result = rehearsing.result();
+        result.processor_time_s = now_s - begin_s;
+        keep(id, result, paths);
+      }
+      rest(id, now_s - rested_s);
+      rested_s = now_s;
+    }
+    if (stop_source_.stop_requested())
+      return;
+    result = rehearsing.result();
+  } else {
+    result.message = "not rehearsed: " + subject.error().message;
+  }
+  result.processor_time_s = planning::thread_time_s() - begin_s;
+  options_.log("rehearsal " + id.short_hex() + " of task '" + key.distribution.task +
+               "': " + std::to_string(result.queries) + " queries, guide " +
+               std::string(to_text(result.guide)) + ", " + seconds(result.processor_time_s) +
+               " of processor time" + (result.message.empty() ? "" : ": " + result.message));
+  keep(id, std::move(result), paths);
+}
+
+void RehearsalBook::keep(const Digest& id, Rehearsal rehearsal, std::uint64_t paths) {
+  auto known = std::make_shared<const Rehearsal>(std::move(rehearsal));
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_[id];
+  entry.paths = paths;
+  if (known->is_complete) {
+    totals_.processor_time_s += known->processor_time_s;
+    ++totals_.done;
+  }
+  entry.known = std::move(known);
+}
+
+/// Leaves the processor to others in proportion to what it took, unless somebody waits.
+void RehearsalBook::rest(const Digest& id, double worked_s) {
+  const double rest_s = worked_s * (1 / options_.processor_fraction - 1);
+  std::unique_lock lock(mutex_);
+  urgent_.wait_for(lock, std::chrono::duration<double>(rest_s),
+                   [&] { return is_stopping_ || !entries_[id].waiters.empty(); });
+}
+
+void RehearsalBook::let_go(Entry& entry, WaiterAnswers& answers) {
+  for (Waiter& waiter : entry.waiters)
+    answers.emplace_back(std::move(waiter.done), entry.known);
+  waiters_ -= entry.waiters.size();
+  entry.waiters.clear();
+}
+
+/// Forgets what was not asked for longest.
+void RehearsalBook::make_room() {
+  while (entries_.size() > options_.max_rehearsals) {
+    auto oldest = entries_.end();
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+      if (!entry->second.is_working &&
+          (oldest == entries_.end() || entry->second.last_used < oldest->second.last_used))
+        oldest = entry;
+    if (oldest == entries_.end())
+      return;
+    entries_.erase(oldest);
+  }
+}
+
+void RehearsalBook::stop() {
+  WaiterAnswers waiting;
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+    for (auto& [id, entry] : entries_)
+      let_go(entry, waiting);
+  }
+  stop_source_.request_stop();
+  urgent_.notify_all();
+  for (const auto& [done, known] : waiting)
+    done(known);
+  pool_.stop(runtime::WorkerPool::Leftovers::Abandon);
+}
+
+}  // namespace kinship::rehearsal

@@ -1,0 +1,144 @@
+#include "server/rehearsal/rehearse.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "proto/types/split_mix.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/cbirrt2.hpp"
+#include "robots/planning/guided_sampler.hpp"
+
+namespace kinship::rehearsal {
+namespace {
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// In the order of what they have to prepare before the first sample: the mixture costs most.
+constexpr std::array<Guide, kMaxGuideCosts> kByEffort = {
+    Guide::None,    Guide::Retreat,        Guide::Ways,        Guide::RetreatWays,
+    Guide::Mixture, Guide::RetreatMixture, Guide::WaysMixture, Guide::All};
+
+/// \param costs  by effort, at least one.
+Guide cheapest(const std::vector<GuideCost>& costs) {
+  constexpr double kAsGood = 1.03;
+  const double least = std::ranges::min(costs, {}, &GuideCost::mean_checks).mean_checks;
+  return std::ranges::find_if(
+             costs, [&](const GuideCost& cost) { return cost.mean_checks <= kAsGood * least; })
+      ->guide;
+}
+
+}  // namespace
+
+std::size_t half_of(const Uuid& path) { return path.bytes.back() % kHalves; }
+
+Rehearsing::Rehearsing(Subject subject, const RehearsalOptions& options)
+    : subject_(std::move(subject)),
+      options_(options),
+      is_usable_(subject_.recorded.queries.size(), true) {
+  const bool are_mixtures = std::ranges::all_of(
+      subject_.mixtures, [](const auto& mixture) { return mixture.has_value(); });
+  const bool are_ways = !subject_.experience->experience().paths.empty();
+  for (const Guide guide : kByEffort)
+    if ((are_mixtures || !has_mixture(guide)) && (are_ways || !has_ways(guide)))
+      guides_.push_back({guide, {}, 0, false});
+}
+
+bool Rehearsing::step() {
+  if (is_done())
+    return false;
+  std::optional<PosedQuery> posed =
+      pose_query(*subject_.robot, subject_.T_task_base, subject_.recorded.queries[next_]);
+  is_usable_[next_] = posed.has_value();
+  const std::uint64_t seed = split_mixed((next_ * options_.rounds + round_ + 1) * kSplitMixStep);
+  for (Tried& tried : guides_)
+    if (posed && !tried.is_left)
+      plan(*posed, seed, tried);
+  ++next_;
+  advance();
+  return true;
+}
+
+bool Rehearsing::is_done() const { return round_ >= options_.rounds || next_ == is_usable_.size(); }
+
+/// To the next query that can be planned, if need be in the next round.
+void Rehearsing::advance() {
+  const auto find = [this](std::size_t from) {
+    return static_cast<std::size_t>(
+        std::find(is_usable_.begin() + static_cast<std::ptrdiff_t>(from), is_usable_.end(), true) -
+        is_usable_.begin());
+  };
+  next_ = find(next_);
+  if (next_ < is_usable_.size())
+    return;
+  end_round();
+  ++round_;
+  next_ = find(0);
+}
+
+void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const {
+  const std::optional<Mixture>& mixture = subject_.mixtures.at(half_of(*posed.query.without));
+  const planning::GuidedSampler guided =
+      planning::guided_sampler(subject_.robot->chain, posed.query, mixture ? &*mixture : nullptr,
+                               subject_.experience, {.guide = tried.guide});
+  const planning::IsFree is_free = [&posed](const Eigen::VectorXd& q) {
+    return !posed.world->collides(q);
+  };
+  planning::BirrtOptions options;
+  options.step = subject_.recorded.steps.step;
+  options.overshoot = subject_.recorded.steps.overshoot;
+  options.max_checks = options_.max_checks;
+  std::mt19937_64 generator(seed);
+  const planning::PlanSummary summary =
+      posed.constraint
+          ? planning::plan_cbirrt2(posed.query.start, posed.query.goals,
+                                   {is_free, *posed.constraint}, guided.sampler, options, generator)
+          : planning::plan_birrt(posed.query.start, posed.query.goals, is_free, guided.sampler,
+                                 options, generator);
+  tried.checks.push_back(static_cast<double>(summary.collision_checks));
+  tried.solved += summary.waypoints ? 1U : 0U;
+}
+
+void Rehearsing::end_round() {
+  constexpr std::size_t kEnough = 20;
+  constexpr double kHopeless = 1.5;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Tried& tried : guides_)
+    if (tried.checks.size() >= kEnough && !tried.is_left)
+      best = std::min(best, mean(tried.checks));
+  for (Tried& tried : guides_)
+    tried.is_left =
+        tried.is_left || (tried.checks.size() >= kEnough && mean(tried.checks) > kHopeless * best);
+}
+
+Rehearsal Rehearsing::result() const {
+  Rehearsal result;
+  result.is_complete = is_done();
+  for (const Tried& tried : guides_)
+    if (!tried.checks.empty())
+      result.costs.push_back({.guide = tried.guide,
+                              .plans = tried.checks.size(),
+                              .solved = tried.solved,
+                              .mean_checks = mean(tried.checks),
+                              .median_checks = median(tried.checks)});
+  result.queries = static_cast<std::uint64_t>(std::ranges::count(is_usable_, true));
+  result.left_out = is_usable_.size() - result.queries;
+  if (result.queries == 0)
+    result.message = "no recorded query can be planned by this robot where it stands";
+  if (round_ > 0 && !result.costs.empty())
+    result.guide = cheapest(result.costs);
+  std::ranges::sort(result.costs, {}, &GuideCost::guide);
+  return result;
+}
+
+}  // namespace kinship::rehearsal

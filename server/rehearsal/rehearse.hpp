@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "proto/types/mixture.hpp"
+#include "proto/types/rehearsal.hpp"
+#include "robots/planning/experience_guide.hpp"
+#include "server/rehearsal/posed_query.hpp"
+#include "server/rehearsal/recorded_query.hpp"
+#include "server/runtime/robot_registry.hpp"
+
+namespace kinship::rehearsal {
+
+/// Paths are halves of a task's experience: a query is planned with the mixture of the other half.
+inline constexpr std::size_t kHalves = 2;
+std::size_t half_of(const Uuid& path);
+
+/// What is rehearsed: one robot, where it stands, with the guidance that it would get.
+struct Subject {
+  std::shared_ptr<const runtime::Robot> robot;
+  Eigen::Isometry3d T_task_base = Eigen::Isometry3d::Identity();
+  RecordedQueries recorded;
+  std::shared_ptr<const planning::ExperienceGuide> experience;  ///< not null
+  /// Fitted without the paths of half 0, and of half 1; missing: nothing could be fitted.
+  std::array<std::optional<Mixture>, kHalves> mixtures = {};
+};
+
+struct RehearsalOptions {
+  std::size_t rounds = 4;  ///< times that each query is planned with each guide, each with a seed
+  std::uint64_t max_checks = 20'000;  ///< of one plan
+};
+
+/// Plans recorded queries with each guide in turn, a query a step, so that who runs it may rest
+/// between steps. A guide that costs half as much again as the best one after a round over at least
+/// 20 queries is left. Equal subject, equal steps: equal costs.
+class Rehearsing {
+ public:
+  explicit Rehearsing(Subject subject, const RehearsalOptions& options = {});
+
+  /// Plans the next query. \return false: there was none.
+  bool step();
+
+  std::size_t rounds() const noexcept { return round_; }  ///< that are over
+
+  /// What is known so far: the guide with the fewest checks in the mean; of those that cost up to
+  /// 3 % more the one that has the least to prepare. All of them until each query was planned once.
+  Rehearsal result() const;
+
+ private:
+  struct Tried {
+    Guide guide;
+    std::vector<double> checks;  // of each plan, in the order of steps
+    std::uint64_t solved = 0;
+    bool is_left = false;
+  };
+
+  void plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const;
+  bool is_done() const;
+  void advance();
+  void end_round();
+
+  const Subject subject_;
+  const RehearsalOptions options_;
+  std::vector<Tried> guides_;
+  std::vector<bool> is_usable_;  // of the queries; all until they were posed once
+  std::size_t next_ = 0, round_ = 0;
+};
+
+}  // namespace kinship::rehearsal
