@@ -54,7 +54,7 @@ class SceneRecorder {
 
   void add(const Problem& problem, Attempt& attempt) {
     const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty();
-    if (!wanted_ || (is_open && problem.attached.empty()))
+    if (!wanted_ || (is_open && problem.attached.empty() && !problem.constraint))
       return;
     Result<RecordedScene> scene = record_scene(chain_, problem);
     if (scene)

@@ -46,6 +46,7 @@ Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem
   for (const auto& [first, second] : problem.allowed_collisions)
     if (names.contains(first) && names.contains(second))
       scene.allowed_collisions.emplace_back(first, second);
+  scene.constraint = problem.constraint;
   if (const auto error = check_scene(scene))
     return *error;
   return scene;

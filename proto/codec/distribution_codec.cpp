@@ -19,38 +19,6 @@ constexpr std::size_t kMaxEnginesBytes = 128;
 
 constexpr const char* kOfSource = " of a source";
 
-/// A list of values with fields as a sequence.
-template <typename Value, typename Sequence>
-void write_list(const std::vector<Value>& values, Arena& arena, Sequence& wire) {
-  arena.resize(wire, values.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    write_fields(values[i], arena, wire._buffer[i]);
-}
-
-template <typename Value, typename Sequence>
-std::vector<Value> read_list(const Sequence& wire, Reader& reader, const std::string& of = "") {
-  std::vector<Value> values;
-  for (const auto& entry : elements(wire))
-    values.push_back(read_fields<Value>(entry, reader, of));
-  return values;
-}
-
-/// What may be missing as a sequence of one or none.
-template <typename Value, typename Sequence>
-void write_optional(const std::optional<Value>& value, Arena& arena, Sequence& wire) {
-  if (value)
-    write_list(std::vector{*value}, arena, wire);
-}
-
-template <typename Value, typename Sequence>
-std::optional<Value> read_optional(const Sequence& wire, Reader& reader,
-                                   const std::string& of = "") {
-  const auto entries = elements(wire);
-  if (entries.empty())
-    return std::nullopt;
-  return read_fields<Value>(entries[0], reader, of);
-}
-
 void check_evidence(std::string_view mode, const std::optional<ModeEvidence>& evidence,
                     Rules& rules) {
   if (!evidence)

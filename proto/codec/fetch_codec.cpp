@@ -5,6 +5,7 @@
 #include "proto/codec/distribution_codec.hpp"
 #include "proto/codec/experience_codec.hpp"
 #include "proto/codec/reader.hpp"
+#include "proto/codec/rehearsal_codec.hpp"
 #include "proto/codec/selection_codec.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/limits.hpp"
@@ -29,6 +30,8 @@ std::optional<Error> check(const FetchReply& reply) {
     rules.name(codec::check(*reply.distribution));
   if (reply.experience)
     rules.name(codec::check(*reply.experience));
+  if (reply.rehearsal)
+    rules.name(codec::check(*reply.rehearsal));
   return rules.broken();
 }
 
@@ -44,7 +47,9 @@ std::optional<Error> check(const FetchRequest& request) {
   rules
       .between("follow (s)", static_cast<double>(request.follow.count()), 0,
                static_cast<double>(kMaxFollow_s))
-      .between("experience_bytes", request.experience_bytes, 0, kMaxExperienceBytes);
+      .between("experience_bytes", request.experience_bytes, 0, kMaxExperienceBytes)
+      .that(!request.rehearsed || request.experience_bytes > 0,
+            "rehearsed: without experience_bytes");
   if (request.T_task_base)
     rules.pose("T_task_base", *request.T_task_base);
   return check_selection(request.selection, rules).broken();
@@ -66,6 +71,7 @@ Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchR
   wire.follow_s = static_cast<std::uint32_t>(request.follow.count());
   wire.experience_bytes = request.experience_bytes;
   wire.known_experience = request.known_experience;
+  wire.rehearsed = request.rehearsed;
   return message;
 }
 
@@ -82,6 +88,7 @@ Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire) {
   request.follow = std::chrono::seconds(wire.follow_s);
   request.experience_bytes = wire.experience_bytes;
   request.known_experience = wire.known_experience;
+  request.rehearsed = wire.rehearsed;
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(request))
@@ -106,6 +113,10 @@ Result<Message<kinship_wire_FetchReply>> encode(const Head& head, const FetchRep
     arena.resize(wire.experience, 1);
     write_experience(*reply.experience, arena, wire.experience._buffer[0]);
   }
+  if (reply.rehearsal) {
+    arena.resize(wire.rehearsal, 1);
+    write_rehearsal(*reply.rehearsal, arena, wire.rehearsal._buffer[0]);
+  }
   return limited(std::move(message));
 }
 
@@ -119,6 +130,8 @@ Result<FetchReply> decode(const kinship_wire_FetchReply& wire) {
     reply.distribution = read_distribution(distribution[0], reader);
   if (const auto experience = elements(wire.experience); !experience.empty())
     reply.experience = read_experience(experience[0], reader);
+  if (const auto rehearsal = elements(wire.rehearsal); !rehearsal.empty())
+    reply.rehearsal = read_rehearsal(rehearsal[0], reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

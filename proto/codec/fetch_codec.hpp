@@ -7,10 +7,12 @@
 
 namespace kinship::codec {
 
-/// The rule of the contract that a request, a distribution or an experience breaks, if any.
+/// The rule of the contract that a request, a distribution, an experience or a rehearsal breaks, if
+/// any.
 std::optional<Error> check(const FetchRequest& request);
 std::optional<Error> check(const Distribution& distribution);
 std::optional<Error> check(const TaskExperience& experience);
+std::optional<Error> check(const Rehearsal& rehearsal);
 
 Result<Message<kinship_wire_FetchRequest>> encode(const Head& head, const FetchRequest& request);
 Result<FetchRequest> decode(const kinship_wire_FetchRequest& wire);

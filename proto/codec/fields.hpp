@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "proto/codec/arena.hpp"
 #include "proto/codec/reader.hpp"
@@ -69,6 +70,22 @@ constexpr std::size_t size_of_message() {
   return (end + alignment - 1) / alignment * alignment;
 }
 
+/// A list of values with fields as a sequence.
+template <typename Value, typename Sequence>
+void write_list(const std::vector<Value>& values, Arena& arena, Sequence& wire);
+template <typename Value, typename Sequence>
+std::vector<Value> read_list(const Sequence& wire, Reader& reader, const std::string& of = "");
+
+/// The same, counted before anything is allocated.
+template <typename Value, typename Sequence>
+std::vector<Value> read_limited_list(const std::string& what, const Sequence& wire,
+                                     std::size_t limit, Reader& reader) {
+  reader.rules.at_most(what, elements(wire).size(), limit);
+  if (reader.rules.broken())
+    return {};
+  return read_list<Value>(wire, reader, " of " + what);
+}
+
 template <Described Value, typename Wire>
 void write_fields(const Value& value, Arena& arena, Wire& wire) {
   static_assert(size_of_message<Value>() == sizeof(Wire));
@@ -78,6 +95,8 @@ void write_fields(const Value& value, Arena& arena, Wire& wire) {
       member = arena.text(from);
     } else if constexpr (std::is_same_v<T, Digest>) {
       write_digest(from, member);
+    } else if constexpr (kIsList<T>) {
+      write_list(from, arena, member);
     } else if constexpr (kIsOptional<T>) {
       if (from) {
         arena.resize(member, from->bytes.size());
@@ -108,6 +127,8 @@ Value read_fields(const Wire& wire, Reader& reader, const std::string& of = "") 
       to = reader.text(what(), member, field.rules.limit);
     else if constexpr (std::is_same_v<T, Digest>)
       to = read_digest(member);
+    else if constexpr (kIsList<T>)
+      to = read_limited_list<typename T::value_type>(what(), member, field.rules.limit, reader);
     else if constexpr (kIsOptional<T>)
       to = reader.optional_digest(what(), elements(member));
     else if constexpr (std::is_enum_v<T>)
@@ -117,6 +138,37 @@ Value read_fields(const Wire& wire, Reader& reader, const std::string& of = "") 
   };
   for_each_member<Value>(wire, read);
   return value;
+}
+
+template <typename Value, typename Sequence>
+void write_list(const std::vector<Value>& values, Arena& arena, Sequence& wire) {
+  arena.resize(wire, values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    write_fields(values[i], arena, wire._buffer[i]);
+}
+
+template <typename Value, typename Sequence>
+std::vector<Value> read_list(const Sequence& wire, Reader& reader, const std::string& of) {
+  std::vector<Value> values;
+  for (const auto& entry : elements(wire))
+    values.push_back(read_fields<Value>(entry, reader, of));
+  return values;
+}
+
+/// What may be missing as a sequence of one or none.
+template <typename Value, typename Sequence>
+void write_optional(const std::optional<Value>& value, Arena& arena, Sequence& wire) {
+  if (value)
+    write_list(std::vector{*value}, arena, wire);
+}
+
+template <typename Value, typename Sequence>
+std::optional<Value> read_optional(const Sequence& wire, Reader& reader,
+                                   const std::string& of = "") {
+  const auto entries = elements(wire);
+  if (entries.empty())
+    return std::nullopt;
+  return read_fields<Value>(entries[0], reader, of);
 }
 
 }  // namespace kinship::codec

@@ -34,6 +34,22 @@ Thing read_solid(const kinship_wire_SceneSolid& wire, Reader& reader) {
   return {std::move(name), shape, T};
 }
 
+void write_region(const TaskSpaceRegion& region, kinship_wire_TaskSpaceRegion& wire) {
+  const PoseArray T_task_region = to_pose_array(region.T_task_region);
+  const PoseArray T_region_end = to_pose_array(region.T_region_end);
+  std::copy(T_task_region.begin(), T_task_region.end(), std::begin(wire.T_task_region));
+  std::copy(T_region_end.begin(), T_region_end.end(), std::begin(wire.T_region_end));
+  std::copy_n(region.bounds.data(), region.bounds.size(), std::begin(wire.bounds));
+}
+
+TaskSpaceRegion read_region(const kinship_wire_TaskSpaceRegion& wire, Reader& reader) {
+  TaskSpaceRegion region;
+  region.T_task_region = reader.pose("scene: constraint: T0_w", wire.T_task_region);
+  region.T_region_end = reader.pose("scene: constraint: Tw_e", wire.T_region_end);
+  region.bounds = Eigen::Map<const Eigen::Matrix<double, 2, 6>>(std::data(wire.bounds));
+  return region;
+}
+
 std::size_t length(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
 
 }  // namespace
@@ -54,6 +70,10 @@ void write_scene(const RecordedScene& scene, Arena& arena, kinship_wire_Recorded
     const auto& [first, second] = scene.allowed_collisions[i];
     wire.allowed_collisions._buffer[i] = {arena.text(first), arena.text(second)};
   }
+  if (scene.constraint) {
+    arena.resize(wire.constraint, 1);
+    write_region(*scene.constraint, wire.constraint._buffer[0]);
+  }
 }
 
 RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader) {
@@ -72,13 +92,17 @@ RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader)
     scene.allowed_collisions.emplace_back(
         reader.text("scene: allowed_collisions", pair.first, kMaxLinkNameBytes),
         reader.text("scene: allowed_collisions", pair.second, kMaxLinkNameBytes));
+  if (const auto constraint = elements(wire.constraint); !constraint.empty())
+    scene.constraint = read_region(constraint[0], reader);
   return scene;
 }
 
 std::size_t scene_bytes(const kinship_wire_RecordedScene& wire) {
-  constexpr std::size_t kSolidBytes = 96, kPairBytes = 16;  // as the contract says
+  // As the contract says.
+  constexpr std::size_t kSolidBytes = 96, kPairBytes = 16, kConstraintBytes = 216;
   std::size_t bytes = kSolidBytes * (elements(wire.objects).size() + elements(wire.held).size()) +
-                      kPairBytes * elements(wire.allowed_collisions).size();
+                      kPairBytes * elements(wire.allowed_collisions).size() +
+                      kConstraintBytes * elements(wire.constraint).size();
   for (const kinship_wire_SceneSolid& solid : elements(wire.objects))
     bytes += length(solid.name);
   for (const kinship_wire_SceneSolid& solid : elements(wire.held))

@@ -10,8 +10,8 @@ namespace kinship::codec {
 
 void write_scene(const RecordedScene& scene, Arena& arena, kinship_wire_RecordedScene& wire);
 
-/// Counts and bytes are checked before anything is allocated, names and sizes as check_scene()
-/// does.
+/// Counts and bytes are checked before anything is allocated, names, sizes and bounds as
+/// check_scene() does.
 RecordedScene read_scene(const kinship_wire_RecordedScene& wire, Reader& reader);
 
 /// What a message's scenes count against kMaxSceneBytes, read from its lengths.

@@ -4,6 +4,7 @@
 
 #include "proto/json/name_pairs_json.hpp"
 #include "proto/json/scene_json.hpp"
+#include "proto/json/task_space_region_json.hpp"
 #include "proto/types/limits.hpp"
 
 namespace kinship::json {
@@ -29,12 +30,14 @@ OrderedJson recorded_scene_object(const RecordedScene& scene) {
   }
   document["held"] = std::move(held);
   document["allowed_collisions"] = pair_list(scene.allowed_collisions);
+  if (scene.constraint)
+    document["constraint"] = region_object(*scene.constraint);
   return document;
 }
 
 RecordedScene read_recorded_scene(const Reader& reader) {
-  reader.allow_only(
-      {"boxes", "cylinders", "spheres", "capsules", "meshes", "held", "allowed_collisions"});
+  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes", "held",
+                     "allowed_collisions", "constraint"});
   RecordedScene scene;
   if (const auto meshes = reader.find("meshes");
       meshes && !meshes->elements(kMaxHeldObjects).empty())
@@ -45,6 +48,8 @@ RecordedScene read_recorded_scene(const Reader& reader) {
       scene.held.push_back(read_held(each));
   if (const auto allowed = reader.find("allowed_collisions"))
     scene.allowed_collisions = read_pairs(*allowed);
+  if (const auto constraint = reader.find("constraint"))
+    scene.constraint = read_region(*constraint);
   return scene;
 }
 

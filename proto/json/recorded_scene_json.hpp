@@ -4,14 +4,15 @@
 #include "proto/json/writer.hpp"
 #include "proto/types/recorded_scene.hpp"
 
-/// The scene of an attempt: the lists of a problem's scene, and `held` and `allowed_collisions`.
-/// For this library's sources only.
+/// The scene of an attempt: the lists of a problem's scene, `held` and `allowed_collisions`, and
+/// the `constraint` if there is one: without it, servers and clients from before read the document
+/// too. For this library's sources only.
 namespace kinship::json {
 
 OrderedJson recorded_scene_object(const RecordedScene& scene);
 
-/// Absent lists are empty ones. Refuses what check_scene() does; objects come in the order of the
-/// lists: boxes, cylinders, spheres, capsules.
+/// Absent lists are empty ones, an absent or null constraint is none. Refuses what check_scene()
+/// does; objects come in the order of the lists: boxes, cylinders, spheres, capsules.
 RecordedScene read_recorded_scene(const Reader& reader);
 
 }  // namespace kinship::json

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::size_t kThingBytes = 96;  // of an object on the wire, without its name
 constexpr std::size_t kPairBytes = 16;
+constexpr std::size_t kConstraintBytes = 216;
 
 using Pair = std::pair<std::string, std::string>;
 
@@ -58,6 +60,17 @@ std::optional<Error> check_thing(const std::string& name, const Shape& shape,
   return std::nullopt;
 }
 
+std::optional<Error> check_constraint(const TaskSpaceRegion& region) {
+  const std::string who = "scene: constraint: ";
+  if (const auto fault = find_fault(region))
+    return Error{ErrorCode::InvalidInput, who + *fault};
+  for (const auto& [name, T] :
+       {std::pair("T0_w: ", &region.T_task_region), std::pair("Tw_e: ", &region.T_region_end)})
+    if (const auto pose = from_pose_array(to_pose_array(*T)); !pose)
+      return Error{pose.error().code, who + name + pose.error().message};
+  return std::nullopt;
+}
+
 std::optional<Error> check_pairs(const RecordedScene& scene) {
   std::set<std::string_view> names;
   for (const SceneObject& object : scene.objects)
@@ -78,22 +91,39 @@ std::int64_t rounded(double number) {
   return std::llround(number * kPerUnit);
 }
 
+/// The same of what may be infinite, or too large to be counted in such units.
+std::int64_t rounded_bound(double bound) {
+  constexpr double kLargest = 9e9;
+  if (std::abs(bound) <= kLargest)
+    return rounded(bound);
+  return bound > 0 ? std::numeric_limits<std::int64_t>::max()
+                   : std::numeric_limits<std::int64_t>::min();
+}
+
+using RoundedPose = std::array<std::int64_t, 7>;
+
+RoundedPose rounded(const Eigen::Isometry3d& T) {
+  const PoseArray pose = to_pose_array(T);
+  RoundedPose numbers{};
+  std::transform(pose.begin(), pose.end(), numbers.begin(), [](double n) { return rounded(n); });
+  // q and -q are one rotation, and which of them a half turn comes back as is rounding.
+  const auto rotation = numbers.begin() + 3;
+  const auto first = std::find_if(rotation, numbers.end(), [](auto n) { return n != 0; });
+  if (first != numbers.end() && *first < 0)
+    std::transform(rotation, numbers.end(), rotation, std::negate<>());
+  return numbers;
+}
+
 /// A thing as numbers and text that compare equal where its content does.
 using Thing = std::tuple<std::string, std::size_t, std::array<std::int64_t, 10>>;
 
 Thing thing_of(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T) {
   std::array<std::int64_t, 10> numbers{};
   const std::array<double, 3> sizes = to_numbers(shape).sizes;
-  std::transform(sizes.begin(), sizes.end(), numbers.begin(), rounded);
-  const PoseArray pose = to_pose_array(T);
-  const std::size_t used = std::holds_alternative<SphereShape>(shape) ? 3 : pose.size();
-  std::transform(pose.begin(), pose.begin() + static_cast<std::ptrdiff_t>(used),
-                 numbers.begin() + 3, rounded);
-  // q and -q are one rotation, and which of them a half turn comes back as is rounding.
-  const auto rotation = numbers.begin() + 6;
-  const auto first = std::find_if(rotation, numbers.end(), [](auto n) { return n != 0; });
-  if (first != numbers.end() && *first < 0)
-    std::transform(rotation, numbers.end(), rotation, std::negate<>());
+  std::transform(sizes.begin(), sizes.end(), numbers.begin(), [](double n) { return rounded(n); });
+  const RoundedPose pose = rounded(T);
+  std::copy_n(pose.begin(), std::holds_alternative<SphereShape>(shape) ? 3 : pose.size(),
+              numbers.begin() + 3);
   return {name, shape.index(), numbers};
 }
 
@@ -105,6 +135,18 @@ void add(std::vector<Thing> things, Sha256& hash) {
     for (const std::int64_t number : numbers)
       hash.add(static_cast<std::uint64_t>(number));
   }
+}
+
+/// Nothing for no constraint: digests of scenes without one are older than constraints.
+void add(const std::optional<TaskSpaceRegion>& constraint, Sha256& hash) {
+  if (!constraint)
+    return;
+  hash.add(std::string_view("constraint"));
+  for (const Eigen::Isometry3d* T : {&constraint->T_task_region, &constraint->T_region_end})
+    for (const std::int64_t number : rounded(*T))
+      hash.add(static_cast<std::uint64_t>(number));
+  for (const double bound : constraint->bounds.reshaped())
+    hash.add(static_cast<std::uint64_t>(rounded_bound(bound)));
 }
 
 }  // namespace
@@ -145,7 +187,8 @@ Shape to_shape(const ShapeNumbers& numbers) {
 
 std::size_t scene_bytes(const RecordedScene& scene) {
   std::size_t bytes = kThingBytes * (scene.objects.size() + scene.held.size()) +
-                      kPairBytes * scene.allowed_collisions.size();
+                      kPairBytes * scene.allowed_collisions.size() +
+                      (scene.constraint ? kConstraintBytes : 0);
   for (const SceneObject& object : scene.objects)
     bytes += object.name.size();
   for (const HeldObject& held : scene.held)
@@ -170,6 +213,9 @@ std::optional<Error> check_scene(const RecordedScene& scene) {
   for (const HeldObject& held : scene.held)
     if (auto error = check_thing(held.name, held.shape, held.T_transfer_object))
       return error;
+  if (scene.constraint)
+    if (auto error = check_constraint(*scene.constraint))
+      return error;
   return check_pairs(scene);
 }
 
@@ -189,6 +235,7 @@ Digest content_digest(const RecordedScene& scene) {
   hash.add(std::uint64_t{pairs.size()});
   for (const auto& [first, second] : pairs)
     hash.add(std::string_view(first)).add(std::string_view(second));
+  add(scene.constraint, hash);
   return hash.finish();
 }
 

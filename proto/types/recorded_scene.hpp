@@ -46,16 +46,18 @@ ShapeNumbers to_numbers(const Shape& shape);
 Shape to_shape(const ShapeNumbers& numbers);
 
 /// What a scene counts against kMaxSceneBytes: 96 bytes for each object and held thing, 16 for each
-/// allowed pair, and the bytes of their names.
+/// allowed pair, the bytes of their names, and 216 for a constraint.
 std::size_t scene_bytes(const RecordedScene& scene);
 
 /// The rule of the contract that a scene breaks, if any: names of 1 to kMaxLinkNameBytes of text,
 /// sizes above 0 and at most kMaxPlacement_m, proper poses, allowed pairs of names that are there,
-/// and the limits on counts and bytes. The message begins with "scene".
+/// a constraint that can be kept, and the limits on counts and bytes. The message begins with
+/// "scene", that of a constraint with "scene: constraint".
 std::optional<Error> check_scene(const RecordedScene& scene);
 
 /// What a scene is kept once by: equal for scenes that differ in the order of their lists, in the
-/// orientation of spheres, or by less than about 1e-9 (m, parts of a quaternion).
+/// orientation of spheres, or by less than about 1e-9 (m, rad, parts of a quaternion). Bounds of a
+/// constraint beyond 9e9 count as infinite.
 Digest content_digest(const RecordedScene& scene);
 
 }  // namespace kinship

@@ -36,7 +36,7 @@ class Rules {
   std::optional<Error> broken_;
 };
 
-/// The limits of each field.
+/// The limits of each field, and of the fields of each element of a list.
 /// \param of  after its name in messages, e.g. " of a source".
 template <Described Value>
 void check_fields(const Value& value, Rules& rules, const std::string& of = "") {
@@ -54,6 +54,10 @@ void check_fields(const Value& value, Rules& rules, const std::string& of = "") 
         rules.not_negative(what(), value.*field.member);
       else
         rules.finite(what(), value.*field.member);
+    } else if constexpr (kIsList<T>) {
+      rules.at_most(what(), (value.*field.member).size(), limits.limit);
+      for (const auto& element : value.*field.member)
+        check_fields(element, rules, " of " + what());
     }
   });
 }

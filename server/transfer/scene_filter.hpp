@@ -33,7 +33,8 @@ struct SceneFilter {
 
 /// Keeps the configurations in which the robot, standing among the recorded objects and holding in
 /// its transfer frame what was held, touches no object, and what it holds touches neither an object
-/// nor the robot. Whether the robot touches itself is another filter's question.
+/// nor the robot. Whether the robot touches itself is another filter's question. The scene's
+/// constraint is ignored.
 ///
 /// Pairs that touch in at least 38 of 40 random configurations within the limits are left out
 /// (seeded: equal input, equal answers). Not shared between threads; everything is copied.

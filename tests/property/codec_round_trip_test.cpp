@@ -48,6 +48,11 @@ void expect_same_scene(const std::optional<RecordedScene>& written,
   ASSERT_EQ(read->held.size(), written->held.size());
   for (std::size_t i = 0; i < written->held.size(); ++i)
     read->held[i].T_transfer_object = written->held[i].T_transfer_object;
+  ASSERT_EQ(read->constraint.has_value(), written->constraint.has_value());
+  if (!written->constraint)
+    return;
+  EXPECT_EQ(read->constraint->bounds, written->constraint->bounds);
+  read->constraint = written->constraint;
 }
 
 TEST(CodecRoundTrip, BatchOfAttemptsComesBack) {
@@ -103,10 +108,13 @@ TEST(CodecRoundTrip, DistributionComesBack) {
     written.distribution = values.distribution();
     written.status =
         has_mixture(written.distribution->state) ? FetchStatus::Ready : FetchStatus::Failed;
+    if (values.coin())
+      written.rehearsal = values.rehearsal();
     const auto message = encode(kHead, written);
     ASSERT_TRUE(message) << message.error().message;
     auto read = decode(message->wire).value_or_throw();
     EXPECT_EQ(read.status, written.status);
+    EXPECT_EQ(read.rehearsal, written.rehearsal);
     expect_same_pose(written.distribution->T_task_base, read.distribution->T_task_base);
     EXPECT_EQ(json::to_json(*read.distribution), json::to_json(*written.distribution));
   }
@@ -123,9 +131,12 @@ TEST(CodecRoundTrip, FetchRequestComesBack) {
     written.deadline = std::chrono::milliseconds(values.below(3'600'001));
     written.selection = values.selection();
     written.follow = std::chrono::seconds(values.below(86'401));
+    written.experience_bytes = static_cast<std::uint32_t>(1 + values.below(kMaxExperienceBytes));
+    written.rehearsed = values.coin();
     const auto read = decode(encode(kHead, written).value_or_throw().wire).value_or_throw();
     EXPECT_EQ(read.selection, written.selection);
     EXPECT_EQ(read.follow, written.follow);
+    EXPECT_EQ(read.rehearsed, written.rehearsed);
     EXPECT_EQ(read.deadline, written.deadline);
     EXPECT_EQ(read.task + read.profile, written.task + written.profile);
     EXPECT_EQ(read.minimum_generation, written.minimum_generation);
@@ -181,6 +192,8 @@ class Vandal {
     auto* const solid = one_is_held                ? &wire.held._buffer[0]
                         : wire.objects._length > 0 ? &wire.objects._buffer[0]
                                                    : nullptr;
+    if (wire.constraint._length > 0 && values_.below(3) == 0)
+      return spoil(wire.constraint._buffer[0]);
     switch (solid == nullptr ? values_.below(3) : values_.below(7)) {
       case 0:
         return shorten(wire.objects);
@@ -196,6 +209,40 @@ class Vandal {
         return spoil(solid->size[values_.below(3)]);
       default:
         return spoil(solid->pose[values_.below(7)]);
+    }
+  }
+
+  void spoil(kinship_wire_TaskSpaceRegion& wire) {
+    switch (values_.below(3)) {
+      case 0:
+        return spoil(wire.T_task_region[values_.below(7)]);
+      case 1:
+        return spoil(wire.T_region_end[values_.below(7)]);
+      default:
+        return spoil(wire.bounds[values_.below(12)]);
+    }
+  }
+
+  void spoil(kinship_wire_Rehearsal& wire) {
+    kinship_wire_GuideCost* const cost = wire.costs._length > 0 ? &wire.costs._buffer[0] : nullptr;
+    switch (cost == nullptr ? values_.below(4) : values_.below(8)) {
+      case 0:
+        return spoil(wire.guide);
+      case 1:
+        return spoil(wire.processor_time_s);
+      case 2:
+        return shorten(wire.costs);
+      case 3:
+        return spoil(wire.message);
+      case 4:
+        return spoil(cost->guide);
+      case 5:
+        cost->solved = cost->plans + 1;
+        return;
+      case 6:
+        return spoil(cost->mean_checks);
+      default:
+        return spoil(cost->median_checks);
     }
   }
 
@@ -417,6 +464,25 @@ TEST(CodecGarbage, SpoiledSelectionIsRefusedOrKeepsTheRules) {
       ++refused;
   }
   EXPECT_GT(refused, 5 * kCases);
+}
+
+TEST(CodecGarbage, SpoiledRehearsalIsRefusedOrKeepsTheRules) {
+  test::RandomValues values(kSeed);
+  Vandal vandal(values);
+  int refused = 0;
+  for (int i = 0; i < 10 * kCases; ++i) {
+    FetchReply written;
+    written.status = FetchStatus::Pending;
+    written.rehearsal = values.rehearsal();
+    auto message = encode(kHead, written).value_or_throw();
+    vandal.spoil(message.wire.rehearsal._buffer[0]);
+    const auto read = decode(message.wire);
+    if (read)
+      EXPECT_FALSE(check(*read->rehearsal));
+    else
+      ++refused;
+  }
+  EXPECT_GT(refused, 3 * kCases);
 }
 
 TEST(CodecGarbage, SpoiledPublicationIsRefusedOrKeepsTheRules) {

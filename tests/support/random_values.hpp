@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -66,6 +67,19 @@ class RandomValues {
     }
   }
 
+  /// Bounds on one side, on both or on none.
+  TaskSpaceRegion region() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    TaskSpaceRegion region{pose(), pose()};
+    for (Eigen::Index i = 0; i < region.bounds.cols(); ++i) {
+      const bool is_open = coin(), is_angle = i >= 3;
+      const double lower = number();
+      region.bounds(0, i) = is_open ? -kInfinity : lower;
+      region.bounds(1, i) = (is_angle ? is_open : coin()) ? kInfinity : lower + share();
+    }
+    return region;
+  }
+
   RecordedScene recorded_scene(int max_objects = 8) {
     RecordedScene scene;
     for (int i = below(max_objects + 1); i > 0; --i)
@@ -76,6 +90,8 @@ class RandomValues {
       for (const HeldObject& held : scene.held)
         if (coin())
           scene.allowed_collisions.emplace_back(held.name, object.name);
+    if (coin())
+      scene.constraint = region();
     return scene;
   }
 
@@ -185,6 +201,22 @@ class RandomValues {
                  .checks = count(),
                  .age = --age};
     return recent;
+  }
+
+  Rehearsal rehearsal() {
+    Rehearsal rehearsal;
+    rehearsal.guide = static_cast<Guide>(below(8));
+    rehearsal.is_complete = coin();
+    rehearsal.queries = count();
+    rehearsal.left_out = count();
+    rehearsal.processor_time_s = share();
+    for (int i = below(9); i > 0; --i) {
+      const std::uint64_t plans = count();
+      rehearsal.costs.push_back(
+          {static_cast<Guide>(below(8)), plans, plans / 2, 1000 * share(), 1000 * share()});
+    }
+    rehearsal.message = name(100);
+    return rehearsal;
   }
 
   Announcement announcement() {

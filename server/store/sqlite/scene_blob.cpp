@@ -11,7 +11,9 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::uint64_t kSceneFormat = 1;  // written first
+// Written first. A scene without a constraint is written as ever, so that older servers read it.
+constexpr std::uint64_t kPlainFormat = 1;
+constexpr std::uint64_t kConstraintFormat = 2;
 /// Of the largest scene: a solid takes at most 104 bytes beside its name here, 96 for
 /// kMaxSceneBytes.
 constexpr std::int64_t kMaxPlainBytes = std::int64_t{1} << 20U;
@@ -24,11 +26,27 @@ void add(ByteWriter& out, const std::string& name, const Shape& shape, const Eig
   out.add(std::span<const std::uint8_t>(pose_blob(T)));
 }
 
+void add(ByteWriter& out, const TaskSpaceRegion& constraint) {
+  out.add(std::span<const std::uint8_t>(pose_blob(constraint.T_task_region)));
+  out.add(std::span<const std::uint8_t>(pose_blob(constraint.T_region_end)));
+  for (const double bound : constraint.bounds.reshaped())
+    out.add(bound);
+}
+
 std::size_t read_count(ByteReader& in, std::size_t limit) {
   const std::uint64_t count = in.integer();
   if (count > limit)
     throw std::out_of_range("scene: " + std::to_string(count) + " entries");
   return count;
+}
+
+Eigen::Isometry3d read_pose(ByteReader& in) {
+  std::array<std::uint8_t, 7 * sizeof(double)> pose{};
+  in.bytes(pose);
+  const std::optional<Eigen::Isometry3d> T = pose_from_blob(pose);
+  if (!T)
+    throw std::out_of_range("scene: seven numbers that are no pose");
+  return *T;
 }
 
 /// name, shape and pose, as SceneObject and HeldObject begin.
@@ -39,16 +57,22 @@ Thing read_thing(ByteReader& in) {
   numbers.kind = read_count(in, std::variant_size_v<Shape> - 1);
   for (double& size : numbers.sizes)
     size = in.real();
-  std::array<std::uint8_t, 7 * sizeof(double)> pose{};
-  in.bytes(pose);
-  const std::optional<Eigen::Isometry3d> T = pose_from_blob(pose);
-  if (!T)
-    throw std::out_of_range("scene: seven numbers that are no pose");
-  return {std::move(name), to_shape(numbers), *T};
+  const Shape shape = to_shape(numbers);
+  return {std::move(name), shape, read_pose(in)};
+}
+
+TaskSpaceRegion read_constraint(ByteReader& in) {
+  TaskSpaceRegion constraint;
+  constraint.T_task_region = read_pose(in);
+  constraint.T_region_end = read_pose(in);
+  for (double& bound : constraint.bounds.reshaped())
+    bound = in.real();
+  return constraint;
 }
 
 RecordedScene read_scene(ByteReader& in) {
-  if (in.integer() != kSceneFormat)
+  const std::uint64_t format = in.integer();
+  if (format != kPlainFormat && format != kConstraintFormat)
     throw std::out_of_range("scene: unknown format");
   RecordedScene scene;
   for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
@@ -59,6 +83,8 @@ RecordedScene read_scene(ByteReader& in) {
     std::string first = in.text(kMaxLinkNameBytes);
     scene.allowed_collisions.emplace_back(std::move(first), in.text(kMaxLinkNameBytes));
   }
+  if (format == kConstraintFormat)
+    scene.constraint = read_constraint(in);
   if (!in.at_end())
     throw std::out_of_range("scene: bytes after its end");
   return scene;
@@ -68,7 +94,8 @@ RecordedScene read_scene(ByteReader& in) {
 
 SceneBlob encode_scene(const RecordedScene& scene) {
   ByteWriter out;
-  out.add(kSceneFormat).add(std::uint64_t{scene.objects.size()});
+  out.add(scene.constraint ? kConstraintFormat : kPlainFormat);
+  out.add(std::uint64_t{scene.objects.size()});
   for (const SceneObject& object : scene.objects)
     add(out, object.name, object.shape, object.T_task_object);
   out.add(std::uint64_t{scene.held.size()});
@@ -77,6 +104,8 @@ SceneBlob encode_scene(const RecordedScene& scene) {
   out.add(std::uint64_t{scene.allowed_collisions.size()});
   for (const auto& [first, second] : scene.allowed_collisions)
     out.add(first).add(second);
+  if (scene.constraint)
+    add(out, *scene.constraint);
   SceneBlob blob;
   blob.size = std::ssize(out.bytes());
   if (std::optional<std::vector<std::uint8_t>> compressed = compress(out.bytes())) {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "proto/codec/arena.hpp"
+#include "proto/codec/reader.hpp"
+#include "proto/idl/fetch.h"
+#include "proto/types/rehearsal.hpp"
+
+/// What a server found by planning recorded queries again, as part of a reply. For the sources of
+/// this folder only.
+namespace kinship::codec {
+
+void write_rehearsal(const Rehearsal& rehearsal, Arena& arena, kinship_wire_Rehearsal& wire);
+
+/// What its fields break stays in the reader; check() says the rest.
+Rehearsal read_rehearsal(const kinship_wire_Rehearsal& wire, Reader& reader);
+
+}  // namespace kinship::codec
