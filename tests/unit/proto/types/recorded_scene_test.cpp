@@ -104,7 +104,7 @@ TEST(RecordedScene, AConstraintIsContent) {
   others[3].bounds(0, 0) = -1e9;
   others[4].bounds(1, 0) = 1e9;
   others[5].bounds(1, 5) = M_PI;
-  others[6].bounds.row(0).swap(others[6].bounds.row(1));
+  others[6].bounds(0, 1) = 0.5;
   others[7] = {};
   for (const TaskSpaceRegion& other : others) {
     scene.constraint = other;
