@@ -38,13 +38,19 @@ TEST(BlobPins, DistributionsOfEveryFormatAreRead) {
 }
 
 /// zstd may compress otherwise tomorrow: what is compressed is pinned, and that it comes back.
-TEST(BlobPins, ScenesAreWrittenAsPinned) {
-  const SceneBlob blob = encode_scene(test::every_recorded_scene());
-  ASSERT_EQ(blob.encoding, SceneEncoding::Zstd);
+std::optional<RecordedScene> check_scene_pin(const std::string& name, const RecordedScene& scene) {
+  const SceneBlob blob = encode_scene(scene);
+  EXPECT_EQ(blob.encoding, SceneEncoding::Zstd);
   const auto plain = decompress(blob.bytes, static_cast<std::size_t>(blob.size));
-  ASSERT_TRUE(plain);
-  test::expect_pinned_bytes("blob/scene.hex", *plain);
-  const auto scene = decode_scene(blob.size, 2, blob.bytes);
+  test::expect_pinned_bytes(name, plain.value());
+  return decode_scene(blob.size, 2, blob.bytes);
+}
+
+TEST(BlobPins, ScenesAreWrittenAsPinned) {
+  RecordedScene unconstrained = test::every_recorded_scene();
+  unconstrained.constraint.reset();
+  EXPECT_TRUE(check_scene_pin("blob/scene.hex", unconstrained));
+  const auto scene = check_scene_pin("blob/scene-constrained.hex", test::every_recorded_scene());
   ASSERT_TRUE(scene);
   Attempt attempt = test::every_attempt();
   attempt.scene = scene;

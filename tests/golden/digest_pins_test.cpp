@@ -32,8 +32,11 @@ void add_attempt(const std::string& name, const Attempt& attempt, std::string& l
 
 TEST(DigestPins, Attempts) {
   std::string lines;
-  add_attempt("attempt", test::every_attempt(), lines);
+  Attempt unconstrained = test::every_attempt();
+  unconstrained.scene->constraint.reset();
+  add_attempt("attempt", unconstrained, lines);
   add_attempt("unsolved", test::every_unsolved_attempt(), lines);
+  add_attempt("constrained", test::every_attempt(), lines);
   test::expect_pinned("digest/attempts.txt", lines);
 }
 

@@ -1,6 +1,7 @@
 #include "tests/golden/every_value.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace kinship::test {
 namespace {
@@ -66,6 +67,17 @@ Eigen::MatrixXd covariance(Distinct& next) {
   return product;
 }
 
+/// One coordinate without bounds, two with one.
+TaskSpaceRegion every_region() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Distinct next(250);
+  TaskSpaceRegion region{next.pose(), next.pose()};
+  region.bounds = next.matrix(2, 6);
+  region.bounds(0, 0) = region.bounds(0, 1) = -kInfinity;
+  region.bounds(1, 0) = region.bounds(1, 2) = kInfinity;
+  return region;
+}
+
 }  // namespace
 
 PlanningRecord every_record(Distinct& next) {
@@ -111,6 +123,7 @@ RecordedScene every_recorded_scene() {
   scene.held = {{next.name("held"), SphereShape{next.real()}, next.pose()}};
   scene.allowed_collisions = {{scene.held[0].name, scene.objects[0].name},
                               {scene.objects[1].name, scene.objects[3].name}};
+  scene.constraint = every_region();
   return scene;
 }
 
@@ -283,6 +296,7 @@ FetchRequest every_fetch_request() {
   request.follow = std::chrono::seconds(next.count());
   request.experience_bytes = static_cast<std::uint32_t>(next.count());
   request.known_experience = next.count();
+  request.rehearsed = true;
   return request;
 }
 
@@ -297,6 +311,26 @@ TaskExperience every_experience() {
   return experience;
 }
 
+Rehearsal every_rehearsal() {
+  Distinct next(3200);
+  Rehearsal rehearsal;
+  rehearsal.guide = Guide::WaysMixture;
+  rehearsal.is_complete = true;
+  rehearsal.queries = next.count();
+  rehearsal.left_out = next.count();
+  rehearsal.processor_time_s = next.real();
+  for (const Guide guide : {Guide::Retreat, Guide::All}) {
+    GuideCost cost{.guide = guide};
+    cost.solved = next.count();
+    cost.plans = next.count();
+    cost.mean_checks = next.real();
+    cost.median_checks = next.real();
+    rehearsal.costs.push_back(cost);
+  }
+  rehearsal.message = next.text("message");
+  return rehearsal;
+}
+
 FetchReply every_fetch_reply() {
   Distinct next(2800);
   FetchReply reply;
@@ -305,6 +339,7 @@ FetchReply every_fetch_reply() {
   reply.retry_after = std::chrono::milliseconds(next.count());
   reply.message = next.text("message");
   reply.experience = every_experience();
+  reply.rehearsal = every_rehearsal();
   return reply;
 }
 

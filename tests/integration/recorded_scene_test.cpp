@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
 
 #include "client/link/client.hpp"
 #include "proto/json/admin_rows_json.hpp"
@@ -140,6 +141,24 @@ TEST_F(RecordedScenes, LeaveOutWhatAnotherRobotWouldTouchThere) {
   EXPECT_GT(source.scene_collisions, 0U);
   EXPECT_LT(source.scene_collisions, source.filter_checks);
   EXPECT_GT(source.configurations, 0U);
+}
+
+TEST_F(RecordedScenes, AConstraintIsOneAlsoWhereNothingElseIs) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Problem problem = turn_before_the_wall(0);
+  problem.scene = {};
+  problem.attached.clear();
+  problem.allowed_collisions.clear();
+  problem.constraint.emplace();
+  problem.constraint->bounds << -kInfinity, -kInfinity, -5, -kInfinity, -kInfinity, -kInfinity,  //
+      kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity;
+  std::ofstream(directory_ / "problems.jsonl") << json::to_json(problem) << '\n';
+  plan_and_report({});
+  const std::vector<Attempt> attempts = exported();
+  ASSERT_EQ(attempts.size(), 1U);
+  ASSERT_TRUE(attempts[0].scene && attempts[0].scene->constraint);
+  EXPECT_EQ(attempts[0].scene->constraint->bounds, problem.constraint->bounds);
+  EXPECT_TRUE(attempts[0].scene->objects.empty());
 }
 
 TEST_F(RecordedScenes, AreNotSentIfTheUserDoesNotWantIt) {

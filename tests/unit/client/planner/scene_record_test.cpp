@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::planner::scene_record_test {
@@ -43,6 +45,20 @@ TEST(SceneRecord, WhatAnotherLinkCarriesAndPairsWithLinksAreLeftOut) {
   EXPECT_EQ(scene.held[0].name, "can");
   ASSERT_EQ(scene.allowed_collisions.size(), 1U);
   EXPECT_EQ(scene.allowed_collisions[0], std::pair(std::string("can"), std::string("wall")));
+}
+
+TEST(SceneRecord, TheConstraintIsTheProblems) {
+  Problem problem = test::wall_problem();
+  EXPECT_FALSE(record_scene(chain(), problem)->constraint);
+  problem.scene = {};
+  problem.constraint.emplace();
+  problem.constraint->T_task_region.translation().z() = 0.5;
+  problem.constraint->bounds.row(1).setConstant(std::numeric_limits<double>::infinity());
+  const RecordedScene scene = record_scene(chain(), problem).value_or_throw();
+  ASSERT_TRUE(scene.constraint);
+  EXPECT_EQ(scene.constraint->bounds, problem.constraint->bounds);
+  EXPECT_EQ(scene.constraint->T_task_region.matrix(), problem.constraint->T_task_region.matrix());
+  EXPECT_TRUE(scene.objects.empty());
 }
 
 TEST(SceneRecord, TooLargeASceneIsAnError) {

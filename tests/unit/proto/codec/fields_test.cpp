@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "proto/types/distribution.hpp"
+#include "proto/types/rehearsal.hpp"
 
 namespace kinship::codec::fields_test {
 namespace {
@@ -26,7 +27,7 @@ std::vector<std::string> members_of(const std::string& file, const std::string& 
       std::regex_search(idl, body, std::regex("struct " + structure + R"(\s*\{([^}]*)\})")));
   const std::string members = body[1].str();
   std::vector<std::string> found;
-  const std::regex member(R"(([\w<>]+)\s+([\w\[\]]+)\s*;)");
+  const std::regex member(R"((\w+(?:<[\w, ]+>)?)\s+([\w\[\]]+)\s*;)");
   for (std::sregex_iterator match(members.begin(), members.end(), member), end; match != end;
        ++match)
     found.push_back((*match)[1].str() + " " + (*match)[2].str());
@@ -52,8 +53,9 @@ template <Described Value>
 std::vector<std::string> described() {
   std::vector<std::string> members;
   for_each_field<Value>([&]<typename Of, typename T>(const Field<Of, T>& field) {
-    members.push_back(idl_type<T>() + " " + std::string(field.name) +
-                      (std::is_same_v<T, Digest> ? "[32]" : ""));
+    members.push_back((kIsList<T> ? "sequence<GuideCost, " + std::to_string(field.rules.limit) + ">"
+                                  : idl_type<T>()) +
+                      " " + std::string(field.name) + (std::is_same_v<T, Digest> ? "[32]" : ""));
   });
   return members;
 }
@@ -63,6 +65,8 @@ TEST(Fields, StructuresOfTheIdlHaveThemInTheirOrder) {
   EXPECT_EQ(described<ModeEvidence>(), members_of("fetch.idl", "ArmEvidence"));
   EXPECT_EQ(described<JudgedAttempt>(), members_of("fetch.idl", "JudgedAttempt"));
   EXPECT_EQ(described<FitOrigin>(), members_of("fetch.idl", "FitOrigin"));
+  EXPECT_EQ(described<GuideCost>(), members_of("fetch.idl", "GuideCost"));
+  EXPECT_EQ(described<Rehearsal>(), members_of("fetch.idl", "Rehearsal"));
   EXPECT_EQ(described<PlanningRecord>(), members_of("report.idl", "PlanningRecord"));
 }
 

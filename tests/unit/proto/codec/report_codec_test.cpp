@@ -115,6 +115,60 @@ TEST(ReportCodec, BadSceneOnTheWireIsRefusedAlone) {
             "scene: allowed_collisions names 'table', which is neither an object nor held");
 }
 
+/// Everything may be anywhere, but not tilted.
+TaskSpaceRegion level() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion region = {};
+  region.T_region_end.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  region.bounds << -kInfinity, -kInfinity, 0, -0.1, -0.2, -kInfinity,  //
+      kInfinity, kInfinity, kInfinity, 0.1, 0.2, kInfinity;
+  return region;
+}
+
+TEST(ReportCodec, AConstraintComesBackWithItsInfiniteBounds) {
+  ReportRequest request;
+  request.attempts = {solved_attempt(7, 3), solved_attempt(7, 3)};
+  request.attempts[0].scene = RecordedScene{};
+  request.attempts[0].scene->constraint = level();
+  request.attempts[1].scene = cups_on_a_table(1);
+  const auto message = encode({}, request).value_or_throw();
+  const ReportRequest read = decode(message.wire).value_or_throw();
+  ASSERT_EQ(read.attempts.size(), 2U);
+  ASSERT_TRUE(read.attempts[0].scene && read.attempts[0].scene->constraint);
+  const TaskSpaceRegion& region = *read.attempts[0].scene->constraint;
+  EXPECT_EQ(region.bounds, level().bounds);
+  EXPECT_TRUE(region.T_region_end.isApprox(level().T_region_end, 1e-12));
+  EXPECT_FALSE(read.attempts[1].scene->constraint);
+}
+
+TEST(ReportCodec, ABadConstraintIsRefusedByName) {
+  ReportRequest request;
+  request.attempts = {solved_attempt(7, 3)};
+  request.attempts[0].scene = cups_on_a_table(1);
+  request.attempts[0].scene->constraint = level();
+  auto message = encode({}, request).value_or_throw();
+  kinship_wire_TaskSpaceRegion& wire =
+      message.wire.attempts._buffer[0].scene._buffer[0].constraint._buffer[0];
+  const auto complaint = [&message] { return decode(message.wire)->refused.at(0).message; };
+  wire.bounds[6] = 0.3;
+  EXPECT_EQ(complaint(), "scene: constraint: Bw of roll: lower 0.3 exceeds upper 0.1");
+  wire.bounds[6] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(complaint(), "scene: constraint: Bw of roll: is not a number");
+  wire.bounds[6] = -0.1;
+  wire.T_task_region[0] = -1001;
+  EXPECT_EQ(complaint(), "scene: constraint: T0_w: pose: coordinate -1001 m exceeds 1000 m");
+  wire.T_task_region[0] = 0;
+  wire.T_region_end[6] = 3;
+  EXPECT_EQ(complaint().find("scene: constraint: Tw_e: pose: "), 0U);
+  wire.T_region_end[6] = 0;
+  EXPECT_EQ(decode(message.wire)->attempts.size(), 1U);
+  request.attempts[0].scene->constraint->bounds(0, 3) = 0.3;
+  EXPECT_EQ(encode({}, request).error().message,
+            "scene: constraint: Bw of roll: lower 0.3 exceeds upper 0.1");
+  message.wire.attempts._buffer[0].scene._buffer[0].constraint._buffer = nullptr;
+  EXPECT_FALSE(decode(message.wire)->attempts.at(0).scene->constraint) << "of an older client";
+}
+
 TEST(ReportCodec, ScenesOfABatchAreLimitedTogether) {
   ReportRequest request;
   request.attempts.assign(2, solved_attempt(1, 2));
@@ -122,6 +176,9 @@ TEST(ReportCodec, ScenesOfABatchAreLimitedTogether) {
     attempt.scene = cups_on_a_table(1500);
   EXPECT_EQ(encode({}, request).error().message,
             "scenes of a batch (bytes): 297448 exceeds 262144");
+  request.attempts[0].scene->constraint = level();
+  EXPECT_EQ(encode({}, request).error().message,
+            "scenes of a batch (bytes): 297664 exceeds 262144");
   request.attempts.resize(1);
   request.attempts[0].path = Path(Eigen::MatrixXd::Zero(4, 16384));
   EXPECT_TRUE(encode({}, request));  // the largest path with a large scene is one sample

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace kinship::json::attempt_json_test {
@@ -132,6 +133,44 @@ TEST(AttemptJson, SceneIsAsInAProblemWithWhatWasHeld) {
   EXPECT_EQ(scene.held[0].T_transfer_object.translation(), Eigen::Vector3d(0, 0, 0.05));
   EXPECT_EQ(scene.allowed_collisions.front(), std::pair(std::string("can"), std::string("table")));
   EXPECT_TRUE(attempt_from_json(with_scene("{}"))->attempt.scene.has_value());
+}
+
+constexpr const char* kUpright =
+    R"({"T0_w":[0,0,0,0,0,0,1],"Tw_e":[0,0,0.1,1,0,0,0],)"
+    R"("Bw":[[null,null],[-0.5,0.5],[0,null],[-0.1,0.1],[-0.1,0.1],[null,null]]})";
+
+std::string with_constraint(const std::string& constraint) {
+  return with_scene(R"({"constraint":)" + constraint + "}");
+}
+
+TEST(AttemptJson, TheConstraintOfASceneIsThatOfAProblem) {
+  const auto named = attempt_from_json(with_constraint(kUpright));
+  ASSERT_TRUE(named) << named.error().message;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TaskSpaceRegion& region = named->attempt.scene.value().constraint.value();
+  EXPECT_EQ(region.bounds.col(0), Eigen::Vector2d(-kInfinity, kInfinity));
+  EXPECT_EQ(region.bounds.col(2), Eigen::Vector2d(0, kInfinity));
+  EXPECT_EQ(region.T_region_end.translation(), Eigen::Vector3d(0, 0, 0.1));
+  const auto back = attempt_from_json(to_json(named->attempt));
+  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back->attempt.scene->constraint);
+  EXPECT_EQ(back->attempt.scene->constraint->bounds, region.bounds);
+  EXPECT_EQ(content_digest(*back->attempt.scene), content_digest(*named->attempt.scene));
+}
+
+TEST(AttemptJson, ASceneWithoutAConstraintIsWrittenAsEver) {
+  const auto named = attempt_from_json(with_constraint("null"));
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_FALSE(named->attempt.scene->constraint);
+  EXPECT_EQ(to_json(named->attempt).find("constraint"), std::string::npos);
+}
+
+TEST(AttemptJson, BadConstraintIsRefusedByName) {
+  EXPECT_EQ(message_of(with_constraint("{}")), "scene.constraint.T0_w: is missing");
+  EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[-0.5,0.5]", "[0.5,-0.5]"))),
+            "scene.constraint: Bw of y: lower 0.5 exceeds upper -0.5");
+  EXPECT_EQ(message_of(with_constraint(replaced(kUpright, "[0,0,0,", "[0,0,1001,"))),
+            "scene.constraint.T0_w: pose: coordinate 1001 m exceeds 1000 m");
 }
 
 TEST(AttemptJson, BadSceneIsRefusedByName) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "proto/types/limits.hpp"
@@ -31,6 +33,10 @@ TEST(RecordedScene, ContentDependsNeitherOnOrderNorOnRounding) {
       object.T_task_object = through_seven_numbers(object.T_task_object);
     for (HeldObject& held : same.held)
       held.T_transfer_object = through_seven_numbers(held.T_transfer_object);
+    if (same.constraint) {
+      same.constraint->T_task_region = through_seven_numbers(same.constraint->T_task_region);
+      same.constraint->T_region_end = through_seven_numbers(same.constraint->T_region_end);
+    }
     EXPECT_EQ(content_digest(same), content_digest(scene)) << i;
   }
 }
@@ -80,10 +86,59 @@ TEST(RecordedScene, ShapesComeBackFromTheirNumbers) {
   EXPECT_THROW(to_shape({4, {1, 1, 1}}), std::invalid_argument);
 }
 
-TEST(RecordedScene, BytesCountSolidsPairsAndNames) {
-  const RecordedScene scene{
+/// Level above z = 0, as a cup is carried.
+TaskSpaceRegion level() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TaskSpaceRegion region;
+  region.bounds << -kInfinity, -0.5, 0, -0.1, -0.1, -kInfinity,  //
+      kInfinity, 0.5, kInfinity, 0.1, 0.1, kInfinity;
+  return region;
+}
+
+TEST(RecordedScene, AConstraintIsContent) {
+  RecordedScene scene;
+  std::set<Digest> digests = {content_digest(scene)};
+  std::vector<TaskSpaceRegion> others(8, level());
+  others[1].T_task_region.translation().z() = 1e-6;
+  others[2].T_region_end.translation().z() = 1e-6;
+  others[3].bounds(0, 0) = -1e9;
+  others[4].bounds(1, 0) = 1e9;
+  others[5].bounds(1, 5) = M_PI;
+  others[6].bounds(0, 1) = 0.5;
+  others[7] = {};
+  for (const TaskSpaceRegion& other : others) {
+    scene.constraint = other;
+    EXPECT_TRUE(digests.insert(content_digest(scene)).second);
+  }
+  scene.constraint = level();
+  scene.constraint->bounds(0, 1) += 1e-11;
+  EXPECT_FALSE(digests.insert(content_digest(scene)).second);
+}
+
+TEST(RecordedScene, AConstraintThatCannotBeKeptIsNamed) {
+  RecordedScene scene;
+  scene.constraint = level();
+  EXPECT_FALSE(check_scene(scene));
+  scene.constraint->bounds(0, 4) = 0.2;
+  EXPECT_EQ(check_scene(scene)->message,
+            "scene: constraint: Bw of pitch: lower 0.2 exceeds upper 0.1");
+  scene.constraint->bounds(0, 4) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(check_scene(scene)->message, "scene: constraint: Bw of pitch: is not a number");
+  scene.constraint = level();
+  scene.constraint->T_task_region.translation().x() = 2000;
+  EXPECT_EQ(check_scene(scene)->message,
+            "scene: constraint: T0_w: pose: coordinate 2000 m exceeds 1000 m");
+  scene.constraint = level();
+  scene.constraint->T_region_end.linear() *= 2;
+  EXPECT_EQ(check_scene(scene)->message, "scene: constraint: Tw_e is not a rigid transform");
+}
+
+TEST(RecordedScene, BytesCountSolidsPairsNamesAndTheConstraint) {
+  RecordedScene scene{
       {{"table", BoxShape{{1, 2, 3}}}}, {{"can", SphereShape{1}}}, {{"can", "table"}}};
   EXPECT_EQ(scene_bytes(scene), 2 * 96 + 16 + 2 * 8U);
+  scene.constraint = level();
+  EXPECT_EQ(scene_bytes(scene), 2 * 96 + 16 + 2 * 8 + 216U) << "proto/CONTRACT.md says so";
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "proto/types/pose.hpp"
+#include "server/store/sqlite/compression.hpp"
 #include "tests/support/random_values.hpp"
 
 namespace kinship::store::scene_blob_test {
@@ -12,6 +15,12 @@ constexpr std::uint64_t kSeed = 51;
 
 std::optional<RecordedScene> decode(const SceneBlob& blob) {
   return decode_scene(blob.size, static_cast<std::int64_t>(blob.encoding), blob.bytes);
+}
+
+std::vector<std::uint8_t> plain(const SceneBlob& blob) {
+  if (blob.encoding == SceneEncoding::Plain)
+    return blob.bytes;
+  return decompress(blob.bytes, static_cast<std::size_t>(blob.size)).value();
 }
 
 TEST(SceneBlob, EverySceneComesBack) {
@@ -30,6 +39,10 @@ TEST(SceneBlob, EverySceneComesBack) {
                 written.objects[n].T_task_object.translation());
     }
     EXPECT_EQ(read->allowed_collisions, written.allowed_collisions);
+    ASSERT_EQ(read->constraint.has_value(), written.constraint.has_value());
+    if (written.constraint) {
+      EXPECT_EQ(read->constraint->bounds, written.constraint->bounds);  // infinite ones too
+    }
   }
 }
 
@@ -40,6 +53,26 @@ TEST(SceneBlob, ASceneOfEqualThingsIsCompressed) {
   EXPECT_EQ(blob.encoding, SceneEncoding::Zstd);
   EXPECT_LT(blob.bytes.size(), 400U);
   EXPECT_EQ(decode(blob)->objects.size(), 30U);
+}
+
+TEST(SceneBlob, OnlyAConstraintMakesFormatTwo) {
+  RecordedScene scene;
+  const SceneBlob without = encode_scene(scene);
+  scene.constraint.emplace();
+  scene.constraint->bounds.row(0).setConstant(-std::numeric_limits<double>::infinity());
+  scene.constraint->bounds.row(1).setConstant(std::numeric_limits<double>::infinity());
+  scene.constraint->bounds.col(4) << -0.25, 0.125;
+  const SceneBlob with = encode_scene(scene);
+  EXPECT_EQ(plain(without), (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0,  //
+                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
+                                                       0, 0, 0, 0, 0, 0, 0, 0,  //
+                                                       0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(plain(with).front(), 2);
+  EXPECT_EQ(with.size, without.size + 2 * 56 + 12 * 8);
+  EXPECT_FALSE(decode(without)->constraint);
+  const auto read = decode(with);
+  ASSERT_TRUE(read && read->constraint);
+  EXPECT_EQ(read->constraint->bounds, scene.constraint->bounds);
 }
 
 TEST(SceneBlob, WhatIsNoSceneIsNothing) {

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "tests/unit/server/store/store_conformance.hpp"
 
 namespace kinship::store {
@@ -47,6 +49,28 @@ TEST_P(StoreConformance, EqualScenesAreKeptOnce) {
   EXPECT_EQ(paths[1].scene_id, paths[0].scene_id);
   EXPECT_EQ(paths[3].scene_id, paths[0].scene_id);
   EXPECT_NE(paths[2].scene_id, paths[0].scene_id);
+}
+
+TEST_P(StoreConformance, AConstraintIsKeptWithItsScene) {
+  RecordedScene constrained = kitchen();
+  constrained.constraint.emplace();
+  constrained.constraint->bounds.row(1).setConstant(std::numeric_limits<double>::infinity());
+  RecordedScene open;
+  open.constraint = constrained.constraint;
+  test::report(*store_, {with(solved(1), kitchen()), with(solved(2), constrained),
+                         with(solved(3), open), with(solved(4), constrained)});
+  reopen();
+  const auto paths = store_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 10});
+  ASSERT_EQ(paths.size(), 4U);
+  EXPECT_NE(paths[1].scene_id, paths[0].scene_id);
+  EXPECT_NE(paths[2].scene_id, paths[1].scene_id);
+  EXPECT_EQ(paths[3].scene_id, paths[1].scene_id);
+  EXPECT_FALSE(store_->read_scene(paths[0].scene_id.value())->constraint);
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    const auto scene = store_->read_scene(paths[i].scene_id.value());
+    ASSERT_TRUE(scene && scene->constraint) << i;
+    EXPECT_EQ(scene->constraint->bounds, constrained.constraint->bounds);
+  }
 }
 
 TEST_P(StoreConformance, ASceneIsPartOfAReportsBody) {
