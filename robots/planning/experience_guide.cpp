@@ -59,9 +59,8 @@ std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& q
     paths.push_back(nearest(posed, options.paths, query.without));
   }
   std::vector<Choice> choices;
-  if (options.retreat_m)
-    for (const Eigen::Index goal : goals)
-      choices.push_back({goal, std::nullopt});
+  for (std::size_t i = 0; i < std::min(goals.size(), options.retreats); ++i)
+    choices.push_back({goals[i], std::nullopt});
   for (std::size_t rank = 0; rank < options.paths; ++rank)
     for (std::size_t i = 0; i < goals.size(); ++i)
       if (rank < paths[i].size())
@@ -72,7 +71,7 @@ std::vector<ExperienceGuide::Choice> ExperienceGuide::choose(const TrackQuery& q
 
 std::vector<Track> ExperienceGuide::follow(const TrackQuery& query, std::span<const Choice> choices,
                                            const TrackOptions& options) const {
-  const PosePath without_experience = retreat(options.retreat_m.value_or(0));
+  const PosePath without_experience = retreat(options.retreat_m);
   const Eigen::Isometry3d T_base_task = query.T_task_base.inverse();
   PoseQuery posed{query.T_task_base * kinematics::T_base_transfer(chain_, query.start), {}};
   std::vector<PoseTrack> wanted;

@@ -17,13 +17,11 @@ namespace kinship::planning {
 struct TrackOptions {
   std::size_t paths = 20;   ///< of the experience, the most like the query
   std::size_t tracks = 40;  ///< at most: each path is followed from several goals
-  /// Before the stored ways one is tried that needs no experience: see `retreat`; m.
-  std::optional<double> retreat_m = 0.4;
-  double deviation = 0.3;  ///< of samples from tracks, each joint, joint units
-  /// Of the guided samples: those around tracks, and those of the mixture where there is one; the
-  /// others are uniform.
-  double sample_fraction = 0.5;
-  double mixture_fraction = 0.2;
+  /// Before the stored ways one is tried that needs no experience (see `retreat`), from so many
+  /// goals at most, the nearest to the start first.
+  std::size_t retreats = 0;
+  double retreat_m = 0.4;
+  double deviation = 0.3;       ///< of samples from tracks, each joint, joint units
   double check_fraction = 0.3;  ///< see BirrtOptions::track_check_fraction
 };
 

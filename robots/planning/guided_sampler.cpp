@@ -17,13 +17,35 @@ double trust(const kinematics::Chain& chain, const TrackQuery& query, const Mixt
   return ratio * ratio < kLeast ? 0 : ratio * ratio;
 }
 
-/// What of the tracks a guide leaves.
-TrackOptions tracks_of(Guide guide, TrackOptions options) {
-  if (!has_retreat(guide))
-    options.retreat_m.reset();
-  if (!has_ways(guide))
-    options.paths = 0;
-  return options;
+/// What a guide makes of the guided samples, each 0 to 1, and how often it retreats. Chosen on
+/// tuning instances of the studies (README).
+struct Parts {
+  std::size_t retreats = 0;
+  double tracks = 0;
+  double mixture = 0;
+};
+
+Parts parts_of(Guide guide) {
+  constexpr std::size_t kAllGoals = 40, kNearestGoals = 3;
+  switch (guide) {
+    case Guide::None:
+      break;
+    case Guide::Retreat:
+      return {kAllGoals, 0.5, 0};
+    case Guide::Ways:
+      return {0, 0.9, 0};
+    case Guide::RetreatWays:
+      return {kNearestGoals, 0.8, 0};
+    case Guide::Mixture:
+      return {0, 0, 1};
+    case Guide::RetreatMixture:
+      return {kAllGoals, 0.3, 0.3};
+    case Guide::WaysMixture:
+      return {0, 0.1, 0.8};
+    case Guide::All:
+      return {kNearestGoals, 0.5, 0.2};
+  }
+  return {};
 }
 
 }  // namespace
@@ -32,22 +54,27 @@ GuidedSampler guided_sampler(const kinematics::Chain& chain, const TrackQuery& q
                              const Mixture* mixture,
                              std::shared_ptr<const ExperienceGuide> experience,
                              const GuideOptions& options) {
-  const TrackOptions tracks = tracks_of(options.guide, options.tracks);
-  const bool has_tracks = experience != nullptr && (tracks.retreat_m || tracks.paths > 0);
-  const double mixture_part = options.guided_fraction * (has_tracks ? tracks.mixture_fraction : 1);
+  Parts parts = parts_of(options.guide);
+  if (experience == nullptr && parts.mixture > 0)
+    parts = parts_of(Guide::Mixture);
   GuidedSampler guided{ConfigurationSampler(query.bounds)};
-  if (mixture != nullptr && has_mixture(options.guide) && mixture_part > 0) {
+  const double mixture_part = options.guided_fraction * parts.mixture;
+  if (mixture != nullptr && mixture_part > 0) {
     const double part = trust(chain, query, *mixture, options.gate_distance);
     guided.gate_fired = part < 1;
     guided.mixture_share = part * mixture_part;
     if (guided.mixture_share > 0)
       guided.sampler = ConfigurationSampler(query.bounds, chain, *mixture, guided.mixture_share);
   }
-  if (!has_tracks || options.guided_fraction == 0)
-    return guided;
-  guided.track_share = options.guided_fraction * tracks.sample_fraction;
-  guided.sampler = guided.sampler.with_tracks(
-      std::make_shared<QueryTracks>(std::move(experience), query, tracks), guided.track_share);
+  guided.track_share = experience != nullptr ? options.guided_fraction * parts.tracks : 0;
+  if (guided.track_share > 0) {
+    TrackOptions tracks = options.tracks;
+    tracks.retreats = parts.retreats;
+    if (!has_ways(options.guide))
+      tracks.paths = 0;
+    guided.sampler = guided.sampler.with_tracks(
+        std::make_shared<QueryTracks>(std::move(experience), query, tracks), guided.track_share);
+  }
   return guided;
 }
 

@@ -16,7 +16,7 @@ namespace kinship::planning {
 struct GuideOptions {
   Guide guide = Guide::All;
   double guided_fraction = 1;  ///< of the samples, 0 to 1
-  TrackOptions tracks = {};
+  TrackOptions tracks = {};    ///< but for `retreats`, which the guide says
   /// Beyond it a mixture gives fewer of its samples, none far beyond (query_distance).
   double gate_distance = kGateDistance;
 };
@@ -29,9 +29,10 @@ struct GuidedSampler {
   bool gate_fired = false;   ///< the mixture has less than its part
 };
 
-/// Tracks and mixture have their parts of the guided samples (TrackOptions), or the mixture all
-/// where there are no tracks. A mixture that the query is far from gives fewer, the fewer the
-/// farther: it says little about what lies between.
+/// Tracks and mixture have parts of the guided samples that the guide says, the mixture all of them
+/// where there is no experience. A mixture that the query is far from gives fewer, the fewer the
+/// farther: it says little about what lies between. The retreat is tried from every goal, but only
+/// from the three nearest where stored ways follow.
 /// \param mixture     null: there is none.
 /// \param experience  null: there is none, and no tracks.
 /// \throws std::invalid_argument if a share is not 0 to 1 or sizes differ.

@@ -90,7 +90,7 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
     settings.overshoot = wished.overshoot;
     settings.planner.kind = wished.planner;
     if (wished.retreat_m)
-      settings.tracks.retreat_m = wished.retreat_m;
+      settings.tracks.retreat_m = *wished.retreat_m;
     if (is_uniform(wished)) {
       cells.push_back(uniform_cell(wished.wish.target, settings, wished.overshoot));
       cells.back().name = wished.name;

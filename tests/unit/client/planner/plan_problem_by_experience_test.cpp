@@ -46,6 +46,7 @@ Guidance experienced(const Problem& problem, const Eigen::MatrixXd& waypoints) {
   Guidance guidance;
   guidance.experience = std::make_shared<planning::ExperienceGuide>(chain, experience);
   guidance.guided_fraction = 1;
+  guidance.guide = Guide::Ways;
   return guidance;
 }
 
@@ -60,14 +61,14 @@ TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
   again.seed += 5;
   PlanSettings tracks_first;
   tracks_first.tracks.check_fraction = 1;
-  tracks_first.tracks.retreat_m = std::nullopt;
   const ProblemResult guided =
       planned(again, tracks_first, {&guidance, SamplingMode::Guided}).result;
   ASSERT_TRUE(guided.solved) << guided.reason;
   EXPECT_EQ(guided.found_by, FoundBy::Track);
   EXPECT_GE(guided.tracks_followed, 1U);
   EXPECT_EQ(guided.experience_revision, 77U);
-  EXPECT_EQ(guided.track_share, PlanSettings().tracks.sample_fraction);
+  EXPECT_GT(guided.track_share, 0);
+  EXPECT_EQ(guided.guide, Guide::Ways);
   EXPECT_EQ(guided.share, guided.track_share);
   EXPECT_FALSE(guided.distribution_id);
   EXPECT_TRUE(is_free_along(*guided.waypoints, again));

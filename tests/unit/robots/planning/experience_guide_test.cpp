@@ -47,7 +47,7 @@ ExperienceGuide guide_of(const kinematics::Chain& chain, std::vector<PosePath> p
 }
 
 std::vector<Track> tracks_of(const ExperienceGuide& guide, const TrackQuery& query,
-                             const TrackOptions& options = {.retreat_m = {}}) {
+                             const TrackOptions& options = {}) {
   return guide.follow(query, guide.choose(query, options), options);
 }
 
@@ -95,14 +95,14 @@ TEST(ExperienceGuide, TakesEveryGoalBeforeASecondPathAndNotMoreThanItMay) {
   TrackQuery query = motion.query();
   query.goals = motion.goal.replicate(1, 3);
   query.goals.col(0) += Eigen::VectorXd::Constant(7, 0.2);  // the farthest
-  const auto choices = guide.choose(query, {.paths = 2, .tracks = 5, .retreat_m = {}});
+  const auto choices = guide.choose(query, {.paths = 2, .tracks = 5});
   ASSERT_EQ(choices.size(), 5U);
   EXPECT_EQ(choices[0].goal, 1);
   EXPECT_EQ(choices[2].goal, 0);
   EXPECT_EQ(choices[2].path, choices[0].path);
   EXPECT_NE(choices[3].path, choices[0].path);
-  EXPECT_EQ(guide.choose(query, {.paths = 2, .tracks = 100, .retreat_m = {}}).size(), 6U);
-  EXPECT_EQ(guide.choose(query, {.paths = 9, .tracks = 2, .retreat_m = {}}).size(), 2U);
+  EXPECT_EQ(guide.choose(query, {.paths = 2, .tracks = 100}).size(), 6U);
+  EXPECT_EQ(guide.choose(query, {.paths = 9, .tracks = 2}).size(), 2U);
 }
 
 TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
@@ -169,7 +169,7 @@ TEST(QueryTracks, SamplesLieAroundTheTracksAndWithinTheBounds) {
 TEST(QueryTracks, AMixtureKeepsWhatTheTracksLeave) {
   const Motion motion = panda_motion();
   auto guide = std::make_shared<ExperienceGuide>(guide_of(motion.chain, {}));
-  auto tracks = std::make_shared<QueryTracks>(guide, motion.query(), TrackOptions{.retreat_m = {}});
+  auto tracks = std::make_shared<QueryTracks>(guide, motion.query(), TrackOptions{});
   const Mixture at_start(Eigen::VectorXd::Ones(1), motion.start,
                          {1e-6 * Eigen::MatrixXd::Identity(7, 7)});
   const ConfigurationSampler sampler =
