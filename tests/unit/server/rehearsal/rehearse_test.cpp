@@ -1,0 +1,152 @@
+#include "server/rehearsal/rehearse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/unit/server/rehearsal/rehearsal_fixture.hpp"
+
+namespace kinship::rehearsal {
+namespace {
+
+class Rehearse : public RehearsalTest {
+ protected:
+  Subject subject_of(const Digest& digest, const TaskExperience& experience = {}) {
+    Subject subject;
+    subject.robot = robot(digest);
+    subject.recorded = queries_for(digest);
+    subject.experience =
+        std::make_shared<const planning::ExperienceGuide>(subject.robot->chain, experience);
+    return subject;
+  }
+  static Rehearsal rehearsed(Subject subject, std::size_t rounds = 1) {
+    Rehearsing rehearsing(std::move(subject), {.rounds = rounds, .max_checks = 5000});
+    while (rehearsing.step()) {
+    }
+    return rehearsing.result();
+  }
+};
+
+TEST_F(Rehearse, AQueryIsWhereThePathBeganAndEnded) {
+  const std::vector<Attempt> attempts = report_sweeps(2);
+  const RecordedQueries found = queries_for(panda_);
+  ASSERT_EQ(found.queries.size(), 2U);
+  const RecordedQuery& query = found.queries.front();
+  const Eigen::MatrixXd& waypoints = attempts.front().path->waypoints();
+  const kinematics::Chain& chain = robot(panda_)->chain;
+  EXPECT_EQ(query.path, attempts.front().report_uuid);
+  EXPECT_TRUE(
+      query.T_task_start.isApprox(kinematics::T_base_transfer(chain, waypoints.col(0)), 1e-9));
+  EXPECT_TRUE(
+      query.T_task_goal.isApprox(kinematics::T_base_transfer(chain, waypoints.rightCols(1)), 1e-9));
+  ASSERT_TRUE(query.scene);
+  EXPECT_EQ(query.scene->objects.front().name, "post");
+  ASSERT_TRUE(query.start) << "its own";
+  EXPECT_EQ(*query.start, waypoints.col(0));
+  EXPECT_FALSE(queries_for(ur10e_).queries.front().start) << "another arm's";
+  EXPECT_EQ(found.steps.step, 0.1);
+  EXPECT_EQ(found.steps.overshoot, 1);
+}
+
+TEST_F(Rehearse, OfManyQueriesSomeAreTakenFromBeginningToEnd) {
+  const std::vector<Attempt> attempts = report_sweeps(30);
+  const RecordedQueries found = queries_for(panda_, 3);
+  ASSERT_EQ(found.queries.size(), 3U);
+  EXPECT_EQ(found.queries.back().path, attempts.back().report_uuid);
+  EXPECT_EQ(found.queries.front().path, attempts[9].report_uuid);
+}
+
+TEST_F(Rehearse, AnotherArmBeginsWithItsHandWhereThePathBegan) {
+  report_sweeps(1);
+  const RecordedQuery query = queries_for(ur10e_).queries.front();
+  const auto posed = pose_query(*robot(ur10e_), Eigen::Isometry3d::Identity(), query);
+  ASSERT_TRUE(posed);
+  const kinematics::Chain& chain = robot(ur10e_)->chain;
+  EXPECT_TRUE(
+      kinematics::T_base_transfer(chain, posed->query.start).isApprox(query.T_task_start, 1e-4));
+  ASSERT_GT(posed->query.goals.cols(), 1) << "every branch of the goal";
+  for (const auto& goal : posed->query.goals.colwise())
+    EXPECT_TRUE(kinematics::T_base_transfer(chain, goal).isApprox(query.T_task_goal, 1e-4));
+  EXPECT_FALSE(posed->world->collides(posed->query.start));
+  EXPECT_EQ(posed->query.without, query.path) << "its answer is not followed";
+}
+
+TEST_F(Rehearse, WhatARobotCannotReachIsLeftOut) {
+  report_sweeps(2);
+  Subject far = subject_of(ur10e_);
+  far.T_task_base = Eigen::Translation3d(5, 0, 0);
+  const Rehearsal result = rehearsed(far);
+  EXPECT_EQ(result.queries, 0U);
+  EXPECT_EQ(result.left_out, 2U);
+  EXPECT_TRUE(result.is_complete);
+  EXPECT_EQ(result.guide, Guide::All) << "as if nobody had rehearsed";
+  EXPECT_FALSE(result.message.empty());
+}
+
+TEST_F(Rehearse, EveryGuideThatThereIsPlansEveryQuery) {
+  report_sweeps(3);
+  const Rehearsal without = rehearsed(subject_of(panda_), 2);
+  ASSERT_EQ(without.costs.size(), 2U) << "neither a mixture nor stored ways";
+  EXPECT_EQ(without.costs[0].guide, Guide::None);
+  EXPECT_EQ(without.costs[1].guide, Guide::Retreat);
+  EXPECT_EQ(without.queries, 3U);
+  for (const GuideCost& cost : without.costs)
+    EXPECT_EQ(cost.plans, 6U) << "each query in each round";
+
+  Subject with = subject_of(panda_, [&] {
+    TaskExperience experience;
+    experience.revision = 1;
+    experience.paths.push_back(
+        {panda_, Uuid::random(), {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()}});
+    return experience;
+  }());
+  const Mixture mixture(Eigen::VectorXd::Ones(1), robot(panda_)->chain.lower() * 0.5,
+                        {Eigen::MatrixXd::Identity(7, 7)});
+  with.mixtures = {mixture, mixture};
+  EXPECT_EQ(rehearsed(with).costs.size(), kMaxGuideCosts);
+  with.mixtures[1].reset();
+  EXPECT_EQ(rehearsed(with).costs.size(), 4U) << "of half of the queries nothing could be said";
+}
+
+TEST_F(Rehearse, TheCheapestGuideIsTakenAndEqualSubjectsCostTheSame) {
+  report_sweeps(4);
+  const Rehearsal result = rehearsed(subject_of(panda_), 3);
+  const auto least = std::ranges::min_element(result.costs, {}, &GuideCost::mean_checks);
+  const auto taken = std::ranges::find(result.costs, result.guide, &GuideCost::guide);
+  ASSERT_NE(taken, result.costs.end());
+  EXPECT_LE(taken->mean_checks, 1.03 * least->mean_checks);
+  EXPECT_EQ(rehearsed(subject_of(panda_), 3), result);
+}
+
+TEST_F(Rehearse, AHopelessGuideIsLeftAfterARound) {
+  report_sweeps(20);
+  Rehearsing rehearsing(subject_of(panda_), {.rounds = 2, .max_checks = 5000});
+  while (rehearsing.step()) {
+  }
+  const Rehearsal result = rehearsing.result();
+  const auto [least, most] = std::ranges::minmax(result.costs, {}, &GuideCost::mean_checks);
+  if (most.mean_checks > 2 * least.mean_checks) {
+    EXPECT_EQ(most.plans, 20U);
+    EXPECT_EQ(least.plans, 40U);
+  } else {
+    EXPECT_EQ(most.plans, 40U);
+  }
+}
+
+TEST_F(Rehearse, AConstraintIsKept) {
+  RecordedScene scene = post();
+  TaskSpaceRegion level;
+  level.bounds.row(0).setConstant(-10);
+  level.bounds.row(1).setConstant(10);
+  scene.constraint = level;
+  report_sweeps(1, scene);
+  const RecordedQuery query = queries_for(panda_).queries.front();
+  const auto posed = pose_query(*robot(panda_), Eigen::Isometry3d::Identity(), query);
+  ASSERT_TRUE(posed);
+  ASSERT_TRUE(posed->constraint);
+  EXPECT_TRUE(posed->constraint->holds(posed->query.start));
+}
+
+}  // namespace
+}  // namespace kinship::rehearsal
