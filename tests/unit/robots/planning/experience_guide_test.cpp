@@ -105,6 +105,21 @@ TEST(ExperienceGuide, TakesEveryGoalBeforeASecondPathAndNotMoreThanItMay) {
   EXPECT_EQ(guide.choose(query, {.paths = 9, .tracks = 2}).size(), 2U);
 }
 
+TEST(ExperienceGuide, TheAnswerToAQueryThatIsPlannedAgainIsNotFollowed) {
+  const Motion motion = panda_motion();
+  std::vector<PosePath> paths(3, motion.path());
+  for (PosePath& path : paths)
+    path.path = Uuid::random();
+  const ExperienceGuide guide = guide_of(motion.chain, paths);
+  TrackQuery query = motion.query();
+  query.without = paths[0].path;  // else the first of three that are equally near
+  EXPECT_EQ(guide.choose(motion.query(), {.paths = 2}).front().path, 0U);
+  const auto choices = guide.choose(query, {.paths = 2});
+  ASSERT_EQ(choices.size(), 2U) << "others take its place";
+  for (const ExperienceGuide::Choice& choice : choices)
+    EXPECT_NE(choice.path, 0U);
+}
+
 TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
   const Motion motion = panda_motion();
   EXPECT_TRUE(tracks_of(guide_of(motion.chain, {}), motion.query()).empty());
@@ -115,12 +130,12 @@ TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
 
 TEST(ExperienceGuide, TheRetreatComesBeforeStoredWaysAndNeedsNone) {
   const Motion motion = panda_motion();
-  const auto with = guide_of(motion.chain, {motion.path()}).choose(motion.query(), {});
+  const auto with = guide_of(motion.chain, {motion.path()}).choose(motion.query(), {.retreats = 40});
   ASSERT_EQ(with.size(), 2U);
   EXPECT_FALSE(with[0].path);
   EXPECT_EQ(with[1].path, 0U);
   const ExperienceGuide none = guide_of(motion.chain, {});
-  const std::vector<Track> tracks = tracks_of(none, motion.query(), {});
+  const std::vector<Track> tracks = tracks_of(none, motion.query(), {.retreats = 1});
   ASSERT_EQ(tracks.size(), 1U);
   // Close to the goal the hand moves along the palm's axis.
   const Eigen::Isometry3d goal = motion.hand(motion.goal);
