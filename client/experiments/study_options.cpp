@@ -104,7 +104,7 @@ void add_tuning_options(CLI::App& command, StudyOptions& options) {
   command
       .add_option("--study", options.sides,
                   "side studies on the test instances: pooled, components, paper, scenes, sizes, "
-                  "inverse, overshoot, roadmap, peers")
+                  "inverse, overshoot, roadmap, guides, oracle, peers")
       ->delimiter(',')
       ->excludes(tunes);
   command

@@ -1,5 +1,6 @@
 #include "client/experiments/pipeline/query_runner.hpp"
 
+#include "client/experiments/pipeline/oracle.hpp"
 #include "client/experiments/pipeline/parallel_for.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/planning/path_vertices.hpp"
@@ -12,13 +13,18 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
   planner::QueryGuidance query;
   if (cell.guidance)
     query = {.guidance = &*cell.guidance, .sampling_mode = SamplingMode::Guided};
+  std::optional<planner::Guidance> oracle;
+  if (cell.oracle_deviation)
+    oracle = oracle_guidance(member, problem, cell.settings, *cell.oracle_deviation);
+  if (oracle)
+    query = {.guidance = &*oracle, .sampling_mode = SamplingMode::Guided};
   const planner::PlannedProblem planned =
       planner::plan_problem(member.planned, problem, query, cell.settings, [] { return false; });
   if (!planned.attempted)
     throw Failure(ErrorCode::Internal, problem.name + ": " + planned.result.reason);
   const ProblemResult& result = planned.result;
   return {.key = std::move(key),
-          .distribution = result.distribution_id,
+          .distribution = cell.guidance ? result.distribution_id : std::nullopt,
           .solved = result.solved,
           .checks = result.collision_checks,
           .goal_checks = result.goal_checks,
@@ -29,7 +35,7 @@ QueryResult answer(const StudyMember& member, const Cell& cell, const Problem& p
           .guided_share = result.share,
           .track_share = result.track_share,
           .found_by = result.found_by,
-          .guide = cell.guidance ? std::optional(result.guide) : std::nullopt};
+          .guide = query.guidance != nullptr ? std::optional(result.guide) : std::nullopt};
 }
 
 /// All queries of one robot and instance.

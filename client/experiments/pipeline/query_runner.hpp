@@ -17,6 +17,8 @@ struct Cell {
   std::string name;       ///< unique among the robot's cells; in QueryKey::guidance
   planner::PlanSettings settings;
   std::optional<planner::Guidance> guidance;  ///< missing: uniform
+  /// Guided by an answer to each query itself (oracle.hpp), so far about it; joint units.
+  std::optional<double> oracle_deviation = {};
 };
 
 /// Sets what a cell is guided by.

@@ -146,6 +146,21 @@ SideStudy guides(const Study& study) {
   return side;
 }
 
+/// What bounds the worth of samples: those around an answer to the very query.
+SideStudy oracle(const Study& study) {
+  SideStudy side{"oracle", "samples around a path that answers the query itself", {}, {}};
+  for (const double deviation : {0.1, 0.3})
+    for (std::size_t robot = 0; robot < study.robots.size(); ++robot) {
+      WishedCell cell{cell_name(kNobody, formatted("own answer, %g about it", deviation)),
+                      {study.name, robot, {}, ""},
+                      study.settings.overshoot,
+                      0};
+      cell.oracle_deviation = deviation;
+      side.cells.push_back(std::move(cell));
+    }
+  return side;
+}
+
 /// The same distributions in the hands of another planner.
 SideStudy roadmap(const Study& study) {
   SideStudy side{"roadmap", "Repetition Roadmap over the components, then the trees", {}, {}};
@@ -186,9 +201,9 @@ std::string uniform_name(double overshoot) {
 }
 
 std::vector<SideStudy> side_studies(const Study& study) {
-  std::vector<SideStudy> sides = {pooled(study),    components(study), paper(study),
-                                  scenes(study),    sizes(study),      inverse(study),
-                                  overshoot(study), roadmap(study),    guides(study)};
+  std::vector<SideStudy> sides = {
+      pooled(study),  components(study), paper(study),   scenes(study), sizes(study),
+      inverse(study), overshoot(study),  roadmap(study), guides(study), oracle(study)};
   if (!study.is_constrained)
     sides.push_back(ompl_peers(study));
   return sides;

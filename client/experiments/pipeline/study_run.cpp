@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "client/experiments/formatted.hpp"
@@ -94,6 +95,9 @@ std::vector<Cell> side_cells(const Study& study, const SideStudy& side, StudySes
     if (is_uniform(wished)) {
       cells.push_back(uniform_cell(wished.wish.target, settings, wished.overshoot));
       cells.back().name = wished.name;
+      cells.back().oracle_deviation = wished.oracle_deviation;
+      if (wished.oracle_deviation)  // no gate doubts an answer
+        cells.back().settings.gate_distance = std::numeric_limits<double>::infinity();
     } else if (auto cell = guided_cell(session.fleet()[wished.wish.target], wished.guide,
                                        {wished.wish.target, wished.name, settings, {}},
                                        session.fetch(rehearsed_if_needed(wished)), wished.share)) {

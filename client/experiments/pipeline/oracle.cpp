@@ -1,0 +1,30 @@
+#include "client/experiments/pipeline/oracle.hpp"
+
+#include "client/planner/plan_problem.hpp"
+#include "robots/planning/path_vertices.hpp"
+
+namespace kinship::experiments {
+
+std::optional<planner::Guidance> oracle_guidance(const StudyMember& member, const Problem& problem,
+                                                 const planner::PlanSettings& settings,
+                                                 double deviation) {
+  constexpr std::uint64_t kShortcutChecks = 1000;
+  planner::PlanSettings shortened = settings;
+  shortened.shortcut_checks = kShortcutChecks;
+  const planner::PlannedProblem planned =
+      planner::plan_problem(member.planned, problem, {}, shortened, [] { return false; });
+  if (!planned.result.waypoints)
+    return std::nullopt;
+  const Eigen::MatrixXd along = planning::densified(*planned.result.waypoints, deviation);
+  const Eigen::Index dof = along.rows();
+  planner::Guidance guidance;
+  guidance.distribution_id = Digest{};
+  guidance.mixture =
+      Mixture(Eigen::VectorXd::Constant(along.cols(), 1.0 / static_cast<double>(along.cols())),
+              along, {Eigen::MatrixXd::Identity(dof, dof) * deviation * deviation});
+  guidance.guide = Guide::Mixture;
+  guidance.guided_fraction = 1;
+  return guidance;
+}
+
+}  // namespace kinship::experiments
