@@ -237,7 +237,8 @@ void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
         kept_rounds = rehearsing.rounds();
         result = rehearsing.result();
         result.processor_time_s = now_s - begin_s;
-        keep(id, result, paths);
+        if (!result.is_complete)
+          keep(id, result, paths);
       }
       rest(id, now_s - rested_s);
       rested_s = now_s;
