@@ -116,7 +116,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << "queued         " << count_text(status.queued_reports, "report") << ", "
       << count_text(status.queued_fits, "fit") << '\n'
       << "under way      " << count_text(status.jobs, "job") << "; "
-      << count_text(status.followed, "distribution") << " followed\n";
+      << count_text(status.followed, "distribution") << " followed\n"
+      << "rehearsals     " << status.rehearsals << " done, " << status.queued_rehearsals
+      << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n";
 }
 
 }  // namespace
