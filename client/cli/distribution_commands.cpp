@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/rehearsal_text.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -162,6 +163,8 @@ void print_explanation(const Explanation& explanation, std::ostream& out) {
                    std::to_string(now.generation),
                    fitted_generation(explanation.distribution, now.robot)});
   table.print(out);
+  out << '\n';
+  print_rehearsal(explanation.rehearsal, out);
 }
 
 }  // namespace

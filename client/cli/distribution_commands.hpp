@@ -24,7 +24,7 @@ int fetch_distribution(link::Client& server, const FetchOptions& options, std::o
 void print_distribution(const Distribution& distribution, std::ostream& out);
 
 /// `distributions explain`: what a distribution is made of, why it failed, how it stands to the
-/// experience of now. One that could not be made is explained too.
+/// experience of now, what guides its robot best. One that could not be made is explained too.
 int explain_distribution(link::Client& server, const DistributionQuery& query, bool json,
                          std::ostream& out, std::ostream& err);
 

@@ -4,6 +4,7 @@
 #include "client/cli/distribution_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_text.hpp"
+#include "client/cli/scene_text.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -84,8 +85,7 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
         << record.distribution_revision;
   out << '\n';
   if (attempt.scene)
-    out << "scene       " << attempt.scene->objects.size() << " objects, "
-        << attempt.scene->held.size() << " held\n";
+    print_scene(*attempt.scene, out);
   if (!attempt.path)
     return;
   out << "waypoints   " << attempt.path->size() << '\n';
@@ -116,7 +116,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << "queued         " << count_text(status.queued_reports, "report") << ", "
       << count_text(status.queued_fits, "fit") << '\n'
       << "under way      " << count_text(status.jobs, "job") << "; "
-      << count_text(status.followed, "distribution") << " followed\n";
+      << count_text(status.followed, "distribution") << " followed\n"
+      << "rehearsals     " << status.rehearsals << " done, " << status.queued_rehearsals
+      << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n";
 }
 
 }  // namespace

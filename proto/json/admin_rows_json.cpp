@@ -14,6 +14,8 @@ Explanation read_explanation(const Reader& reader) {
       read_as<std::vector<Explanation::Now>>(reader.at("experience"), {.limit = kMaxSources});
   explanation.behind = reader.at("behind").boolean();
   explanation.next_fit = reader.at("next_fit").text(kMaxMessageBytes);
+  if (const auto rehearsal = reader.find("rehearsal"))
+    explanation.rehearsal = read_as<Rehearsal>(*rehearsal);
   return explanation;
 }
 
@@ -25,6 +27,7 @@ std::string to_json(const Explanation& explanation) {
   object["experience"] = json_of(explanation.experience);
   object["behind"] = explanation.behind;
   object["next_fit"] = explanation.next_fit;
+  object["rehearsal"] = json_of(explanation.rehearsal);
   return write(object);
 }
 

@@ -12,6 +12,7 @@
 #include "proto/types/distribution.hpp"
 #include "proto/types/field.hpp"
 #include "proto/types/limits.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/uuid.hpp"
 
 /// The rows that admin verbs list: what the store knows, without waypoints and mixtures.
@@ -135,9 +136,10 @@ struct Explanation {
     std::uint64_t paths = 0;
     std::uint64_t generation = 0;
   };
-  std::vector<Now> experience;  ///< of its task and selection
-  bool behind = false;          ///< a fetch would have it fitted again
-  std::string next_fit;         ///< when and why it is fitted next, in words
+  std::vector<Now> experience;              ///< of its task and selection
+  bool behind = false;                      ///< a fetch would have it fitted again
+  std::string next_fit;                     ///< when and why it is fitted next, in words
+  std::optional<Rehearsal> rehearsal = {};  ///< of its robot and task; missing: not yet
 };
 
 template <>
@@ -199,7 +201,10 @@ struct ServerStatus {
   std::uint64_t jobs = 0;      ///< not ended
   std::uint64_t store_bytes = 0;
   bool writable = true;
-  std::string storage_message;  ///< why not writable, or a warning
+  std::string storage_message;          ///< why not writable, or a warning
+  std::uint64_t rehearsals = 0;         ///< done since start
+  std::uint64_t queued_rehearsals = 0;  ///< waiting or under way
+  double rehearsal_time_s = 0;          ///< processor time of those that are done
 };
 
 template <>
@@ -225,6 +230,9 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"jobs", &ServerStatus::jobs},
     Field{"store_bytes", &ServerStatus::store_bytes},
     Field{"writable", &ServerStatus::writable},
-    Field{"storage_message", &ServerStatus::storage_message, {.limit = kMaxPageBytes}}};
+    Field{"storage_message", &ServerStatus::storage_message, {.limit = kMaxPageBytes}},
+    Field{"rehearsals", &ServerStatus::rehearsals, {.may_be_missing = true}},
+    Field{"queued_rehearsals", &ServerStatus::queued_rehearsals, {.may_be_missing = true}},
+    Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}}};
 
 }  // namespace kinship

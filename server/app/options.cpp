@@ -39,6 +39,19 @@ std::size_t default_workers() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
+/// Takes numbers from 0 to 1; CLI::Range lets what is no number pass.
+const CLI::Validator& is_part() {
+  static const CLI::Validator kPart(
+      [](std::string& text) {
+        double part = 0;
+        return CLI::detail::lexical_cast(text, part) && part >= 0 && part <= 1
+                   ? std::string()
+                   : "'" + text + "' is not a number from 0 to 1";
+      },
+      "FLOAT in [0 - 1]");
+  return kPart;
+}
+
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
@@ -58,6 +71,11 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--fit-niceness", options.fit_niceness,
                  "How far these threads step back for others on this machine")
       ->check(CLI::Range(0, 19))
+      ->capture_default_str();
+  app.add_option("--rehearsal-cpu", options.rehearsal_fraction,
+                 "Part of one processor, in the mean, for planning recorded queries again to find "
+                 "out what guides them best; 0: none")
+      ->check(is_part())
       ->capture_default_str();
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))

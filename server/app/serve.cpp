@@ -40,6 +40,7 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service.version = KINSHIP_VERSION;
   service.fit_threads = options.workers;
   service.fit_niceness = options.fit_niceness;
+  service.rehearsal_fraction = options.rehearsal_fraction;
   service.log = [](std::string_view line) { spdlog::info("{}", line); };
   return service;
 }

@@ -12,7 +12,8 @@ namespace kinship::catalog {
 /// \param book  outlives the reply; begins to choose at once.
 FetchDone with_experience(ExperienceBook& book, const FetchRequest& request, FetchDone done);
 
-/// What a message has left for an experience beside the rest of a reply, bytes.
+/// What a message has left for an experience beside the rest of a reply, bytes: a distribution, and
+/// a rehearsal, which takes 2.5 KB at most.
 std::size_t room_for_experience(const FetchReply& reply);
 
 }  // namespace kinship::catalog

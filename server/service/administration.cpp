@@ -139,8 +139,11 @@ AdminPage Administration::explain(const std::string& prefix) {
   Distribution distribution = find_distribution(prefix);
   if (parts_.advise && has_mixture(distribution.state))
     distribution.advice = parts_.advise(distribution);
-  return page_of(
-      explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms()));
+  Explanation explanation =
+      explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms());
+  if (const std::shared_ptr<const Rehearsal> known = parts_.rehearsal(explanation.distribution.id))
+    explanation.rehearsal = *known;
+  return page_of(std::move(explanation));
 }
 
 AdminPage Administration::export_configurations(const std::string& prefix,

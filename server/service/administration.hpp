@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +31,9 @@ class Administration {
     std::function<ServerStatus()> status;
     /// What share of guidance is recommended now; empty: what the distribution says.
     std::function<Advice(const Distribution&)> advise = {};
+    /// What was rehearsed with a distribution; null: nothing yet.
+    std::function<std::shared_ptr<const Rehearsal>(const Digest& distribution)> rehearsal =
+        [](const Digest&) { return nullptr; };
     /// A distribution was evicted from the store: nothing may serve it from memory.
     std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
     /// Paths of a task were retired: nothing that was made of them may be served.

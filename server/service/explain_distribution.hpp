@@ -8,7 +8,7 @@
 namespace kinship::service {
 
 /// How a distribution stands to the experience of now, and when it is fitted next. Its mixture is
-/// left out.
+/// left out, and so is what was rehearsed.
 /// \param now_ms  Unix time, UTC.
 /// \throws Failure(Storage)
 Explanation explain_distribution(const store::Store& store, Distribution distribution,

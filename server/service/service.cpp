@@ -113,6 +113,7 @@ Administration::Parts Service::administration_parts() {
                                       profile ? fitting::first_share(*profile, distribution.state)
                                               : distribution.advice.recommended_share);
               },
+          .rehearsal = [this](const Digest& id) { return rehearsals_.find(id); },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
           .forget_task =
               [this](const std::string& task) {
@@ -246,6 +247,10 @@ ServerStatus Service::status() const {
   status.store_bytes = store.bytes;
   status.writable = store.writable;
   status.storage_message = store.message;
+  const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();
+  status.rehearsals = rehearsals.done;
+  status.queued_rehearsals = rehearsals.queued;
+  status.rehearsal_time_s = rehearsals.processor_time_s;
   return status;
 }
 

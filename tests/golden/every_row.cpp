@@ -126,6 +126,7 @@ Explanation every_explanation() {
   }
   explanation.behind = true;
   explanation.next_fit = next.text("next fit");
+  explanation.rehearsal = every_rehearsal();
   return explanation;
 }
 
@@ -178,6 +179,9 @@ ServerStatus every_status() {
   status.store_bytes = next.count();
   status.writable = false;
   status.storage_message = next.text("message");
+  status.rehearsals = next.count();
+  status.queued_rehearsals = next.count();
+  status.rehearsal_time_s = next.real();
   return status;
 }
 

@@ -66,6 +66,7 @@ Distribution every_distribution();  ///< a mixture of two components, four joint
 Distribution every_kernels();       ///< the same, three kernels
 Distribution every_failure();       ///< without all that may be missing
 Selection every_selection();
+Rehearsal every_rehearsal();
 
 RobotSummary every_robot_summary();
 TaskSummary every_task_summary();

@@ -32,11 +32,14 @@ struct Answer {
 /// One kinshipd and its domain.
 class Server {
  public:
-  explicit Server(const std::filesystem::path& store) : store_(store) { start(); }
+  explicit Server(const std::filesystem::path& store, std::vector<std::string> arguments = {})
+      : store_(store), arguments_(std::move(arguments)) {
+    start();
+  }
 
   void start() {
-    process_ = std::make_unique<test::ServerProcess>(
-        test::ServerProcess::Options{.store = store_, .domain = domain_.number(), .arguments = {}});
+    process_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
+        .store = store_, .domain = domain_.number(), .arguments = arguments_});
   }
   test::ServerProcess& process() { return *process_; }
 
@@ -62,6 +65,7 @@ class Server {
 
  private:
   std::filesystem::path store_;
+  std::vector<std::string> arguments_;
   test::ReservedDomain domain_;
   std::unique_ptr<test::ServerProcess> process_;
 };
@@ -89,6 +93,16 @@ class AdminCommands : public testing::Test {
     unsolved.path.reset();
     client->report(unsolved);
     ASSERT_EQ(client->flush(seconds(60)).accepted, 7U);
+  }
+  /// The Panda's distribution, its stored ways and what was rehearsed, waited for.
+  FetchReply fetch_rehearsed(const Server& server) const {
+    FetchRequest request;
+    request.task = "sweep";
+    request.robot = attempts_.front().robot;
+    request.deadline = seconds(200);
+    request.experience_bytes = kDefaultExperienceBytes;
+    request.rehearsed = true;
+    return server.client(folder_ / "other_outbox")->fetch(request).value_or_throw();
   }
   std::string file(const char* name) const { return (folder_ / name).string(); }
 
@@ -324,6 +338,46 @@ TEST_F(AdminCommands, AnExplanationTellsHowADistributionStandsToTheExperienceOfN
   const std::string id = answer.out.substr(answer.out.find("distribution  ") + 14, 12);
   EXPECT_EQ(server_.kinship({"distributions", "explain", "--distribution", id, "--json"}).code, 0);
   EXPECT_EQ(server_.kinship({"distributions", "explain", "--distribution", "0000"}).code, 3);
+}
+
+TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
+  teach(server_);
+  const auto explain = [&](const std::vector<std::string>& also) {
+    std::vector<std::string> words = {"distributions", "explain", "--task", "sweep",
+                                      "--robot",       "panda",   "--wait", "100"};
+    words.insert(words.end(), also.begin(), also.end());
+    const Answer answer = server_.kinship(words);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return answer.out;
+  };
+  EXPECT_NE(explain({}).find("\nnot rehearsed yet: "), std::string::npos);
+  const FetchReply reply = fetch_rehearsed(server_);
+  ASSERT_TRUE(reply.rehearsal) << reply.message;
+  EXPECT_TRUE(reply.rehearsal->is_complete);
+
+  const std::string table = explain({});
+  EXPECT_NE(table.find("\nrehearsed on 6 recorded queries, "), std::string::npos) << table;
+  EXPECT_NE(table.find("  chosen\n"), std::string::npos) << table;
+  const Explanation explanation = json::explanation_from_json(explain({"--json"})).value_or_throw();
+  EXPECT_EQ(explanation.rehearsal, reply.rehearsal);
+
+  const ServerStatus status =
+      json::server_status_from_json(server_.kinship({"status", "--json"}).out).value_or_throw();
+  EXPECT_EQ(status.rehearsals, 1U);
+  EXPECT_EQ(status.queued_rehearsals, 0U);
+  EXPECT_EQ(status.rehearsal_time_s, reply.rehearsal->processor_time_s);
+  EXPECT_NE(server_.kinship({"status"}).out.find("\nrehearsals     1 done, 0 queued, "),
+            std::string::npos);
+}
+
+TEST_F(AdminCommands, AServerThatMayNotRehearseDoesNot) {
+  const Server idle(folder_ / "idle.db", {"--rehearsal-cpu", "0"});
+  teach(idle);
+  const FetchReply reply = fetch_rehearsed(idle);
+  EXPECT_TRUE(reply.experience) << reply.message;
+  EXPECT_FALSE(reply.rehearsal);
+  EXPECT_NE(idle.kinship({"status"}).out.find("\nrehearsals     0 done, 0 queued, 0.0 s"),
+            std::string::npos);
 }
 
 TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {

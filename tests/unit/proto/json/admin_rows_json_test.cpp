@@ -86,6 +86,35 @@ TEST(AdminRowsJson, ExplanationIsReadBackWithAndWithoutItsMixture) {
   EXPECT_EQ(back->experience[1].label, "iiwa14");
 }
 
+TEST(AdminRowsJson, RehearsalOfAnExplanationIsReadBackAndMayBeMissing) {
+  Explanation explanation;
+  explanation.distribution = fitted();
+  std::string text = to_json(explanation);
+  const std::string none = R"(,"rehearsal":null)";
+  ASSERT_NE(text.find(none), std::string::npos) << text;
+  EXPECT_FALSE(explanation_from_json(text).value_or_throw().rehearsal);
+  text.erase(text.find(none), none.size());
+  EXPECT_FALSE(explanation_from_json(text).value_or_throw().rehearsal);
+
+  explanation.rehearsal = Rehearsal{.guide = Guide::RetreatWays,
+                                    .is_complete = true,
+                                    .queries = 100,
+                                    .left_out = 3,
+                                    .processor_time_s = 74.25,
+                                    .costs = {{Guide::None, 400, 380, 1552.5, 900}},
+                                    .message = "why"};
+  text = to_json(explanation);
+  EXPECT_TRUE(text.ends_with(
+      R"("rehearsal":{"guide":"retreat+ways","is_complete":true,"queries":100,"left_out":3,)"
+      R"("processor_time_s":74.25,"costs":[{"guide":"none","plans":400,"solved":380,)"
+      R"("mean_checks":1552.5,"median_checks":900.0}],"message":"why"}})"))
+      << text;
+  EXPECT_EQ(explanation_from_json(text).value_or_throw().rehearsal, explanation.rehearsal);
+  text.replace(text.find("retreat+ways"), 12, "luck");
+  EXPECT_TRUE(explanation_from_json(text).error().message.starts_with("guide: 'luck'"))
+      << explanation_from_json(text).error().message;
+}
+
 TEST(AdminRowsJson, RefusalInsideAnExplanationNamesThePlace) {
   Explanation explanation;
   explanation.distribution = fitted();

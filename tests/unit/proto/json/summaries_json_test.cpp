@@ -78,12 +78,27 @@ TEST(SummariesJson, StatusIsReadBack) {
        {&status.uptime_s, &status.robots, &status.tasks, &status.paths, &status.attempts,
         &status.distributions, &status.reports_received, &status.reports_refused, &status.fetches,
         &status.fetches_from_memory, &status.fits, &status.queued_reports, &status.queued_fits,
-        &status.followed, &status.jobs, &status.store_bytes})
+        &status.followed, &status.jobs, &status.rehearsals, &status.queued_rehearsals,
+        &status.store_bytes})
     *counter = ++value;
+  status.rehearsal_time_s = 74.25;
   status.writable = false;
   status.storage_message = "disk full";
   expect_same_text_again(status, server_status_from_json);
   EXPECT_EQ(server_status_from_json(to_json(status))->store_bytes, value);
+}
+
+TEST(SummariesJson, StatusOfAServerThatRehearsesNothingIsRead) {
+  ServerStatus status;
+  status.fits = 3;
+  std::string text = to_json(status);
+  text = text.substr(0, text.find(R"(,"rehearsals")")) + "}";
+  const auto read = server_status_from_json(text);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(to_json(*read), to_json(status));
+  status.rehearsal_time_s = -1;
+  EXPECT_EQ(server_status_from_json(to_json(status)).error().message,
+            "rehearsal_time_s: -1 is below 0");
 }
 
 TEST(SummariesJson, RegisteredRobotNamesTheSameArms) {

@@ -39,6 +39,7 @@ TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
   EXPECT_EQ(options.domain, 0U);
   EXPECT_GE(options.workers, 1U);
   EXPECT_EQ(options.log_level, "info");
+  EXPECT_EQ(options.rehearsal_fraction, 0.1);
 }
 
 TEST_F(Options, TheStoreIsUnderHomeIfXdgSaysNothingUsable) {
@@ -57,6 +58,23 @@ TEST_F(Options, ArgumentsAreTaken) {
   EXPECT_EQ(options.workers, 4U);
   EXPECT_EQ(options.network_interface, "eth0");
   EXPECT_EQ(options.log_level, "error");
+}
+
+TEST_F(Options, APartOfAProcessorIsANumberFromZeroToOne) {
+  EXPECT_EQ(good({"--rehearsal-cpu", "0"}).rehearsal_fraction, 0.0);
+  EXPECT_EQ(good({"--rehearsal-cpu", "1"}).rehearsal_fraction, 1.0);
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.ini").string();
+  std::ofstream(file) << "rehearsal-cpu=0.25\n";
+  EXPECT_EQ(good({"--config", file.c_str()}).rehearsal_fraction, 0.25);
+  for (const char* wrong : {"-0.1", "1.01", "nan", "inf", "much", ""}) {
+    EXPECT_EQ(code({"--rehearsal-cpu", wrong}), kWrongUsage) << wrong;
+    EXPECT_NE(err_.str().find("'" + std::string(wrong) + "' is not a number from 0 to 1"),
+              std::string::npos)
+        << err_.str();
+  }
+  std::ofstream(file) << "rehearsal-cpu=nan\n";
+  EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage);
 }
 
 TEST_F(Options, TheCommandLineGoesBeforeTheFileAndThatBeforeTheEnvironment) {

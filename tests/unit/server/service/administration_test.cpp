@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <map>
+#include <memory>
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -56,6 +58,11 @@ class AdministrationTest : public testing::Test {
                   status.version = "7";
                   return status;
                 },
+            .rehearsal =
+                [this](const Digest& id) {
+                  const auto found = rehearsed_.find(id);
+                  return found == rehearsed_.end() ? nullptr : found->second;
+                },
             .forget_distribution = [this](const Digest& id) { forgotten_ += id.hex() + "\n"; },
             .forget_task = [this](const std::string& task) { forgotten_ += task + "\n"; },
             .on_change = [this](const std::string& task,
@@ -63,6 +70,7 @@ class AdministrationTest : public testing::Test {
   }
 
   std::string forgotten_, changes_;
+  std::map<Digest, std::shared_ptr<const Rehearsal>> rehearsed_;
   test::TemporaryDirectory directory_;
   std::unique_ptr<store::Store> store_ = store::open_sqlite_store(directory_ / "fleet.db");
   runtime::RobotRegistry registry_{*store_};
@@ -132,6 +140,19 @@ TEST_F(AdministrationTest, MissingThingsAreNamed) {
   EXPECT_EQ(ask(AdminVerb::ShowPath, "17").message, "'17' is not a report's UUID");
   EXPECT_EQ(ask(AdminVerb::ShowDistribution, "abcd").message, "no distribution 'abcd'");
   EXPECT_EQ(ask(AdminVerb::ShowDistribution, "xyz").status, AdminStatus::Refused);
+}
+
+TEST_F(AdministrationTest, AnExplanationSaysWhatWasRehearsedWithItsDistribution) {
+  const Distribution one = put_distribution(0x11, 1), other = put_distribution(0x22, 2);
+  const auto explained = [&](const Distribution& distribution) {
+    const AdminPage page = ask(AdminVerb::ExplainDistribution, distribution.id.hex());
+    return row<Explanation>(page).rehearsal;
+  };
+  EXPECT_FALSE(explained(one));
+  const Rehearsal rehearsal{.guide = Guide::Ways, .is_complete = true, .queries = 7};
+  rehearsed_[one.id] = std::make_shared<const Rehearsal>(rehearsal);
+  EXPECT_EQ(explained(one), rehearsal);
+  EXPECT_FALSE(explained(other));
 }
 
 TEST_F(AdministrationTest, PathsAreListedByRobotAndTaskInPages) {

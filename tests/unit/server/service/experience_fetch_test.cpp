@@ -138,6 +138,13 @@ TEST_F(ExperienceFetch, LeavesRoomForTheRestOfItsMessage) {
   constexpr std::size_t kMixture = 1024UL * 8 * (1 + 7 + 28);
   EXPECT_LE(catalog::room_for_experience(reply), kMaxSampleBytes - kMixture);
   EXPECT_GT(catalog::room_for_experience(reply), kMaxSampleBytes - kMixture - 20'000);
+  const std::size_t without = catalog::room_for_experience(reply);
+  reply.rehearsal.emplace();
+  reply.rehearsal->costs.resize(kMaxGuideCosts);
+  reply.rehearsal->message = std::string(kMaxMessageBytes, 'w');
+  const std::size_t taken = without - catalog::room_for_experience(reply);
+  EXPECT_GE(taken, kMaxMessageBytes + kMaxGuideCosts * sizeof(GuideCost));
+  EXPECT_LT(taken, 3'000U);
 }
 
 TEST_F(ExperienceFetch, IsGivenToManyWhoAskWhileReportsComeIn) {
