@@ -101,7 +101,7 @@ class StudyCell : public testing::Test {
     const auto uniform = plan({"--guidance", "none"});
     const auto guided =
         plan({"--task", cell.study, "--guidance", "require", "--sources", cell.source, "--share",
-              "1", "--control-share", "0", "--wait", "600"});
+              "1", "--control-share", "0", "--wait", "600", "--rehearsed"});
     int equal = 0;
     for (const auto& result : experiments::read_query_results(folder + "/test.jsonl")) {
       if (result.key.robot != cell.target ||
