@@ -67,7 +67,7 @@ SharedRehearsal RehearsalBook::ask(const RehearsalKey& key) {
   return known;
 }
 
-void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, Done done) {
+void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, const Done& done) {
   SharedRehearsal known;
   bool waits = false;
   {
@@ -77,7 +77,7 @@ void RehearsalBook::wait(const RehearsalKey& key, TimePoint deadline, Done done)
       known = entry.known;
       waits = entry.is_working && waiters_ < options_.max_waiters;
       if (waits) {
-        entry.waiters.push_back({deadline, std::move(done)});
+        entry.waiters.push_back({deadline, done});
         ++waiters_;
       }
       make_room();

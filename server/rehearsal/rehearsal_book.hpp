@@ -85,7 +85,7 @@ class RehearsalBook {
   SharedRehearsal ask(const RehearsalKey& key);
   /// The same, answered when nothing more is to come, at the deadline, or in stop(). `done` must
   /// not block.
-  void wait(const RehearsalKey& key, TimePoint deadline, Done done);
+  void wait(const RehearsalKey& key, TimePoint deadline, const Done& done);
 
   std::optional<TimePoint> next_deadline() const;
   void expire(TimePoint now);
