@@ -130,7 +130,8 @@ TEST(ExperienceGuide, WithoutPathsOrGoalsThereIsNothingToFollow) {
 
 TEST(ExperienceGuide, TheRetreatComesBeforeStoredWaysAndNeedsNone) {
   const Motion motion = panda_motion();
-  const auto with = guide_of(motion.chain, {motion.path()}).choose(motion.query(), {.retreats = 40});
+  const auto with =
+      guide_of(motion.chain, {motion.path()}).choose(motion.query(), {.retreats = 40});
   ASSERT_EQ(with.size(), 2U);
   EXPECT_FALSE(with[0].path);
   EXPECT_EQ(with[1].path, 0U);
