@@ -7,6 +7,8 @@
 #include <type_traits>
 
 #include "proto/types/enum_text.hpp"
+#include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "proto/types/number_text.hpp"
 
 namespace kinship {
@@ -26,7 +28,10 @@ void for_each_option(Profile& profile, Visit visit) {
 }
 
 Error refusal(std::string_view text, const std::string& why) {
-  return {ErrorCode::InvalidInput, "profile '" + std::string(text) + "': " + why};
+  // Half of it for the text: it may be anything.
+  return {ErrorCode::InvalidInput,
+          cut_text("profile '" + cut_text(text, kMaxMessageBytes / 2) + "': " + why,
+                   kMaxMessageBytes)};
 }
 
 /// The value of an option, or nothing if the text is none within its limits. `auto` components are

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "robots/kinematics/urdf_markup.hpp"
 
 namespace kinship::kinematics {
@@ -60,7 +61,7 @@ class CollectErrors {
 };
 
 Error invalid_urdf(const std::string& message) {
-  return {ErrorCode::InvalidInput, "URDF: " + message};
+  return {ErrorCode::InvalidInput, cut_text("URDF: " + message, kMaxMessageBytes)};
 }
 
 template <typename Map>

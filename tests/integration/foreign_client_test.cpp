@@ -38,6 +38,19 @@ TEST(ForeignClient, MessagesThatEndEarlyAreRefusedAndHarmNobody) {
   EXPECT_EQ(server.terminate(), 0);
 }
 
+TEST(ForeignClient, AMessageThatLiesAboutItsLengthsHarmsNobody) {
+  const ReservedDomain domain;
+  const TemporaryDirectory directory;
+  ServerProcess server(
+      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+  for (const char* name : {"../tests/hostile_client", "../tests/foreign_client"}) {
+    Program client(name, {std::to_string(domain.number())}, directory / "error");
+    client.read_all();
+    ASSERT_EQ(client.wait(), 0) << name << ": " << read_text(directory / "error");
+  }
+  EXPECT_EQ(server.terminate(), 0);
+}
+
 TEST(ForeignClient, RegistersReportsAndFetches) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;

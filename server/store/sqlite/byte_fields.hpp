@@ -83,7 +83,10 @@ T read_value(ByteReader& in, int format, const FieldRules& rules = {}) {
     in.bytes(value.bytes);
     return value;
   } else if constexpr (std::is_same_v<T, Eigen::Matrix2Xd>) {
-    return in.matrix(2, rules.limit);
+    const Eigen::MatrixXd values = in.matrix(2, rules.limit);
+    if (values.rows() != 2)
+      throw std::out_of_range("blob: " + std::to_string(values.rows()) + " rows instead of 2");
+    return values;
   } else if constexpr (std::is_same_v<T, std::string>) {
     return in.text(kMaxTextBytes);
   } else if constexpr (std::is_enum_v<T>) {
