@@ -53,6 +53,7 @@ SimulatedDisk* SimulatedDisk::active() noexcept { return active_disk; }
 
 std::shared_ptr<SimulatedDisk::File> SimulatedDisk::adopt(const std::filesystem::path& path) {
   auto file = std::make_shared<File>();
+  file->name = path.filename().string();
   file->durable = contents(path);
   file->size = file->durable.size();
   files_[inode_of(path)] = file;
@@ -167,11 +168,12 @@ std::shared_ptr<SimulatedDisk::File> SimulatedDisk::find(int file) const {
 }
 
 /// Counts a change. \return the error that it has to end with; 0: none.
-int SimulatedDisk::begin(DiskCall call) {
+int SimulatedDisk::begin(DiskCall call, const std::string& name) {
   if (before_)
     before_(changes_);
   ++changes_;
-  if (!fault_ || (fault_->calls & static_cast<unsigned>(call)) == 0)
+  if (!fault_ || (fault_->calls & static_cast<unsigned>(call)) == 0 ||
+      (!fault_->name.empty() && fault_->name != name))
     return 0;
   const std::uint64_t number = meant_++;
   if (number < fault_->first || number - fault_->first >= fault_->count)
@@ -191,7 +193,7 @@ long SimulatedDisk::open(const char* name, int flags, const Call& call) {
   const std::optional<std::string> here = name_here(name);
   const bool makes = here && (flags & O_CREAT) != 0 && inode_of(name) == 0;
   if (makes)
-    if (const int error = begin(DiskCall::Name); error != 0)
+    if (const int error = begin(DiskCall::Name, *here); error != 0)
       return refuse(error);
   const long file = call();
   if (makes && file >= 0) {
@@ -208,7 +210,7 @@ long SimulatedDisk::write(int file, const void* bytes, std::size_t size, std::in
   const std::shared_ptr<File> written = find(file);
   if (!written)
     return call();
-  if (const int error = begin(DiskCall::Write); error != 0)
+  if (const int error = begin(DiskCall::Write, written->name); error != 0)
     return refuse(error);
   const auto from = static_cast<std::uint64_t>(at);
   if (!has_room(*written, from + size))
@@ -227,7 +229,7 @@ long SimulatedDisk::truncate(int file, std::int64_t size, const Call& call) {
   const std::shared_ptr<File> cut = find(file);
   if (!cut)
     return call();
-  if (const int error = begin(DiskCall::Truncate); error != 0)
+  if (const int error = begin(DiskCall::Truncate, cut->name); error != 0)
     return refuse(error);
   const long result = call();
   if (result == 0) {
@@ -242,7 +244,7 @@ long SimulatedDisk::allocate(int file, std::int64_t size, const Call& call) {
   const std::shared_ptr<File> grown = find(file);
   if (!grown)
     return call();
-  if (const int error = begin(DiskCall::Write); error != 0)
+  if (const int error = begin(DiskCall::Write, grown->name); error != 0)
     return error;
   const auto bytes = static_cast<std::uint64_t>(size);
   if (!has_room(*grown, bytes))
@@ -259,7 +261,7 @@ long SimulatedDisk::sync(int file, const Call& call) {
   const std::lock_guard lock(mutex_);
   struct stat status {};
   if (fstat(file, &status) == 0 && S_ISDIR(status.st_mode) && status.st_ino == inode_) {
-    if (const int error = begin(DiskCall::SyncDirectory); error != 0)
+    if (const int error = begin(DiskCall::SyncDirectory, ""); error != 0)
       return refuse(error);
     if (!lies_)
       names_.erase(names_.begin(), names_.end() - 1);
@@ -268,7 +270,7 @@ long SimulatedDisk::sync(int file, const Call& call) {
   const std::shared_ptr<File> synced = find(file);
   if (!synced)
     return call();
-  if (const int error = begin(DiskCall::Sync); error != 0) {
+  if (const int error = begin(DiskCall::Sync, synced->name); error != 0) {
     lose_pending(*synced);
     return refuse(error);
   }
@@ -286,7 +288,7 @@ long SimulatedDisk::unlink(const char* name, const Call& call) {
   Names names = names_.back();
   if (!here || names.erase(*here) == 0)
     return call();
-  if (const int error = begin(DiskCall::Name); error != 0)
+  if (const int error = begin(DiskCall::Name, *here); error != 0)
     return refuse(error);
   const long result = call();
   if (result == 0)
@@ -301,7 +303,7 @@ long SimulatedDisk::rename(const char* from, const char* to, bool exchange, cons
   Names names = names_.back();
   if (!here || !there || !names.contains(*here))
     return call();
-  if (const int error = begin(DiskCall::Name); error != 0)
+  if (const int error = begin(DiskCall::Name, *here); error != 0)
     return refuse(error);
   const long result = call();
   if (result != 0)
@@ -320,7 +322,7 @@ long SimulatedDisk::link(const char* from, const char* to, const Call& call) {
   Names names = names_.back();
   if (!here || !there || !names.contains(*here))
     return call();
-  if (const int error = begin(DiskCall::Name); error != 0)
+  if (const int error = begin(DiskCall::Name, *here); error != 0)
     return refuse(error);
   const long result = call();
   if (result == 0) {

@@ -28,6 +28,7 @@ struct DiskFault {
   std::uint64_t first = 0;  ///< the first that fails, counting those that are meant from now
   std::uint64_t count = 1;  ///< how many in a row fail
   int error = EIO;          ///< what they say
+  std::string name = {};    ///< only calls on the file made under this name; empty: on all
 };
 
 /// The files of one directory, by name.
@@ -86,6 +87,7 @@ class SimulatedDisk {
     std::vector<std::uint8_t> bytes;
   };
   struct File {
+    std::string name;  // that it was made under
     std::uint64_t size = 0;
     std::vector<std::uint8_t> durable;
     std::vector<Change> pending;
@@ -96,7 +98,7 @@ class SimulatedDisk {
   std::shared_ptr<File> adopt(const std::filesystem::path& path);
   std::shared_ptr<File> find(int file) const;
   std::optional<std::string> name_here(const char* name) const;
-  int begin(DiskCall call);
+  int begin(DiskCall call, const std::string& name);
   bool has_room(const File& file, std::uint64_t size) const;
   void rename_to(Names names);
   void apply(std::vector<std::uint8_t>& bytes, const Change& change, Kept kept);

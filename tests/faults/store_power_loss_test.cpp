@@ -99,8 +99,9 @@ TEST_F(StorePowerLoss, ABackupIsWholeOrNotThere) {
 /// Linux drops the pages of a failed fsync: what is acknowledged afterwards must not lie behind
 /// that hole.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSync) {
-  for (std::uint64_t round = 0; round < rounds(8); ++round) {
+  for (std::uint64_t round = 0; round < rounds(6); ++round) {
     StoreSession session(kSeed + round, 60);
+    session.cut_often_after_failures();
     {
       const auto store = session.open();
       session.register_robots(*store);
@@ -119,8 +120,9 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedSync) {
 /// Right after a checkpoint the WAL has nothing but the commit that failed. Were the database file
 /// written from the page cache before the WAL is durable, a cut would leave parts of that commit.
 TEST_F(StorePowerLoss, LeavesNoPartOfACommitWhoseSyncFailed) {
-  for (std::uint64_t round = 0; round < rounds(8); ++round) {
+  for (std::uint64_t round = 0; round < rounds(6); ++round) {
     StoreSession session(kSeed + round, 1000);
+    session.cut_often_after_failures();
     {
       const auto store = session.open();
       session.register_robots(*store);
@@ -142,6 +144,7 @@ TEST_F(StorePowerLoss, LeavesNoPartOfACommitWhoseSyncFailed) {
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
   for (std::uint64_t round = 0; round < rounds(6); ++round) {
     StoreSession session(kSeed + round, 60);
+    session.cut_often_after_failures();
     {
       auto options = StoreSession::small_options();
       options.retry_after = std::chrono::hours(1);

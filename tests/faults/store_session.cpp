@@ -29,8 +29,8 @@ void StoreSession::before_change(std::uint64_t change) {
   constexpr std::uint64_t kLongAfter = 100;
   if (const std::uint64_t failed = disk_.failed(); failed != failed_) {
     failed_ = failed;
-    dense_until_ = change + kLongAfter;
-    next_cut_ = change;
+    dense_until_ = is_eager_ ? change + kLongAfter : 0;
+    next_cut_ = is_eager_ ? change : next_cut_;
   }
   if (change >= next_cut_)
     cut(change);

@@ -23,14 +23,16 @@ struct PowerCut {
 };
 
 /// A store on a simulated disk, used as a server uses it, with power cuts at random changes of the
-/// disk, and at many of the next hundred after one failed. It runs on after each: a cut is an image
-/// of what the disk would have had.
+/// disk. It runs on after each: a cut is an image of what the disk would have had.
 class StoreSession {
  public:
   /// \param mean_gap  so many changes lie between two cuts in the mean.
   /// \param golden    a store of tests/golden to begin with; empty: none.
   StoreSession(std::uint64_t seed, std::uint64_t mean_gap,
                const std::filesystem::path& golden = {});
+
+  /// From now on many of the next hundred changes after one that failed are cut too.
+  void cut_often_after_failures() { is_eager_ = true; }
 
   SimulatedDisk& disk() { return disk_; }
   Ledger& ledger() { return ledger_; }
@@ -58,6 +60,7 @@ class StoreSession {
   std::mt19937_64 generator_;
   const std::uint64_t mean_gap_;
   std::uint64_t next_cut_ = 0;
+  bool is_eager_ = false;
   std::uint64_t dense_until_ = 0;  // change
   std::uint64_t failed_ = 0;       // calls of the disk that had failed at the last change
   std::uint64_t next_number_ = 0;
