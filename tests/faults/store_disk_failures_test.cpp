@@ -99,10 +99,14 @@ class Reading {
   std::thread thread_;
 };
 
+enum class Beginning { Nothing, AStore };
+
 /// Opens, registers, reports so that checkpoints happen, closes; all of it in spite of `fault`.
 /// \return whether the fault came to pass.
-bool fails_without_loss(const DiskFault& fault) {
-  StoreSession session(kSeed, 300);
+bool fails_without_loss(const DiskFault& fault, Beginning beginning = Beginning::Nothing) {
+  StoreSession session(kSeed, beginning == Beginning::AStore ? 30 : 300);
+  if (beginning == Beginning::AStore)
+    session.register_robots(*session.open());
   session.disk().fail(fault);
   std::unique_ptr<Store> store;
   patiently([&] { store = session.open(); });
@@ -148,6 +152,14 @@ TEST(StoreDiskFailures, AWriteThatFindsNoRoom) {
 // Not of the directory: SQLite drops that error, so a new store is in danger until it is made.
 TEST(StoreDiskFailures, ASyncThatFails) {
   fail_each(static_cast<unsigned>(DiskCall::Sync), EIO, stride(4));
+}
+// Without its name in the directory the WAL is lost with all that it has.
+TEST(StoreDiskFailures, ASyncOfTheDirectoryThatFails) {
+  const auto calls = static_cast<unsigned>(DiskCall::SyncDirectory);
+  std::uint64_t first = 0;
+  while (fails_without_loss({.calls = calls, .first = first}, Beginning::AStore))
+    ++first;
+  EXPECT_GT(first, 1U);
 }
 TEST(StoreDiskFailures, ATruncationThatFails) {
   fail_each(static_cast<unsigned>(DiskCall::Truncate), EIO, 1);

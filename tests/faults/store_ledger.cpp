@@ -150,7 +150,7 @@ std::string find_bad_copy(const DiskImage& image, const Receipts& receipts,
     if (!image.contains(name))
       return "backup " + name + " is lost";
   for (const auto& [name, bytes] : image)
-    if (name.starts_with("copy-") && !name.ends_with(".part") && !name.ends_with("-journal"))
+    if (name.starts_with("copy-") && name.ends_with(".db"))
       if (const std::string damage = find_damage(directory / name); !damage.empty())
         return "backup " + name + ": " + damage;
   return "";
