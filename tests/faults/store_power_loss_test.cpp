@@ -139,8 +139,28 @@ TEST_F(StorePowerLoss, LeavesNoPartOfACommitWhoseSyncFailed) {
   expect_no_loss();
 }
 
-/// The same with a server that was killed after it, or ended: the next one reads the page cache
-/// too.
+/// The database file has lost pages then, and the WAL is all there is of them.
+TEST_F(StorePowerLoss, LosesNothingAfterAFailedCheckpoint) {
+  for (std::uint64_t round = 0; round < rounds(3); ++round) {
+    StoreSession session(kSeed + round, 1000);
+    session.cut_often_after_failures();
+    {
+      const auto store = session.open();
+      session.register_robots(*store);
+      session.disk().fail({.calls = DiskCall::Write | DiskCall::Sync,
+                           .first = 7 * round % 60,
+                           .count = 1 + round % 3,
+                           .name = test::kStoreName});
+      session.report(*store, 2, 30);
+    }
+    EXPECT_GT(session.disk().failed(), 0U);
+    look_at(session);
+  }
+  expect_no_loss();
+}
+
+/// As after a failed sync, with a server that was killed after it, or ended: the next one reads the
+/// page cache too.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
   for (std::uint64_t round = 0; round < rounds(6); ++round) {
     StoreSession session(kSeed + round, 60);
