@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "server/store/maintenance.hpp"
 #include "tests/faults/store_session.hpp"
 
 /// A power cut at any change of the disk: every acknowledged report is there afterwards, once, and
@@ -91,6 +92,25 @@ TEST_F(StorePowerLoss, ABackupIsWholeOrNotThere) {
         session.ledger().note([&](test::Receipts& noted) { noted.backups.insert(name); });
       }
     }
+    look_at(session);
+  }
+  expect_no_loss();
+}
+
+/// Old or new, there is one whole store under the name; both have all that was acknowledged.
+TEST_F(StorePowerLoss, ARestoreLeavesOneWholeStore) {
+  for (std::uint64_t round = 0; round < rounds(2); ++round) {
+    StoreSession session(kSeed + round, 1000);
+    const std::filesystem::path copy = session.file().parent_path() / "copy-1.db";
+    {
+      const auto store = session.open();
+      session.register_robots(*store);
+      session.report(*store, 1, 20);
+      ASSERT_TRUE(store->backup(copy, [](double) { return true; }));
+    }
+    session.cut_every(5);
+    static_cast<void>(restore_store(copy, session.file(), [](double) {}));
+    static_cast<void>(restore_store(copy, session.file(), [](double) {}));
     look_at(session);
   }
   expect_no_loss();

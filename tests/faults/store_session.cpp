@@ -25,6 +25,11 @@ StoreSession::StoreSession(std::uint64_t seed, std::uint64_t mean_gap,
   disk_.on_change([this](std::uint64_t change) { before_change(change); });
 }
 
+void StoreSession::cut_every(std::uint64_t mean_gap) {
+  mean_gap_ = mean_gap;
+  next_cut_ = disk_.changes();
+}
+
 void StoreSession::before_change(std::uint64_t change) {
   constexpr std::uint64_t kLongAfter = 100;
   if (const std::uint64_t failed = disk_.failed(); failed != failed_) {

@@ -31,6 +31,8 @@ class StoreSession {
   StoreSession(std::uint64_t seed, std::uint64_t mean_gap,
                const std::filesystem::path& golden = {});
 
+  /// From now on, beginning with the next change. Not while somebody uses the store.
+  void cut_every(std::uint64_t mean_gap);
   /// From now on many of the next hundred changes after one that failed are cut too.
   void cut_often_after_failures() { is_eager_ = true; }
 
@@ -58,7 +60,7 @@ class StoreSession {
 
   const TemporaryDirectory directory_;
   std::mt19937_64 generator_;
-  const std::uint64_t mean_gap_;
+  std::uint64_t mean_gap_;
   std::uint64_t next_cut_ = 0;
   bool is_eager_ = false;
   std::uint64_t dense_until_ = 0;  // change
