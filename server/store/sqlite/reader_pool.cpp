@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "proto/types/failure.hpp"
 #include "server/store/sqlite/connection.hpp"
 
 namespace kinship::store {
