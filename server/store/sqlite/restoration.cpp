@@ -18,9 +18,9 @@
 #include "server/store/sqlite/online_backup.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_check.hpp"
-#include "server/store/sqlite/wal_file.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/wal_file.hpp"
 
 namespace kinship::store {
 namespace {
