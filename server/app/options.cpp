@@ -52,6 +52,26 @@ const CLI::Validator& is_part() {
   return kPart;
 }
 
+/// What the store may take of its disk.
+void add_disk_options(CLI::App& app, ServerOptions& options) {
+  constexpr std::uint64_t kMaxMegabytes = std::uint64_t{1} << 30U;  // 1 PB
+  app.add_option("--free-space-watermark-mb", options.free_space_watermark_mb,
+                 "While the store's file system has less free, reports are answered 'try again'; "
+                 "0: no limit")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
+      ->capture_default_str();
+  app.add_option("--ballast-mb", options.ballast_mb,
+                 "Size of FILE.ballast, given up on a full disk so that the store can still be "
+                 "brought into order; 0: none")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
+      ->capture_default_str();
+  app.add_option("--max-wal-mb", options.max_wal_mb,
+                 "While long readings keep more than this in FILE-wal, reports are answered 'try "
+                 "again'")
+      ->check(CLI::Range(std::uint64_t{1}, kMaxMegabytes))
+      ->capture_default_str();
+}
+
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
@@ -77,6 +97,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "out what guides them best; 0: none")
       ->check(is_part())
       ->capture_default_str();
+  add_disk_options(app, options);
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();

@@ -21,6 +21,9 @@ struct ServerOptions {
   int fit_niceness = 10;          ///< of these threads, 0 to 19
   /// Part of one processor that rehearsing takes in the mean, 0 to 1; 0: nothing is rehearsed.
   double rehearsal_fraction = 0.1;
+  std::uint64_t free_space_watermark_mb = 64;  ///< with less free, no report is taken; 0: no limit
+  std::uint64_t ballast_mb = 16;               ///< kept beside the store for a full disk; 0: none
+  std::uint64_t max_wal_mb = 512;              ///< with more kept by readings, no report is taken
   std::string log_level = "info";
 };
 

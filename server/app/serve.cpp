@@ -45,6 +45,15 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   return service;
 }
 
+store::SqliteOptions store_options(const ServerOptions& options) {
+  constexpr std::uint64_t kMega = std::uint64_t{1} << 20U;
+  store::SqliteOptions store;
+  store.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
+  store.ballast_bytes = options.ballast_mb * kMega;
+  store.max_wal_bytes = options.max_wal_mb * kMega;
+  return store;
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -65,7 +74,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   };
   settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
   settings.wake = [&loop] { loop.wake(); };
-  service::Service service(store::open_sqlite_store(options.store), std::move(settings));
+  service::Service service(store::open_sqlite_store(options.store, store_options(options)),
+                           std::move(settings));
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);

@@ -380,6 +380,16 @@ TEST_F(AdminCommands, AServerThatMayNotRehearseDoesNot) {
             std::string::npos);
 }
 
+TEST_F(AdminCommands, AServerBelowItsWatermarkOfFreeSpaceSaysSo) {
+  const Server full(folder_ / "full.db", {"--free-space-watermark-mb", "1073741824"});  // 1 PB
+  const std::string said = full.kinship({"status"}).out;
+  EXPECT_NE(said.find("not writable: the file system at '/"), std::string::npos) << said;
+  EXPECT_NE(said.find("below 1073741824 MB no report is taken"), std::string::npos) << said;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "full.db.ballast"));
+  const Server well(folder_ / "well.db", {"--ballast-mb", "2"});
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "well.db.ballast"), std::uintmax_t{2} << 20U);
+}
+
 TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
   test::Program watch("kinship", server_.with_domain({"watch", "--json", "--task", "sweep"}),
                       folder_ / "watch.err");

@@ -2,9 +2,11 @@
 
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/wal_file.hpp"
 #include "server/store/sqlite/writer.hpp"
 
 namespace kinship::store {
@@ -12,12 +14,12 @@ namespace {
 
 constexpr std::int64_t kNewestRowsChecked = 64;
 
-// The writer checkpoints itself, at 4000 pages of 8 KB; a second connection that does can corrupt
-// the file in SQLite before 3.51.3 (see the README).
+// The writer checkpoints between its batches, where it sees the outcome; SQLite's own automatic one
+// drops errors. A second connection that does can corrupt the file in SQLite before 3.51.3.
 void configure_writer(Database& database) {
   database.execute(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
-      "PRAGMA wal_autocheckpoint = 4000; PRAGMA journal_size_limit = 67108864;"
+      "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
       "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY");
 }
 
@@ -25,18 +27,24 @@ void configure_writer(Database& database) {
 
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_for_owner(file);
+  make_wal_durable(file);
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   database->execute("PRAGMA page_size = 8192");  // counts for a new file only
   // A file of somebody else is refused before anything is written to it, so migrate() goes first.
   database->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
   migrate(*database, file, embedded_migrations());
   configure_writer(*database);
+  sync_directory_of(file);  // SQLite drops errors of that
   return database;
 }
 
 std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
+  make_wal_durable(file);
   auto database = std::make_unique<Database>(file, Access::ReadWrite);
   configure_writer(*database);
+  // The database file may have lost pages of a failed checkpoint: all are written again.
+  if (!checkpoint(*database, CheckpointKind::Whole))
+    throw Failure(ErrorCode::Storage, "another program reads the store and keeps its WAL");
   check_schema(*database, file, embedded_migrations());
   Transaction probe(*database, Transaction::Kind::Write);
   Statement(database->connection(),
@@ -48,6 +56,7 @@ std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
   set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
   batch.raise_generations();
   probe.commit();
+  sync_directory_of(file);
   return database;
 }
 

@@ -16,6 +16,7 @@
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/wal_file.hpp"
 
 namespace kinship::store {
 namespace {
@@ -119,6 +120,7 @@ Migrated migrate_store(const fs::path& file) {
     const fs::path located = locate_present(file);
     const LockFile lock(located);
     Migrated migrated;
+    make_wal_durable(located);
     Database database(located, Access::ReadWrite);
     database.execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
     const std::int64_t from = known_schema(database, located, embedded_migrations());

@@ -2,31 +2,44 @@
 
 #include <utility>
 
+#include "proto/types/failure.hpp"
 #include "server/store/sqlite/connection.hpp"
 
 namespace kinship::store {
 
-ReaderPool::Lease::Lease(ReaderPool& pool, std::unique_ptr<Database> database)
-    : pool_(&pool), database_(std::move(database)) {
+ReaderPool::Lease::Lease(ReaderPool& pool) : pool_(&pool), database_(pool.take(since_)) {
   try {
     snapshot_ = std::make_unique<Transaction>(*database_, Transaction::Kind::Read);
   } catch (...) {
-    pool_->give_back(nullptr);
+    pool_->give_back(nullptr, since_);
     throw;
   }
 }
 
 ReaderPool::Lease::~Lease() {
   snapshot_.reset();
-  pool_->give_back(std::move(database_));
+  pool_->give_back(std::move(database_), since_);
 }
 
-ReaderPool::Lease ReaderPool::lease() { return {*this, take()}; }
+ReaderPool::Lease ReaderPool::lease() { return Lease(*this); }
 
-std::unique_ptr<Database> ReaderPool::take() {
+std::optional<ReaderPool::Clock::duration> ReaderPool::longest_reading() const {
+  const std::lock_guard lock(mutex_);
+  if (lent_.empty())
+    return std::nullopt;
+  return Clock::now() - *lent_.begin();
+}
+
+std::unique_ptr<Database> ReaderPool::take(Clock::time_point& since) {
+  constexpr std::chrono::seconds kLongestSuspension{1};
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !suspended_ && lent_ < kMaxConnections; });
-  ++lent_;
+  do {
+    if (!changed_.wait_for(lock, kLongestSuspension, [this] { return !suspended_; }))
+      throw Failure(ErrorCode::Storage, "the store is being opened again after a failure");
+    changed_.wait(lock, [this] { return suspended_ || lent_.size() < kMaxConnections; });
+  } while (suspended_);
+  since = Clock::now();
+  lent_.insert(since);
   if (!idle_.empty()) {
     std::unique_ptr<Database> database = std::move(idle_.back());
     idle_.pop_back();
@@ -36,14 +49,14 @@ std::unique_ptr<Database> ReaderPool::take() {
   try {
     return open_reader(file_);
   } catch (...) {
-    give_back(nullptr);
+    give_back(nullptr, since);
     throw;
   }
 }
 
-void ReaderPool::give_back(std::unique_ptr<Database> database) {
+void ReaderPool::give_back(std::unique_ptr<Database> database, Clock::time_point since) {
   const std::lock_guard lock(mutex_);
-  --lent_;
+  lent_.erase(lent_.find(since));
   if (database)
     idle_.push_back(std::move(database));
   changed_.notify_all();
@@ -52,7 +65,8 @@ void ReaderPool::give_back(std::unique_ptr<Database> database) {
 void ReaderPool::suspend() {
   std::unique_lock lock(mutex_);
   suspended_ = true;
-  changed_.wait(lock, [this] { return lent_ == 0; });
+  changed_.notify_all();
+  changed_.wait(lock, [this] { return lent_.empty(); });
   idle_.clear();
 }
 

@@ -20,6 +20,7 @@
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/wal_file.hpp"
 
 namespace kinship::store {
 namespace {
@@ -127,6 +128,7 @@ Restored Restoration::replace() {
 /// Brings what a killed server left in the WAL into the old store, so that it is one file. One
 /// that SQLite cannot read is kept as it is.
 void Restoration::fold_old() {
+  make_wal_durable(file_);
   try {
     Database(file_, Access::ReadWrite).execute("PRAGMA journal_mode = DELETE");
   } catch (const SqliteError& error) {

@@ -11,6 +11,7 @@
 #include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/call_item.hpp"
 #include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/disk_space.hpp"
 #include "server/store/sqlite/distribution_rows.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/export_rows.hpp"
@@ -62,12 +63,18 @@ Uuid ensure_epoch(Database& database) {
 class SqliteStore : public Store {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
-      : options_(options), file_(locate_store(file)), lock_(file_), readers_(file_) {
+      : options_(options),
+        file_(locate_store(file)),
+        lock_(file_),
+        readers_(file_),
+        space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
     epoch_ = ensure_epoch(*database);
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
-        WriterOptions{.retry_after = options.retry_after});
+        WriterOptions{.retry_after = options.retry_after,
+                      .checkpoint_pages = options.checkpoint_pages,
+                      .max_wal_bytes = options.max_wal_bytes});
   }
   // Readers close before the writer does, whose last act is to empty the WAL.
   ~SqliteStore() override { readers_.suspend(); }
@@ -79,10 +86,7 @@ class SqliteStore : public Store {
     status.file = file_.string();
     status.epoch = epoch_;
     status.queued = writer_->queued();
-    const std::string trouble = writer_->trouble();
-    status.writable = trouble.empty();
-    if (!trouble.empty())
-      status.message = "not writable: " + trouble + "; ";
+    describe_disk(status);
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
@@ -117,11 +121,16 @@ class SqliteStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    if (writer_->queued_bytes() > options_.max_queued_bytes)
-      writer_->submit(ReportItem::declined(attempts, std::move(done),
-                                           "the queue of reports is full, try again"));
-    else
-      writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+    std::string why = lack_of_room();
+    if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
+      why = "the queue of reports is full, try again";
+    if (!why.empty()) {
+      writer_->submit(ReportItem::declined(attempts, std::move(done), why));
+      return;
+    }
+    writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+    if (space_.may_take_ballast())
+      take_ballast_later();
   }
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override {
@@ -254,6 +263,45 @@ class SqliteStore : public Store {
     return result.get();
   }
 
+  /// Empty if reports are taken; else why not.
+  std::string lack_of_room() const {
+    std::string why = space_.shortage();
+    if (!why.empty() || !writer_->wal_full())
+      return why;
+    constexpr std::uint64_t kMega = std::uint64_t{1} << 20U;
+    why = "the WAL holds " + std::to_string(writer_->wal_bytes() / kMega) + " MB, of " +
+          std::to_string(options_.max_wal_bytes / kMega) + " MB at most, because ";
+    const auto reading = readers_.longest_reading();
+    if (!reading)
+      return why + "another program reads the store";
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(*reading).count();
+    return why + "a reading has been going on for " + std::to_string(seconds) + " s";
+  }
+
+  /// Whether reports are taken, and what the disk did.
+  void describe_disk(StoreStatus& status) const {
+    std::string trouble = writer_->trouble();
+    if (trouble.empty())
+      trouble = lack_of_room();
+    status.writable = trouble.empty();
+    if (!trouble.empty())
+      status.message = "not writable: " + trouble + "; ";
+    if (const WriterFailures failures = writer_->failures(); failures.count > 0)
+      status.message += std::to_string(failures.count) +
+                        " failures of the disk since the start, the last: " + failures.last + "; ";
+    if (const std::string lack = space_.lack_of_ballast(); !lack.empty())
+      status.message += lack + "; ";
+  }
+
+  void take_ballast_later() const {
+    const auto take = [this](Batch& /*batch*/) {
+      if (space_.may_take_ballast())
+        space_.take_ballast();
+      return true;
+    };
+    writer_->submit(std::make_unique<CallItem<decltype(take)>>(take));
+  }
+
   std::vector<StoredPath> undamaged(PathsRead read) const {
     set_aside_later(std::move(read.damaged));
     return std::move(read.paths);
@@ -278,6 +326,7 @@ class SqliteStore : public Store {
   /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.
   std::unique_ptr<Database> reopen() {
     readers_.suspend();
+    space_.release_ballast_if_short();
     try {
       std::unique_ptr<Database> database = reopen_writer(file_);
       readers_.resume();
@@ -292,6 +341,7 @@ class SqliteStore : public Store {
   const std::filesystem::path file_;
   const LockFile lock_;
   mutable ReaderPool readers_;
+  mutable DiskSpace space_;
   Uuid epoch_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
   std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above

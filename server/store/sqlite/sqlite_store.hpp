@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -13,6 +14,14 @@ struct SqliteOptions {
   /// Reports that come while more than this waits to be written are answered TryAgain.
   std::size_t max_queued_bytes = std::size_t{64} << 20U;
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
+  std::int64_t checkpoint_pages = 4000;         ///< the WAL is checkpointed when it has so many
+  /// While readings keep a WAL that is longer than this, reports are answered TryAgain.
+  std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;
+  /// While the file system has less than this free, reports are answered TryAgain; 0: no limit.
+  std::uint64_t free_space_watermark_bytes = 0;
+  /// Of FILE.ballast, which is given up when the disk is full, so that what is there can still be
+  /// brought into order; 0: none.
+  std::uint64_t ballast_bytes = 0;
 };
 
 /// Opens (or makes) a store in an SQLite file: takes the lock file, migrates an older schema,

@@ -1,10 +1,13 @@
 #include "server/store/sqlite/writer.hpp"
 
+#include <sqlite3.h>
+
 #include <exception>
 #include <optional>
 
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/wal_file.hpp"
 
 namespace kinship::store {
 namespace {
@@ -41,10 +44,10 @@ void Batch::raise_generations() {
 }
 
 Writer::Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options)
-    : reopen_(std::move(reopen)),
-      options_(options),
-      database_(std::move(database)),
-      thread_([this] { run(); }) {}
+    : reopen_(std::move(reopen)), options_(options), database_(std::move(database)) {
+  watch_wal();
+  thread_ = std::thread([this] { run(); });
+}
 
 Writer::~Writer() {
   {
@@ -80,6 +83,11 @@ std::string Writer::trouble() const {
   return trouble_;
 }
 
+WriterFailures Writer::failures() const {
+  const std::lock_guard lock(mutex_);
+  return failures_;
+}
+
 void Writer::run() {
   while (true) {
     Items items = take_batch();
@@ -91,25 +99,28 @@ void Writer::run() {
         return;
       continue;
     }
-    if (items.empty()) {
+    if (!items.empty()) {
+      write(items);
+    } else {
       const std::lock_guard lock(mutex_);
-      if (!stopping_ || !queue_.empty())
-        continue;
-      break;
+      if (stopping_ && queue_.empty())
+        break;
     }
-    write(items);
+    tend_wal();
   }
   close();
 }
 
-/// Empty if the writer shall stop or, after a failure, a try to reopen is due.
+/// Empty if the writer shall stop or a try is due: after a failure to reopen, or to empty the WAL.
 Writer::Items Writer::take_batch() {
   std::unique_lock lock(mutex_);
   const auto something_to_do = [this] { return stopping_ || !queue_.empty(); };
-  if (database_)
-    wake_.wait(lock, something_to_do);
-  else
+  if (!database_)
     wake_.wait_until(lock, next_try_, something_to_do);
+  else if (wal_full())
+    wake_.wait_for(lock, options_.retry_after, something_to_do);
+  else
+    wake_.wait(lock, something_to_do);
   Items items;
   std::size_t weight = 0;
   while (!queue_.empty()) {
@@ -151,9 +162,13 @@ void Writer::finish_all(Items& items, const Error* error) {
 }
 
 void Writer::fail(const Failure& failure) {
+  if (database_)  // nothing more is written by this connection, a checkpoint at its end neither
+    sqlite3_db_config(&database_->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   database_.reset();
   const std::lock_guard lock(mutex_);
   trouble_ = failure.what();
+  failures_.count += 1;
+  failures_.last = trouble_;
 }
 
 /// A try closes all readers and reads the file, so a stream of items must not bring one each.
@@ -162,6 +177,7 @@ bool Writer::recover_if_due() {
     return false;
   try {
     database_ = reopen_();
+    watch_wal();
   } catch (const Failure& failure) {
     fail(failure);
   }
@@ -173,9 +189,42 @@ bool Writer::recover_if_due() {
   return true;
 }
 
+/// From now on each commit tells how many pages the WAL has.
+void Writer::watch_wal() {
+  constexpr std::uint64_t kFrameHeader = 24;
+  wal_pages_ = 0;
+  wal_bytes_ = 0;
+  frame_bytes_ = kFrameHeader + static_cast<std::uint64_t>(database_->integer("PRAGMA page_size"));
+  const auto note = [](void* pages, sqlite3*, const char*, int count) {
+    *static_cast<std::int64_t*>(pages) = count;
+    return SQLITE_OK;
+  };
+  sqlite3_wal_hook(&database_->connection(), note, &wal_pages_);
+}
+
+/// Readers that are younger than the last frame keep it in the WAL, so a checkpoint may leave some.
+void Writer::tend_wal() {
+  if (!database_)
+    return;
+  try {
+    const bool full =
+        static_cast<std::uint64_t>(wal_pages_) * frame_bytes_ > options_.max_wal_bytes;
+    if (full || wal_pages_ >= options_.checkpoint_pages) {
+      const bool done =
+          checkpoint(*database_, full ? CheckpointKind::Whole : CheckpointKind::Passive);
+      if (done && full)
+        wal_pages_ = 0;
+    }
+    wal_bytes_ = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
+  } catch (const Failure& failure) {
+    fail(failure);
+    recover_if_due();
+  }
+}
+
 void Writer::close() {
   try {
-    database_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+    checkpoint(*database_, CheckpointKind::Whole);
   } catch (const SqliteError&) {
     // All is durable in the WAL already; the next start checkpoints it.
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -61,14 +62,24 @@ class WriteItem {
 struct WriterOptions {
   std::size_t batch_cap = 256;  ///< weight of one transaction, unless one item exceeds it alone
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
+  std::int64_t checkpoint_pages = 4000;         ///< of the WAL from which on it is checkpointed
+  std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;  ///< see Writer::wal_full()
+};
+
+/// What went wrong with the disk so far.
+struct WriterFailures {
+  std::uint64_t count = 0;
+  std::string last;  ///< what the last one said
 };
 
 /// The thread that owns the only writing connection. It takes whatever is queued as one
-/// transaction and finishes the items after the commit is durable; nobody waits for a timer.
+/// transaction and finishes the items after the commit is durable; nobody waits for a timer. When
+/// the WAL is long enough it checkpoints after that, so that no item waits for it.
 ///
-/// Fail-stop: on an I/O error, a full disk or damage it undoes the batch, finishes every item with
-/// the error, closes the connection and opens it again with checks, but never sooner than
-/// `retry_after` after the last try; until a try succeeds items are answered with the error.
+/// Fail-stop: on an I/O error, a full disk or damage, in a checkpoint too, it undoes the batch,
+/// finishes every item with the error, closes the connection and opens it again with checks, but
+/// never sooner than `retry_after` after the last try; until a try succeeds items are answered with
+/// the error.
 class Writer {
  public:
   /// \param database  the connection to begin with.
@@ -87,6 +98,12 @@ class Writer {
   std::size_t queued_bytes() const;  ///< and its size
   /// Empty while all is well; else why nothing is written.
   std::string trouble() const;
+  WriterFailures failures() const;  ///< since the writer began
+
+  std::uint64_t wal_bytes() const noexcept { return wal_bytes_; }  ///< in use, not of the file
+  /// Whether the WAL is longer than it may be, because readings pin it. Items are written all the
+  /// same. The writer tries every `retry_after` to empty it.
+  bool wal_full() const noexcept { return wal_bytes_ > options_.max_wal_bytes; }
 
  private:
   using Items = std::vector<std::unique_ptr<WriteItem>>;
@@ -97,13 +114,19 @@ class Writer {
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
   bool recover_if_due();
+  void watch_wal();
+  void tend_wal();
   void close();
 
   const Reopen reopen_;
   const WriterOptions options_;
   // The writer's thread only:
   std::unique_ptr<Database> database_;                // empty after a failure
+  std::int64_t wal_pages_ = 0;                        // as of the last commit
+  std::uint64_t frame_bytes_ = 0;                     // of one of these pages
   std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
+
+  std::atomic<std::uint64_t> wal_bytes_ = 0;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
@@ -111,9 +134,10 @@ class Writer {
   std::size_t queued_weight_ = 0;
   std::size_t queued_bytes_ = 0;
   std::string trouble_;
+  WriterFailures failures_;
   bool stopping_ = false;
 
-  std::thread thread_;  // last: starts when all the rest is there
+  std::thread thread_;
 };
 
 }  // namespace kinship::store

@@ -40,6 +40,20 @@ TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
   EXPECT_GE(options.workers, 1U);
   EXPECT_EQ(options.log_level, "info");
   EXPECT_EQ(options.rehearsal_fraction, 0.1);
+  EXPECT_EQ(options.free_space_watermark_mb, 64U);
+  EXPECT_EQ(options.ballast_mb, 16U);
+  EXPECT_EQ(options.max_wal_mb, 512U);
+}
+
+TEST_F(Options, WhatTheStoreMayTakeOfItsDiskIsInMegabytes) {
+  const ServerOptions options =
+      good({"--free-space-watermark-mb", "500", "--ballast-mb", "0", "--max-wal-mb", "64"});
+  EXPECT_EQ(options.free_space_watermark_mb, 500U);
+  EXPECT_EQ(options.ballast_mb, 0U);
+  EXPECT_EQ(options.max_wal_mb, 64U);
+  EXPECT_EQ(code({"--max-wal-mb", "0"}), kWrongUsage);
+  EXPECT_EQ(code({"--ballast-mb", "-1"}), kWrongUsage);
+  EXPECT_EQ(code({"--free-space-watermark-mb", "much"}), kWrongUsage);
 }
 
 TEST_F(Options, TheStoreIsUnderHomeIfXdgSaysNothingUsable) {

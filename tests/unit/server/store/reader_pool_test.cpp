@@ -62,6 +62,35 @@ TEST_F(ReaderPoolTest, SuspendWaitsForTheLeasesAndHoldsTheNextOnesBack) {
   EXPECT_EQ(next.get(), 0);
 }
 
+TEST_F(ReaderPoolTest, ASuspensionThatGoesOnIsAFailureAndNoWaitForEver) {
+  pool_.suspend();
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    pool_.lease();
+    FAIL() << "lent while suspended";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ErrorCode::Storage);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  pool_.resume();
+  EXPECT_EQ(pool_.lease()->integer("SELECT count(*) FROM t"), 0);
+}
+
+TEST_F(ReaderPoolTest, TellsHowLongTheLongestReadingGoesOn) {
+  EXPECT_FALSE(pool_.longest_reading());
+  const auto start = std::chrono::steady_clock::now();
+  {
+    const auto first = std::make_unique<ReaderPool::Lease>(pool_);
+    const auto lent = std::chrono::steady_clock::now();
+    const ReaderPool::Lease second = pool_.lease();
+    ASSERT_TRUE(pool_.longest_reading());
+    const auto now = std::chrono::steady_clock::now();
+    EXPECT_GE(*pool_.longest_reading(), now - lent);
+    EXPECT_LE(*pool_.longest_reading(), std::chrono::steady_clock::now() - start);
+  }
+  EXPECT_FALSE(pool_.longest_reading());
+}
+
 TEST_F(ReaderPoolTest, MoreThreadsThanConnectionsTakeTurns) {
   std::vector<std::thread> threads;
   std::atomic<int> read = 0;
