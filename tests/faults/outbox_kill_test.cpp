@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261123;
 
-int rounds() { return std::getenv("KINSHIP_LONG") != nullptr ? 200 : 12; }
+int rounds() { return std::getenv("KINSHIP_LONG") != nullptr ? 300 : 12; }
 
 class OutboxKill : public test::ReportingFleet {
  protected:
