@@ -118,8 +118,10 @@ void History::begin_run(Database& database) {
     ++next.rollbacks;
     next.trouble = trouble;
   }
+  is_run_written_ = log->is_empty();  // the first one is named before it has written anything
   log->begin(Uuid::random(), position);
-  set(database, kRuns, log->text());
+  if (is_run_written_)
+    set(database, kRuns, log->text());
   transaction.commit();
   next.log = std::move(*log);
   next.position = position;
@@ -130,7 +132,19 @@ void History::begin_run(Database& database) {
   testify();
 }
 
+void History::write_run(Database& database) {
+  if (is_run_written_)
+    return;
+  std::string text;
+  {
+    const std::lock_guard lock(mutex_);
+    text = state_.log.text();
+  }
+  set(database, kRuns, text);
+}
+
 void History::committed(std::uint64_t position) {
+  is_run_written_ = true;
   {
     const std::lock_guard lock(mutex_);
     if (position <= state_.position)
@@ -210,6 +224,7 @@ void History::Renewal::finish(const Error* error) {
       state.log = *log_;
       state.position = std::max(state.position, position_);
     }
+    history_.is_run_written_ = true;
     history_.testify();
   }
   promise_.set_value(log_.has_value());

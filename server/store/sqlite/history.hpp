@@ -32,11 +32,14 @@ class History {
 
   /// A run begins on a connection that was just opened for writing. If the file is not the one
   /// that it was written as, or lies behind its witness, or behind what this object saw committed,
-  /// it was copied or rolled back: a new epoch begins.
+  /// it was copied or rolled back: a new epoch begins. Otherwise nothing is written: a store on a
+  /// full disk can be opened.
   /// \throws Failure(Storage) if it cannot be written.
   void begin_run(Database& database);
 
-  /// To be told of each position once it is durable.
+  /// Writes the run with its first attempts, into the same transaction. On the writer's thread,
+  /// like committed(), which is to be told of each position once it is durable.
+  void write_run(Database& database);
   void committed(std::uint64_t position);
 
   Uuid epoch() const;
@@ -65,6 +68,7 @@ class History {
 
   const std::filesystem::path file_;
   const WitnessFile witness_;
+  bool is_run_written_ = false;  // of the writer's thread alone
   mutable std::mutex mutex_;
   State state_;  // guarded by mutex_
 };

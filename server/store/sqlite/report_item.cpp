@@ -56,6 +56,7 @@ void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
     if (prepared_[i])
       receipts_[i] = insert_alone(batch, *prepared_[i]);
+  history_.write_run(batch.database());
   position_ = position_of(batch.database());
 }
 

@@ -28,6 +28,7 @@ class RunLog {
   explicit RunLog(const Uuid& epoch) : epoch_(epoch) {}
 
   const Uuid& epoch() const noexcept { return epoch_; }
+  bool is_empty() const noexcept { return runs_.empty(); }
 
   /// A run begins. One before it that wrote nothing is forgotten, for no point names it; of more
   /// than 256 runs the oldest are.

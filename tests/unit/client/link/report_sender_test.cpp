@@ -231,7 +231,7 @@ class GreetingTest : public ReportSenderTest {
   }
   void wait_for_batches(std::size_t count) {
     std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return batches.size() >= count; });
+    EXPECT_TRUE(changed.wait_for(lock, 30s, [&] { return batches.size() >= count; }));
   }
   ReportRequest batch(std::size_t number) {
     const std::lock_guard lock(mutex);

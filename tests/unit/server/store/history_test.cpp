@@ -105,6 +105,24 @@ TEST_F(HistoryTest, AnOnlineBackupThatIsServedBeginsAnEpoch) {
   EXPECT_NE(store_->epoch(), epoch);
 }
 
+TEST_F(HistoryTest, OpeningAndReportingNothingLeavesTheFileAsItIs) {
+  report(1, 3);
+  const std::string before = snapshot();
+  open();
+  const HistoryMark mark = store_->point().mark;
+  EXPECT_EQ(snapshot(), before);
+  open();
+  EXPECT_FALSE(store_->has_lost(mark));
+}
+
+TEST_F(HistoryTest, TheFirstRunOfAStoreIsKnownBeforeItHasWrittenAnything) {
+  const HistoryMark mark = store_->point().mark;
+  open();
+  report(1);
+  open();
+  EXPECT_FALSE(store_->has_lost(mark));
+}
+
 TEST_F(HistoryTest, ARenamedStoreKeepsItsEpoch) {
   report(1);
   const Uuid epoch = store_->epoch();
