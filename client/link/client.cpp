@@ -61,7 +61,8 @@ struct Client::Line {
         },
         [this](const RobotDescription& description) {
           return registering.call(description, Clock::now() + kReceiptTime);
-        });
+        },
+        Clock::now, [this] { return reporting.count_servers(); });
   }
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;

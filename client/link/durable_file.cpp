@@ -83,9 +83,9 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-}  // namespace
+enum class Sync { Yes, No };
 
-void write_durably(const std::filesystem::path& path, std::string_view content) {
+void write_file(const std::filesystem::path& path, std::string_view content, Sync sync) {
   // A name of its own for every write: two writers of one file do not mix.
   TemporaryFile temporary(path.parent_path() /
                           ("." + path.filename().string() + "." + Uuid::random().text() +
@@ -93,12 +93,24 @@ void write_durably(const std::filesystem::path& path, std::string_view content) 
   {
     const Descriptor file(temporary.path(), O_WRONLY | O_CREAT | O_EXCL);
     file.write(content);
-    file.sync();
+    if (sync == Sync::Yes)
+      file.sync();
   }
   if (::rename(temporary.path().c_str(), path.c_str()) != 0)
     fail(path, "cannot rename to");
   temporary.keep();
-  Descriptor(path.parent_path(), O_RDONLY | O_DIRECTORY).sync();
+  if (sync == Sync::Yes)
+    Descriptor(path.parent_path(), O_RDONLY | O_DIRECTORY).sync();
+}
+
+}  // namespace
+
+void write_durably(const std::filesystem::path& path, std::string_view content) {
+  write_file(path, content, Sync::Yes);
+}
+
+void write_whole(const std::filesystem::path& path, std::string_view content) {
+  write_file(path, content, Sync::No);
 }
 
 void make_folder_durably(const std::filesystem::path& folder) {

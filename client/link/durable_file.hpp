@@ -4,13 +4,16 @@
 #include <string>
 #include <string_view>
 
-/// Files that survive a power cut once a function has returned.
+/// Files that are whole, and mostly there after a power cut once a function has returned.
 namespace kinship::link {
 
 /// Writes a whole file: temporary file beside it, fsync, rename, fsync of the folder. Whoever reads
 /// `path` sees the old content, or none, or all of the new one.
 /// \throws Failure(Storage) naming the file and what the system said.
 void write_durably(const std::filesystem::path& path, std::string_view content);
+
+/// The same without fsync: after a power cut it may be the old file, or damaged.
+void write_whole(const std::filesystem::path& path, std::string_view content);
 
 /// Makes a folder, and those above it, unless they are there.
 /// \throws Failure(Storage) naming the folder and what the system said.

@@ -12,9 +12,12 @@
 #include <utility>
 
 #include "client/link/durable_file.hpp"
+#include "client/link/outbox_files.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/types/failure.hpp"
+#include "proto/types/hex.hpp"
+#include "proto/types/limits.hpp"
 
 namespace kinship::link {
 namespace {
@@ -22,47 +25,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPending = "pending";
-constexpr std::string_view kSent = "sent";
 constexpr std::string_view kRejected = "rejected";
 constexpr std::string_view kRobots = "robots";
+constexpr std::string_view kEpoch = "store_epoch";
+constexpr std::string_view kMark = "store_mark";
 constexpr std::string_view kSuffix = ".json";
 constexpr std::size_t kMaxFileBytes = 16'000'000;
 constexpr std::size_t kUuidTextBytes = 36;
-constexpr std::chrono::hours kKeepSent{7 * 24};
 constexpr std::chrono::hours kKeepTemporary{24};
-
-void require(const std::error_code& error, const fs::path& path, const char* what) {
-  if (error)
-    throw Failure(ErrorCode::Storage, path.string() + ": " + what + ": " + error.message());
-}
-
-/// Calls `visit` with every entry of a folder. Entries that vanish meanwhile are no error.
-template <typename Visit>
-void for_each_entry(const fs::path& folder, const Visit& visit) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error))
-    visit(*entry);
-  require(error, folder, "cannot list");
-}
-
-/// The UUID in the name of a report file; empty for any other name.
-std::optional<Uuid> report_uuid_of(const fs::path& path) {
-  const std::string name = path.filename().string();
-  if (!name.ends_with(kSuffix))
-    return std::nullopt;
-  return Uuid::parse(std::string_view(name).substr(0, name.size() - kSuffix.size()));
-}
-
-/// Moves a file. \return false if it was not there.
-bool move_file(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error == std::errc::no_such_file_or_directory)
-    return false;
-  require(error, to, "cannot rename to");
-  return true;
-}
 
 void remove_older_than(const fs::directory_entry& entry, std::chrono::hours age) {
   std::error_code error;
@@ -85,13 +55,13 @@ Result<std::string> read_limited(const fs::path& path) {
 
 }  // namespace
 
-Outbox::Outbox(fs::path folder) : folder_(std::move(folder)) {
-  for (const std::string_view part : {kPending, kSent, kRejected, kRobots})
+Outbox::Outbox(fs::path folder) : folder_(std::move(folder)), sent_(folder_) {
+  for (const std::string_view part : {kPending, kRejected, kRobots})
     make_folder_durably(folder_ / part);
 }
 
 fs::path Outbox::file(std::string_view part, const Uuid& report_uuid) const {
-  return folder_ / part / (report_uuid.text() + std::string(kSuffix));
+  return folder_ / part / report_file_name(report_uuid);
 }
 
 void Outbox::add(const Attempt& attempt) {
@@ -142,11 +112,8 @@ Result<Attempt> Outbox::read(const Uuid& report_uuid) const {
 }
 
 void Outbox::mark_sent(const Uuid& report_uuid) {
-  const fs::path from = file(kPending, report_uuid);
-  std::error_code ignored;  // the seven days begin now; if that fails, when it was written
-  fs::last_write_time(from, fs::file_time_type::clock::now(), ignored);
   // No fsync: a report that is back in pending after a power cut is answered "duplicate".
-  move_file(from, file(kSent, report_uuid));
+  move_file(file(kPending, report_uuid), sent_.file(report_uuid));
 }
 
 void Outbox::reject(const Uuid& report_uuid, std::string_view reason) {
@@ -176,27 +143,49 @@ Result<RobotDescription> Outbox::robot(const Digest& robot) const {
   return description;
 }
 
-void Outbox::note_store_epoch(const Uuid& epoch) {
-  const fs::path path = folder_ / "store_epoch";
-  std::error_code error;
+bool Outbox::note_store(const Uuid& epoch, const HistoryMark& mark) {
+  const fs::path path = folder_ / kEpoch;
   std::optional<Uuid> known;
-  if (fs::exists(path, error))
+  if (has_receipts())
     known = Uuid::parse(read_file(path, 1024).substr(0, kUuidTextBytes));
-  if (known == epoch)
-    return;
-  if (known)  // else this outbox has never had a receipt
-    for_each_entry(folder_ / kSent, [&](const fs::directory_entry& entry) {
-      if (const auto uuid = report_uuid_of(entry.path()))
-        move_file(entry.path(), file(kPending, *uuid));
-    });
-  write_durably(path, epoch.text() + "\n");  // last: if we die before, it all happens again
+  bool is_any_offered = false;
+  if (known != epoch) {
+    if (known)  // else this outbox has never had a receipt
+      sent_.for_each([&](const fs::path& report) {
+        is_any_offered |= move_file(report, folder_ / kPending / report.filename());
+      });
+    write_durably(path, epoch.text() + "\n");  // last: if we die before, it all happens again
+  }
+  if (!mark.empty() && mark != known_mark()) {
+    try {
+      write_whole(folder_ / kMark, to_hex(mark) + "\n");
+    } catch (const Failure&) {
+      // A full disk must not keep receipts from being noted: an older mark says less, nothing
+      // wrong.
+    }
+  }
+  return is_any_offered;
 }
 
-void Outbox::purge() {
-  for_each_entry(folder_ / kSent, [](const fs::directory_entry& entry) {
-    if (report_uuid_of(entry.path()))
-      remove_older_than(entry, kKeepSent);
-  });
+bool Outbox::has_receipts() const {
+  std::error_code error;
+  return fs::exists(folder_ / kEpoch, error);
+}
+
+HistoryMark Outbox::known_mark() const {
+  const fs::path path = folder_ / kMark;
+  std::error_code error;
+  if (!fs::exists(path, error))
+    return {};
+  const std::string text = read_file(path, 1024);
+  const std::string_view digits = std::string_view(text).substr(0, text.find('\n'));
+  HistoryMark mark(std::min(digits.size() / 2, kMaxHistoryMarkBytes));
+  return parse_hex(digits, mark) ? mark : HistoryMark{};
+}
+
+void Outbox::age(std::chrono::milliseconds sending) {
+  sent_.make_folders();  // who rotated them may have been killed in between
+  sent_.age(sending);
   for (const fs::path& folder :
        {folder_ / kPending, folder_ / kRejected, folder_ / kRobots, folder_})
     for_each_entry(folder, [](const fs::directory_entry& entry) {

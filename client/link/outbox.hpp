@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "client/link/sent_reports.hpp"
 #include "proto/types/attempt.hpp"
+#include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
@@ -17,7 +20,7 @@
 namespace kinship::link {
 
 /// Reports of a client on disk, one file each, named by report UUID:
-/// `pending/` until the server's receipt, then `sent/` for seven days or `rejected/` for good.
+/// `pending/` until the server's receipt, then `sent/` (sent_reports.hpp) or `rejected/` for good.
 /// Beside them `robots/`: what to register their robots with.
 ///
 /// Processes may share one: anybody adds, whoever holds the SenderLock moves. Methods throw
@@ -47,17 +50,25 @@ class Outbox {
   ///         if its file is damaged.
   Result<RobotDescription> robot(const Digest& robot) const;
 
-  /// To be told the store epoch of every receipt. If it differs from the one remembered, the
-  /// server's store was restored or replaced, and what was sent is pending again.
-  void note_store_epoch(const Uuid& epoch);
+  /// To be told what every reply says of the store, before the receipts in it. If its epoch differs
+  /// from the one remembered, the server's store was restored, replaced or rolled back, and what
+  /// was sent is pending again.
+  /// \param mark  empty: the server gives none, the one remembered stays.
+  /// \return whether something is pending again.
+  bool note_store(const Uuid& epoch, const HistoryMark& mark);
 
-  /// Deletes what was sent more than seven days ago, and temporary files older than a day.
-  void purge();
+  bool has_receipts() const;       ///< whether an epoch was ever noted
+  HistoryMark known_mark() const;  ///< the newest; empty if there is none
+
+  /// What was sent grows older by so much, and is deleted if it is old (sent_reports.hpp);
+  /// temporary files that were written more than a day ago are.
+  void age(std::chrono::milliseconds sending);
 
  private:
   std::filesystem::path file(std::string_view part, const Uuid& report_uuid) const;
 
   std::filesystem::path folder_;
+  SentReports sent_;
 };
 
 /// The right to send from an outbox; given to one holder on this machine at a time.

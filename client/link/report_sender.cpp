@@ -15,7 +15,8 @@ constexpr std::chrono::milliseconds kRetry = 1s;      // after "try again" or wi
 constexpr std::chrono::milliseconds kIdle = 2s;       // another process may have added reports
 constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
 constexpr std::chrono::milliseconds kStorageRetry = 5s;
-constexpr std::chrono::hours kPurge{1};
+constexpr std::chrono::hours kAgeing{1};
+constexpr std::chrono::minutes kGreeting{10};
 constexpr std::chrono::milliseconds kPoll = 50ms;  // for what another process sends
 
 bool is_final(ReceiptStatus status) {
@@ -24,11 +25,13 @@ bool is_final(ReceiptStatus status) {
 
 }  // namespace
 
-ReportSender::ReportSender(Outbox& outbox, Send send, Register register_robot, Now now)
+ReportSender::ReportSender(Outbox& outbox, Send send, Register register_robot, Now now,
+                           CountServers count_servers)
     : outbox_(outbox),
       send_(std::move(send)),
       register_robot_(std::move(register_robot)),
       now_(std::move(now)),
+      count_servers_(std::move(count_servers)),
       thread_([this] { run(); }) {}
 
 ReportSender::~ReportSender() {
@@ -96,6 +99,8 @@ void ReportSender::run() {
       return is_stopped_ || is_retry_due_ || (is_woken_ && pause == kIdle);
     });
   }
+  if (lock)
+    age_now_and_then(true);
 }
 
 /// One round. \return how long to pause.
@@ -105,16 +110,23 @@ std::chrono::milliseconds ReportSender::work(std::optional<SenderLock>& lock) {
     if (!lock)
       return kLockRetry;
   }
-  purge_now_and_then();
-  return send_all_pending() ? kIdle : kRetry;
+  age_now_and_then(false);
+  is_offering_again_ = false;
+  const bool gets_on = send_all_pending() && greet();
+  return !gets_on ? kRetry : is_offering_again_ ? 0ms : kIdle;
 }
 
-void ReportSender::purge_now_and_then() {
+/// Every hour, so that a process that is killed takes no more than that with it, and at the end.
+void ReportSender::age_now_and_then(bool is_end) {
   const std::chrono::steady_clock::time_point now = now_();
-  if (purged_ && now - *purged_ < kPurge)
+  if (aged_ && !is_end && now - *aged_ < kAgeing)
     return;
-  outbox_.purge();
-  purged_ = now;
+  try {
+    outbox_.age(std::chrono::duration_cast<std::chrono::milliseconds>(now - aged_.value_or(now)));
+  } catch (const Failure& failure) {  // of the disk: what is sent is kept longer
+    report_problem(failure.what());
+  }
+  aged_ = now;
 }
 
 /// \return false if something is left that should be tried again.
@@ -142,6 +154,32 @@ bool ReportSender::send_all_pending() {
   return deliver(batch) && unknown_.empty();
 }
 
+/// Tells a server that came, and every server now and then, how far its store is known here, for
+/// the case that it was rolled back: who reports nothing would never hear of it.
+/// \return false if it should be tried again.
+bool ReportSender::greet() {
+  const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
+  const bool is_known = servers == servers_greeted_ && greeted_ && now_() - *greeted_ < kGreeting;
+  if (servers == 0 || is_known || !outbox_.has_receipts())
+    return true;
+  ReportRequest greeting;
+  return exchange(greeting).has_value();
+}
+
+/// Sends a batch with what is known of the store, and notes what the reply says of it.
+Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
+  const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
+  batch.known_mark = outbox_.known_mark();
+  Result<ReportReply> reply = send_(batch);
+  if (!reply || reply->store_epoch == Uuid{})  // the server could not even read the batch
+    return reply;
+  if (outbox_.note_store(reply->store_epoch, reply->history_mark))
+    is_offering_again_ = true;
+  servers_greeted_ = servers;
+  greeted_ = now_();
+  return reply;
+}
+
 /// Sends a batch, if need be once more after registering robots, and empties it. Reports of robots
 /// that stay unknown do not hold up others.
 /// \return false if nothing more should be sent in this round.
@@ -160,7 +198,7 @@ bool ReportSender::deliver(ReportRequest& batch) {
 bool ReportSender::send_batch(ReportRequest& batch) {
   if (batch.attempts.empty())
     return true;
-  const Result<ReportReply> reply = send_(batch);
+  const Result<ReportReply> reply = exchange(batch);
   if (!reply) {
     report_problem(reply.error().message);
     return false;
@@ -181,8 +219,6 @@ bool ReportSender::send_batch(ReportRequest& batch) {
   if (!problem.empty() || unknown_.empty())
     report_problem(problem);  // before the last report leaves the outbox, which people wait for
 
-  if (!reply->receipts.empty())
-    outbox_.note_store_epoch(reply->store_epoch);
   std::vector<Attempt> of_unknown_robots;
   for (Attempt& attempt : batch.attempts) {
     const auto found = receipts.find(attempt.report_uuid);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -28,6 +29,9 @@ class ReportSender {
   using Register = std::function<Result<RegisterReply>(const RobotDescription&)>;
   using Now = std::function<std::chrono::steady_clock::time_point()>;
 
+  /// How many servers have come so far (Requester::count_servers).
+  using CountServers = std::function<std::uint64_t()>;
+
   struct Counts {
     std::size_t accepted = 0;  ///< receipts stored, duplicate or recorded
     std::size_t refused = 0;   ///< refused by the server or unreadable on disk
@@ -37,9 +41,12 @@ class ReportSender {
   /// \param outbox          must outlive the sender.
   /// \param register_robot  called on the sender's thread for robots that the server does not know
   ///                        and the outbox has a description of; empty: they wait.
-  /// \param now             the time by which `sent/` is purged.
+  /// \param now             the time by which `sent/` grows older.
+  /// \param count_servers   a new server is greeted if nothing is pending, and every server now and
+  ///                        then: its answer tells whether its store has lost what was sent. Empty:
+  ///                        nobody is greeted.
   ReportSender(Outbox& outbox, Send send, Register register_robot = {},
-               Now now = std::chrono::steady_clock::now);
+               Now now = std::chrono::steady_clock::now, CountServers count_servers = {});
   ~ReportSender();  ///< waits for the call under way, which should be made to end before
   ReportSender(const ReportSender&) = delete;
   ReportSender& operator=(const ReportSender&) = delete;
@@ -54,8 +61,10 @@ class ReportSender {
  private:
   void run();
   std::chrono::milliseconds work(std::optional<SenderLock>& lock);
-  void purge_now_and_then();
+  void age_now_and_then(bool is_end);
   bool send_all_pending();
+  bool greet();
+  Result<ReportReply> exchange(ReportRequest& batch);
   bool deliver(ReportRequest& batch);
   bool send_batch(ReportRequest& batch);
   bool register_robots(const ReportRequest& batch);
@@ -67,8 +76,15 @@ class ReportSender {
   const Send send_;
   const Register register_robot_;
   const Now now_;
-  std::optional<std::chrono::steady_clock::time_point> purged_;  // of the thread alone
-  std::set<Digest> unknown_;  // of the thread alone: robots whose reports wait for the next round
+  const CountServers count_servers_;
+  // Of the thread alone:
+  std::optional<std::chrono::steady_clock::time_point> aged_;
+  std::optional<std::chrono::steady_clock::time_point>
+      greeted_;  // the last reply, also a receipt's
+  std::uint64_t servers_greeted_ = 0;
+  bool is_offering_again_ = false;  // what was sent is pending again
+  std::set<Digest> unknown_;        // robots whose reports wait for the next round
+
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   Counts counts_;

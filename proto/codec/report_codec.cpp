@@ -83,6 +83,20 @@ BatchBytes batch_bytes(const kinship_wire_Attempt& wire) {
   return bytes;
 }
 
+void check_mark(std::string_view what, std::size_t bytes, Rules& rules) {
+  rules.at_most(what, bytes, kMaxHistoryMarkBytes);
+}
+
+void write_mark(const HistoryMark& mark, Arena& arena, dds_sequence_octet& wire) {
+  arena.resize(wire, mark.size());
+  std::copy(mark.begin(), mark.end(), wire._buffer);
+}
+
+HistoryMark read_mark(const dds_sequence_octet& wire) {
+  const auto bytes = elements(wire);
+  return {bytes.begin(), bytes.end()};
+}
+
 void check_batch(const BatchBytes& bytes, Rules& rules) {
   rules.at_most("waypoints of a batch (bytes)", bytes.waypoints, kMaxBatchBytes)
       .at_most("scenes of a batch (bytes)", bytes.scenes, kMaxSceneBytes);
@@ -93,6 +107,7 @@ void check_batch(const BatchBytes& bytes, Rules& rules) {
 Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const ReportRequest& request) {
   Rules rules;
   rules.at_most("attempts of a batch", request.attempts.size(), kMaxAttemptsPerBatch);
+  check_mark("known_mark", request.known_mark.size(), rules);
   BatchBytes bytes;
   for (const Attempt& attempt : request.attempts) {
     rules.name(find_fault(attempt));
@@ -105,6 +120,7 @@ Result<Message<kinship_wire_ReportRequest>> encode(const Head& head, const Repor
   message.arena->resize(message.wire.attempts, request.attempts.size());
   for (std::size_t i = 0; i < request.attempts.size(); ++i)
     write_attempt(request.attempts[i], *message.arena, message.wire.attempts._buffer[i]);
+  write_mark(request.known_mark, *message.arena, message.wire.known_mark);
   return limited(std::move(message));
 }
 
@@ -112,9 +128,11 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
   const auto attempts = elements(wire.attempts);
   Rules rules;
   rules.at_most("attempts of a batch", attempts.size(), kMaxAttemptsPerBatch);
+  check_mark("known_mark", elements(wire.known_mark).size(), rules);
   if (rules.broken())
     return *rules.broken();
   ReportRequest request;
+  request.known_mark = read_mark(wire.known_mark);
   request.attempts.reserve(attempts.size());
   BatchBytes bytes;
   for (const kinship_wire_Attempt& entry : attempts) {
@@ -135,6 +153,7 @@ Result<ReportRequest> decode(const kinship_wire_ReportRequest& wire) {
 Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportReply& reply) {
   Rules rules;
   rules.at_most("receipts", reply.receipts.size(), kMaxAttemptsPerBatch);
+  check_mark("history_mark", reply.history_mark.size(), rules);
   if (rules.broken())
     return *rules.broken();
   Message<kinship_wire_ReportReply> message(head);
@@ -148,16 +167,19 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
     // One odd message must not hold back the receipts of its neighbours.
     wire.message = message.arena->text(cut_text(receipt.message, kMaxMessageBytes));
   }
+  write_mark(reply.history_mark, *message.arena, message.wire.history_mark);
   return limited(std::move(message));
 }
 
 Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
   Reader reader;
   reader.rules.at_most("receipts", wire.receipts._length, kMaxAttemptsPerBatch);
+  check_mark("history_mark", elements(wire.history_mark).size(), reader.rules);
   if (reader.rules.broken())
     return *reader.rules.broken();
   ReportReply reply;
   reply.store_epoch = read_uuid(wire.store_epoch);
+  reply.history_mark = read_mark(wire.history_mark);
   for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
     Receipt receipt;
     receipt.report_uuid = read_uuid(entry.report_uuid);

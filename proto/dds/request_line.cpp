@@ -151,6 +151,11 @@ void RequestLine::notice_servers() {
   wake_all();  // reading the status took it from the other callers
 }
 
+std::uint64_t RequestLine::count_servers() {
+  notice_servers();
+  return servers_seen_;
+}
+
 bool RequestLine::has_server() const {
   return dds_get_matched_subscriptions(writer_.get(), nullptr, 0) > 0;
 }

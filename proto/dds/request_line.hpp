@@ -34,7 +34,8 @@ class RequestLine {
                const std::function<void(const void*)>& on_reply);
 
   void cancel();
-  bool has_server() const;  ///< whether one is known right now
+  bool has_server() const;        ///< whether one is known right now
+  std::uint64_t count_servers();  ///< that came since construction, the same one again too
 
  private:
   struct Waiter {

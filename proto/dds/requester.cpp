@@ -34,6 +34,7 @@ class Requester<Conversation>::Implementation {
     return *std::move(reply);
   }
 
+  std::uint64_t count_servers() { return line_.count_servers(); }
   void cancel() { line_.cancel(); }
 
  private:
@@ -61,6 +62,11 @@ template <typename Conversation>
 Result<typename Conversation::Reply> Requester<Conversation>::call(
     const typename Conversation::Request& request, Clock::time_point deadline) {
   return implementation_->call(request, deadline);
+}
+
+template <typename Conversation>
+std::uint64_t Requester<Conversation>::count_servers() {
+  return implementation_->count_servers();
 }
 
 template <typename Conversation>

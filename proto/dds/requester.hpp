@@ -30,6 +30,10 @@ class Requester {
   Result<typename Conversation::Reply> call(const typename Conversation::Request& request,
                                             Clock::time_point deadline);
 
+  /// How many servers have come since construction, one that was started anew each time: whoever
+  /// remembers the number sees that there is a new one. Does not wait.
+  std::uint64_t count_servers();
+
   /// Ends calls under way, and makes later ones end at once. For shutting down.
   void cancel();
 

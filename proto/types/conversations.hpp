@@ -40,17 +40,24 @@ struct Receipt {
   std::string message;  ///< why Refused, TryAgain or UnknownRobot
 };
 
-/// A batch of attempts.
+/// A point of a store's history, sealed by the server that gave it: to be kept and given back as it
+/// is. At most kMaxHistoryMarkBytes; empty: none.
+using HistoryMark = std::vector<std::uint8_t>;
+
+/// A batch of attempts; an empty one asks for the store's epoch.
 struct ReportRequest {
   std::vector<Attempt> attempts;
   /// At the server only: answers to attempts of the batch that broke a rule of the contract and
   /// are therefore not among `attempts`. They belong into the reply.
   std::vector<Receipt> refused;
+  HistoryMark known_mark = {};  ///< the newest that the client was given
 };
 
 struct ReportReply {
   Uuid store_epoch;
   std::vector<Receipt> receipts;  ///< at most one per attempt, found by UUID; missing: try again
+  /// Of all that is durable; empty from older servers, and if there is nothing to say.
+  HistoryMark history_mark = {};
 };
 
 struct FetchRequest {

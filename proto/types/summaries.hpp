@@ -205,6 +205,7 @@ struct ServerStatus {
   std::uint64_t rehearsals = 0;         ///< done since start
   std::uint64_t queued_rehearsals = 0;  ///< waiting or under way
   double rehearsal_time_s = 0;          ///< processor time of those that are done
+  std::uint64_t rollbacks = 0;          ///< of the store, noticed since start
 };
 
 template <>
@@ -233,6 +234,7 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"storage_message", &ServerStatus::storage_message, {.limit = kMaxPageBytes}},
     Field{"rehearsals", &ServerStatus::rehearsals, {.may_be_missing = true}},
     Field{"queued_rehearsals", &ServerStatus::queued_rehearsals, {.may_be_missing = true}},
-    Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}}};
+    Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}},
+    Field{"rollbacks", &ServerStatus::rollbacks, {.may_be_missing = true}}};
 
 }  // namespace kinship

@@ -24,7 +24,6 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
     : options_(std::move(options)),
       started_(options_.clock.now()),
       store_(std::move(store)),
-      epoch_(store_->epoch()),
       robots_(*store_),
       experience_(*store_, robots_),
       events_(options_.clock, options_.on_event),
@@ -71,7 +70,10 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
     log_fit(distribution);
     publish_fit(events_, robots_, distribution);
   };
-  catalog.announce = options.on_announcement;
+  catalog.announce = [this](Announcement announcement) {
+    announcement.store_epoch = store_->epoch();
+    options_.on_announcement(announcement);
+  };
   catalog.on_unfollowed = options.on_unfollowed;
   catalog.wake = options.wake;
   catalog.advice.advise = [this](const std::string& task, const Digest& robot,
@@ -161,20 +163,60 @@ void Service::register_robot(RobotDescription description,
 }
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done) {
+  if (!store_->has_lost(request.known_mark))
+    return take_in(std::move(request), std::move(done));
+  // No answer if it fails: a newer mark in it would make the client forget the lost one.
+  auto run = [this, request = std::move(request), done = std::move(done)]() mutable {
+    try {
+      begin_epoch(request.known_mark);
+    } catch (const std::exception& exception) {
+      return options_.log(std::string("store: rolled back, no new epoch yet: ") + exception.what());
+    }
+    take_in(std::move(request), std::move(done));
+  };
+  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
+                               {.run = std::move(run), .abandon = {}}))
+    options_.log("report: not answered, busy or stopping");
+}
+
+void Service::begin_epoch(const HistoryMark& lost) {
+  if (!store_->begin_epoch_if_lost(lost))
+    return;  // another client was first
+  const std::string what = "the store was rolled back behind receipts of clients: epoch " +
+                           store_->epoch().text() + " begins, they offer again what is missing";
+  options_.log(what);
+  events_.tell(EventKind::Administration, "", {}, [&] { return what; });
+}
+
+void Service::take_in(ReportRequest request, std::function<void(const ReportReply&)> done) {
   refused_before_ += request.refused.size();
   publish_refused(events_, request.refused);
   ingest_.submit(std::move(request.attempts),
                  [this, refused = std::move(request.refused),
                   done = std::move(done)](const std::vector<Receipt>& receipts) {
-                   ReportReply reply{epoch_, receipts};
+                   store::StorePoint point = store_->point();
+                   ReportReply reply{point.epoch, receipts, std::move(point.mark)};
                    reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
                    log_refused(reply.receipts);
                    done(reply);
                  });
 }
 
+/// A distribution in memory is the one in the store, also if an epoch began meanwhile.
+catalog::FetchDone Service::of_this_epoch(catalog::FetchDone done) const {
+  return [this, done = std::move(done)](const FetchReply& reply) {
+    const Uuid epoch = store_->epoch();
+    if (!reply.distribution || reply.distribution->store_epoch == epoch)
+      return done(reply);
+    FetchReply renewed = reply;
+    renewed.distribution->store_epoch = epoch;
+    done(renewed);
+  };
+}
+
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
+  done = of_this_epoch(std::move(done));
   if (request.experience_bytes > 0)
     done =
         rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
@@ -247,6 +289,7 @@ ServerStatus Service::status() const {
   status.store_bytes = store.bytes;
   status.writable = store.writable;
   status.storage_message = store.message;
+  status.rollbacks = store.rollbacks;
   const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();
   status.rehearsals = rehearsals.done;
   status.queued_rehearsals = rehearsals.queued;

@@ -87,6 +87,9 @@ class Service {
   rehearsal::RehearsalBookOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
   Administration::Parts administration_parts();
+  void take_in(ReportRequest request, std::function<void(const ReportReply&)> done);
+  void begin_epoch(const HistoryMark& lost);
+  catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   void log_refused(const std::vector<Receipt>& receipts) const;
   void log_fit(const Distribution& distribution) const;
@@ -94,7 +97,6 @@ class Service {
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
-  const Uuid epoch_;
   runtime::RobotRegistry robots_;
   catalog::ExperienceBook experience_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_

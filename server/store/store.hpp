@@ -78,6 +78,13 @@ struct AttemptTotals {
   std::vector<KnownAttempt> recent;  ///< the newest kKnownAttemptsPerMode of each, oldest first
 };
 
+/// How far a store has come: what had a receipt by then is in it as long as the mark lies on its
+/// history.
+struct StorePoint {
+  Uuid epoch;
+  HistoryMark mark;  ///< of the newest attempt that is durable
+};
+
 struct StoreStatus {
   std::string file;
   Uuid epoch;
@@ -87,6 +94,7 @@ struct StoreStatus {
   std::uint64_t queued = 0;
   bool writable = true;
   std::string message;  ///< why not writable, what is damaged, warnings; mostly one warning or none
+  std::uint64_t rollbacks = 0;  ///< noticed since it was opened, each with a new epoch
 };
 
 /// One page of a listing; `next_cursor` is empty on the last one.
@@ -102,7 +110,15 @@ class Store {
  public:
   virtual ~Store() = default;
 
+  /// Of the store's life: changes when it is restored, or was found to be a copy or rolled back.
   virtual Uuid epoch() const = 0;
+  virtual StorePoint point() const = 0;
+
+  /// Whether a mark that a client was given is one of this epoch and what was there then is not any
+  /// more. Marks that this store never made are not lost. From memory.
+  virtual bool has_lost(const HistoryMark& mark) const = 0;
+  /// A new epoch if a mark is lost, durable on return. \return whether it began.
+  virtual bool begin_epoch_if_lost(const HistoryMark& mark) = 0;
   virtual StoreStatus status() const = 0;
 
   /// Durable on return. Known: the digest was there already (its label and text stay as they are).

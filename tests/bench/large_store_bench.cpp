@@ -36,7 +36,7 @@ class StoreFile {
   StoreFile& operator=(const StoreFile&) = delete;
   ~StoreFile() {
     std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", ".lock"})
+    for (const char* suffix : {"", "-wal", "-shm", ".lock", ".witness"})
       std::filesystem::remove(path_.string() + suffix, ignored);
   }
   const std::filesystem::path& path() const noexcept { return path_; }

@@ -182,6 +182,7 @@ ServerStatus every_status() {
   status.rehearsals = next.count();
   status.queued_rehearsals = next.count();
   status.rehearsal_time_s = next.real();
+  status.rollbacks = next.count();
   return status;
 }
 

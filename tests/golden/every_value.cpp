@@ -266,6 +266,7 @@ RegisterReply every_register_reply() {
 ReportRequest every_report_request() {
   ReportRequest request;
   request.attempts = {every_attempt(), every_unsolved_attempt()};
+  request.known_mark = {3, 1, 4, 1, 5};
   return request;
 }
 
@@ -280,6 +281,7 @@ ReportReply every_report_reply() {
     receipt.message = next.text("message");
     reply.receipts.push_back(receipt);
   }
+  reply.history_mark = {2, 7, 1, 8};
   return reply;
 }
 

@@ -31,7 +31,8 @@ int make(const std::filesystem::path& file) {
   }
   store::Database(file, store::Access::ReadWrite)
       .execute("PRAGMA journal_mode = DELETE; PRAGMA page_size = 1024; VACUUM");
-  std::filesystem::remove(file.string() + ".lock");
+  for (const char* const suffix : {".lock", ".witness"})
+    std::filesystem::remove(file.string() + suffix);
   std::cout << file.string() << ": " << std::filesystem::file_size(file) << " bytes\n";
   return 0;
 }

@@ -24,8 +24,8 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared) {
 
 }  // namespace
 
-ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
-    : done_(std::move(done)) {
+ReportItem::ReportItem(History& history, std::vector<Attempt> attempts, Store::ReportsDone done)
+    : history_(history), done_(std::move(done)) {
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
     Result<PreparedAttempt> prepared = prepare(std::move(attempt));
@@ -41,9 +41,10 @@ ReportItem::ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done)
   }
 }
 
-std::unique_ptr<ReportItem> ReportItem::declined(const std::vector<Attempt>& attempts,
+std::unique_ptr<ReportItem> ReportItem::declined(History& history,
+                                                 const std::vector<Attempt>& attempts,
                                                  Store::ReportsDone done, const std::string& why) {
-  auto item = std::make_unique<ReportItem>(std::vector<Attempt>(), std::move(done));
+  auto item = std::make_unique<ReportItem>(history, std::vector<Attempt>(), std::move(done));
   for (const Attempt& attempt : attempts) {
     item->prepared_.emplace_back(std::nullopt);
     item->receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, why});
@@ -55,6 +56,8 @@ void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
     if (prepared_[i])
       receipts_[i] = insert_alone(batch, *prepared_[i]);
+  history_.write_run(batch.database());
+  position_ = position_of(batch.database());
 }
 
 void ReportItem::finish(const Error* error) {
@@ -62,6 +65,8 @@ void ReportItem::finish(const Error* error) {
     for (std::size_t i = 0; i < prepared_.size(); ++i)
       if (prepared_[i])
         receipts_[i] = {receipts_[i].report_uuid, ReceiptStatus::TryAgain, error->message};
+  if (error == nullptr)
+    history_.committed(position_);
   done_(receipts_);
 }
 

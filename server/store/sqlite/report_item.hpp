@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/sqlite/history.hpp"
 #include "server/store/sqlite/prepared_attempt.hpp"
 #include "server/store/sqlite/writer.hpp"
 #include "server/store/store.hpp"
@@ -15,10 +16,12 @@ namespace kinship::store {
 class ReportItem : public WriteItem {
  public:
   /// Encodes and hashes on the caller's thread, which spares the writer's.
-  ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done);
+  /// \param history  told how far the item brought it, before `done` is called; outlives the item.
+  ReportItem(History& history, std::vector<Attempt> attempts, Store::ReportsDone done);
 
   /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
-  static std::unique_ptr<ReportItem> declined(const std::vector<Attempt>& attempts,
+  static std::unique_ptr<ReportItem> declined(History& history,
+                                              const std::vector<Attempt>& attempts,
                                               Store::ReportsDone done, const std::string& why);
 
   std::size_t weight() const override { return receipts_.size(); }
@@ -27,6 +30,8 @@ class ReportItem : public WriteItem {
   void finish(const Error* error) override;
 
  private:
+  History& history_;
+  std::uint64_t position_ = 0;
   std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: answered already
   std::vector<Receipt> receipts_;
   std::size_t bytes_ = 0;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/history.hpp"
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/online_backup.hpp"
@@ -66,10 +67,7 @@ std::vector<fs::path> replaced_stores(const fs::path& file) {
 }  // namespace
 
 Restoration::Restoration(fs::path backup, fs::path file)
-    : backup_(std::move(backup)),
-      file_(std::move(file)),
-      copy_(file_.string() + ".restoring"),
-      epoch_(Uuid::random()) {
+    : backup_(std::move(backup)), file_(std::move(file)), copy_(file_.string() + ".restoring") {
   remove_with_companions(copy_);
 }
 
@@ -90,11 +88,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       Database database(copy_, Access::ReadWrite);
       database.execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
       apply_missing(database, copy_, embedded_migrations());
-      Statement(database.connection(),
-                "INSERT INTO setting VALUES ('epoch', ?) "
-                "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
-          .bind(1, std::string_view(epoch_.text()))
-          .run();
+      epoch_ = write_new_epoch(database, copy_);
       const StoreCheck check = check_database(
           database, backup_, [&](double done) { progress(kCopyShare + (1 - kCopyShare) * done); });
       if (check.problems > 0)
@@ -112,6 +106,7 @@ Restored Restoration::replace() {
   Restored restored;
   restored.epoch = epoch_;
   restored.leftovers = replaced_stores(file_);
+  WitnessFile::remove(file_);  // of the old store: it would take the new one for rolled back
   if (fs::exists(file_)) {
     fold_old();
     restored.replaced = name_copy();

@@ -15,6 +15,7 @@
 #include "server/store/sqlite/distribution_rows.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/export_rows.hpp"
+#include "server/store/sqlite/history.hpp"
 #include "server/store/sqlite/listings.hpp"
 #include "server/store/sqlite/lock_file.hpp"
 #include "server/store/sqlite/path_rows.hpp"
@@ -43,33 +44,17 @@ class DamageItem : public WriteItem {
   std::vector<std::int64_t> paths_;
 };
 
-Uuid ensure_epoch(Database& database) {
-  Transaction transaction(database, Transaction::Kind::Write);
-  database.cached("INSERT INTO setting VALUES ('epoch', ?) ON CONFLICT DO NOTHING")
-      ->bind(1, std::string_view(Uuid::random().text()))
-      .run();
-  std::optional<Uuid> epoch;
-  {
-    const auto query = database.cached("SELECT value FROM setting WHERE key = 'epoch'");
-    if (query->step())
-      epoch = Uuid::parse(query->column_text(0));
-  }
-  transaction.commit();
-  if (!epoch)
-    throw Failure(ErrorCode::Storage, "its epoch is no UUID");
-  return *epoch;
-}
-
 class SqliteStore : public Store {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
       : options_(options),
         file_(locate_store(file)),
         lock_(file_),
+        history_(file_),
         readers_(file_),
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
-    epoch_ = ensure_epoch(*database);
+    history_.begin_run(*database);
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after,
@@ -79,14 +64,27 @@ class SqliteStore : public Store {
   // Readers close before the writer does, whose last act is to empty the WAL.
   ~SqliteStore() override { readers_.suspend(); }
 
-  Uuid epoch() const override { return epoch_; }
+  Uuid epoch() const override { return history_.epoch(); }
+  StorePoint point() const override { return history_.point(); }
+  bool has_lost(const HistoryMark& mark) const override { return history_.has_lost(mark); }
+
+  bool begin_epoch_if_lost(const HistoryMark& mark) override {
+    auto item = std::make_unique<History::Renewal>(history_, mark);
+    auto result = item->result();
+    writer_->submit(std::move(item));
+    return result.get();
+  }
 
   StoreStatus status() const override {
     StoreStatus status;
     status.file = file_.string();
-    status.epoch = epoch_;
+    status.epoch = history_.epoch();
+    status.rollbacks = history_.rollbacks();
     status.queued = writer_->queued();
     describe_disk(status);
+    if (status.rollbacks > 0)
+      status.message +=
+          "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
@@ -125,10 +123,10 @@ class SqliteStore : public Store {
     if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
       why = "the queue of reports is full, try again";
     if (!why.empty()) {
-      writer_->submit(ReportItem::declined(attempts, std::move(done), why));
+      writer_->submit(ReportItem::declined(history_, attempts, std::move(done), why));
       return;
     }
-    writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+    writer_->submit(std::make_unique<ReportItem>(history_, std::move(attempts), std::move(done)));
     if (space_.may_take_ballast())
       take_ballast_later();
   }
@@ -192,7 +190,7 @@ class SqliteStore : public Store {
     const ReaderPool::Lease reader = readers_.lease();
     std::optional<Distribution> distribution = select_distribution(*reader, id).distribution;
     if (distribution)
-      distribution->store_epoch = epoch_;
+      distribution->store_epoch = history_.epoch();
     return distribution;
   }
 
@@ -329,6 +327,7 @@ class SqliteStore : public Store {
     space_.release_ballast_if_short();
     try {
       std::unique_ptr<Database> database = reopen_writer(file_);
+      history_.begin_run(*database);
       readers_.resume();
       return database;
     } catch (...) {
@@ -340,9 +339,9 @@ class SqliteStore : public Store {
   const SqliteOptions options_;
   const std::filesystem::path file_;
   const LockFile lock_;
+  History history_;
   mutable ReaderPool readers_;
   mutable DiskSpace space_;
-  Uuid epoch_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
   std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above
 };

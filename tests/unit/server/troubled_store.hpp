@@ -27,6 +27,11 @@ class TroubledStore final : public store::Store {
   }
 
   Uuid epoch() const override { return store_.epoch(); }
+  store::StorePoint point() const override { return store_.point(); }
+  bool has_lost(const HistoryMark& mark) const override { return store_.has_lost(mark); }
+  bool begin_epoch_if_lost(const HistoryMark& mark) override {
+    return store_.begin_epoch_if_lost(mark);
+  }
   store::StoreStatus status() const override { return store_.status(); }
   Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
     return store_.register_robot(robot);

@@ -94,7 +94,7 @@ TEST_F(OutboxTest, LeftOverTemporaryFilesAreIgnoredAndPurgedAfterADay) {
   write_text(old, "{");
   age(old, std::chrono::hours(25));
   EXPECT_EQ(outbox.pending_count(), 0U);
-  outbox.purge();
+  outbox.age(std::chrono::hours(0));
   EXPECT_TRUE(fs::exists(fresh));
   EXPECT_FALSE(fs::exists(old));
 }
@@ -136,28 +136,100 @@ TEST_F(OutboxTest, DamagedFilesAreNamed) {
   EXPECT_EQ(outbox.read(Uuid::random()).error().code, ErrorCode::NotFound);
 }
 
-TEST_F(OutboxTest, SentReportsAreKeptForSevenDaysAfterTheReceipt) {
+TEST_F(OutboxTest, SentReportsAreKeptForSevenToFourteenDaysOfSending) {
+  const auto day = std::chrono::hours(24);
+  const Attempt first = values.attempt();
+  const Attempt second = values.attempt();
+  const auto send = [&](const Attempt& attempt) {
+    outbox.add(attempt);
+    outbox.mark_sent(attempt.report_uuid);
+  };
+  send(first);
+  outbox.age(6 * day);
+  send(second);
+  outbox.age(day);
+  EXPECT_TRUE(fs::exists(report_file("sent_before", first)));
+  Outbox(folder.path()).age(7 * day - std::chrono::seconds(1));  // remembered across processes
+  EXPECT_TRUE(fs::exists(report_file("sent_before", first)));
+  EXPECT_TRUE(fs::exists(report_file("sent_before", second)));
+  outbox.age(std::chrono::seconds(1));
+  EXPECT_EQ(files_in(folder.path() / "sent_before"), 0U);
+  EXPECT_EQ(files_in(folder.path() / "sent"), 0U);
+}
+
+TEST_F(OutboxTest, ClockThatJumpsByAYearDeletesNoSentReport) {
+  constexpr auto kYear = std::chrono::hours(24 * 365);
+  std::vector<Attempt> attempts;
+  for (const auto jump : {-kYear, std::chrono::hours(0), kYear}) {
+    for (const bool is_sent_before_the_jump : {true, false}) {
+      const Attempt& attempt = attempts.emplace_back(values.attempt());
+      outbox.add(attempt);
+      if (is_sent_before_the_jump)
+        outbox.mark_sent(attempt.report_uuid);
+      // The clock was wrong by this when the file was written.
+      age(report_file(is_sent_before_the_jump ? "sent" : "pending", attempt), jump);
+      if (!is_sent_before_the_jump)
+        outbox.mark_sent(attempt.report_uuid);
+    }
+  }
+  for (int hour = 0; hour < 24 * 7 - 1; ++hour)
+    Outbox(folder.path()).age(std::chrono::hours(1));
+  for (const Attempt& attempt : attempts)
+    EXPECT_TRUE(fs::exists(report_file("sent", attempt)));
+}
+
+TEST_F(OutboxTest, DamagedAgeKeepsWhatWasSentForLonger) {
   const Attempt attempt = values.attempt();
   outbox.add(attempt);
-  age(report_file("pending", attempt), std::chrono::hours(24 * 30));  // waited long for a server
   outbox.mark_sent(attempt.report_uuid);
-  outbox.purge();
+  outbox.age(std::chrono::hours(24 * 6));
+  write_text(folder.path() / "sent_age_ms", "");
+  outbox.age(std::chrono::hours(24 * 6));
   EXPECT_TRUE(fs::exists(report_file("sent", attempt)));
-  age(report_file("sent", attempt), std::chrono::hours(24 * 7 + 1));
-  outbox.purge();
-  EXPECT_FALSE(fs::exists(report_file("sent", attempt)));
+}
+
+TEST_F(OutboxTest, FoldersThatAKilledProcessTookAwayAreMadeAnew) {
+  const Attempt attempt = values.attempt();
+  outbox.add(attempt);
+  fs::rename(folder.path() / "sent", folder.path() / "sent_before" / "gone");
+  outbox.age(std::chrono::hours(0));
+  outbox.mark_sent(attempt.report_uuid);
+  EXPECT_TRUE(fs::exists(report_file("sent", attempt)));
 }
 
 TEST_F(OutboxTest, ChangedStoreEpochOffersSentReportsAgain) {
-  const Attempt attempt = values.attempt();
+  std::vector<Uuid> uuids;
   const Uuid epoch = Uuid::random();
-  outbox.note_store_epoch(epoch);
-  outbox.add(attempt);
-  outbox.mark_sent(attempt.report_uuid);
-  outbox.note_store_epoch(epoch);
+  EXPECT_FALSE(outbox.has_receipts());
+  EXPECT_FALSE(outbox.note_store(epoch, {}));
+  EXPECT_TRUE(outbox.has_receipts());
+  for (int i = 0; i < 2; ++i) {  // the first one is in sent_before by then
+    const Attempt attempt = values.attempt();
+    outbox.add(attempt);
+    outbox.mark_sent(attempt.report_uuid);
+    outbox.age(std::chrono::hours(24 * (7 - i)));
+    uuids.push_back(attempt.report_uuid);
+  }
+  EXPECT_FALSE(outbox.note_store(epoch, {}));
   EXPECT_EQ(outbox.pending_count(), 0U);
-  Outbox(folder.path()).note_store_epoch(Uuid::random());  // remembered across processes
-  EXPECT_EQ(outbox.pending(), std::vector{attempt.report_uuid});
+  EXPECT_TRUE(Outbox(folder.path()).note_store(Uuid::random(), {}));  // across processes
+  EXPECT_EQ(outbox.pending(), uuids);
+}
+
+TEST_F(OutboxTest, RemembersTheNewestMarkOfTheStore) {
+  EXPECT_TRUE(outbox.known_mark().empty());
+  const Uuid epoch = Uuid::random();
+  const HistoryMark first(40, 0xab), second(64, 0x01);
+  outbox.note_store(epoch, first);
+  EXPECT_EQ(Outbox(folder.path()).known_mark(), first);
+  outbox.note_store(epoch, {});  // from a server that gives none
+  EXPECT_EQ(outbox.known_mark(), first);
+  outbox.note_store(epoch, second);
+  EXPECT_EQ(outbox.known_mark(), second);
+  for (const char* const damaged : {"", "abc", "xyxy\n"}) {
+    write_text(folder.path() / "store_mark", damaged);
+    EXPECT_TRUE(outbox.known_mark().empty()) << damaged;
+  }
 }
 
 TEST_F(OutboxTest, KeepsTheLatestDescriptionOfARobot) {

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <fstream>
 #include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
 
 #include "client/link/durable_file.hpp"
 #include "proto/types/limits.hpp"
@@ -183,27 +187,128 @@ TEST_F(ReportSenderTest, RestoredStoreGetsEverythingAgain) {
   EXPECT_EQ(sent, 3);
 }
 
-TEST_F(ReportSenderTest, SentReportsArePurgedOnceAnHourWhileItRuns) {
+TEST_F(ReportSenderTest, SentReportsGrowOlderByTheTimeInWhichItRunsHourByHour) {
   const auto start = std::chrono::steady_clock::now();
   std::atomic<int> minutes = 0;
-  ReportSender sender(
-      outbox, [](const ReportRequest& batch) { return answer(batch, ReceiptStatus::Stored); }, {},
-      [&] { return start + std::chrono::minutes(minutes); });
-  // The round that sends a new report has purged before.
-  const auto is_kept_at = [&](const Uuid& uuid, int minute) {
-    minutes = minute;
+  const auto file = [&](const char* part, const Uuid& uuid) {
+    return folder.path() / part / (uuid.text() + ".json");
+  };
+  Uuid first;
+  for (const int days : {3, 4}) {  // two processes; the end of each counts
+    minutes = 0;
+    ReportSender sender(
+        outbox, [](const ReportRequest& batch) { return answer(batch, ReceiptStatus::Stored); }, {},
+        [&] { return start + std::chrono::minutes(minutes); });
+    const Uuid uuid = add().report_uuid;
+    sender.wake();
+    sender.wait_until_empty(in(10s));
+    if (days == 3)
+      first = uuid;
+    EXPECT_TRUE(std::filesystem::exists(file("sent", first))) << days;
+    minutes = 60 * 24 * days;
+  }
+  EXPECT_TRUE(std::filesystem::exists(file("sent_before", first)));
+}
+
+/// A server that comes and goes, and whose store has an epoch.
+class GreetingTest : public ReportSenderTest {
+ protected:
+  std::unique_ptr<ReportSender> make_sender() {
+    return std::make_unique<ReportSender>(
+        outbox,
+        [this](const ReportRequest& batch) -> Result<ReportReply> {
+          const std::lock_guard lock(mutex);
+          batches.push_back(batch);
+          changed.notify_all();
+          if (is_silent)
+            return Error{ErrorCode::Unavailable, "no answer"};
+          ReportReply reply = answer(batch, ReceiptStatus::Stored, "", epoch);
+          reply.history_mark = mark;
+          return reply;
+        },
+        ReportSender::Register{}, [this] { return start + std::chrono::minutes(minutes); },
+        [this] { return servers.load(); });
+  }
+  void wait_for_batches(std::size_t count) {
+    std::unique_lock lock(mutex);
+    EXPECT_TRUE(changed.wait_for(lock, 30s, [&] { return batches.size() >= count; }));
+  }
+  ReportRequest batch(std::size_t number) {
+    const std::lock_guard lock(mutex);
+    return batches.at(number);
+  }
+  template <typename Change>
+  void change(Change change) {
+    const std::lock_guard lock(mutex);
+    change();
+  }
+  void send_one(ReportSender& sender) {
     add();
     sender.wake();
     sender.wait_until_empty(in(10s));
-    return std::filesystem::exists(folder.path() / "sent" / (uuid.text() + ".json"));
-  };
-  const Uuid old = add().report_uuid;
-  ASSERT_TRUE(is_kept_at(old, 0));
-  const auto file = folder.path() / "sent" / (old.text() + ".json");
-  std::filesystem::last_write_time(
-      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 8));
-  EXPECT_TRUE(is_kept_at(old, 59));
-  EXPECT_FALSE(is_kept_at(old, 60));
+  }
+
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  std::atomic<int> minutes = 0;
+  std::atomic<std::uint64_t> servers = 1;
+  std::mutex mutex;  // guards what follows
+  std::condition_variable changed;
+  std::vector<ReportRequest> batches;
+  Uuid epoch = Uuid::random();
+  HistoryMark mark = {1, 2, 3};
+  bool is_silent = false;
+};
+
+TEST_F(GreetingTest, IdleSenderTellsANewServerWhatItKnowsAndOffersAgainWhatWasLost) {
+  const auto sender = make_sender();
+  send_one(*sender);
+  change([&] { epoch = Uuid::random(); });
+  ++servers;
+  wait_for_batches(3);
+  EXPECT_TRUE(batch(0).known_mark.empty());
+  EXPECT_TRUE(batch(1).attempts.empty());
+  EXPECT_EQ(batch(1).known_mark, mark);
+  EXPECT_EQ(batch(2).attempts.size(), 1U);
+  EXPECT_EQ(batch(2).attempts.at(0).report_uuid, batch(0).attempts.at(0).report_uuid);
+}
+
+TEST_F(GreetingTest, GreetingWithoutAnAnswerIsRepeatedAndTheMarkKept) {
+  const auto sender = make_sender();
+  send_one(*sender);
+  change([&] { is_silent = true; });
+  ++servers;
+  wait_for_batches(3);
+  change([&] { is_silent = false; });
+  wait_for_batches(4);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_TRUE(batch(i).attempts.empty());
+    EXPECT_EQ(batch(i).known_mark, mark);
+  }
+}
+
+TEST_F(GreetingTest, KnownServerIsGreetedEveryTenMinutes) {
+  const auto sender = make_sender();
+  send_one(*sender);
+  for (int i = 0; i < 3; ++i) {  // rounds without a greeting: each sends its report
+    minutes += 9;
+    send_one(*sender);
+  }
+  change([&] {
+    for (const ReportRequest& batch : batches)
+      EXPECT_EQ(batch.attempts.size(), 1U);
+  });
+  minutes += 10;
+  sender->wake();
+  wait_for_batches(5);
+  EXPECT_TRUE(batch(4).attempts.empty());
+}
+
+TEST_F(GreetingTest, WhoNeverHadAReceiptGreetsNobody) {
+  const auto sender = make_sender();
+  ++servers;
+  std::this_thread::sleep_for(300ms);  // nothing happens, for which there is no event
+  send_one(*sender);
+  EXPECT_EQ(batch(0).attempts.size(), 1U);
 }
 
 TEST_F(ReportSenderTest, SecondSenderOfAnOutboxLeavesItToTheFirst) {

@@ -258,6 +258,24 @@ TEST(ReportCodec, ReceiptsComeBack) {
   EXPECT_EQ(read.receipts[2].message, "robot 'x': unknown");
 }
 
+TEST(ReportCodec, MarksComeBackAndHaveALimit) {
+  const HistoryMark mark(kMaxHistoryMarkBytes, 0xa5);
+  const HistoryMark too_long(kMaxHistoryMarkBytes + 1, 0xa5);
+  auto request = encode({}, ReportRequest{{}, {}, mark}).value_or_throw();
+  EXPECT_EQ(decode(request.wire)->known_mark, mark);
+  EXPECT_EQ(encode({}, ReportRequest{{}, {}, too_long}).error().code, ErrorCode::TooLarge);
+  request.arena->resize(request.wire.known_mark, too_long.size());
+  EXPECT_EQ(decode(request.wire).error().message, "known_mark: 65 exceeds 64");
+  request.wire.known_mark._buffer = nullptr;  // what a shorter message leaves
+  EXPECT_TRUE(decode(request.wire)->known_mark.empty());
+
+  auto reply = encode({}, ReportReply{{}, {}, mark}).value_or_throw();
+  EXPECT_EQ(decode(reply.wire)->history_mark, mark);
+  EXPECT_EQ(encode({}, ReportReply{{}, {}, too_long}).error().code, ErrorCode::TooLarge);
+  reply.arena->resize(reply.wire.history_mark, too_long.size());
+  EXPECT_EQ(decode(reply.wire).error().message, "history_mark: 65 exceeds 64");
+}
+
 TEST(ReportCodec, AnOddMessageHoldsNoReceiptBack) {
   const ReportReply written{Uuid::random(),
                             {{Uuid::random(), ReceiptStatus::Refused, "joint 'j\x01'"},

@@ -79,7 +79,7 @@ TEST(SummariesJson, StatusIsReadBack) {
         &status.distributions, &status.reports_received, &status.reports_refused, &status.fetches,
         &status.fetches_from_memory, &status.fits, &status.queued_reports, &status.queued_fits,
         &status.followed, &status.jobs, &status.rehearsals, &status.queued_rehearsals,
-        &status.store_bytes})
+        &status.rollbacks, &status.store_bytes})
     *counter = ++value;
   status.rehearsal_time_s = 74.25;
   status.writable = false;

@@ -333,7 +333,7 @@ TEST_F(SqliteStoreTest, RefusesASecondServerAlsoThroughALink) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST_F(SqliteStoreTest, LeavesOneFileAndTheLockBehind) {
+TEST_F(SqliteStoreTest, LeavesOneFileTheLockAndTheWitnessBehind) {
   open();
   test::report(*store_, {attempt(1)});
   store_.reset();
@@ -341,7 +341,7 @@ TEST_F(SqliteStoreTest, LeavesOneFileAndTheLockBehind) {
   for (const auto& entry : std::filesystem::directory_iterator(directory_.path()))
     names.push_back(entry.path().filename());
   std::ranges::sort(names);
-  EXPECT_EQ(names, (std::vector<std::string>{"store.db", "store.db.lock"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"store.db", "store.db.lock", "store.db.witness"}));
 }
 
 TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf8KbAndTheRulesOfItsSchema) {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/types/uuid.hpp"
+
+/// The files of an outbox, one report each. For the sources of this folder only.
+namespace kinship::link {
+
+std::string report_file_name(const Uuid& report_uuid);
+
+/// The UUID in the name of a report's file; empty for any other name.
+std::optional<Uuid> report_uuid_of(const std::filesystem::path& path);
+
+/// Calls `visit` with every entry of a folder. Entries that vanish meanwhile are no error.
+/// \throws Failure(Storage) naming the folder if it cannot be listed.
+void for_each_entry(const std::filesystem::path& folder,
+                    const std::function<void(const std::filesystem::directory_entry&)>& visit);
+
+/// \return false if it was not there. \throws Failure(Storage) naming the target.
+bool move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace kinship::link

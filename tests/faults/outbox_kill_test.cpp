@@ -1,0 +1,146 @@
+// Two processes report through one outbox while they and the server are killed at random: what
+// report() returned for reaches the store, once. KINSHIP_LONG=1: some hundred kills.
+
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "client/link/outbox.hpp"
+#include "proto/types/failure.hpp"
+#include "tests/faults/reporting_fleet.hpp"
+#include "tests/support/panda_experience.hpp"
+
+namespace kinship::outbox_kill_test {
+namespace {
+
+constexpr std::uint64_t kSeed = 20261123;
+
+bool is_long() { return std::getenv("KINSHIP_LONG") != nullptr; }
+int rounds() { return is_long() ? 300 : 12; }
+
+class OutboxKill : public test::ReportingFleet {
+ protected:
+  void wait_a_while() {
+    std::uniform_int_distribution<int> while_ms(20, 600);
+    std::this_thread::sleep_for(std::chrono::milliseconds(while_ms(generator_)));
+  }
+
+  std::mt19937_64 generator_{kSeed};
+};
+
+TEST_F(OutboxKill, WhatWasReportedReachesTheStoreOnceWhoeverIsKilled) {
+  start_server();
+  register_panda("outbox");
+  status();                       // makes the observer
+  std::atomic<int> in_doubt = 0;  // batches with attempts that a killed sender had no receipt for
+  const auto watcher = observer_->watch({.on_event = [&](const Event& event) {
+    if (event.text.find("known already") != std::string::npos)
+      ++in_doubt;
+  }});
+  std::uint64_t next = 0;
+  const auto start = [&] { return start_client("outbox", 1'000'000 * ++next, 0); };
+  std::unique_ptr<test::ChildProcess> clients[] = {start(), start()};
+  int kills = 0;
+  for (int round = 0; round < rounds(); ++round) {
+    wait_a_while();
+    if (round % 3 == 1) {
+      kill_server();
+      ++kills;
+      if (round % 2 == 0)
+        wait_a_while();
+      start_server();
+    }
+    std::unique_ptr<test::ChildProcess>& client = clients[generator_() % 2];
+    client->signal(SIGKILL);
+    EXPECT_FALSE(read_ledger(*client));
+    client = start();
+    ++kills;
+  }
+  for (std::unique_ptr<test::ChildProcess>& client : clients) {
+    client->signal(SIGKILL);
+    EXPECT_FALSE(read_ledger(*client));
+    ++kills;
+  }
+  const auto last = start_client("outbox", 1'000'000 * ++next, 1);
+  EXPECT_TRUE(read_ledger(*last));
+  EXPECT_EQ(reports_in("outbox", "pending"), 0U);
+  EXPECT_EQ(reports_in("outbox", "rejected"), 0U);
+  const std::uint64_t attempts = expect_ledger_in(store_);
+  EXPECT_EQ(reports_in("outbox", "sent"), attempts);
+  std::cout << kills << " kills, " << ledger_.size() << " reports in the ledger, " << attempts
+            << " stored, " << in_doubt << " batches sent again after their commit\n";
+  EXPECT_TRUE(!is_long() || in_doubt > 0);
+}
+
+/// In a child process: its own mounts end with it.
+/// \return its exit code; 77 if it may not mount.
+int on_a_disk_of_64_kb(const std::filesystem::path& folder, const std::function<int()>& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const bool is_mounted =
+        (unshare(CLONE_NEWNS) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
+        mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+        mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=64k") == 0;
+    try {
+      _exit(is_mounted ? work() : 77);
+    } catch (const std::exception& exception) {
+      std::cerr << exception.what() << '\n';
+      _exit(99);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// \return the number of the first thing that is wrong; 0: nothing.
+int fill_up(const std::filesystem::path& folder) {
+  link::Outbox outbox(folder);
+  const Uuid epoch = Uuid::random();
+  outbox.note_store(epoch, {});
+  const Digest panda{};
+  std::set<Uuid> reported;
+  int refused = 0;
+  for (std::uint64_t number = 0; number < 200; ++number) {
+    const Attempt attempt = test::panda_attempt(panda, "sweep", number);
+    try {
+      outbox.add(attempt);
+      reported.insert(attempt.report_uuid);
+    } catch (const Failure& failure) {
+      if (failure.code() != ErrorCode::Storage)
+        return 1;
+      ++refused;
+    }
+  }
+  if (reported.empty() || refused == 0)
+    return 2;
+  const std::vector<Uuid> pending = outbox.pending();
+  if (std::set<Uuid>(pending.begin(), pending.end()) != reported)
+    return 3;
+  for (const Uuid& uuid : pending)
+    if (!outbox.read(uuid))
+      return 4;
+  // Receipts are noted all the same: what is sent needs no room.
+  outbox.note_store(epoch, HistoryMark(40, 1));
+  for (const Uuid& uuid : pending)
+    outbox.mark_sent(uuid);
+  return outbox.pending_count() == 0 ? 0 : 5;
+}
+
+TEST(OutboxOnAFullDisk, SaysSoAndKeepsWhatItReturnedForWhole) {
+  const test::TemporaryDirectory directory;
+  const int outcome =
+      on_a_disk_of_64_kb(directory.path(), [&] { return fill_up(directory.path()); });
+  if (outcome == 77)
+    GTEST_SKIP() << "may not mount a small disk";
+  EXPECT_EQ(outcome, 0);
+}
+
+}  // namespace
+}  // namespace kinship::outbox_kill_test

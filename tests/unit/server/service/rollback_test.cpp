@@ -1,0 +1,90 @@
+// A server that learns from a client that its store was rolled back.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "tests/support/server_process.hpp"
+#include "tests/unit/server/service/service_fixture.hpp"
+
+namespace kinship::service::rollback_test {
+namespace {
+
+class RolledBack : public ServiceFixture {
+ protected:
+  /// The store as it was before the last report, whose mark is kept.
+  void SetUp() override {
+    report(fleet::solved(teacher_, "shelf", 6, 1));
+    fetch(request_for(pupil_));
+    service_.reset();
+    std::map<std::string, std::string> before;
+    for (const char* const suffix : {"", ".witness"})
+      before[suffix] = test::read_text(file_.string() + suffix);
+    start();
+    const ReportReply reply = report({fleet::solved(teacher_, "shelf", 50)});
+    epoch_ = reply.store_epoch;
+    lost_ = reply.history_mark;
+    service_.reset();
+    for (const auto& [suffix, bytes] : before)
+      std::ofstream(file_.string() + suffix, std::ios::binary | std::ios::trunc) << bytes;
+    start();
+  }
+  ReportReply say(const HistoryMark& mark, std::vector<Attempt> attempts = {}) {
+    std::promise<ReportReply> reply;
+    service_->report({std::move(attempts), {}, mark},
+                     [&](const ReportReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+
+  const std::filesystem::path file_ = directory_ / "fleet.db";
+  Uuid epoch_;
+  HistoryMark lost_;
+};
+
+TEST_F(RolledBack, IsToldByAGreetingAndBeginsAnEpochOnce) {
+  EXPECT_EQ(service_->status().store_epoch, epoch_);
+  const ReportReply reply = say(lost_);
+  EXPECT_NE(reply.store_epoch, epoch_);
+  EXPECT_TRUE(reply.receipts.empty());
+  EXPECT_FALSE(reply.history_mark.empty());
+  EXPECT_EQ(service_->status().store_epoch, reply.store_epoch);
+  EXPECT_EQ(service_->status().rollbacks, 1U);
+  EXPECT_NE(log().find("rolled back behind receipts"), std::string::npos) << log();
+  EXPECT_TRUE(is_told("rolled back behind receipts"));
+  for (const HistoryMark& mark : {lost_, reply.history_mark, HistoryMark{}, HistoryMark(40, 7)})
+    EXPECT_EQ(say(mark).store_epoch, reply.store_epoch);
+  EXPECT_EQ(service_->status().rollbacks, 1U);
+}
+
+TEST_F(RolledBack, ReportThatTellsItIsStoredInTheNewEpoch) {
+  const ReportReply reply = say(lost_, {fleet::solved(teacher_, "shelf", 60)});
+  EXPECT_NE(reply.store_epoch, epoch_);
+  ASSERT_EQ(reply.receipts.size(), 1U);
+  EXPECT_EQ(reply.receipts[0].status, ReceiptStatus::Stored);
+  const ReportReply again = say(reply.history_mark, {fleet::solved(teacher_, "shelf", 50)});
+  EXPECT_EQ(again.receipts.at(0).status, ReceiptStatus::Stored);
+  EXPECT_EQ(service_->status().paths, 8U);
+}
+
+TEST_F(RolledBack, DistributionInMemoryIsOfTheNewEpoch) {
+  const FetchReply before = fetch(request_for(pupil_));
+  ASSERT_TRUE(before.distribution);
+  EXPECT_EQ(before.distribution->store_epoch, epoch_);
+  const ReportReply reply = say(lost_);
+  const FetchReply after = fetch(request_for(pupil_));
+  ASSERT_TRUE(after.distribution);
+  EXPECT_EQ(after.distribution->store_epoch, reply.store_epoch);
+  EXPECT_EQ(after.distribution->revision, before.distribution->revision);
+}
+
+TEST_F(RolledBack, WhileNoEpochCanBeginNobodyIsGivenANewerMark) {
+  service_->shutdown();
+  bool is_answered = false;
+  service_->report({{}, {}, lost_}, [&](const ReportReply&) { is_answered = true; });
+  EXPECT_FALSE(is_answered);
+}
+
+}  // namespace
+}  // namespace kinship::service::rollback_test

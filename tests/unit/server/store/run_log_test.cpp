@@ -1,0 +1,88 @@
+#include "server/store/sqlite/run_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include "server/store/sqlite/history_seal.hpp"
+
+namespace kinship::store::run_log_test {
+namespace {
+
+const Uuid kEpoch = Uuid::random();
+
+TEST(RunLog, ContainsWhatEachRunWroteAndNothingBehindIt) {
+  RunLog log(kEpoch);
+  const Uuid first = Uuid::random(), second = Uuid::random();
+  log.begin(first, 0);
+  log.begin(second, 50);
+  EXPECT_TRUE(log.contains({first, 1}, 70));
+  EXPECT_TRUE(log.contains({first, 50}, 70));
+  EXPECT_FALSE(log.contains({first, 51}, 70));  // cut off, though the position is beyond it by now
+  EXPECT_TRUE(log.contains({second, 70}, 70));
+  EXPECT_FALSE(log.contains({second, 71}, 70));
+  EXPECT_FALSE(log.contains({Uuid::random(), 1}, 70));
+}
+
+TEST(RunLog, APositionIsNamedByTheRunThatWroteIt) {
+  RunLog log(kEpoch);
+  const Uuid first = Uuid::random(), second = Uuid::random();
+  log.begin(first, 10);
+  EXPECT_EQ(log.at(10), (HistoryPoint{first, 10}));
+  log.begin(second, 50);
+  EXPECT_EQ(log.at(50), (HistoryPoint{first, 50}));
+  EXPECT_EQ(log.at(51), (HistoryPoint{second, 51}));
+  EXPECT_TRUE(log.contains(log.at(50), 50));
+}
+
+TEST(RunLog, ARunThatWroteNothingIsForgottenAndWasNeverNamed) {
+  RunLog log(kEpoch);
+  log.begin(Uuid::random(), 0);
+  for (int i = 0; i < 1000; ++i) {
+    log.begin(Uuid::random(), 7);
+    EXPECT_TRUE(log.contains(log.at(7), 7));
+  }
+  EXPECT_LT(log.text().size(), 200U);
+}
+
+TEST(RunLog, OfManyRunsTheOldestAreForgottenAndCountAsKept) {
+  RunLog log(kEpoch);
+  const Uuid first = Uuid::random();
+  log.begin(first, 0);
+  for (std::uint64_t position = 1; position <= 1000; ++position)
+    log.begin(Uuid::random(), position);
+  EXPECT_LT(log.text().size(), 15'000U);
+  EXPECT_TRUE(log.contains({first, 1}, 1000));
+  EXPECT_FALSE(log.contains({Uuid::random(), 999}, 1000));
+}
+
+TEST(RunLog, ComesBackFromItsText) {
+  RunLog log(kEpoch);
+  const Uuid run = Uuid::random();
+  log.begin(run, 3);
+  log.begin(Uuid::random(), 9);
+  const std::optional<RunLog> read = RunLog::parse(log.text());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->epoch(), kEpoch);
+  EXPECT_EQ(read->text(), log.text());
+  EXPECT_FALSE(read->contains({run, 10}, 20));
+  for (const char* const text : {"", "x", "0\n"})
+    EXPECT_FALSE(RunLog::parse(text)) << text;
+  EXPECT_FALSE(RunLog::parse(log.text() + "nobody 3\n"));
+}
+
+TEST(HistorySeal, OpensOnlyWhatItsOwnKeySealedInThisEpoch) {
+  const Digest key = *Digest::from_hex(std::string(64, 'a'));
+  const HistoryPoint point{Uuid::random(), 0x0102030405060708};
+  const HistoryMark mark = seal(key, kEpoch, point);
+  EXPECT_EQ(open_seal(key, kEpoch, mark), point);
+  EXPECT_FALSE(open_seal(key, Uuid::random(), mark));
+  EXPECT_FALSE(open_seal(Digest{}, kEpoch, mark));
+  EXPECT_FALSE(open_seal(key, kEpoch, {}));
+  for (std::size_t i = 0; i < mark.size(); ++i) {
+    HistoryMark other = mark;
+    other[i] ^= 1;
+    EXPECT_FALSE(open_seal(key, kEpoch, other)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace kinship::store::run_log_test
