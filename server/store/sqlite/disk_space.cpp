@@ -85,7 +85,8 @@ bool DiskSpace::may_take_ballast() const {
   if (ballast_bytes_ == 0 || has_ballast_)
     return false;
   const std::optional<std::uint64_t> free = free_bytes();
-  return free && *free >= watermark_bytes_ + ballast_bytes_;
+  // What a checkpoint frees for a moment is not room: it would come and go with each of them.
+  return free && *free >= watermark_bytes_ + 2 * ballast_bytes_;
 }
 
 void DiskSpace::take_ballast() {

@@ -24,7 +24,7 @@ class DiskSpace {
   /// Empty while the ballast is there, or none is wanted; else a sentence.
   std::string lack_of_ballast() const;
 
-  /// Whether the ballast is missing and there is room for it beside the watermark.
+  /// Whether the ballast is missing and there is room for it twice beside the watermark.
   bool may_take_ballast() const;
   /// Allocates the ballast if there is room for it; else there is none.
   void take_ballast();
