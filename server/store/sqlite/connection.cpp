@@ -3,6 +3,7 @@
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
 #include "server/store/sqlite/writer.hpp"
@@ -25,11 +26,8 @@ void configure_writer(Database& database) {
 
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_for_owner(file);
-  auto database = std::make_unique<Database>(file, Access::ReadWrite);
-  database->execute("PRAGMA page_size = 8192");  // counts for a new file only
-  // A file of somebody else is refused before anything is written to it, so migrate() goes first.
-  database->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-  migrate(*database, file, embedded_migrations());
+  // A file of somebody else is refused before anything is written to it.
+  std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   configure_writer(*database);
   return database;
 }

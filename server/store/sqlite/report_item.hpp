@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/prepared_attempt.hpp"
 #include "server/store/sqlite/writer.hpp"
 #include "server/store/store.hpp"
@@ -15,11 +16,13 @@ namespace kinship::store {
 class ReportItem : public WriteItem {
  public:
   /// Encodes and hashes on the caller's thread, which spares the writer's.
-  ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done);
+  /// \param damaged  lives longer.
+  ReportItem(std::vector<Attempt> attempts, Store::ReportsDone done, DamagedReports& damaged);
 
   /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
   static std::unique_ptr<ReportItem> declined(const std::vector<Attempt>& attempts,
-                                              Store::ReportsDone done, const std::string& why);
+                                              Store::ReportsDone done, DamagedReports& damaged,
+                                              const std::string& why);
 
   std::size_t weight() const override { return receipts_.size(); }
   std::size_t bytes() const override { return bytes_; }
@@ -31,6 +34,7 @@ class ReportItem : public WriteItem {
   std::vector<Receipt> receipts_;
   std::size_t bytes_ = 0;
   Store::ReportsDone done_;
+  DamagedReports* damaged_;
 };
 
 }  // namespace kinship::store

@@ -16,6 +16,7 @@
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/online_backup.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
@@ -27,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void remove_with_companions(const fs::path& file) {
+  unlink((file.string() + ".sealing").c_str());
   for (const char* const companion : kCompanions)
     unlink((file.string() + companion).c_str());
   unlink(file.c_str());
@@ -86,9 +88,9 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       copy_database(*source, copy_, [&](double done) { progress(kCopyShare * done); });
     }
     {
-      Database database(copy_, Access::ReadWrite);
-      database.execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-      apply_missing(database, copy_, embedded_migrations());
+      const std::unique_ptr<Database> opened =
+          open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+      Database& database = *opened;
       Statement(database.connection(),
                 "INSERT INTO setting VALUES ('epoch', ?) "
                 "ON CONFLICT (key) DO UPDATE SET value = excluded.value")

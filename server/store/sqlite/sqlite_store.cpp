@@ -11,6 +11,7 @@
 #include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/call_item.hpp"
 #include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/distribution_rows.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/export_rows.hpp"
@@ -22,6 +23,8 @@
 #include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/scene_rows.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_backup.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -30,16 +33,24 @@
 namespace kinship::store {
 namespace {
 
-/// Sets paths aside that a reader found damaged; if it fails, the next reader finds them again.
+/// Sets aside what a reader found damaged; if it fails, the next reader finds it again.
 class DamageItem : public WriteItem {
  public:
-  explicit DamageItem(std::vector<std::int64_t> paths) : paths_(std::move(paths)) {}
+  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
+      : kind_(kind), rows_(std::move(rows)) {}
 
-  void apply(Batch& batch) override { set_aside(batch, paths_); }
+  void apply(Batch& batch) override {
+    if (kind_ == AsideKind::Path)
+      set_aside(batch, rows_);
+    else
+      for (const std::int64_t row : rows_)
+        put_aside(batch.database(), kind_, row);
+  }
   void finish(const Error* /*error*/) override {}
 
  private:
-  std::vector<std::int64_t> paths_;
+  AsideKind kind_;
+  std::vector<std::int64_t> rows_;
 };
 
 Uuid ensure_epoch(Database& database) {
@@ -118,10 +129,11 @@ class SqliteStore : public Store {
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
     if (writer_->queued_bytes() > options_.max_queued_bytes)
-      writer_->submit(ReportItem::declined(attempts, std::move(done),
+      writer_->submit(ReportItem::declined(attempts, std::move(done), damaged_reports_,
                                            "the queue of reports is full, try again"));
     else
-      writer_->submit(std::make_unique<ReportItem>(std::move(attempts), std::move(done)));
+      writer_->submit(
+          std::make_unique<ReportItem>(std::move(attempts), std::move(done), damaged_reports_));
   }
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override {
@@ -210,15 +222,16 @@ class SqliteStore : public Store {
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    std::optional<AttemptRow> row = select_attempt(*reader, report_uuid);
-    if (!row)
+    const ReportRows report = find_report(*reader, report_uuid);
+    if (!report.row && report.damaged.empty())
       return std::nullopt;
-    if (row->path_id)
-      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
-        row->attempt.path = std::move(stored.path);
-    if (row->scene_id)
-      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
-    return std::move(row->attempt);
+    AttemptRow row = readable_attempt(*reader, report, report_uuid);
+    if (row.path_id)
+      for (StoredPath& stored : undamaged(select_path(*reader, *row.path_id)))
+        row.attempt.path = std::move(stored.path);
+    if (row.scene_id)
+      row.attempt.scene = undamaged(select_scene(*reader, *row.scene_id), *row.scene_id);
+    return std::move(row.attempt);
   }
 
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
@@ -226,9 +239,9 @@ class SqliteStore : public Store {
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
     ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
-    set_aside_later(std::move(read.damaged));
-    for (const std::int64_t scene : read.damaged_scenes)
-      set_scene_aside_later(scene);
+    set_aside_later(AsideKind::Path, std::move(read.damaged));
+    set_aside_later(AsideKind::Scene, std::move(read.damaged_scenes));
+    set_aside_later(AsideKind::Attempt, std::move(read.damaged_attempts));
     return std::move(read.page);
   }
 
@@ -255,24 +268,35 @@ class SqliteStore : public Store {
   }
 
   std::vector<StoredPath> undamaged(PathsRead read) const {
-    set_aside_later(std::move(read.damaged));
+    set_aside_later(AsideKind::Path, std::move(read.damaged));
     return std::move(read.paths);
   }
   std::optional<RecordedScene> undamaged(SceneRead read, std::int64_t scene_id) const {
     if (read.damaged)
-      set_scene_aside_later(scene_id);
+      set_aside_later(AsideKind::Scene, {scene_id});
     return std::move(read.scene);
   }
-  void set_scene_aside_later(std::int64_t scene_id) const {
-    const auto set_aside = [scene_id](Batch& batch) {
-      set_scene_aside(batch.database(), scene_id);
-      return true;
-    };
-    writer_->submit(std::make_unique<CallItem<decltype(set_aside)>>(set_aside));
+  /// \throws Failure(Storage) if it is damaged.
+  AttemptRow readable_attempt(Database& reader, const ReportRows& report,
+                              const Uuid& report_uuid) const {
+    std::optional<AttemptRow> row;
+    try {
+      if (report.row)
+        row = select_attempt(reader, *report.row);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      set_aside_later(AsideKind::Attempt, {*report.row});
+    }
+    if (!row)
+      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
+                                            ": its row is damaged; report it again to mend it");
+    name_robot_and_task(reader, *row);
+    return std::move(*row);
   }
-  void set_aside_later(std::vector<std::int64_t> damaged) const {
+  void set_aside_later(AsideKind kind, std::vector<std::int64_t> damaged) const {
     if (!damaged.empty())
-      writer_->submit(std::make_unique<DamageItem>(std::move(damaged)));
+      writer_->submit(std::make_unique<DamageItem>(kind, std::move(damaged)));
   }
 
   /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.
@@ -294,6 +318,7 @@ class SqliteStore : public Store {
   mutable ReaderPool readers_;
   Uuid epoch_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
+  DamagedReports damaged_reports_;
   std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above
 };
 
