@@ -5,7 +5,7 @@
 -- the end of their pages (server/store/sqlite/checked_vfs).
 
 CREATE TABLE set_aside (
-  kind         INTEGER NOT NULL CHECK (kind BETWEEN 1 AND 4),  -- 1 path, 2 attempt, 3 scene, 4 distribution
+  kind         INTEGER NOT NULL CHECK (kind BETWEEN 1 AND 5),  -- 1 path, 2 attempt, 3 scene, 4 distribution; 5 path that lost its attempt in a repair
   id           INTEGER NOT NULL,
   noticed_ms   INTEGER NOT NULL,
   replaced_by  INTEGER,  -- the row that a report brought in its place

@@ -71,11 +71,16 @@ struct AttemptPath {
   std::optional<std::int64_t> id;
 };
 
+/// \param came_before  the attempt may have been there, and its row is lost.
 AttemptPath keep_path(Batch& batch, const PreparedAttempt& prepared, const ExperienceKey& key,
-                      const PathArrival& arrival) {
+                      const PathArrival& arrival, bool came_before) {
   if (!prepared.path)
     return {};
   Database& database = batch.database();
+  // What somebody retired does not come back because the row of its attempt is damaged.
+  if (came_before)
+    if (const auto retired = find_retired(database, key, prepared.attempt.report_uuid))
+      return {AttemptStatus::DuplicateContent, retired};
   const SameContent same = find_same(database, key, prepared.path->content);
   if (same.readable)
     return {AttemptStatus::DuplicateContent, same.readable};
@@ -101,7 +106,7 @@ Receipt answer_again(Batch& batch, const PreparedAttempt& prepared, const Experi
             : prepared.path ? ReceiptStatus::Stored
                             : ReceiptStatus::Recorded,
             ""};
-  const AttemptPath path = keep_path(batch, prepared, key, arrival);
+  const AttemptPath path = keep_path(batch, prepared, key, arrival, false);
   replace_path(batch, key, *earlier.path_id, *path.id);
   database.cached("UPDATE attempt SET path_id = ?, status = ? WHERE id = ?")
       ->bind_all(path.id, static_cast<std::int64_t>(path.status), earlier.id)
@@ -178,7 +183,8 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
   PathArrival arrival{.received_ms = now_ms(), .scene_id = {}};
   if (prepared.scene)
     arrival.scene_id = ensure_scene(database, *prepared.scene, arrival.received_ms);
-  const AttemptPath path = keep_path(batch, prepared, key, arrival);
+  const AttemptPath path =
+      keep_path(batch, prepared, key, arrival, !rows.damaged.empty() || has_orphans(database));
   const std::int64_t id = insert_row(database, prepared, key, path, arrival);
   for (const std::int64_t damaged : rows.damaged)
     put_aside(database, AsideKind::Attempt, damaged, id);

@@ -173,7 +173,7 @@ std::vector<std::int64_t> path_ids(Database& database, const ExperienceKey& key,
   return ids;
 }
 
-/// Nothing if it lies on a damaged page.
+/// Nothing if it lies on a damaged page, or lost its attempt in a repair.
 std::optional<PathSummary> select_path_summary(Database& database, std::int64_t id) try {
   const auto query = database.cached(
       "SELECT path.retired_ms, path.report_uuid, robot.digest, robot.label,"
@@ -184,7 +184,9 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
       "CROSS JOIN task ON task.id = path.task_id "
       "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "
       "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ?");
-  return query->bind(1, id).step() ? read_path_summary(*query) : PathSummary{};
+  if (!query->bind(1, id).step())
+    return std::nullopt;
+  return read_path_summary(*query);
 } catch (const SqliteError& error) {
   if (!error.is_damage())
     throw;
@@ -199,8 +201,8 @@ Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, s
       "SELECT digest, label, base_link, tip_link, dof, registered_ms,"
       " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id) "
-      "FROM robot WHERE label > ? ORDER BY label LIMIT ?");
-  query->bind_all(cursor, rows + 1);
+      "FROM robot WHERE label > ? AND base_link <> '' ORDER BY label LIMIT ?");
+  query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
   const auto read = [](const Statement& row) {
     RobotSummary summary;
     summary.robot = id_of<Digest>(row.column_blob(0));
@@ -308,7 +310,8 @@ void count_rows(Database& database, StoreStatus& status) {
         " (SELECT page_size FROM pragma_page_size)");
   status.schema_version = static_cast<std::uint32_t>(schema);
   for (const AsideCount& aside : count_aside(database))
-    if (aside.kind != AsideKind::Distribution)  // those are fitted again
+    // Distributions are fitted again; what lost its attempt is in use.
+    if (aside.kind != AsideKind::Distribution && aside.kind != AsideKind::Orphan)
       status.message += std::to_string(aside.rows) + " damaged " +
                         std::string(name_of(aside.kind, aside.rows)) + " set aside; ";
 }

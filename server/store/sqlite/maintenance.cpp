@@ -115,6 +115,22 @@ Restored restore_store(const fs::path& backup, const fs::path& file, const Progr
   });
 }
 
+Repaired repair_store(const fs::path& file, const Progress& progress) {
+  return naming(file, [&] {
+    if (!fs::exists(file))
+      static_cast<void>(locate_present(file));  // which says so
+    // The lock first: beside one a damaged header is not judged.
+    const fs::path located = fs::weakly_canonical(fs::absolute(file));
+    const LockFile lock(located);
+    static_cast<void>(locate_present(file));
+    // The old store is its own backup here: what is read of it takes its place.
+    Restoration restoration(located, located);
+    Repaired repaired = restoration.repair(progress);
+    repaired.restored = restoration.replace();
+    return repaired;
+  });
+}
+
 Migrated migrate_store(const fs::path& file) {
   return naming(file, [&] {
     const fs::path located = locate_present(file);

@@ -6,51 +6,11 @@
 #include <utility>
 
 #include "server/store/sqlite/checked_vfs.hpp"
-#include "server/store/sqlite/page_seal.hpp"
+#include "server/store/sqlite/page_format.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 
-// The format: https://sqlite.org/fileformat2.html, sections 1.5 (free list), 1.6 (b-tree pages),
-// 1.7 (overflow).
 namespace kinship::store {
 namespace {
-
-using PageBytes = std::span<const std::uint8_t>;
-
-std::uint64_t big_endian(PageBytes bytes, std::size_t at, std::size_t size) {
-  std::uint64_t value = 0;
-  for (std::size_t i = at; i < at + size && i < bytes.size(); ++i)
-    value = value << 8U | bytes[i];
-  return value;
-}
-
-/// \param at  is moved behind it.
-std::uint64_t varint(PageBytes bytes, std::size_t& at) {
-  constexpr int kMaxBytes = 9;
-  std::uint64_t value = 0;
-  for (int i = 0; i < kMaxBytes && at < bytes.size(); ++i) {
-    const std::uint8_t byte = bytes[at++];
-    if (i == kMaxBytes - 1)
-      return value << 8U | byte;
-    value = value << 7U | (byte & 0x7FU);
-    if ((byte & 0x80U) == 0)
-      break;
-  }
-  return value;
-}
-
-constexpr std::uint8_t kIndexInterior = 2, kTableInterior = 5, kIndexLeaf = 10, kTableLeaf = 13;
-
-/// The page where a payload goes on that does not fit into its cell; 0: it fits.
-/// \param at  of the payload's first byte.
-std::uint64_t overflow_of(PageBytes page, std::size_t at, std::uint64_t payload, bool table) {
-  const std::uint64_t usable = page.size() - kSealBytes;
-  const std::uint64_t most = table ? usable - 35 : (usable - 12) * 64 / 255 - 23;
-  const std::uint64_t least = (usable - 12) * 32 / 255 - 23;
-  if (payload <= most)
-    return 0;
-  const std::uint64_t fitting = least + (payload - least) % (usable - 4);
-  return big_endian(page, at + static_cast<std::size_t>(fitting <= most ? fitting : least), 4);
-}
 
 /// Goes through one b-tree and asks of each page whether it is one of those looked for.
 class Walk {
@@ -132,7 +92,9 @@ class Walk {
 }  // namespace
 
 PageReader::PageReader(Database& database)
-    : bytes_(static_cast<std::size_t>(database.integer("PRAGMA page_size"))) {
+    : PageReader(database, static_cast<std::size_t>(database.integer("PRAGMA page_size"))) {}
+
+PageReader::PageReader(Database& database, std::size_t page_size) : bytes_(page_size) {
   sqlite3_file_control(&database.connection(), "main", SQLITE_FCNTL_FILE_POINTER, &file_);
 }
 

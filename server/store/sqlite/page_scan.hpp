@@ -20,6 +20,8 @@ class PageReader {
  public:
   /// \param database  must live longer.
   explicit PageReader(Database& database);
+  /// For a database whose header cannot be read.
+  PageReader(Database& database, std::size_t page_size);
 
   std::uint64_t count() const;  ///< of pages in the file now
   std::size_t page_size() const noexcept { return bytes_.size(); }

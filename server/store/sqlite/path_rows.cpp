@@ -240,6 +240,23 @@ bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id) {
                    key, id);
 }
 
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid) {
+  const auto ids = database.cached(
+      "SELECT id FROM path INDEXED BY path_retired "
+      "WHERE task_id = ? AND robot_id = ? AND retired_ms IS NOT NULL");
+  ids->bind_all(key.task_id, key.robot_id);
+  while (ids->step()) {
+    const std::int64_t id = ids->column_integer(0);
+    if (can_read([&] {
+          const auto row = database.cached("SELECT report_uuid FROM path WHERE id = ?");
+          return row->bind(1, id).step() && id_of<Uuid>(row->column_blob(0)) == report_uuid;
+        }))
+      return id;
+  }
+  return std::nullopt;
+}
+
 std::int64_t insert_path(Database& database, const ExperienceKey& key,
                          const PreparedAttempt& prepared, const PathArrival& arrival) {
   const PreparedPath& path = *prepared.path;

@@ -50,6 +50,10 @@ PathsRead select_path(Database& database, std::int64_t id);
 /// From an index: whether a path is retired, its row need not be readable.
 bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id);
 
+/// The retired path that a report brought, looked for among all of its robot and task.
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid);
+
 /// Sets paths aside: out of the counts and of every reading, and the generation is raised. One that
 /// is aside already stays so; one that is retired was out of the counts before. Their rows are not
 /// touched, they may lie on a damaged page.

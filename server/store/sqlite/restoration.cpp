@@ -20,6 +20,7 @@
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
+#include "server/store/sqlite/store_repair.hpp"
 #include "server/store/sqlite/transaction.hpp"
 
 namespace kinship::store {
@@ -91,11 +92,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       const std::unique_ptr<Database> opened =
           open_migrated(copy_, embedded_migrations(), Keep::Nothing);
       Database& database = *opened;
-      Statement(database.connection(),
-                "INSERT INTO setting VALUES ('epoch', ?) "
-                "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
-          .bind(1, std::string_view(epoch_.text()))
-          .run();
+      give_epoch(database);
       const StoreCheck check = check_database(
           database, backup_, [&](double done) { progress(kCopyShare + (1 - kCopyShare) * done); });
       if (check.problems > 0)
@@ -107,6 +104,37 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
   } catch (const SqliteError& error) {
     throw Failure(ErrorCode::Storage, named + error.what());
   }
+}
+
+void Restoration::give_epoch(Database& database) const {
+  Statement(database.connection(),
+            "INSERT INTO setting VALUES ('epoch', ?) "
+            "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
+      .bind(1, std::string_view(epoch_.text()))
+      .run();
+}
+
+Repaired Restoration::repair(const std::function<void(double)>& progress) {
+  constexpr double kSalvageShare = 0.6;
+  make_for_owner(copy_);
+  fold_old();
+  Repaired repaired;
+  {
+    Database source(file_, Access::ReadOnly);
+    const std::unique_ptr<Database> target =
+        open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+    // Half a copy is of no use to anybody, and it is synced when it is whole.
+    target->execute("PRAGMA synchronous = OFF");
+    Salvaged salvaged =
+        salvage(source, *target, [&](double done) { progress(kSalvageShare * done); });
+    repaired.damaged_pages = salvaged.damaged_pages;
+    repaired.lost = std::move(salvaged.lost);
+    give_epoch(*target);
+    repaired.check = check_database(
+        *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
+  }
+  sync_file(copy_);
+  return repaired;
 }
 
 Restored Restoration::replace() {
@@ -130,10 +158,13 @@ Restored Restoration::replace() {
 /// that SQLite cannot read is kept as it is.
 void Restoration::fold_old() {
   try {
-    Database(file_, Access::ReadWrite).execute("PRAGMA journal_mode = DELETE");
+    Database database(file_, Access::ReadWrite);
+    sqlite3_exec(&database.connection(), "PRAGMA schema_version", nullptr, nullptr, nullptr);
+    sqlite3_wal_checkpoint_v2(&database.connection(), "main", SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                              nullptr);  // also if the schema cannot be read
+    database.execute("PRAGMA journal_mode = DELETE");
   } catch (const SqliteError& error) {
-    const int code = error.sqlite_code() & 0xFF;
-    if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB)
+    if (!error.is_damage())
       throw;
   }
 }

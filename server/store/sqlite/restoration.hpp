@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/store/maintenance.hpp"
+#include "server/store/sqlite/database.hpp"
 
 namespace kinship::store {
 
@@ -24,10 +25,15 @@ class Restoration {
   /// \throws Failure(Storage) if it has a problem; nothing is left then.
   void prepare(const std::function<void(double)>& progress);
 
+  /// Writes the store itself anew, from what can be read of it.
+  /// \return with what was lost; nothing is replaced yet.
+  Repaired repair(const std::function<void(double)>& progress);
+
   Restored replace();
 
  private:
   void fold_old();
+  void give_epoch(Database& database) const;
   void set_companions_aside(const std::filesystem::path& replaced) const;
   std::filesystem::path name_copy() const;
   void exchange(const std::filesystem::path& replaced) const;

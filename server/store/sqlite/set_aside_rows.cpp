@@ -52,6 +52,11 @@ void retire_aside(Database& database, std::int64_t path_id) {
       .run();
 }
 
+bool has_orphans(Database& database) {
+  const auto query = database.cached("SELECT 1 FROM set_aside WHERE kind = ? LIMIT 1");
+  return query->bind(1, kind_code(AsideKind::Orphan)).step();
+}
+
 std::vector<AsideCount> count_aside(Database& database) {
   const auto query = database.cached(
       "SELECT kind, count(*) FROM set_aside WHERE replaced_by IS NULL GROUP BY kind");
@@ -72,6 +77,8 @@ std::string_view name_of(AsideKind kind, std::uint64_t count) {
       return one ? "scene" : "scenes";
     case AsideKind::Distribution:
       return one ? "distribution" : "distributions";
+    case AsideKind::Orphan:
+      return one ? "attempt" : "attempts";
   }
   return "rows";
 }

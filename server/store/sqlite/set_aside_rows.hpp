@@ -11,7 +11,13 @@
 namespace kinship::store {
 
 /// The codes are part of the schema.
-enum class AsideKind : std::uint8_t { Path = 1, Attempt = 2, Scene = 3, Distribution = 4 };
+enum class AsideKind : std::uint8_t {
+  Path = 1,
+  Attempt = 2,
+  Scene = 3,
+  Distribution = 4,
+  Orphan = 5  ///< a path in use, or retired, that lost its attempt in a repair
+};
 
 /// One row that is set aside.
 struct Aside {
@@ -31,6 +37,9 @@ void put_aside(Database& database, AsideKind kind, std::int64_t id,
 
 /// A path that is set aside is retired.
 void retire_aside(Database& database, std::int64_t path_id);
+
+/// Whether a repair left paths without their attempts.
+bool has_orphans(Database& database);
 
 /// How many of each kind are set aside and were not replaced.
 struct AsideCount {

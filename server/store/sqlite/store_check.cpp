@@ -72,13 +72,19 @@ std::vector<Rule> rules_of(std::int64_t schema) {
           ? "TRUE"
           : "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
             " AND replaced_by IS NOT NULL)";
+  // A repair may have left it without.
+  const std::string is_orphan =
+      schema < kFirstWithSetAside
+          ? "FALSE"
+          : "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
        " 'its attempt does not name it') FROM path "
        "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid AND " +
            counted + " WHERE " + path_kept +
-           " AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id) AND " + attempt_kept},
+           " AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id) AND " + attempt_kept +
+           " AND NOT " + is_orphan},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
        "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL AND " +
