@@ -21,10 +21,12 @@ struct ServerOptions {
   int fit_niceness = 10;          ///< of these threads, 0 to 19
   /// Part of one processor that rehearsing takes in the mean, 0 to 1; 0: nothing is rehearsed.
   double rehearsal_fraction = 0.1;
+  /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
+  double scrub_mb_per_s = 4;
   std::string log_level = "info";
 };
 
-enum class OfflineVerb { Check, Backup, Restore, Migrate };
+enum class OfflineVerb { Check, Backup, Restore, Repair, Migrate };
 
 /// What is to be done to a store that no server has open.
 struct OfflineOptions {

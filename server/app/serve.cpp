@@ -45,6 +45,14 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   return service;
 }
 
+store::SqliteOptions store_options(const ServerOptions& options) {
+  constexpr double kBytesOfMb = 1e6;
+  store::SqliteOptions store;
+  store.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
+  store.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
+  return store;
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -65,7 +73,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   };
   settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
   settings.wake = [&loop] { loop.wake(); };
-  service::Service service(store::open_sqlite_store(options.store), std::move(settings));
+  service::Service service(store::open_sqlite_store(options.store, store_options(options)),
+                           std::move(settings));
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
     spdlog::info("signal {}: draining", signal);

@@ -247,6 +247,8 @@ ServerStatus Service::status() const {
   status.store_bytes = store.bytes;
   status.writable = store.writable;
   status.storage_message = store.message;
+  status.scrubbed_ms = store.scrubbed_ms;
+  status.scrub_part = store.scrub_part;
   const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();
   status.rehearsals = rehearsals.done;
   status.queued_rehearsals = rehearsals.queued;

@@ -182,6 +182,8 @@ ServerStatus every_status() {
   status.rehearsals = next.count();
   status.queued_rehearsals = next.count();
   status.rehearsal_time_s = next.real();
+  status.scrubbed_ms = next.time_ms();
+  status.scrub_part = next.real();
   return status;
 }
 

@@ -16,8 +16,8 @@ namespace {
 class Walk {
  public:
   Walk(PageReader& reader, const std::vector<std::uint64_t>& wanted,
-       std::map<std::uint64_t, PageOwner>& found)
-      : reader_(&reader), wanted_(&wanted), found_(&found) {}
+       std::map<std::uint64_t, PageOwner>& found, std::chrono::steady_clock::time_point deadline)
+      : reader_(&reader), wanted_(&wanted), found_(&found), deadline_(deadline) {}
 
   enum class Form : std::uint8_t { Tree, Overflow, FreeTrunk, FreeLeaf };
 
@@ -35,7 +35,9 @@ class Walk {
       visit(number, its_form);
     }
   }
-  bool complete() const { return found_->size() == wanted_->size(); }
+  bool complete() const {
+    return found_->size() == wanted_->size() || std::chrono::steady_clock::now() > deadline_;
+  }
 
  private:
   void push(std::uint64_t number, Form form) {
@@ -85,9 +87,27 @@ class Walk {
   PageReader* reader_;
   const std::vector<std::uint64_t>* wanted_;
   std::map<std::uint64_t, PageOwner>* found_;
+  std::chrono::steady_clock::time_point deadline_;
   PageOwner owner_;
   std::vector<std::pair<std::uint64_t, Form>> next_;
 };
+
+/// The schema and what it names. A snapshot is not kept: a large file takes a while to walk.
+std::vector<std::pair<std::uint64_t, PageOwner>> roots_of(Database& database) {
+  std::vector<std::pair<std::uint64_t, PageOwner>> roots = {{1, {"sqlite_schema", "the schema"}}};
+  {
+    Statement query(database.connection(),
+                    "SELECT rootpage, tbl_name, type || ' ' || name FROM sqlite_master "
+                    "WHERE rootpage > 0");
+    while (query.step())
+      roots.emplace_back(
+          static_cast<std::uint64_t>(query.column_integer(0)),
+          PageOwner{std::string(query.column_text(1)), std::string(query.column_text(2))});
+  }
+  if (database.in_transaction())
+    database.execute("COMMIT; BEGIN");
+  return roots;
+}
 
 }  // namespace
 
@@ -119,30 +139,25 @@ std::optional<PageBytes> PageReader::read(std::uint64_t number) {
 }
 
 std::map<std::uint64_t, PageOwner> owners_of(Database& database,
-                                             const std::vector<std::uint64_t>& pages) {
+                                             const std::vector<std::uint64_t>& pages,
+                                             std::chrono::steady_clock::time_point deadline) {
+  constexpr std::size_t kFirstTrunkAt = 32;
   PageReader reader(database);
   std::map<std::uint64_t, PageOwner> owners;
-  Walk walk(reader, pages, owners);
+  Walk walk(reader, pages, owners, deadline);
   try {
-    std::vector<std::pair<std::uint64_t, PageOwner>> roots = {{1, {"sqlite_schema", "the schema"}}};
-    Statement query(database.connection(),
-                    "SELECT rootpage, tbl_name, type || ' ' || name FROM sqlite_master "
-                    "WHERE rootpage > 0");
-    while (query.step())
-      roots.emplace_back(
-          static_cast<std::uint64_t>(query.column_integer(0)),
-          PageOwner{std::string(query.column_text(1)), std::string(query.column_text(2))});
-    for (const auto& [root, owner] : roots)
+    for (const auto& [root, owner] : roots_of(database))
       walk.walk(root, Walk::Form::Tree, owner);
-    constexpr std::size_t kFirstTrunkAt = 32;
     if (const auto first = reader.read(1))
       walk.walk(big_endian(*first, kFirstTrunkAt, 4), Walk::Form::FreeTrunk, {"", "free"});
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
   }
+  const bool in_time = std::chrono::steady_clock::now() <= deadline;
   for (const std::uint64_t page : pages)
-    owners.try_emplace(page, PageOwner{"", "unknown, below a damaged page"});
+    owners.try_emplace(
+        page, PageOwner{"", in_time ? "unknown, below a damaged page" : "not looked up yet"});
   return owners;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -42,9 +43,11 @@ struct PageOwner {
 };
 
 /// Looks for those who refer to some pages, through every page of the file if need be. What lies
-/// below a damaged page stays unknown.
+/// below a damaged page stays unknown, and what is not found in time. Holds no snapshot while it
+/// looks.
 /// \param pages  in order. \return one for each.
-std::map<std::uint64_t, PageOwner> owners_of(Database& database,
-                                             const std::vector<std::uint64_t>& pages);
+std::map<std::uint64_t, PageOwner> owners_of(
+    Database& database, const std::vector<std::uint64_t>& pages,
+    std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max());
 
 }  // namespace kinship::store

@@ -10,6 +10,7 @@
 
 #include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/call_item.hpp"
+#include "server/store/sqlite/checked_vfs.hpp"
 #include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/distribution_rows.hpp"
@@ -23,6 +24,7 @@
 #include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/scene_rows.hpp"
+#include "server/store/sqlite/scrub.hpp"
 #include "server/store/sqlite/set_aside_rows.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_backup.hpp"
@@ -76,12 +78,18 @@ class SqliteStore : public Store {
       : options_(options), file_(locate_store(file)), lock_(file_), readers_(file_) {
     std::unique_ptr<Database> database = open_writer(file_);
     epoch_ = ensure_epoch(*database);
+    std::shared_ptr<PageDamage> damage = damage_of(database->connection());
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after});
+    scrub_ = std::make_unique<Scrub>(readers_, *writer_, std::move(damage),
+                                     ScrubOptions{options.scrub_bytes_per_s, options.log});
   }
   // Readers close before the writer does, whose last act is to empty the WAL.
-  ~SqliteStore() override { readers_.suspend(); }
+  ~SqliteStore() override {
+    scrub_.reset();
+    readers_.suspend();
+  }
 
   Uuid epoch() const override { return epoch_; }
 
@@ -98,6 +106,12 @@ class SqliteStore : public Store {
     count_rows(*reader, status);
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
+    if (const std::string damaged = scrub_->findings(); !damaged.empty())
+      status.message += "damaged: " + damaged +
+                        "; clients that report again mend paths, attempts and scenes, "
+                        "'kinshipd repair' of the stopped server the rest; ";
+    status.scrubbed_ms = scrub_->progress().ended_ms;
+    status.scrub_part = scrub_->progress().part;
     constexpr int kFixed = 3'051'003;
     if (sqlite3_libversion_number() < kFixed)
       status.message += std::string("SQLite ") + sqlite3_libversion() +
@@ -319,7 +333,8 @@ class SqliteStore : public Store {
   Uuid epoch_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
   DamagedReports damaged_reports_;
-  std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above
+  std::unique_ptr<Writer> writer_;  // destroyed before all above, which it uses
+  std::unique_ptr<Scrub> scrub_;    // and this before the writer
 };
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string_view>
 
 #include "server/store/store.hpp"
 
@@ -13,6 +15,9 @@ struct SqliteOptions {
   /// Reports that come while more than this waits to be written are answered TryAgain.
   std::size_t max_queued_bytes = std::size_t{64} << 20U;
   std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
+  std::size_t scrub_bytes_per_s = 4'000'000;    ///< of the search for damage; 0: none
+  /// Takes a line when damage is found, from a thread of the store's own; may be empty.
+  std::function<void(std::string_view)> log = {};
 };
 
 /// Opens (or makes) a store in an SQLite file: takes the lock file, migrates an older schema,
