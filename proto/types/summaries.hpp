@@ -206,6 +206,8 @@ struct ServerStatus {
   std::uint64_t queued_rehearsals = 0;  ///< waiting or under way
   double rehearsal_time_s = 0;          ///< processor time of those that are done
   std::uint64_t rollbacks = 0;          ///< of the store, noticed since start
+  std::int64_t scrubbed_ms = 0;  ///< when the store was last read through for damage; 0: never
+  double scrub_part = 0;         ///< 0 to 1: how much of it was read since then
 };
 
 template <>
@@ -235,6 +237,8 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"rehearsals", &ServerStatus::rehearsals, {.may_be_missing = true}},
     Field{"queued_rehearsals", &ServerStatus::queued_rehearsals, {.may_be_missing = true}},
     Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}},
-    Field{"rollbacks", &ServerStatus::rollbacks, {.may_be_missing = true}}};
+    Field{"rollbacks", &ServerStatus::rollbacks, {.may_be_missing = true}},
+    Field{"scrubbed_ms", &ServerStatus::scrubbed_ms, {.may_be_missing = true}},
+    Field{"scrub_part", &ServerStatus::scrub_part, {.min = 0, .may_be_missing = true}}};
 
 }  // namespace kinship

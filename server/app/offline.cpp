@@ -77,6 +77,35 @@ int restore(const OfflineOptions& options, const store::Progress& progress, std:
   return kDone;
 }
 
+int repair(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  const store::Repaired repaired = store::repair_store(options.store, progress);
+  out << "store '" << options.store.string() << "': written anew, epoch "
+      << repaired.restored.epoch.text() << "; " << repaired.damaged_pages
+      << " pages were damaged\n";
+  for (const store::Repaired::Lost& lost : repaired.lost) {
+    out << "lost: " << lost.rows << ' ' << lost.table << (lost.rows == 1 ? "" : "s");
+    if (!lost.robot.empty())
+      out << (lost.table == "robot" ? " '" : " of robot '") << lost.robot << "'";
+    if (!lost.task.empty())
+      out << ", task '" << lost.task << "'";
+    out << '\n';
+  }
+  for (const StoreCheck::Table& table : repaired.check.tables)
+    if (table.name == "robot" || table.name == "path" || table.name == "attempt" ||
+        table.name == "scene")
+      out << "kept: " << table.rows << " rows of table " << table.name << '\n';
+  if (repaired.lost.empty())
+    out << "nothing was lost\n";
+  else
+    out << "clients offer again what they still have; each robot that was lost needs 'kinship "
+           "robots register' or the next start of its planner\n";
+  out << "mixtures are fitted again when they are asked for\n"
+      << "the damaged store is now '" << repaired.restored.replaced.string() << "'\n";
+  for (const std::filesystem::path& leftover : repaired.restored.leftovers)
+    out << "left by an earlier restore: '" << leftover.string() << "'\n";
+  return kDone;
+}
+
 int migrate(const OfflineOptions& options, std::ostream& out) {
   const store::Migrated migrated = store::migrate_store(options.store);
   out << "store '" << options.store.string() << "': schema " << migrated.to;
@@ -95,6 +124,8 @@ int run(const OfflineOptions& options, const store::Progress& progress, std::ost
       return backup(options, progress, out);
     case OfflineVerb::Restore:
       return restore(options, progress, out);
+    case OfflineVerb::Repair:
+      return repair(options, progress, out);
     case OfflineVerb::Migrate:
       return migrate(options, out);
   }

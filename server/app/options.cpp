@@ -25,7 +25,8 @@ Examples:
   kinshipd --config /etc/kinship/kinshipd.ini    lines like: store=/var/lib/kinship/fleet.db
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
-  kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>)";
+  kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
+  kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one)";
 
 /// What the help of a verb ends with, before its example.
 constexpr const char* kVerbFooter =
@@ -72,6 +73,21 @@ void add_disk_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
+constexpr double kMaxScrubMbPerS = 1000;
+
+/// Takes numbers from 0 to kMaxScrubMbPerS.
+const CLI::Validator& is_rate() {
+  static const CLI::Validator kRate(
+      [](std::string& text) {
+        double rate = 0;
+        return CLI::detail::lexical_cast(text, rate) && rate >= 0 && rate <= kMaxScrubMbPerS
+                   ? std::string()
+                   : "'" + text + "' is not a number from 0 to 1000";
+      },
+      "FLOAT in [0 - 1000]");
+  return kRate;
+}
+
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
@@ -98,6 +114,11 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->check(is_part())
       ->capture_default_str();
   add_disk_options(app, options);
+  app.add_option("--scrub-mb-per-s", options.scrub_mb_per_s,
+                 "How fast the store is read through, again and again, in search of damage, MB a "
+                 "second; 0: not at all")
+      ->check(is_rate())
+      ->capture_default_str();
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -126,6 +147,11 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
       "fleet.db.replaced-<time>")
       ->add_option("FILE", options.file, "The backup; it stays as it is")
       ->required();
+  add("repair", OfflineVerb::Repair,
+      "Write a damaged store anew from all of it that can be read; keeps the old one",
+      "kinshipd repair --store fleet.db               keeps the old one as "
+      "fleet.db.replaced-<time>;\n"
+      "  clients offer again what they still have, robots are registered again by their owners");
   add("migrate", OfflineVerb::Migrate, "Bring the store to this version's schema; copies it first",
       "kinshipd migrate --store fleet.db              as it was: fleet.db.backup-<version>");
 }

@@ -24,10 +24,12 @@ struct ServerOptions {
   std::uint64_t free_space_watermark_mb = 64;  ///< with less free, no report is taken; 0: no limit
   std::uint64_t ballast_mb = 16;               ///< kept beside the store for a full disk; 0: none
   std::uint64_t max_wal_mb = 512;              ///< with more kept by readings, no report is taken
+  /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
+  double scrub_mb_per_s = 4;
   std::string log_level = "info";
 };
 
-enum class OfflineVerb { Check, Backup, Restore, Migrate };
+enum class OfflineVerb { Check, Backup, Restore, Repair, Migrate };
 
 /// What is to be done to a store that no server has open.
 struct OfflineOptions {

@@ -46,11 +46,14 @@ service::ServiceOptions service_options(const ServerOptions& options) {
 }
 
 store::SqliteOptions store_options(const ServerOptions& options) {
+  constexpr double kBytesOfMb = 1e6;
   constexpr std::uint64_t kMega = std::uint64_t{1} << 20U;
   store::SqliteOptions store;
   store.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
   store.ballast_bytes = options.ballast_mb * kMega;
   store.max_wal_bytes = options.max_wal_mb * kMega;
+  store.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
+  store.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
   return store;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "proto/types/store_check.hpp"
@@ -37,6 +38,25 @@ struct Restored {
 /// old one or the new one. An older backup is migrated.
 Restored restore_store(const std::filesystem::path& backup, const std::filesystem::path& file,
                        const Progress& progress);
+
+struct Repaired {
+  /// Rows that are gone, or stand without their content until their owners bring it again.
+  struct Lost {
+    std::string table;
+    std::string robot;  ///< label; empty: of none, or unknown
+    std::string task;
+    std::uint64_t rows = 0;
+  };
+  Restored restored;
+  std::uint64_t damaged_pages = 0;
+  std::vector<Lost> lost;
+  StoreCheck check;  ///< of the new store; robots that lost their row are problems
+};
+
+/// Puts a store made of all that can be read of a damaged one in its place, under a new epoch, so
+/// that clients offer again what they have. The damaged store is kept as restore_store() does it.
+/// \throws Failure(Storage) if the store is from before schema 4, which has no checksums.
+Repaired repair_store(const std::filesystem::path& file, const Progress& progress);
 
 struct Migrated {
   std::uint32_t from = 0;

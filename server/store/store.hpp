@@ -93,6 +93,9 @@ struct StoreStatus {
   std::uint64_t bytes = 0;
   std::uint64_t queued = 0;
   bool writable = true;
+  std::int64_t scrubbed_ms =
+      0;                  ///< when all of the file was last read in search of damage; 0: never
+  double scrub_part = 0;  ///< how far the search for damage is since then
   std::string message;  ///< why not writable, what is damaged, warnings; mostly one warning or none
   std::uint64_t rollbacks = 0;  ///< noticed since it was opened, each with a new epoch
 };

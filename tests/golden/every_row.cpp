@@ -183,6 +183,8 @@ ServerStatus every_status() {
   status.queued_rehearsals = next.count();
   status.rehearsal_time_s = next.real();
   status.rollbacks = next.count();
+  status.scrubbed_ms = next.time_ms();
+  status.scrub_part = next.real();
   return status;
 }
 

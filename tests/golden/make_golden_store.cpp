@@ -1,9 +1,11 @@
 // make_golden_store FILE: writes the store that README.md speaks of.
 
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/golden/golden_store.hpp"
 
@@ -29,8 +31,14 @@ int make(const std::filesystem::path& file) {
     store->put_distribution(test::golden_evicted_distribution());
     store->evict_distribution(test::golden_evicted_distribution().id);
   }
-  store::Database(file, store::Access::ReadWrite)
-      .execute("PRAGMA journal_mode = DELETE; PRAGMA page_size = 1024; VACUUM");
+  const std::filesystem::path small = file.string() + ".small";
+  {
+    store::Database database(file, store::Access::ReadWrite);
+    database.execute("PRAGMA journal_mode = DELETE; PRAGMA page_size = 1024");
+    std::ofstream(small).close();
+    store::write_sealed_copy(database, small);
+  }
+  std::filesystem::rename(small, file);
   for (const char* const suffix : {".lock", ".witness"})
     std::filesystem::remove(file.string() + suffix);
   std::cout << file.string() << ": " << std::filesystem::file_size(file) << " bytes\n";

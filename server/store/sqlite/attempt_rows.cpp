@@ -6,6 +6,8 @@
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
 #include "server/store/sqlite/scene_rows.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
@@ -16,15 +18,39 @@ Receipt refused(const Uuid& report_uuid, const std::string& why) {
   return {report_uuid, ReceiptStatus::Refused, "attempt " + report_uuid.text() + ": " + why};
 }
 
-/// The receipt of a report that came before under the same UUID.
-std::optional<Receipt> earlier_receipt(Database& database, const PreparedAttempt& prepared) {
-  const Uuid& uuid = prepared.attempt.report_uuid;
-  const auto query = database.cached("SELECT body_sha256 FROM attempt WHERE report_uuid = ?");
-  if (!query->bind(1, Bytes(uuid.bytes)).step())
+/// What is known of a report that came before under the same UUID.
+struct EarlierAttempt {
+  std::int64_t id = 0;
+  Digest body;
+  std::optional<std::int64_t> path_id;
+  std::optional<std::int64_t> scene_id;
+  std::int64_t received_ms = 0;
+};
+
+/// \param rows  of its UUID; a row that turns out to be damaged is moved to the damaged ones.
+std::optional<EarlierAttempt> read_earlier(Database& database, ReportRows& rows) {
+  if (!rows.row)
     return std::nullopt;
-  if (id_of<Digest>(query->column_blob(0)) == prepared.body)
-    return Receipt{uuid, ReceiptStatus::Duplicate, ""};
-  return refused(uuid, "this UUID was used for another report");
+  try {
+    const auto query = database.cached(
+        "SELECT body_sha256, path_id, scene_id, received_ms FROM attempt WHERE id = ?");
+    query->bind(1, *rows.row).step();
+    EarlierAttempt earlier{.id = *rows.row,
+                           .body = id_of<Digest>(query->column_blob(0)),
+                           .path_id = {},
+                           .scene_id = {},
+                           .received_ms = query->column_integer(3)};
+    if (!query->column_is_null(1))
+      earlier.path_id = query->column_integer(1);
+    if (!query->column_is_null(2))
+      earlier.scene_id = query->column_integer(2);
+    return earlier;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    rows.damaged.push_back(*rows.row);
+    return std::nullopt;
+  }
 }
 
 struct RobotRow {
@@ -45,17 +71,56 @@ struct AttemptPath {
   std::optional<std::int64_t> id;
 };
 
-AttemptPath keep_path(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
-                      const PathArrival& arrival) {
+/// \param came_before  the attempt may have been there, and its row is lost.
+AttemptPath keep_path(Batch& batch, const PreparedAttempt& prepared, const ExperienceKey& key,
+                      const PathArrival& arrival, bool came_before) {
   if (!prepared.path)
     return {};
-  if (const auto same = find_path(database, key, prepared.path->content))
-    return {AttemptStatus::DuplicateContent, same};
-  return {AttemptStatus::Stored, insert_path(database, key, prepared, arrival)};
+  Database& database = batch.database();
+  // What somebody retired does not come back because the row of its attempt is damaged.
+  if (came_before)
+    if (const auto retired = find_retired(database, key, prepared.attempt.report_uuid))
+      return {AttemptStatus::DuplicateContent, retired};
+  const SameContent same = find_same(database, key, prepared.path->content);
+  if (same.readable)
+    return {AttemptStatus::DuplicateContent, same.readable};
+  const std::int64_t id = insert_path(database, key, prepared, arrival);
+  for (const std::int64_t damaged : same.damaged)
+    replace_path(batch, key, damaged, id);
+  return {AttemptStatus::Stored, id};
 }
 
-void insert_row(Database& database, const PreparedAttempt& prepared, const ExperienceKey& key,
-                const AttemptPath& path, const PathArrival& arrival) {
+/// Answers a report that came before. What it vouches for and cannot be read is written anew.
+Receipt answer_again(Batch& batch, const PreparedAttempt& prepared, const ExperienceKey& key,
+                     const EarlierAttempt& earlier) {
+  Database& database = batch.database();
+  const Uuid& uuid = prepared.attempt.report_uuid;
+  const PathArrival arrival{.received_ms = earlier.received_ms, .scene_id = earlier.scene_id};
+  const bool has_scene =
+      !prepared.scene || !earlier.scene_id || is_scene_readable(database, *earlier.scene_id);
+  if (!has_scene)
+    static_cast<void>(ensure_scene(database, *prepared.scene, now_ms()));
+  if (!prepared.path || !earlier.path_id || is_vouched_for(database, key, *earlier.path_id))
+    return {uuid,
+            has_scene       ? ReceiptStatus::Duplicate
+            : prepared.path ? ReceiptStatus::Stored
+                            : ReceiptStatus::Recorded,
+            ""};
+  const AttemptPath path = keep_path(batch, prepared, key, arrival, false);
+  replace_path(batch, key, *earlier.path_id, *path.id);
+  database.cached("UPDATE attempt SET path_id = ?, status = ? WHERE id = ?")
+      ->bind_all(path.id, static_cast<std::int64_t>(path.status), earlier.id)
+      .run();
+  if (path.status == AttemptStatus::Stored) {
+    count_path(database, key);
+    batch.paths_changed(key.task_id, key.robot_id);
+  }
+  return {uuid, ReceiptStatus::Stored, ""};
+}
+
+std::int64_t insert_row(Database& database, const PreparedAttempt& prepared,
+                        const ExperienceKey& key, const AttemptPath& path,
+                        const PathArrival& arrival) {
   const Attempt& attempt = prepared.attempt;
   const PlanningRecord& record = attempt.record;
   const auto T_task_base = optional_pose_blob(attempt.T_task_base);
@@ -80,6 +145,7 @@ void insert_row(Database& database, const PreparedAttempt& prepared, const Exper
                  static_cast<std::int64_t>(record.distribution_revision), arrival.received_ms,
                  arrival.scene_id)
       .run();
+  return database.last_insert_id();
 }
 
 }  // namespace
@@ -97,8 +163,10 @@ std::int64_t ensure_task(Database& database, std::string_view task) {
 Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
   Database& database = batch.database();
   const Attempt& attempt = prepared.attempt;
-  if (std::optional<Receipt> earlier = earlier_receipt(database, prepared))
-    return *earlier;
+  ReportRows rows = find_report(database, attempt.report_uuid);
+  const std::optional<EarlierAttempt> earlier = read_earlier(database, rows);
+  if (earlier && earlier->body != prepared.body)
+    return refused(attempt.report_uuid, "this UUID was used for another report");
   const std::optional<RobotRow> robot = find_robot_row(database, attempt.robot);
   if (!robot)
     return refused(attempt.report_uuid,
@@ -109,20 +177,49 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared) {
                                             " has " + std::to_string(robot->dof));
 
   const ExperienceKey key{ensure_task(database, attempt.task), robot->id};
+  if (earlier)
+    return answer_again(batch, prepared, key, *earlier);
   ensure_experience(database, key);
   PathArrival arrival{.received_ms = now_ms(), .scene_id = {}};
   if (prepared.scene)
     arrival.scene_id = ensure_scene(database, *prepared.scene, arrival.received_ms);
-  const AttemptPath path = keep_path(database, prepared, key, arrival);
-  insert_row(database, prepared, key, path, arrival);
+  const AttemptPath path =
+      keep_path(batch, prepared, key, arrival, !rows.damaged.empty() || has_orphans(database));
+  const std::int64_t id = insert_row(database, prepared, key, path, arrival);
+  for (const std::int64_t damaged : rows.damaged)
+    put_aside(database, AsideKind::Attempt, damaged, id);
   const bool stored = path.status == AttemptStatus::Stored;
-  count_attempt(database, key, attempt.record, stored);
+  if (rows.damaged.empty())
+    count_attempt(database, key, attempt.record, stored);
+  else if (stored)
+    count_path(database, key);  // the attempt was counted when it came first
   if (stored) {
     batch.paths_changed(key.task_id, key.robot_id);
     return {attempt.report_uuid, ReceiptStatus::Stored, ""};
   }
-  return {attempt.report_uuid, prepared.path ? ReceiptStatus::Duplicate : ReceiptStatus::Recorded,
+  // A report whose row was damaged is kept anew, although its path is there.
+  const bool duplicate = prepared.path && rows.damaged.empty();
+  return {attempt.report_uuid,
+          duplicate       ? ReceiptStatus::Duplicate
+          : prepared.path ? ReceiptStatus::Stored
+                          : ReceiptStatus::Recorded,
           ""};
+}
+
+ReportRows find_report(Database& database, const Uuid& report_uuid) {
+  const auto query = database.cached(
+      "SELECT id FROM attempt INDEXED BY attempt_by_uuid WHERE report_uuid = ? ORDER BY id");
+  query->bind(1, Bytes(report_uuid.bytes));
+  ReportRows rows;
+  while (query->step()) {
+    const std::int64_t id = query->column_integer(0);
+    const std::optional<Aside> aside = find_aside(database, AsideKind::Attempt, id);
+    if (!aside)
+      rows.row = id;
+    else if (!aside->replaced_by)
+      rows.damaged.push_back(id);
+  }
+  return rows;
 }
 
 PlanningRecord read_record(const Statement& row, int first_column) {
@@ -142,28 +239,34 @@ PlanningRecord read_record(const Statement& row, int first_column) {
   return record;
 }
 
-std::optional<AttemptRow> select_attempt(Database& database, const Uuid& report_uuid) {
-  constexpr int kFirstOfRecord = 6;
-  const auto query = database.cached(
-      "SELECT robot.digest, task.name, attempt.machine, attempt.T_task_base, attempt.path_id,"
-      " attempt.scene_id, " +
-      std::string(kRecordColumns) +
-      "FROM attempt JOIN robot ON robot.id = attempt.robot_id "
-      "JOIN task ON task.id = attempt.task_id WHERE attempt.report_uuid = ?");
-  if (!query->bind(1, Bytes(report_uuid.bytes)).step())
-    return std::nullopt;
+AttemptRow select_attempt(Database& database, std::int64_t id) {
+  constexpr int kFirstOfRecord = 7;
   AttemptRow row;
-  row.attempt.report_uuid = report_uuid;
-  row.attempt.robot = id_of<Digest>(query->column_blob(0));
-  row.attempt.task = query->column_text(1);
-  row.attempt.machine = query->column_text(2);
-  row.attempt.T_task_base = pose_from_blob(query->column_blob(3));
-  if (!query->column_is_null(4))
-    row.path_id = query->column_integer(4);
+  const auto query = database.cached(
+      "SELECT report_uuid, robot_id, task_id, machine, T_task_base, path_id, scene_id, " +
+      std::string(kRecordColumns) + "FROM attempt WHERE id = ?");
+  if (!query->bind(1, id).step())
+    throw Failure(ErrorCode::Storage, "attempt " + std::to_string(id) + " is in an index alone");
+  row.attempt.report_uuid = id_of<Uuid>(query->column_blob(0));
+  row.robot_id = query->column_integer(1);
+  row.task_id = query->column_integer(2);
+  row.attempt.machine = query->column_text(3);
+  row.attempt.T_task_base = pose_from_blob(query->column_blob(4));
   if (!query->column_is_null(5))
-    row.scene_id = query->column_integer(5);
+    row.path_id = query->column_integer(5);
+  if (!query->column_is_null(6))
+    row.scene_id = query->column_integer(6);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;
+}
+
+void name_robot_and_task(Database& database, AttemptRow& row) {
+  const auto robot = database.cached("SELECT digest FROM robot WHERE id = ?");
+  if (robot->bind(1, row.robot_id).step())
+    row.attempt.robot = id_of<Digest>(robot->column_blob(0));
+  const auto task = database.cached("SELECT name FROM task WHERE id = ?");
+  if (task->bind(1, row.task_id).step())
+    row.attempt.task = task->column_text(0);
 }
 
 }  // namespace kinship::store

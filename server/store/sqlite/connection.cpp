@@ -4,6 +4,7 @@
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/path_rows.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
 #include "server/store/sqlite/wal_file.hpp"
@@ -20,7 +21,8 @@ void configure_writer(Database& database) {
   database.execute(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
       "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
-      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY");
+      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;"
+      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes what it finds
 }
 
 }  // namespace
@@ -28,11 +30,8 @@ void configure_writer(Database& database) {
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_for_owner(file);
   make_wal_durable(file);
-  auto database = std::make_unique<Database>(file, Access::ReadWrite);
-  database->execute("PRAGMA page_size = 8192");  // counts for a new file only
-  // A file of somebody else is refused before anything is written to it, so migrate() goes first.
-  database->execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-  migrate(*database, file, embedded_migrations());
+  // A file of somebody else is refused before anything is written to it.
+  std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
   configure_writer(*database);
   sync_directory_of(file);  // SQLite drops errors of that
   return database;

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include "server/store/sqlite/checked_vfs.hpp"
 #include "server/store/sqlite/online_backup.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 
@@ -26,8 +27,8 @@ void Database::Close::operator()(sqlite3* connection) const noexcept { sqlite3_c
 
 Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3* connection = nullptr;
-  const int code =
-      sqlite3_open_v2(file.c_str(), &connection, open_flags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int code = sqlite3_open_v2(file.c_str(), &connection,
+                                   open_flags(access) | SQLITE_OPEN_NOMUTEX, checked_vfs());
   connection_.reset(connection);  // SQLite may hand out a connection although it failed
   if (code != SQLITE_OK)
     throw SqliteError(
@@ -36,6 +37,8 @@ Database::Database(const std::filesystem::path& file, Access access) {
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  if (access != Access::ReadOnly)
+    seal_if_empty(*connection);
 }
 
 Database::~Database() = default;

@@ -21,6 +21,9 @@ struct DistributionRead {
 };
 DistributionRead select_distribution(Database& database, const Digest& id);
 
+/// The one in this row, of any schema.
+DistributionRead read_distribution(Database& database, std::int64_t row);
+
 /// Deletes a distribution; its revision is kept, so that the next one counts on.
 /// \return whether it was there.
 bool delete_distribution(Database& database, const Digest& id);

@@ -1,9 +1,12 @@
 #include "server/store/sqlite/experience_rows.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
@@ -33,35 +36,90 @@ ModeTotals read_totals(const Statement& row, int first_column) {
           row.column_real(first_column + 4)};
 }
 
+/// The newest judged attempts of each arm, as they are met.
+class RecentAttempts {
+ public:
+  bool complete() const { return std::min(guided_, control_) >= kKnownAttemptsPerMode; }
+
+  /// \param row  of kColumns, newest first.
+  void add(const Statement& row) {
+    const SamplingMode mode = mode_of(row.column_integer(0));
+    const Outcome outcome = outcome_of(row.column_integer(1));
+    if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
+      return;
+    if ((mode == SamplingMode::Guided ? guided_ : control_)++ < kKnownAttemptsPerMode) {
+      KnownAttempt known{.judged = {.sampling_mode = mode,
+                                    .solved = outcome == Outcome::Solved,
+                                    .checks = count_of(row, 2),
+                                    .age = age_},
+                         .planner = std::string(row.column_text(3))};
+      if (!row.column_is_null(4))
+        known.distribution_id = id_of<Digest>(row.column_blob(4));
+      newest_first_.push_back(std::move(known));
+    }
+    ++age_;
+  }
+  std::vector<KnownAttempt> oldest_first() const {
+    return {newest_first_.rbegin(), newest_first_.rend()};
+  }
+
+  static constexpr std::string_view kColumns =
+      "SELECT arm, outcome, collision_checks, planner, distribution_digest FROM attempt ";
+
+ private:
+  std::vector<KnownAttempt> newest_first_;
+  std::size_t guided_ = 0, control_ = 0;
+  std::uint32_t age_ = 0;
+};
+
+/// One by one, without those that cannot be read.
+std::vector<KnownAttempt> readable_recent_of(Database& database, const ExperienceKey& key,
+                                             std::int64_t max_rows) {
+  const auto ids = database.cached(
+      "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
+      "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
+  ids->bind_all(key.task_id, key.robot_id, max_rows);
+  RecentAttempts recent;
+  while (!recent.complete() && ids->step()) {
+    const auto query = database.cached(std::string(RecentAttempts::kColumns) + "WHERE id = ?");
+    try {
+      if (query->bind(1, ids->column_integer(0)).step())
+        recent.add(*query);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+    }
+  }
+  return recent.oldest_first();
+}
+
 /// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRows alone: an
 /// arm that had no attempts among so many is as good as unknown.
 std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key) {
   constexpr std::int64_t kMaxRows = 10'000;
-  const auto query = database.cached(
-      "SELECT arm, outcome, collision_checks, planner, distribution_digest FROM attempt "
-      "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
-  query->bind_all(key.task_id, key.robot_id, kMaxRows);
-  std::vector<KnownAttempt> newest_first;
-  std::size_t guided = 0, control = 0;
-  std::uint32_t age = 0;
-  while (std::min(guided, control) < kKnownAttemptsPerMode && query->step()) {
-    const SamplingMode mode = mode_of(query->column_integer(0));
-    const Outcome outcome = outcome_of(query->column_integer(1));
-    if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
-      continue;
-    if ((mode == SamplingMode::Guided ? guided : control)++ < kKnownAttemptsPerMode) {
-      KnownAttempt known{.judged = {.sampling_mode = mode,
-                                    .solved = outcome == Outcome::Solved,
-                                    .checks = count_of(*query, 2),
-                                    .age = age},
-                         .planner = std::string(query->column_text(3))};
-      if (!query->column_is_null(4))
-        known.distribution_id = id_of<Digest>(query->column_blob(4));
-      newest_first.push_back(std::move(known));
-    }
-    ++age;
+  try {
+    const auto query =
+        database.cached(std::string(RecentAttempts::kColumns) +
+                        "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
+    query->bind_all(key.task_id, key.robot_id, kMaxRows);
+    RecentAttempts recent;
+    while (!recent.complete() && query->step())
+      recent.add(*query);
+    return recent.oldest_first();
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return readable_recent_of(database, key, kMaxRows);
   }
-  return {newest_first.rbegin(), newest_first.rend()};
+}
+
+/// The digests of robots by id, from an index: their rows need not be readable.
+std::map<std::int64_t, Digest> robot_digests(Database& database) {
+  const auto query = database.cached("SELECT id, digest FROM robot ORDER BY digest");
+  std::map<std::int64_t, Digest> digests;
+  while (query->step())
+    digests.emplace(query->column_integer(0), id_of<Digest>(query->column_blob(1)));
+  return digests;
 }
 
 }  // namespace
@@ -85,6 +143,8 @@ void count_attempt(Database& database, const ExperienceKey& key, const PlanningR
         .bind(5, static_cast<double>(record.collision_checks));
   update->run();
 }
+
+void count_path(Database& database, const ExperienceKey& key) { uncount_paths(database, key, -1); }
 
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths) {
   database.cached("UPDATE experience SET paths = paths - ? WHERE task_id = ? AND robot_id = ?")
@@ -132,16 +192,17 @@ std::uint64_t generation_of(Database& database, const Digest& robot, std::string
 }
 
 std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task) {
+  const std::map<std::int64_t, Digest> digests = robot_digests(database);
   const auto query = database.cached(
-      "SELECT robot.digest, experience.paths, experience.generation, experience.retired_generation "
-      "FROM experience JOIN robot ON robot.id = experience.robot_id "
-      "JOIN task ON task.id = experience.task_id "
-      "WHERE task.name = ? AND experience.generation > 0 ORDER BY robot.digest");
+      "SELECT robot_id, paths, generation, retired_generation FROM experience "
+      "WHERE task_id = (SELECT id FROM task WHERE name = ?) AND generation > 0");
   query->bind(1, task);
   std::vector<ExperienceSummary> robots;
   while (query->step())
-    robots.push_back({id_of<Digest>(query->column_blob(0)), count_of(*query, 1),
-                      count_of(*query, 2), count_of(*query, 3)});
+    if (const auto digest = digests.find(query->column_integer(0)); digest != digests.end())
+      robots.push_back(
+          {digest->second, count_of(*query, 1), count_of(*query, 2), count_of(*query, 3)});
+  std::ranges::sort(robots, {}, &ExperienceSummary::robot);
   return robots;
 }
 

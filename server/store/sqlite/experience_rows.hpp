@@ -25,6 +25,9 @@ void ensure_experience(Database& database, const ExperienceKey& key);
 void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
                    bool brought_path);
 
+/// Counts the path alone of an attempt that came again.
+void count_path(Database& database, const ExperienceKey& key);
+
 /// Takes paths out of the count.
 void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths);
 

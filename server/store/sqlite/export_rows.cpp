@@ -10,15 +10,11 @@
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
 #include "server/store/sqlite/scene_rows.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
-
-struct Candidate {
-  std::int64_t id = 0;
-  Uuid report_uuid;
-  std::optional<std::int64_t> path_id;
-};
 
 std::int64_t parse_cursor(std::string_view cursor) {
   std::int64_t id = 0;
@@ -29,57 +25,76 @@ std::int64_t parse_cursor(std::string_view cursor) {
   return id;
 }
 
-/// \param query  of id, report_uuid, path_id.
-void append(Statement& query, std::vector<Candidate>& candidates) {
-  while (query.step()) {
-    Candidate& candidate = candidates.emplace_back();
-    candidate.id = query.column_integer(0);
-    candidate.report_uuid = id_of<Uuid>(query.column_blob(1));
-    if (!query.column_is_null(2))
-      candidate.path_id = query.column_integer(2);
-  }
+constexpr std::string_view kNotAsideAttempt =
+    "AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id) ";
+
+void append_ids(Statement& query, std::vector<std::int64_t>& ids) {
+  while (query.step())
+    ids.push_back(query.column_integer(0));
 }
 
-/// The next attempts by id. With filters each robot and task brings its own next ones, read from
-/// an index; the oldest of them all are the next of all.
-std::vector<Candidate> next_candidates(Database& database, const std::vector<ExperienceKey>& keys,
-                                       bool filtered, std::int64_t after_id, std::int64_t count) {
-  std::vector<Candidate> candidates;
-  if (!filtered) {
-    const auto query = database.cached(
-        "SELECT id, report_uuid, path_id FROM attempt WHERE id > ? ORDER BY id LIMIT ?");
-    query->bind_all(after_id, count);
-    append(*query, candidates);
-    return candidates;
-  }
+/// The next attempts of some robots and tasks by id. Each brings its own next ones, read from an
+/// index; the oldest of them all are the next of all.
+std::vector<std::int64_t> next_of(Database& database, const std::vector<ExperienceKey>& keys,
+                                  std::int64_t after_id, std::int64_t count) {
+  std::vector<std::int64_t> ids;
   for (const ExperienceKey& key : keys) {
     const auto query = database.cached(
-        "SELECT id, report_uuid, path_id FROM attempt INDEXED BY attempt_by_task_robot "
-        "WHERE task_id = ? AND robot_id = ? AND id > ? ORDER BY id LIMIT ?");
+        "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
+        "WHERE task_id = ? AND robot_id = ? AND id > ? " +
+        std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
     query->bind_all(key.task_id, key.robot_id, after_id, count);
-    append(*query, candidates);
+    append_ids(*query, ids);
   }
-  std::ranges::sort(candidates, {}, &Candidate::id);
-  if (std::ssize(candidates) > count)
-    candidates.resize(static_cast<std::size_t>(count));
-  return candidates;
+  std::ranges::sort(ids);
+  if (std::ssize(ids) > count)
+    ids.resize(static_cast<std::size_t>(count));
+  return ids;
 }
 
-bool is_retired(Database& database, std::int64_t path_id) {
-  const auto query = database.cached("SELECT retired_ms IS NOT NULL FROM path WHERE id = ?");
-  return query->bind(1, path_id).step() && query->column_integer(0) != 0;
+/// The next attempts of all by id; where their rows cannot be read, from the index.
+std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
+                                      std::int64_t count) {
+  try {
+    std::vector<std::int64_t> ids;
+    const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
+                                       std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+    query->bind_all(after_id, count);
+    append_ids(*query, ids);
+    return ids;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return next_of(database, select_experience(database, {}, ""), after_id, count);
+  }
+}
+
+/// Nothing if it lies on a damaged page, which is noted.
+std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
+  std::optional<AttemptRow> row;
+  try {
+    row = select_attempt(database, id);
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    noted.damaged_attempts.push_back(id);
+    return std::nullopt;
+  }
+  name_robot_and_task(database, *row);
+  return row;
 }
 
 /// Nothing if its path is retired or damaged; a path or scene found damaged now is noted.
-std::optional<Attempt> read_candidate(Database& database, const Candidate& candidate,
-                                      ExportRead& noted) {
-  if (candidate.path_id && is_retired(database, *candidate.path_id))
-    return std::nullopt;
-  std::optional<AttemptRow> row = select_attempt(database, candidate.report_uuid);
+std::optional<Attempt> read_candidate(Database& database, std::int64_t id, ExportRead& noted) {
+  std::optional<AttemptRow> row = read_row(database, id, noted);
   if (!row)
     return std::nullopt;
-  if (candidate.path_id) {
-    PathsRead read = select_path(database, *candidate.path_id);
+  if (row->path_id) {
+    const std::optional<std::int64_t> path_id =
+        row_in_use(database, AsideKind::Path, *row->path_id);
+    if (!path_id || is_retired(database, {row->task_id, row->robot_id}, *path_id))
+      return std::nullopt;
+    PathsRead read = select_path(database, *path_id);
     noted.damaged.insert(noted.damaged.end(), read.damaged.begin(), read.damaged.end());
     if (!read.paths.empty())
       row->attempt.path = std::move(read.paths.front().path);
@@ -109,11 +124,13 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   std::int64_t last_id = parse_cursor(cursor);
   std::size_t bytes = 0;
   while (true) {
-    const auto candidates = next_candidates(database, keys, filtered, last_id, kCandidates);
+    const std::vector<std::int64_t> candidates = filtered
+                                                     ? next_of(database, keys, last_id, kCandidates)
+                                                     : next_of_all(database, last_id, kCandidates);
     if (candidates.empty())
       return read;
-    for (const Candidate& candidate : candidates) {
-      if (std::optional<Attempt> attempt = read_candidate(database, candidate, read)) {
+    for (const std::int64_t id : candidates) {
+      if (std::optional<Attempt> attempt = read_candidate(database, id, read)) {
         const BatchBytes more = batch_bytes(*attempt);
         bytes += more.waypoints + more.scenes;
         if (read.page.rows.size() == rows || (!read.page.rows.empty() && bytes > max_bytes)) {
@@ -122,7 +139,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
         }
         read.page.rows.push_back(std::move(*attempt));
       }
-      last_id = candidate.id;
+      last_id = id;
     }
   }
 }

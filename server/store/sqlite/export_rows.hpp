@@ -15,6 +15,7 @@ struct ExportRead {
   Page<Attempt> page;
   std::vector<std::int64_t> damaged;  ///< paths
   std::vector<std::int64_t> damaged_scenes;
+  std::vector<std::int64_t> damaged_attempts;
 };
 
 /// A page of Store::export_attempts(). The cursor is the id of the last attempt looked at.

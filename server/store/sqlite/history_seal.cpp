@@ -8,8 +8,8 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kSealBytes = 16;
-constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kSealBytes;
+constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kMarkSealBytes = 16;
+constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kMarkSealBytes;
 
 /// HMAC (RFC 2104) with SHA-256, whose block has 64 bytes.
 Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
@@ -33,7 +33,7 @@ HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point
   std::vector<std::uint8_t> message(epoch.bytes.begin(), epoch.bytes.end());
   message.insert(message.end(), mark.begin(), mark.end());
   const Digest whole = hmac(key, message);
-  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kSealBytes);
+  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kMarkSealBytes);
   return mark;
 }
 

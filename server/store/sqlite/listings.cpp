@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
@@ -63,24 +66,39 @@ std::string path_cursor(const ExperienceKey& key, std::int64_t path_id) {
          std::to_string(path_id);
 }
 
-std::vector<TaskRobotSummary> robots_of_task(Database& database, std::int64_t task_id) {
+/// Digest and label of each robot, from indexes: its row need not be readable.
+using RobotNames = std::map<std::int64_t, std::pair<Digest, std::string>>;
+
+RobotNames robot_names(Database& database) {
+  RobotNames names;
+  const auto digests = database.cached("SELECT id, digest FROM robot ORDER BY digest");
+  while (digests->step())
+    names[digests->column_integer(0)].first = id_of<Digest>(digests->column_blob(1));
+  const auto labels = database.cached("SELECT id, label FROM robot ORDER BY label");
+  while (labels->step())
+    names[labels->column_integer(0)].second = labels->column_text(1);
+  return names;
+}
+
+std::vector<TaskRobotSummary> robots_of_task(Database& database, const RobotNames& names,
+                                             std::int64_t task_id) {
   const auto query = database.cached(
-      "SELECT robot.digest, robot.label, experience.paths, experience.attempts,"
-      " experience.generation FROM experience JOIN robot ON robot.id = experience.robot_id "
-      "WHERE experience.task_id = ? ORDER BY robot.label");
+      "SELECT robot_id, paths, attempts, generation FROM experience WHERE task_id = ?");
   query->bind(1, task_id);
   std::vector<TaskRobotSummary> robots;
   while (query->step())
-    robots.push_back({id_of<Digest>(query->column_blob(0)), std::string(query->column_text(1)),
-                      count_of(*query, 2), count_of(*query, 3), count_of(*query, 4)});
+    if (const auto robot = names.find(query->column_integer(0)); robot != names.end())
+      robots.push_back({robot->second.first, robot->second.second, count_of(*query, 1),
+                        count_of(*query, 2), count_of(*query, 3)});
+  std::ranges::sort(robots, {}, &TaskRobotSummary::label);
   return robots;
 }
 
 /// \param row  of task id and name.
-TaskSummary read_task(Database& database, const Statement& row) {
+TaskSummary read_task(Database& database, const RobotNames& names, const Statement& row) {
   TaskSummary summary;
   summary.task = row.column_text(1);
-  summary.robots = robots_of_task(database, row.column_integer(0));
+  summary.robots = robots_of_task(database, names, row.column_integer(0));
   for (const TaskRobotSummary& robot : summary.robots) {
     summary.paths += robot.paths;
     summary.attempts += robot.attempts;
@@ -143,10 +161,11 @@ void bind_filters(Statement& query, const std::optional<Digest>& robot, std::str
 std::vector<std::int64_t> path_ids(Database& database, const ExperienceKey& key,
                                    std::int64_t after_id, std::int64_t limit) {
   const auto query = database.cached(
-      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ?1 AND robot_id = ?2 "
-      "AND id > ?3 AND damaged = 0 AND retired_ms IS NULL UNION ALL "
+      "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ?1 AND "
+      "robot_id = ?2 AND id > ?3 AND retired_ms IS NULL UNION ALL "
       "SELECT id FROM path INDEXED BY path_retired WHERE task_id = ?1 AND robot_id = ?2 "
-      "AND id > ?3 AND damaged = 0 AND retired_ms IS NOT NULL ORDER BY id LIMIT ?4");
+      "AND id > ?3 AND retired_ms IS NOT NULL) AS path WHERE NOT EXISTS "
+      "(SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ORDER BY id LIMIT ?4");
   query->bind_all(key.task_id, key.robot_id, after_id, limit);
   std::vector<std::int64_t> ids;
   while (query->step())
@@ -154,7 +173,8 @@ std::vector<std::int64_t> path_ids(Database& database, const ExperienceKey& key,
   return ids;
 }
 
-PathSummary select_path_summary(Database& database, std::int64_t id) {
+/// Nothing if it lies on a damaged page, or lost its attempt in a repair.
+std::optional<PathSummary> select_path_summary(Database& database, std::int64_t id) try {
   const auto query = database.cached(
       "SELECT path.retired_ms, path.report_uuid, robot.digest, robot.label,"
       " task.name, path.waypoint_count, path.length, attempt.machine, attempt.received_ms,"
@@ -162,8 +182,15 @@ PathSummary select_path_summary(Database& database, std::int64_t id) {
       std::string(kRecordColumns) +
       "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
       "CROSS JOIN task ON task.id = path.task_id "
-      "CROSS JOIN attempt ON attempt.report_uuid = path.report_uuid WHERE path.id = ?");
-  return query->bind(1, id).step() ? read_path_summary(*query) : PathSummary{};
+      "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "
+      "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ?");
+  if (!query->bind(1, id).step())
+    return std::nullopt;
+  return read_path_summary(*query);
+} catch (const SqliteError& error) {
+  if (!error.is_damage())
+    throw;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -174,8 +201,8 @@ Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, s
       "SELECT digest, label, base_link, tip_link, dof, registered_ms,"
       " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id) "
-      "FROM robot WHERE label > ? ORDER BY label LIMIT ?");
-  query->bind_all(cursor, rows + 1);
+      "FROM robot WHERE label > ? AND base_link <> '' ORDER BY label LIMIT ?");
+  query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
   const auto read = [](const Statement& row) {
     RobotSummary summary;
     summary.robot = id_of<Digest>(row.column_blob(0));
@@ -194,11 +221,12 @@ Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, s
 
 Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
+  const RobotNames names = robot_names(database);
   const auto query =
       database.cached("SELECT id, name FROM task WHERE name > ? ORDER BY name LIMIT ?");
   query->bind_all(cursor, rows + 1);
   return read_page<TaskSummary>(
-      *query, rows, [&](const Statement& row) { return read_task(database, row); },
+      *query, rows, [&](const Statement& row) { return read_task(database, names, row); },
       [](const Statement& row) { return std::string(row.column_text(1)); });
 }
 
@@ -206,7 +234,7 @@ std::optional<TaskSummary> summary_of_task(Database& database, std::string_view 
   const auto query = database.cached("SELECT id, name FROM task WHERE name = ?");
   if (!query->bind(1, task).step())
     return std::nullopt;
-  return read_task(database, *query);
+  return read_task(database, robot_names(database), *query);
 }
 
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
@@ -220,7 +248,8 @@ Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>&
     for (const std::int64_t id : path_ids(database, key, is_first ? path_id : 0, left + 1)) {
       if (std::ssize(page.rows) == rows)
         return page;
-      page.rows.push_back(select_path_summary(database, id));
+      if (std::optional<PathSummary> summary = select_path_summary(database, id))
+        page.rows.push_back(std::move(*summary));
       page.next_cursor = path_cursor(key, id);
     }
   }
@@ -244,7 +273,8 @@ Page<DistributionSummary> page_of_distributions(Database& database,
       "SELECT distribution.digest, revision, task.name, robot.digest, robot.label, profile, state,"
       " reason, components, configurations, paths, fitted_ms FROM distribution "
       "JOIN robot ON robot.id = distribution.robot_id JOIN task ON task.id = distribution.task_id "
-      "WHERE distribution.digest > ?3" +
+      "WHERE distribution.digest > ?3 AND NOT EXISTS "
+      "(SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)" +
       filters(robot, task) + " ORDER BY distribution.digest LIMIT ?4");
   bind_filters(*query, robot, task);
   query->bind(3, Bytes(after.bytes)).bind(4, rows + 1);
@@ -254,26 +284,36 @@ Page<DistributionSummary> page_of_distributions(Database& database,
 }
 
 void count_rows(Database& database, StoreStatus& status) {
-  const auto query = database.cached(
-      "SELECT (SELECT count(*) FROM robot), (SELECT count(*) FROM task),"
-      " (SELECT coalesce(sum(paths), 0) FROM experience),"
-      " (SELECT coalesce(sum(attempts), 0) FROM experience),"
-      " (SELECT count(*) FROM distribution), (SELECT count(*) FROM path WHERE damaged = 1),"
-      " (SELECT user_version FROM pragma_user_version),"
-      " (SELECT page_count FROM pragma_page_count) * (SELECT page_size FROM pragma_page_size),"
-      " (SELECT count(*) FROM scene WHERE damaged = 1)");
-  query->step();
-  status.robots = count_of(*query, 0);
-  status.tasks = count_of(*query, 1);
-  status.paths = count_of(*query, 2);
-  status.attempts = count_of(*query, 3);
-  status.distributions = count_of(*query, 4);
-  status.schema_version = static_cast<std::uint32_t>(query->column_integer(6));
-  status.bytes = count_of(*query, 7);
-  if (const std::uint64_t damaged = count_of(*query, 5); damaged > 0)
-    status.message += std::to_string(damaged) + " damaged paths set aside; ";
-  if (const std::uint64_t damaged = count_of(*query, 8); damaged > 0)
-    status.message += std::to_string(damaged) + " damaged scenes set aside; ";
+  // A table that cannot be counted leaves the others their counts.
+  const auto count = [&](std::uint64_t& into, std::string_view name, std::string_view sql) {
+    try {
+      const auto query = database.cached(sql);
+      query->step();
+      into = count_of(*query, 0);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      status.message += "damaged: the " + std::string(name) + " cannot be counted; ";
+    }
+  };
+  std::uint64_t schema = 0;
+  count(status.robots, "robots", "SELECT count(*) FROM robot");
+  count(status.tasks, "tasks", "SELECT count(*) FROM task");
+  count(status.paths, "paths", "SELECT coalesce(sum(paths), 0) FROM experience");
+  count(status.attempts, "attempts", "SELECT coalesce(sum(attempts), 0) FROM experience");
+  count(status.distributions, "distributions",
+        "SELECT (SELECT count(*) FROM distribution) - "
+        "(SELECT count(*) FROM set_aside WHERE kind = 4)");
+  count(schema, "schema", "SELECT user_version FROM pragma_user_version");
+  count(status.bytes, "pages",
+        "SELECT (SELECT page_count FROM pragma_page_count) *"
+        " (SELECT page_size FROM pragma_page_size)");
+  status.schema_version = static_cast<std::uint32_t>(schema);
+  for (const AsideCount& aside : count_aside(database))
+    // Distributions are fitted again; what lost its attempt is in use.
+    if (aside.kind != AsideKind::Distribution && aside.kind != AsideKind::Orphan)
+      status.message += std::to_string(aside.rows) + " damaged " +
+                        std::string(name_of(aside.kind, aside.rows)) + " set aside; ";
 }
 
 }  // namespace kinship::store

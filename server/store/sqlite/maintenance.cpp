@@ -12,6 +12,7 @@
 #include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/online_backup.hpp"
 #include "server/store/sqlite/restoration.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
@@ -115,22 +116,39 @@ Restored restore_store(const fs::path& backup, const fs::path& file, const Progr
   });
 }
 
+Repaired repair_store(const fs::path& file, const Progress& progress) {
+  return naming(file, [&] {
+    if (!fs::exists(file))
+      static_cast<void>(locate_present(file));  // which says so
+    // The lock first: beside one a damaged header is not judged.
+    const fs::path located = fs::weakly_canonical(fs::absolute(file));
+    const LockFile lock(located);
+    static_cast<void>(locate_present(file));
+    // The old store is its own backup here: what is read of it takes its place.
+    Restoration restoration(located, located);
+    Repaired repaired = restoration.repair(progress);
+    repaired.restored = restoration.replace();
+    return repaired;
+  });
+}
+
 Migrated migrate_store(const fs::path& file) {
   return naming(file, [&] {
     const fs::path located = locate_present(file);
     const LockFile lock(located);
     Migrated migrated;
     make_wal_durable(located);
-    Database database(located, Access::ReadWrite);
-    database.execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-    const std::int64_t from = known_schema(database, located, embedded_migrations());
+    const std::int64_t from = [&] {
+      Database database(located, Access::ReadWrite);
+      return known_schema(database, located, embedded_migrations());
+    }();
     if (from == 0)
       throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
     migrated.from = static_cast<std::uint32_t>(from);
     migrated.to = static_cast<std::uint32_t>(embedded_migrations().size());
     if (migrated.from < migrated.to)
       migrated.backup = backup_of_version(located, from);
-    migrate(database, located, embedded_migrations());
+    open_migrated(located, embedded_migrations());
     return migrated;
   });
 }

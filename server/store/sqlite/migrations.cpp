@@ -5,8 +5,10 @@
 #include <string>
 
 #include "proto/types/sha256.hpp"
+#include "server/store/sqlite/checked_vfs.hpp"
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/new_file.hpp"
+#include "server/store/sqlite/online_backup.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -15,6 +17,7 @@ namespace kinship::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
+constexpr std::int64_t kFirstSealed = 4;             // schema of which all pages bear checksums
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
   throw Failure(ErrorCode::Storage, "store '" + file.string() + "': " + why);
@@ -68,19 +71,10 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
                      std::to_string(expected));
 }
 
-/// Under its final name there is never half a backup.
-void back_up(Database& database, const std::filesystem::path& file, std::int64_t version) {
-  const std::filesystem::path backup = backup_of_version(file, version);
-  const std::filesystem::path partial = backup.string() + ".partial";
-  std::filesystem::remove(partial);
-  make_for_owner(partial);  // VACUUM takes an empty file and keeps its mode
-  Statement(database.connection(), "VACUUM INTO ?").bind(1, partial.string()).run();
-  sync_file(partial);
-  std::filesystem::rename(partial, backup);
-  sync_directory_of(backup);
-}
-
+/// Without foreign keys while it lasts, which a table that is written anew would trip over: each
+/// migration leaves them as they were, which `kinshipd check` compares.
 void apply(Database& database, const Migration& migration) {
+  database.execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(database, Transaction::Kind::Write);
   database.execute(std::string(migration.text));
   const Digest digest = text_digest(migration);
@@ -90,6 +84,7 @@ void apply(Database& database, const Migration& migration) {
       .run();
   database.execute("PRAGMA user_version = " + std::to_string(migration.version));
   transaction.commit();
+  database.execute("PRAGMA foreign_keys = ON");
 }
 
 }  // namespace
@@ -99,6 +94,8 @@ std::int64_t known_schema(Database& database, const std::filesystem::path& file,
   const std::int64_t version = checked_version(database, file, migrations);
   if (version > 0)
     check_history(database, file, version, migrations);
+  if (version >= kFirstSealed && !is_sealed(database.connection()))
+    refuse(file, "says in its header that its pages bear no checksums: the header is damaged");
   return version;
 }
 
@@ -113,12 +110,16 @@ std::filesystem::path backup_of_version(const std::filesystem::path& file, std::
   return file.string() + ".backup-" + std::to_string(version);
 }
 
-void migrate(Database& database, const std::filesystem::path& file,
-             std::span<const Migration> migrations) {
-  const std::int64_t version = known_schema(database, file, migrations);
-  if (version > 0 && version < std::ssize(migrations))
-    back_up(database, file, version);
-  apply_missing(database, file, migrations);
+void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version) {
+  const std::filesystem::path backup = backup_of_version(file, version);
+  const std::filesystem::path partial = backup.string() + ".partial";
+  for (const std::string companion : {"", "-wal", "-shm", "-journal"})
+    std::filesystem::remove(partial.string() + companion);
+  make_for_owner(partial);
+  copy_database(database, partial, [](double) {});
+  sync_file(partial);
+  std::filesystem::rename(partial, backup);
+  sync_directory_of(backup);
 }
 
 void check_schema(Database& database, const std::filesystem::path& file,

@@ -31,16 +31,13 @@ std::int64_t known_schema(Database& database, const std::filesystem::path& file,
 void apply_missing(Database& database, const std::filesystem::path& file,
                    std::span<const Migration> migrations);
 
-/// Where migrate() copies a database of this version to.
+/// Where a database of this version is copied to before it is migrated.
 std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version);
 
-/// Brings a database to the newest of `migrations`, like apply_missing(). A database that holds
-/// something is first copied to FILE.backup-<its version>.
-/// \throws Failure(Storage) as known_schema() does; nothing is changed then.
-void migrate(Database& database, const std::filesystem::path& file,
-             std::span<const Migration> migrations);
+/// Copies a database to there. Under that name there is never half a copy.
+void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version);
 
-/// The checks of migrate() without any change: ours, at the newest version, same texts.
+/// That nothing is to be changed: ours, at the newest version, same texts.
 /// \throws Failure(Storage) if not.
 void check_schema(Database& database, const std::filesystem::path& file,
                   std::span<const Migration> migrations);

@@ -5,6 +5,8 @@
 
 #include "server/store/crc32c.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
@@ -39,13 +41,21 @@ struct PathContent {
   }
 };
 
+PathContent content_of(const Statement& row) {
+  return {row.column_blob(PathColumn::kReportUuid),  row.column_blob(PathColumn::kPlacement),
+          row.column_integer(PathColumn::kDof),      row.column_integer(PathColumn::kWaypointCount),
+          row.column_integer(PathColumn::kEncoding), row.column_blob(PathColumn::kWaypoints)};
+}
+
+/// \param row  of kPathContentColumns.
+bool has_right_crc(const Statement& row) {
+  return content_of(row).crc() == row.column_integer(PathColumn::kCrc);
+}
+
 /// A path without the time it was received and its scene, or nothing if it is damaged.
 /// \param row  of kPathContentColumns, or of kPathColumns.
 std::optional<StoredPath> read_path_content(const Statement& row) {
-  const PathContent content{
-      row.column_blob(PathColumn::kReportUuid),  row.column_blob(PathColumn::kPlacement),
-      row.column_integer(PathColumn::kDof),      row.column_integer(PathColumn::kWaypointCount),
-      row.column_integer(PathColumn::kEncoding), row.column_blob(PathColumn::kWaypoints)};
+  const PathContent content = content_of(row);
   if (content.crc() != row.column_integer(PathColumn::kCrc))
     return std::nullopt;
   std::optional<Path> path =
@@ -75,37 +85,176 @@ void take_row(const Statement& row, PathsRead& read) {
   read.paths.push_back(std::move(*path));
 }
 
-/// \return its robot and task, or nothing if it was in no fit any more.
-std::optional<ExperienceKey> mark_damaged(Database& database, std::int64_t id) {
-  ExperienceKey key;
-  bool in_use = false;
-  {
-    const auto query = database.cached(
-        "SELECT task_id, robot_id, retired_ms IS NULL FROM path WHERE id = ? AND damaged = 0");
-    if (!query->bind(1, id).step())
-      return std::nullopt;
-    key = {query->column_integer(0), query->column_integer(1)};
-    in_use = query->column_integer(2) != 0;
+constexpr std::int64_t kFirstWithAside = 4;  // schema
+
+constexpr std::string_view kNotAside =
+    " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
+
+/// Runs what reads one row. \return false if the row cannot be read.
+template <typename Read>
+bool can_read(Read read) {
+  try {
+    return read();
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return false;
   }
-  database.cached("UPDATE path SET damaged = 1 WHERE id = ?")->bind(1, id).run();
-  if (!in_use)
-    return std::nullopt;
+}
+
+/// \return whether the path is there and its checksum is right.
+bool is_readable(Database& database, std::int64_t id) {
+  return can_read([&] {
+    const auto query = database.cached(std::string(kPathContentColumns) + "FROM path WHERE id = ?");
+    return query->bind(1, id).step() && has_right_crc(*query);
+  });
+}
+
+bool index_has(Database& database, std::string_view sql, const ExperienceKey& key,
+               std::int64_t id) {
+  const auto query = database.cached(sql);
+  return query->bind_all(key.task_id, key.robot_id, id).step();
+}
+
+bool is_in_use(Database& database, const ExperienceKey& key, std::int64_t id) {
+  return index_has(database,
+                   "SELECT 1 FROM path INDEXED BY path_by_task_robot "
+                   "WHERE task_id = ? AND robot_id = ? AND id = ? AND retired_ms IS NULL",
+                   key, id);
+}
+
+/// The robot and task of a path whose row may not be readable, as long as it is not retired.
+std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
+  for (const ExperienceKey& key : select_experience(database, {}, ""))
+    if (is_in_use(database, key, id))
+      return key;
+  return std::nullopt;
+}
+
+/// Takes a path that is in use out of it.
+void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id,
+                    std::optional<std::int64_t> replaced_by) {
+  Database& database = batch.database();
+  const bool was_aside = find_aside(database, AsideKind::Path, id).has_value();
+  put_aside(database, AsideKind::Path, id, replaced_by);
+  if (was_aside)
+    return;
   uncount_paths(database, key, 1);
-  return key;
+  batch.paths_changed(key.task_id, key.robot_id);
+}
+
+/// Reads the row of one path.
+void take_path(Database& database, std::int64_t id, PathsRead& read) {
+  if (!can_read([&] {
+        const auto query = database.cached(std::string(kPathColumns) + "WHERE id = ?");
+        if (query->bind(1, id).step())
+          take_row(*query, read);
+        return true;
+      }))
+    read.damaged.push_back(id);
+}
+
+/// The ids of paths in use, and those retired, as the indexes have them.
+constexpr std::string_view kIdsOfIndexes =
+    "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE retired_ms IS NULL "
+    "UNION ALL SELECT id FROM path INDEXED BY path_retired WHERE retired_ms IS NOT NULL) AS path ";
+
+std::vector<std::int64_t> newest_paths(Database& database, std::int64_t count) {
+  std::vector<std::int64_t> ids;
+  const auto collect = [&](const std::string& sql) {
+    ids.clear();
+    const auto query = database.cached(sql + " ORDER BY id DESC LIMIT ?");
+    query->bind(1, count);
+    while (query->step())
+      ids.push_back(query->column_integer(0));
+    return true;
+  };
+  const std::string others(kNotAside);
+  if (!can_read([&] { return collect("SELECT id FROM path WHERE TRUE" + others); }))
+    collect(std::string(kIdsOfIndexes) + "WHERE TRUE" + others);
+  return ids;
+}
+
+PathsChecked check_one_by_one(Database& database, std::int64_t after_id, std::int64_t limit) {
+  const auto query = database.cached(std::string(kIdsOfIndexes) + "WHERE id > ?" +
+                                     std::string(kNotAside) + "ORDER BY id LIMIT ?");
+  query->bind_all(after_id, limit);
+  PathsChecked checked;
+  while (query->step()) {
+    checked.last_id = query->column_integer(0);
+    ++checked.paths;
+    if (!is_readable(database, checked.last_id))
+      checked.damaged.push_back(checked.last_id);
+  }
+  return checked;
+}
+
+/// One by one, where a page that holds several cannot be read.
+PathsRead select_readable(Database& database, const ExperienceKey& key, const PathRange& range) {
+  const auto ids = database.cached(
+      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ? "
+      "AND id > ? AND received_ms >= ? AND retired_ms IS NULL" +
+      std::string(kNotAside) + "ORDER BY id");
+  ids->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
+  PathsRead read;
+  while (read.paths.size() < range.limit && ids->step())
+    take_path(database, ids->column_integer(0), read);
+  return read;
 }
 
 }  // namespace
 
-std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& key,
-                                      const Digest& content) {
-  const auto query = database.cached(
-      "SELECT id FROM path "
-      "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND damaged = 0 "
-      "AND retired_ms IS NULL");
-  query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
-  if (!query->step())
-    return std::nullopt;
-  return query->column_integer(0);
+SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content) {
+  std::vector<std::int64_t> ids;
+  {
+    const auto query = database.cached(
+        "SELECT id FROM path INDEXED BY path_by_content "
+        "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND retired_ms IS NULL");
+    query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
+    while (query->step())
+      ids.push_back(query->column_integer(0));
+  }
+  SameContent same;
+  for (const std::int64_t id : ids) {
+    const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
+    if (!aside && is_readable(database, id))
+      same.readable = id;
+    else if (!aside || (!aside->replaced_by && !aside->retired))
+      same.damaged.push_back(id);
+  }
+  return same;
+}
+
+bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id) {
+  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Path, id);
+  if (row && is_readable(database, *row))
+    return true;
+  const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
+  return (aside && aside->retired) || is_retired(database, key, row.value_or(id));
+}
+
+bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id) {
+  return index_has(database,
+                   "SELECT 1 FROM path INDEXED BY path_retired "
+                   "WHERE task_id = ? AND robot_id = ? AND id = ? AND retired_ms IS NOT NULL",
+                   key, id);
+}
+
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid) {
+  const auto ids = database.cached(
+      "SELECT id FROM path INDEXED BY path_retired "
+      "WHERE task_id = ? AND robot_id = ? AND retired_ms IS NOT NULL");
+  ids->bind_all(key.task_id, key.robot_id);
+  while (ids->step()) {
+    const std::int64_t id = ids->column_integer(0);
+    if (can_read([&] {
+          const auto row = database.cached("SELECT report_uuid FROM path WHERE id = ?");
+          return row->bind(1, id).step() && id_of<Uuid>(row->column_blob(0)) == report_uuid;
+        }))
+      return id;
+  }
+  return std::nullopt;
 }
 
 std::int64_t insert_path(Database& database, const ExperienceKey& key,
@@ -132,54 +281,80 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
 }
 
 PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
-  const auto query =
-      database.cached(std::string(kPathColumns) +
-                      "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
-                      "AND damaged = 0 AND retired_ms IS NULL ORDER BY id");
-  query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
   PathsRead read;
-  while (read.paths.size() < range.limit && query->step())
-    take_row(*query, read);
-  return read;
+  const bool whole = can_read([&] {
+    const auto query =
+        database.cached(std::string(kPathColumns) +
+                        "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
+                        "AND retired_ms IS NULL" +
+                        std::string(kNotAside) + "ORDER BY id");
+    query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
+    while (read.paths.size() < range.limit && query->step())
+      take_row(*query, read);
+    return true;
+  });
+  return whole ? std::move(read) : select_readable(database, key, range);
 }
 
 PathsRead select_path(Database& database, std::int64_t id) {
-  const auto query = database.cached(std::string(kPathColumns) + "WHERE id = ? AND damaged = 0");
-  query->bind(1, id);
   PathsRead read;
-  if (query->step())
-    take_row(*query, read);
+  if (const auto row = row_in_use(database, AsideKind::Path, id))
+    take_path(database, *row, read);
   return read;
 }
 
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
-  for (const std::int64_t path : paths)
-    if (const auto key = mark_damaged(batch.database(), path))
-      batch.paths_changed(key->task_id, key->robot_id);
+  Database& database = batch.database();
+  for (const std::int64_t path : paths) {
+    if (find_aside(database, AsideKind::Path, path))
+      continue;
+    if (const auto key = key_in_use(database, path))
+      put_path_aside(batch, *key, path, std::nullopt);
+    else
+      put_aside(database, AsideKind::Path, path);
+  }
 }
 
-PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit) {
-  const auto query = database.cached(std::string(kPathContentColumns) +
-                                     "FROM path WHERE id > ? AND damaged = 0 ORDER BY id LIMIT ?");
-  query->bind_all(after_id, limit);
+void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by) {
+  put_path_aside(batch, key, damaged, by);
+}
+
+void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id) {
+  if (is_in_use(batch.database(), key, id))
+    put_path_aside(batch, key, id, std::nullopt);
+  retire_aside(batch.database(), id);
+}
+
+PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
+                         std::int64_t limit) {
+  const std::string others =
+      schema < kFirstWithAside ? " AND damaged = 0 " : std::string(kNotAside);
   PathsChecked checked;
-  while (query->step()) {
-    checked.last_id = query->column_integer(PathColumn::kId);
-    ++checked.paths;
-    if (!read_path_content(*query))
-      checked.damaged.push_back(checked.last_id);
-  }
-  return checked;
+  if (can_read([&] {
+        const auto query =
+            database.cached(std::string(kPathContentColumns) + "FROM path WHERE id > ?" + others +
+                            "ORDER BY id LIMIT ?");
+        query->bind_all(after_id, limit);
+        while (query->step()) {
+          checked.last_id = query->column_integer(PathColumn::kId);
+          ++checked.paths;
+          if (!read_path_content(*query))
+            checked.damaged.push_back(checked.last_id);
+        }
+        return true;
+      }))
+    return checked;
+  if (schema < kFirstWithAside)
+    throw Failure(ErrorCode::Storage,
+                  "its paths cannot be read one by one in schema " + std::to_string(schema));
+  return check_one_by_one(database, after_id, limit);
 }
 
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {
-  const auto query =
-      database.cached(std::string(kPathColumns) + "WHERE damaged = 0 ORDER BY id DESC LIMIT ?");
-  query->bind(1, count);
   std::vector<std::int64_t> damaged;
-  while (query->step())
-    if (!read_path_content(*query))
-      damaged.push_back(query->column_integer(PathColumn::kId));
+  for (const std::int64_t id : newest_paths(database, count))
+    if (!is_readable(database, id))
+      damaged.push_back(id);
   return damaged;
 }
 

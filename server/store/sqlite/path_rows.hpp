@@ -13,9 +13,16 @@
 
 namespace kinship::store {
 
-/// The path in use (neither damaged nor retired) of this content, if it is there.
-std::optional<std::int64_t> find_path(Database& database, const ExperienceKey& key,
-                                      const Digest& content);
+/// The paths of one content that are in use (not retired).
+struct SameContent {
+  std::optional<std::int64_t> readable;
+  std::vector<std::int64_t> damaged;  ///< that nothing replaced yet
+};
+/// Reads what it finds, and looks at its checksum.
+SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content);
+
+/// Whether a path, or what replaced it, can be read, or was retired, so that nobody wants it.
+bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id);
 
 /// What a path is written with beside what its attempt says.
 struct PathArrival {
@@ -34,15 +41,27 @@ struct PathsRead {
 };
 
 /// The paths in use of a robot and task in the order of ids; damaged ones do not count towards the
-/// limit.
+/// limit. Where a page is damaged the paths are read one by one, by the ids of the index.
 PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range);
 
-/// The path with this id, also a retired one: none if it was set aside before.
+/// The path with this id, or what replaced it, also a retired one: none if it is set aside.
 PathsRead select_path(Database& database, std::int64_t id);
 
+/// From an index: whether a path is retired, its row need not be readable.
+bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id);
+
+/// The retired path that a report brought, looked for among all of its robot and task.
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid);
+
 /// Sets paths aside: out of the counts and of every reading, and the generation is raised. One that
-/// is aside already stays so; one that is retired was out of the counts before.
+/// is aside already stays so; one that is retired was out of the counts before. Their rows are not
+/// touched, they may lie on a damaged page.
 void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
+/// One of a known robot and task, in use until now, for which a report brought another row.
+void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by);
+/// Sets one aside as retired: it could not be written.
+void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 
 /// A part of a full check.
 struct PathsChecked {
@@ -52,8 +71,9 @@ struct PathsChecked {
 };
 
 /// Decodes the next paths with id > after_id, at most `limit`, retired ones too; those set aside
-/// are left out.
-PathsChecked check_paths(Database& database, std::int64_t after_id, std::int64_t limit);
+/// are left out. Of a database of this schema, also an older one.
+PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
+                         std::int64_t limit);
 
 /// Those of the newest `count` paths of all that are damaged and not set aside yet.
 std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);

@@ -9,25 +9,45 @@
 namespace kinship::store {
 namespace {
 
-Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared) {
+std::string in_words(const Uuid& report_uuid, const std::string& what) {
+  return "report " + report_uuid.text() + " cannot be stored, the store is damaged there: " + what +
+         "; 'kinship status' tells what to do";
+}
+
+Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedReports& damaged) {
+  const Uuid& uuid = prepared.attempt.report_uuid;
+  if (const std::optional<std::string> why = damaged.find(uuid))
+    return {uuid, ReceiptStatus::TryAgain, *why};  // in a second try of its batch
   Savepoint savepoint(batch.database());
   try {
     Receipt receipt = insert_attempt(batch, prepared);
     savepoint.keep();
     return receipt;
   } catch (const SqliteError& error) {
+    if (error.is_damage()) {
+      const std::string why = in_words(uuid, error.what());
+      damaged.note(uuid, why);
+      if (error.spares_transaction())
+        return {uuid, ReceiptStatus::TryAgain, why};
+    }
     if (!error.concerns_one_row())
       throw;
-    return {prepared.attempt.report_uuid, ReceiptStatus::Refused, error.what()};
+    return {uuid, ReceiptStatus::Refused, error.what()};
   }
 }
 
 }  // namespace
 
-ReportItem::ReportItem(History& history, std::vector<Attempt> attempts, Store::ReportsDone done)
-    : history_(history), done_(std::move(done)) {
+ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
+                       Store::ReportsDone done)
+    : history_(history), damaged_(damaged), done_(std::move(done)) {
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
+    if (const std::optional<std::string> why = damaged.find(uuid)) {
+      prepared_.emplace_back(std::nullopt);
+      receipts_.push_back({uuid, ReceiptStatus::TryAgain, *why});
+      continue;
+    }
     Result<PreparedAttempt> prepared = prepare(std::move(attempt));
     if (prepared) {
       bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
@@ -41,10 +61,11 @@ ReportItem::ReportItem(History& history, std::vector<Attempt> attempts, Store::R
   }
 }
 
-std::unique_ptr<ReportItem> ReportItem::declined(History& history,
+std::unique_ptr<ReportItem> ReportItem::declined(History& history, DamagedReports& damaged,
                                                  const std::vector<Attempt>& attempts,
                                                  Store::ReportsDone done, const std::string& why) {
-  auto item = std::make_unique<ReportItem>(history, std::vector<Attempt>(), std::move(done));
+  auto item =
+      std::make_unique<ReportItem>(history, damaged, std::vector<Attempt>(), std::move(done));
   for (const Attempt& attempt : attempts) {
     item->prepared_.emplace_back(std::nullopt);
     item->receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, why});
@@ -55,7 +76,7 @@ std::unique_ptr<ReportItem> ReportItem::declined(History& history,
 void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
     if (prepared_[i])
-      receipts_[i] = insert_alone(batch, *prepared_[i]);
+      receipts_[i] = insert_alone(batch, *prepared_[i], damaged_);
   history_.write_run(batch.database());
   position_ = position_of(batch.database());
 }

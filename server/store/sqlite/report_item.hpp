@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/history.hpp"
 #include "server/store/sqlite/prepared_attempt.hpp"
 #include "server/store/sqlite/writer.hpp"
@@ -16,11 +17,13 @@ namespace kinship::store {
 class ReportItem : public WriteItem {
  public:
   /// Encodes and hashes on the caller's thread, which spares the writer's.
-  /// \param history  told how far the item brought it, before `done` is called; outlives the item.
-  ReportItem(History& history, std::vector<Attempt> attempts, Store::ReportsDone done);
+  /// \param history  told how far the item brought it, before `done` is called.
+  /// \param damaged  where reports that damage keeps out are remembered. Both outlive the item.
+  ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
+             Store::ReportsDone done);
 
   /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
-  static std::unique_ptr<ReportItem> declined(History& history,
+  static std::unique_ptr<ReportItem> declined(History& history, DamagedReports& damaged,
                                               const std::vector<Attempt>& attempts,
                                               Store::ReportsDone done, const std::string& why);
 
@@ -31,6 +34,7 @@ class ReportItem : public WriteItem {
 
  private:
   History& history_;
+  DamagedReports& damaged_;
   std::uint64_t position_ = 0;
   std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: answered already
   std::vector<Receipt> receipts_;

@@ -17,9 +17,11 @@
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/sqlite/new_file.hpp"
 #include "server/store/sqlite/online_backup.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_check.hpp"
 #include "server/store/sqlite/store_file.hpp"
+#include "server/store/sqlite/store_repair.hpp"
 #include "server/store/sqlite/transaction.hpp"
 #include "server/store/sqlite/wal_file.hpp"
 
@@ -29,6 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void remove_with_companions(const fs::path& file) {
+  unlink((file.string() + ".sealing").c_str());
   for (const char* const companion : kCompanions)
     unlink((file.string() + companion).c_str());
   unlink(file.c_str());
@@ -85,9 +88,9 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
       copy_database(*source, copy_, [&](double done) { progress(kCopyShare * done); });
     }
     {
-      Database database(copy_, Access::ReadWrite);
-      database.execute("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL");
-      apply_missing(database, copy_, embedded_migrations());
+      const std::unique_ptr<Database> opened =
+          open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+      Database& database = *opened;
       epoch_ = write_new_epoch(database, copy_);
       const StoreCheck check = check_database(
           database, backup_, [&](double done) { progress(kCopyShare + (1 - kCopyShare) * done); });
@@ -100,6 +103,29 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
   } catch (const SqliteError& error) {
     throw Failure(ErrorCode::Storage, named + error.what());
   }
+}
+
+Repaired Restoration::repair(const std::function<void(double)>& progress) {
+  constexpr double kSalvageShare = 0.6;
+  make_for_owner(copy_);
+  fold_old();
+  Repaired repaired;
+  {
+    Database source(file_, Access::ReadOnly);
+    const std::unique_ptr<Database> target =
+        open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+    // Half a copy is of no use to anybody, and it is synced when it is whole.
+    target->execute("PRAGMA synchronous = OFF");
+    Salvaged salvaged =
+        salvage(source, *target, [&](double done) { progress(kSalvageShare * done); });
+    repaired.damaged_pages = salvaged.damaged_pages;
+    repaired.lost = std::move(salvaged.lost);
+    epoch_ = write_new_epoch(*target, copy_);
+    repaired.check = check_database(
+        *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
+  }
+  sync_file(copy_);
+  return repaired;
 }
 
 Restored Restoration::replace() {
@@ -125,10 +151,13 @@ Restored Restoration::replace() {
 void Restoration::fold_old() {
   make_wal_durable(file_);
   try {
-    Database(file_, Access::ReadWrite).execute("PRAGMA journal_mode = DELETE");
+    Database database(file_, Access::ReadWrite);
+    sqlite3_exec(&database.connection(), "PRAGMA schema_version", nullptr, nullptr, nullptr);
+    sqlite3_wal_checkpoint_v2(&database.connection(), "main", SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                              nullptr);  // also if the schema cannot be read
+    database.execute("PRAGMA journal_mode = DELETE");
   } catch (const SqliteError& error) {
-    const int code = error.sqlite_code() & 0xFF;
-    if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB)
+    if (!error.is_damage())
       throw;
   }
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/store/maintenance.hpp"
+#include "server/store/sqlite/database.hpp"
 
 namespace kinship::store {
 
@@ -23,6 +24,10 @@ class Restoration {
   /// Copies, migrates and checks the backup.
   /// \throws Failure(Storage) if it has a problem; nothing is left then.
   void prepare(const std::function<void(double)>& progress);
+
+  /// Writes the store itself anew, from what can be read of it.
+  /// \return with what was lost; nothing is replaced yet.
+  Repaired repair(const std::function<void(double)>& progress);
 
   Restored replace();
 

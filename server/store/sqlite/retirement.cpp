@@ -1,11 +1,18 @@
 #include "server/store/sqlite/retirement.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <vector>
 
+#include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/clock.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
+#include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/transaction.hpp"
 
 namespace kinship::store {
 namespace {
@@ -16,16 +23,33 @@ struct PathRow {
   std::int64_t id = 0;
   ExperienceKey key;
   Digest robot;
-  bool damaged = false;
 };
+
+/// \return false if the row cannot be read, so that it cannot be written either.
+bool mark_retired(Database& database, std::int64_t id) {
+  try {
+    Savepoint savepoint(database);
+    database.cached("UPDATE path SET retired_ms = ? WHERE id = ?")->bind_all(now_ms(), id).run();
+    savepoint.keep();
+    return true;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return false;
+  }
+}
 
 /// A damaged path was in fits before it was found damaged: it is retired as any other, but was
 /// taken out of the count already.
 void retire(Batch& batch, const PathRow& path, Retirement& retired) {
   Database& database = batch.database();
-  database.cached("UPDATE path SET retired_ms = ? WHERE id = ?")->bind_all(now_ms(), path.id).run();
-  if (!path.damaged)
+  const bool aside = find_aside(database, AsideKind::Path, path.id).has_value();
+  if (aside)
+    retire_aside(database, path.id);
+  else if (mark_retired(database, path.id))
     uncount_paths(database, path.key, 1);
+  else
+    retire_damaged(batch, path.key, path.id);
   batch.paths_retired(path.key.task_id, path.key.robot_id);
   ++retired.paths;
   const auto place = std::ranges::lower_bound(retired.robots, path.robot);
@@ -33,24 +57,32 @@ void retire(Batch& batch, const PathRow& path, Retirement& retired) {
     retired.robots.insert(place, path.robot);
 }
 
-constexpr std::string_view kRetiredColumns =
-    "SELECT path.id, path.task_id, path.robot_id, robot.digest, path.damaged FROM path ";
-
-PathRow read_retired(const Statement& row) {
-  return {row.column_integer(0),
-          {row.column_integer(1), row.column_integer(2)},
-          id_of<Digest>(row.column_blob(3)),
-          row.column_integer(4) != 0};
+Digest digest_of_robot(Database& database, std::int64_t robot_id) {
+  const auto query = database.cached("SELECT digest FROM robot WHERE id = ?");
+  return query->bind(1, robot_id).step() ? id_of<Digest>(query->column_blob(0)) : Digest();
 }
 
-/// \param condition  an index serves it; parameters ?1 task, ?2 last path, ?3 rows.
-std::vector<PathRow> select_rows(Database& database, const TaskReset& reset,
-                                 const std::string& condition, std::int64_t limit) {
-  const auto query = database.cached(std::string(kRetiredColumns) + condition);
-  query->bind_all(reset.task_id, reset.last_path_id, limit);
+/// The next paths of a task that are not retired, from indexes alone.
+std::vector<PathRow> select_rows(Database& database, const TaskReset& reset) {
   std::vector<PathRow> rows;
-  while (query->step())
-    rows.push_back(read_retired(*query));
+  {
+    const auto query = database.cached(
+        "SELECT id, task_id, robot_id FROM path INDEXED BY path_by_task_robot "
+        "WHERE task_id = ?1 AND id <= ?2 AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM "
+        "set_aside WHERE kind = 1 AND set_aside.id = path.id AND set_aside.retired_ms IS NOT NULL) "
+        "LIMIT ?3");
+    query->bind_all(reset.task_id, reset.last_path_id, kPathsOfAStep);
+    while (query->step())
+      rows.push_back(
+          {query->column_integer(0), {query->column_integer(1), query->column_integer(2)}, {}});
+  }
+  std::map<std::int64_t, Digest> robots;
+  for (PathRow& row : rows) {
+    const auto [robot, is_new] = robots.try_emplace(row.key.robot_id);
+    if (is_new)
+      robot->second = digest_of_robot(database, row.key.robot_id);
+    row.robot = robot->second;
+  }
   return rows;
 }
 
@@ -58,31 +90,24 @@ std::vector<PathRow> select_rows(Database& database, const TaskReset& reset,
 
 Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
   Database& database = batch.database();
-  Retirement retired;
-  std::optional<std::int64_t> path_id;
-  {
-    const auto query = database.cached(
-        "SELECT task.name, attempt.path_id FROM attempt JOIN task ON task.id = attempt.task_id "
-        "WHERE attempt.report_uuid = ?");
-    if (!query->bind(1, Bytes(report_uuid.bytes)).step())
-      return Error{ErrorCode::NotFound, "path " + report_uuid.text() + ": no such report"};
-    retired.task = query->column_text(0);
-    if (!query->column_is_null(1))
-      path_id = query->column_integer(1);
-  }
-  if (!path_id)
+  const ReportRows report = find_report(database, report_uuid);
+  if (!report.row && report.damaged.empty())
+    return Error{ErrorCode::NotFound, "path " + report_uuid.text() + ": no such report"};
+  if (!report.row)
+    return Error{ErrorCode::Storage, "path " + report_uuid.text() + ": its attempt is damaged"};
+  AttemptRow attempt = select_attempt(database, *report.row);
+  name_robot_and_task(database, attempt);
+  if (!attempt.path_id)
     return Error{ErrorCode::InvalidInput,
                  "path " + report_uuid.text() + ": this report brought no path"};
-  std::optional<PathRow> path;
-  {
-    const auto query = database.cached(std::string(kRetiredColumns) +
-                                       "JOIN robot ON robot.id = path.robot_id "
-                                       "WHERE path.id = ? AND retired_ms IS NULL");
-    if (query->bind(1, *path_id).step())
-      path = read_retired(*query);
-  }
-  if (path)
-    retire(batch, *path, retired);
+  Retirement retired;
+  retired.task = attempt.attempt.task;
+  const ExperienceKey key{attempt.task_id, attempt.robot_id};
+  const std::int64_t id =
+      row_in_use(database, AsideKind::Path, *attempt.path_id).value_or(*attempt.path_id);
+  const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
+  if (!(aside && aside->retired) && !is_retired(database, key, id))
+    retire(batch, {id, key, attempt.attempt.robot}, retired);
   return retired;
 }
 
@@ -95,18 +120,7 @@ Result<TaskReset> begin_reset(Database& database, std::string_view task) {
 }
 
 bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired) {
-  Database& database = batch.database();
-  std::vector<PathRow> paths = select_rows(
-      database, reset,
-      "INDEXED BY path_by_task_robot CROSS JOIN robot ON robot.id = path.robot_id "
-      "WHERE path.task_id = ?1 AND path.id <= ?2 AND damaged = 0 AND retired_ms IS NULL LIMIT ?3",
-      kPathsOfAStep);
-  if (paths.empty())
-    paths = select_rows(database, reset,
-                        "INDEXED BY path_damaged CROSS JOIN robot ON robot.id = path.robot_id "
-                        "WHERE path.task_id = ?1 AND path.id <= ?2 AND damaged = 1 "
-                        "AND retired_ms IS NULL LIMIT ?3",
-                        kPathsOfAStep);
+  const std::vector<PathRow> paths = select_rows(batch.database(), reset);
   for (const PathRow& path : paths)
     retire(batch, path, retired);
   return !paths.empty();

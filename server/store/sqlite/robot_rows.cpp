@@ -5,6 +5,7 @@
 
 #include "server/store/crc32c.hpp"
 #include "server/store/sqlite/row_values.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 
 namespace kinship::store {
 namespace {
@@ -89,15 +90,37 @@ std::optional<RobotRecord> read_robot(Database& database, const Statement& row) 
   return robot;
 }
 
+/// Nothing, also if the row lies on a damaged page.
+std::optional<RobotRecord> read_robot_of(Database& database, std::int64_t id) {
+  try {
+    const auto query = database.cached(std::string(kRobotColumns) + "WHERE id = ?");
+    if (!query->bind(1, id).step())
+      return std::nullopt;
+    return read_robot(database, *query);
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return std::nullopt;
+  }
+}
+
+/// From the index.
+std::optional<std::int64_t> id_of_robot(Database& database, const Digest& digest) {
+  const auto query = database.cached("SELECT id FROM robot WHERE digest = ?");
+  if (!query->bind(1, Bytes(digest.bytes)).step())
+    return std::nullopt;
+  return query->column_integer(0);
+}
+
 bool has_undamaged(Database& database, const Digest& digest) {
-  const auto query = database.cached(std::string(kRobotColumns) + "WHERE digest = ?");
-  return query->bind(1, Bytes(digest.bytes)).step() && read_robot(database, *query);
+  const std::optional<std::int64_t> id = id_of_robot(database, digest);
+  return id && read_robot_of(database, *id);
 }
 
 bool another_has_label(Database& database, const RobotRecord& robot) {
-  const auto query = database.cached("SELECT 1 FROM robot WHERE label = ? AND digest <> ?");
-  query->bind_all(std::string_view(robot.description.label), Bytes(robot.digest.bytes));
-  return query->step();
+  const auto query = database.cached("SELECT id FROM robot WHERE label = ?");
+  query->bind(1, std::string_view(robot.description.label));
+  return query->step() && query->column_integer(0) != id_of_robot(database, robot.digest);
 }
 
 /// \return the id of the row, the old one if the digest is there.
@@ -147,23 +170,24 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
 }
 
 std::optional<RobotRecord> select_robot(Database& database, const Digest& robot) {
-  const auto query = database.cached(std::string(kRobotColumns) + "WHERE digest = ?");
-  if (!query->bind(1, Bytes(robot.bytes)).step())
+  const std::optional<std::int64_t> id = id_of_robot(database, robot);
+  if (!id)
     return std::nullopt;
-  std::optional<RobotRecord> record = read_robot(database, *query);
+  std::optional<RobotRecord> record = read_robot_of(database, *id);
   if (!record)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged");
   return record;
 }
 
 RobotsRead select_robots(Database& database) {
-  const auto query = database.cached(std::string(kRobotColumns) + "ORDER BY label");
+  // Both are in the index of labels.
+  const auto query = database.cached("SELECT id, label FROM robot ORDER BY label");
   RobotsRead read;
   while (query->step()) {
-    if (std::optional<RobotRecord> robot = read_robot(database, *query))
+    if (std::optional<RobotRecord> robot = read_robot_of(database, query->column_integer(0)))
       read.robots.push_back(std::move(*robot));
     else
-      read.damaged.emplace_back(query->column_text(2));
+      read.damaged.emplace_back(query->column_text(1));
   }
   return read;
 }

@@ -10,7 +10,8 @@
 /// Scenes, one row for each content.
 namespace kinship::store {
 
-/// The row of a scene's content, which is made if it is missing and written anew if it is damaged.
+/// The row of a scene's content, which is made if it is missing or damaged; from then on the new
+/// row stands for the damaged one.
 std::int64_t ensure_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms);
 
 /// A scene as read: nothing if it is damaged, was set aside before, or is not there.
@@ -20,8 +21,8 @@ struct SceneRead {
 };
 SceneRead select_scene(Database& database, std::int64_t id);
 
-/// Marks a scene as damaged; its paths and attempts stay, and are read without a scene.
-void set_scene_aside(Database& database, std::int64_t id);
+/// Whether a scene, or what replaced it, can be read.
+bool is_scene_readable(Database& database, std::int64_t id);
 
 /// A part of a full check.
 struct ScenesChecked {
@@ -31,6 +32,8 @@ struct ScenesChecked {
 };
 
 /// Decodes the next scenes with id > after_id, at most `limit`; those set aside are left out.
-ScenesChecked check_scenes(Database& database, std::int64_t after_id, std::int64_t limit);
+/// Of a database of this schema, also an older one.
+ScenesChecked check_scenes(Database& database, std::int64_t schema, std::int64_t after_id,
+                           std::int64_t limit);
 
 }  // namespace kinship::store

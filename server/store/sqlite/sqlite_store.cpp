@@ -10,7 +10,9 @@
 
 #include "server/store/sqlite/attempt_rows.hpp"
 #include "server/store/sqlite/call_item.hpp"
+#include "server/store/sqlite/checked_vfs.hpp"
 #include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/disk_space.hpp"
 #include "server/store/sqlite/distribution_rows.hpp"
 #include "server/store/sqlite/experience_rows.hpp"
@@ -24,6 +26,9 @@
 #include "server/store/sqlite/retirement.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/scene_rows.hpp"
+#include "server/store/sqlite/scrub.hpp"
+#include "server/store/sqlite/set_aside_rows.hpp"
+#include "server/store/sqlite/sqlite_error.hpp"
 #include "server/store/sqlite/store_backup.hpp"
 #include "server/store/sqlite/store_file.hpp"
 #include "server/store/sqlite/transaction.hpp"
@@ -32,16 +37,24 @@
 namespace kinship::store {
 namespace {
 
-/// Sets paths aside that a reader found damaged; if it fails, the next reader finds them again.
+/// Sets aside what a reader found damaged; if it fails, the next reader finds it again.
 class DamageItem : public WriteItem {
  public:
-  explicit DamageItem(std::vector<std::int64_t> paths) : paths_(std::move(paths)) {}
+  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
+      : kind_(kind), rows_(std::move(rows)) {}
 
-  void apply(Batch& batch) override { set_aside(batch, paths_); }
+  void apply(Batch& batch) override {
+    if (kind_ == AsideKind::Path)
+      set_aside(batch, rows_);
+    else
+      for (const std::int64_t row : rows_)
+        put_aside(batch.database(), kind_, row);
+  }
   void finish(const Error* /*error*/) override {}
 
  private:
-  std::vector<std::int64_t> paths_;
+  AsideKind kind_;
+  std::vector<std::int64_t> rows_;
 };
 
 class SqliteStore : public Store {
@@ -55,14 +68,20 @@ class SqliteStore : public Store {
         space_(file_, options.free_space_watermark_bytes, options.ballast_bytes) {
     std::unique_ptr<Database> database = open_writer(file_);
     history_.begin_run(*database);
+    std::shared_ptr<PageDamage> damage = damage_of(database->connection());
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after,
                       .checkpoint_pages = options.checkpoint_pages,
                       .max_wal_bytes = options.max_wal_bytes});
+    scrub_ = std::make_unique<Scrub>(readers_, *writer_, std::move(damage),
+                                     ScrubOptions{options.scrub_bytes_per_s, options.log});
   }
   // Readers close before the writer does, whose last act is to empty the WAL.
-  ~SqliteStore() override { readers_.suspend(); }
+  ~SqliteStore() override {
+    scrub_.reset();
+    readers_.suspend();
+  }
 
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }
@@ -89,6 +108,12 @@ class SqliteStore : public Store {
     count_rows(*reader, status);
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
+    if (const std::string damaged = scrub_->findings(); !damaged.empty())
+      status.message += "damaged: " + damaged +
+                        "; clients that report again mend paths, attempts and scenes, "
+                        "'kinshipd repair' of the stopped server the rest; ";
+    status.scrubbed_ms = scrub_->progress().ended_ms;
+    status.scrub_part = scrub_->progress().part;
     constexpr int kFixed = 3'051'003;
     if (sqlite3_libversion_number() < kFixed)
       status.message += std::string("SQLite ") + sqlite3_libversion() +
@@ -123,10 +148,12 @@ class SqliteStore : public Store {
     if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
       why = "the queue of reports is full, try again";
     if (!why.empty()) {
-      writer_->submit(ReportItem::declined(history_, attempts, std::move(done), why));
+      writer_->submit(
+          ReportItem::declined(history_, damaged_reports_, attempts, std::move(done), why));
       return;
     }
-    writer_->submit(std::make_unique<ReportItem>(history_, std::move(attempts), std::move(done)));
+    writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(attempts),
+                                                 std::move(done)));
     if (space_.may_take_ballast())
       take_ballast_later();
   }
@@ -217,15 +244,16 @@ class SqliteStore : public Store {
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
-    std::optional<AttemptRow> row = select_attempt(*reader, report_uuid);
-    if (!row)
+    const ReportRows report = find_report(*reader, report_uuid);
+    if (!report.row && report.damaged.empty())
       return std::nullopt;
-    if (row->path_id)
-      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
-        row->attempt.path = std::move(stored.path);
-    if (row->scene_id)
-      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
-    return std::move(row->attempt);
+    AttemptRow row = readable_attempt(*reader, report, report_uuid);
+    if (row.path_id)
+      for (StoredPath& stored : undamaged(select_path(*reader, *row.path_id)))
+        row.attempt.path = std::move(stored.path);
+    if (row.scene_id)
+      row.attempt.scene = undamaged(select_scene(*reader, *row.scene_id), *row.scene_id);
+    return std::move(row.attempt);
   }
 
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
@@ -233,9 +261,9 @@ class SqliteStore : public Store {
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
     ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
-    set_aside_later(std::move(read.damaged));
-    for (const std::int64_t scene : read.damaged_scenes)
-      set_scene_aside_later(scene);
+    set_aside_later(AsideKind::Path, std::move(read.damaged));
+    set_aside_later(AsideKind::Scene, std::move(read.damaged_scenes));
+    set_aside_later(AsideKind::Attempt, std::move(read.damaged_attempts));
     return std::move(read.page);
   }
 
@@ -301,24 +329,35 @@ class SqliteStore : public Store {
   }
 
   std::vector<StoredPath> undamaged(PathsRead read) const {
-    set_aside_later(std::move(read.damaged));
+    set_aside_later(AsideKind::Path, std::move(read.damaged));
     return std::move(read.paths);
   }
   std::optional<RecordedScene> undamaged(SceneRead read, std::int64_t scene_id) const {
     if (read.damaged)
-      set_scene_aside_later(scene_id);
+      set_aside_later(AsideKind::Scene, {scene_id});
     return std::move(read.scene);
   }
-  void set_scene_aside_later(std::int64_t scene_id) const {
-    const auto set_aside = [scene_id](Batch& batch) {
-      set_scene_aside(batch.database(), scene_id);
-      return true;
-    };
-    writer_->submit(std::make_unique<CallItem<decltype(set_aside)>>(set_aside));
+  /// \throws Failure(Storage) if it is damaged.
+  AttemptRow readable_attempt(Database& reader, const ReportRows& report,
+                              const Uuid& report_uuid) const {
+    std::optional<AttemptRow> row;
+    try {
+      if (report.row)
+        row = select_attempt(reader, *report.row);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      set_aside_later(AsideKind::Attempt, {*report.row});
+    }
+    if (!row)
+      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
+                                            ": its row is damaged; report it again to mend it");
+    name_robot_and_task(reader, *row);
+    return std::move(*row);
   }
-  void set_aside_later(std::vector<std::int64_t> damaged) const {
+  void set_aside_later(AsideKind kind, std::vector<std::int64_t> damaged) const {
     if (!damaged.empty())
-      writer_->submit(std::make_unique<DamageItem>(std::move(damaged)));
+      writer_->submit(std::make_unique<DamageItem>(kind, std::move(damaged)));
   }
 
   /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.
@@ -343,7 +382,9 @@ class SqliteStore : public Store {
   mutable ReaderPool readers_;
   mutable DiskSpace space_;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
-  std::unique_ptr<Writer> writer_;  // destroyed first: it uses all above
+  DamagedReports damaged_reports_;
+  std::unique_ptr<Writer> writer_;  // destroyed before all above, which it uses
+  std::unique_ptr<Scrub> scrub_;    // and this before the writer
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string_view>
 
 #include "server/store/store.hpp"
 
@@ -22,6 +24,9 @@ struct SqliteOptions {
   /// Of FILE.ballast, which is given up when the disk is full, so that what is there can still be
   /// brought into order; 0: none.
   std::uint64_t ballast_bytes = 0;
+  std::size_t scrub_bytes_per_s = 4'000'000;  ///< of the search for damage; 0: none
+  /// Takes a line when damage is found, from a thread of the store's own; may be empty.
+  std::function<void(std::string_view)> log = {};
 };
 
 /// Opens (or makes) a store in an SQLite file: takes the lock file, migrates an older schema,

@@ -31,6 +31,9 @@ class Statement {
     return value ? bind(index, *value) : bind(index, std::nullopt);
   }
 
+  /// Binds what stands in a column of another statement's row.
+  Statement& bind_column(int index, const Statement& row, int column);
+
   /// Binds the first parameters in order.
   template <typename... Values>
   Statement& bind_all(const Values&... values) {

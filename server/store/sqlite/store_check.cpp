@@ -7,6 +7,7 @@
 
 #include "server/store/sqlite/distribution_rows.hpp"
 #include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/page_scan.hpp"
 #include "server/store/sqlite/path_rows.hpp"
 #include "server/store/sqlite/robot_rows.hpp"
 #include "server/store/sqlite/row_values.hpp"
@@ -16,8 +17,10 @@
 namespace kinship::store {
 namespace {
 
+constexpr std::int64_t kFirstWithSetAside = 4;  // schema
 constexpr std::size_t kMaxMessages = 100;
-constexpr double kPagesShare = 0.5;  // of the time: SQLite's own check, which tells no progress
+constexpr double kScanShare = 0.2;   // of the time
+constexpr double kPagesShare = 0.5;  // with SQLite's own check, which tells no progress
 constexpr double kPathsShare = 0.35;
 constexpr double kScenesShare = 0.05;
 
@@ -30,7 +33,7 @@ struct Rule {
 const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
 
 // What an experience says of its attempts of one arm.
-Rule rule_of_sums(const std::string& mode, int code) {
+Rule rule_of_sums(const std::string& mode, int code, const std::string& counted) {
   // Sums of doubles depend on their order in the last bits.
   const auto differs = [&](const std::string& sum) {
     return "abs(" + mode + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
@@ -43,7 +46,7 @@ Rule rule_of_sums(const std::string& mode, int code) {
               " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
               " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
               "FROM attempt WHERE arm = " +
-              std::to_string(code) +
+              std::to_string(code) + " AND " + counted +
               " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
               "WHERE " +
               mode + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
@@ -51,21 +54,46 @@ Rule rule_of_sums(const std::string& mode, int code) {
               differs("_checks_of_solved")};
 }
 
+/// Of a row of `table`, in schema 4 by `kind`.
+std::string not_aside(std::int64_t schema, const std::string& table, int kind) {
+  if (schema < kFirstWithSetAside)
+    return table == "path" ? "path.damaged = 0" : "TRUE";
+  return "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " + std::to_string(kind) +
+         " AND set_aside.id = " + table + ".id)";
+}
+
 std::vector<Rule> rules_of(std::int64_t schema) {
-  const std::string in_use = schema > 1 ? "damaged = 0 AND retired_ms IS NULL" : "damaged = 0";
+  const std::string path_kept = not_aside(schema, "path", 1);
+  const std::string attempt_kept = not_aside(schema, "attempt", 2);
+  const std::string in_use = path_kept + (schema > 1 ? " AND retired_ms IS NULL" : "");
+  // An attempt that came again stands there twice.
+  const std::string counted =
+      schema < kFirstWithSetAside
+          ? "TRUE"
+          : "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
+            " AND replaced_by IS NOT NULL)";
+  // A repair may have left it without.
+  const std::string is_orphan =
+      schema < kFirstWithSetAside
+          ? "FALSE"
+          : "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
   std::vector<Rule> rules = {
       {"path",
        "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
        " 'its attempt does not name it') FROM path "
-       "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid "
-       "WHERE damaged = 0 AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id)"},
+       "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid AND " +
+           counted + " WHERE " + path_kept +
+           " AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id) AND " + attempt_kept +
+           " AND NOT " + is_orphan},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
-       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL"},
+       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL AND " +
+           attempt_kept},
       {"attempt",
        "SELECT 'attempt ' || attempt.id || ': its path is of another robot or task' FROM attempt "
-       "JOIN path ON path.id = attempt.path_id "
-       "WHERE (path.task_id, path.robot_id) <> (attempt.task_id, attempt.robot_id)"},
+       "JOIN path ON path.id = attempt.path_id WHERE " +
+           attempt_kept + " AND " + path_kept +
+           " AND (path.task_id, path.robot_id) <> (attempt.task_id, attempt.robot_id)"},
       {"experience",
        "SELECT " + kPair +
            "'says ' || paths || ' paths, has ' || found FROM (SELECT *, (SELECT count(*) FROM path "
@@ -75,24 +103,29 @@ std::vector<Rule> rules_of(std::int64_t schema) {
        "SELECT " + kPair +
            "'says ' || attempts || ' attempts, has ' || found FROM (SELECT *, (SELECT count(*) "
            "FROM attempt WHERE attempt.task_id = experience.task_id "
-           "AND attempt.robot_id = experience.robot_id) AS found FROM experience) "
-           "WHERE attempts <> found"}};
+           "AND attempt.robot_id = experience.robot_id AND " +
+           counted + ") AS found FROM experience) WHERE attempts <> found"}};
   if (schema < 2)
     return rules;
   rules.push_back({"path",
                    "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
                    "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
-                   "WHERE damaged = 0 AND path.received_ms <> attempt.received_ms"});
+                   "WHERE " +
+                       path_kept + " AND " + attempt_kept +
+                       " AND path.received_ms <> attempt.received_ms"});
   rules.push_back({"evicted_distribution",
                    "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
-                   "FROM evicted_distribution JOIN distribution USING (digest)"});
+                   "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
+                       not_aside(schema, "distribution", 4)});
   if (schema > 2)
     rules.push_back({"path",
                      "SELECT 'path ' || path.id || ': has another scene than its attempt' "
                      "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
-                     "WHERE damaged = 0 AND path.scene_id IS NOT attempt.scene_id"});
+                     "WHERE " +
+                         path_kept + " AND " + attempt_kept +
+                         " AND path.scene_id IS NOT attempt.scene_id"});
   for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
-    rules.push_back(rule_of_sums(mode, code));
+    rules.push_back(rule_of_sums(mode, code, counted));
   return rules;
 }
 
@@ -109,6 +142,7 @@ class Checker {
   template <typename Part>
   void guarded(const std::string& table, Part part);
   void count_tables();
+  void check_pages();
   void check_structure();
   void check_robots();
   void check_paths();
@@ -129,6 +163,8 @@ StoreCheck Checker::run(const std::filesystem::path& file) {
     throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
   check_.schema_version = static_cast<std::uint32_t>(schema_);
   count_tables();
+  if (schema_ >= kFirstWithSetAside)
+    check_pages();
   guarded("", [&] { check_structure(); });
   guarded("setting", [&] { check_epoch(); });
   guarded("robot", [&] { check_robots(); });
@@ -179,14 +215,33 @@ void Checker::count_tables() {
     });
   }
   guarded("path", [&] {
-    check_.damaged_paths = static_cast<std::uint64_t>(
-        database_->integer("SELECT count(*) FROM path WHERE damaged = 1"));
+    check_.damaged_paths = static_cast<std::uint64_t>(database_->integer(
+        schema_ < kFirstWithSetAside ? "SELECT count(*) FROM path WHERE damaged = 1"
+                                     : "SELECT count(*) FROM set_aside WHERE kind = 1"));
     if (schema_ > 1)
-      check_.retired_paths = static_cast<std::uint64_t>(database_->integer(
-          "SELECT count(*) FROM path WHERE damaged = 0 AND retired_ms IS NOT NULL"));
+      check_.retired_paths = static_cast<std::uint64_t>(
+          database_->integer("SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " +
+                             not_aside(schema_, "path", 1)));
   });
   check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
                                             database_->integer("PRAGMA page_size"));
+}
+
+void Checker::check_pages() {
+  constexpr std::uint64_t kPagesOfAReport = 4096;
+  PageReader reader(*database_);
+  const std::uint64_t count = reader.count();
+  std::vector<std::uint64_t> damaged;
+  for (std::uint64_t page = 1; page <= count; ++page) {
+    if (!reader.read(page))
+      damaged.push_back(page);
+    if (page % kPagesOfAReport == 0)
+      (*progress_)(kScanShare * static_cast<double>(page) / static_cast<double>(count));
+  }
+  if (damaged.empty())
+    return;
+  for (const auto& [page, owner] : owners_of(*database_, damaged))
+    note(owner.table, "page " + std::to_string(page) + " is damaged (checksum): " + owner.words);
 }
 
 void Checker::check_structure() {
@@ -222,8 +277,8 @@ void Checker::check_paths() {
   constexpr std::int64_t kPage = 1000;
   const std::int64_t last =
       std::max<std::int64_t>(database_->integer("SELECT max(id) FROM path"), 1);
-  for (PathsChecked page = store::check_paths(*database_, 0, kPage); page.paths > 0;
-       page = store::check_paths(*database_, page.last_id, kPage)) {
+  for (PathsChecked page = store::check_paths(*database_, schema_, 0, kPage); page.paths > 0;
+       page = store::check_paths(*database_, schema_, page.last_id, kPage)) {
     for (const std::int64_t id : page.damaged)
       note("path", std::to_string(id) + ": damaged (checksum)");
     (*progress_)(kPagesShare +
@@ -235,8 +290,8 @@ void Checker::check_scenes() {
   constexpr std::int64_t kPage = 1000;
   const std::int64_t last =
       std::max<std::int64_t>(database_->integer("SELECT max(id) FROM scene"), 1);
-  for (ScenesChecked page = store::check_scenes(*database_, 0, kPage); page.scenes > 0;
-       page = store::check_scenes(*database_, page.last_id, kPage)) {
+  for (ScenesChecked page = store::check_scenes(*database_, schema_, 0, kPage); page.scenes > 0;
+       page = store::check_scenes(*database_, schema_, page.last_id, kPage)) {
     for (const std::int64_t id : page.damaged)
       note("scene", std::to_string(id) + ": damaged (checksum)");
     (*progress_)(kPagesShare + kPathsShare +
@@ -245,15 +300,17 @@ void Checker::check_scenes() {
 }
 
 void Checker::check_distributions() {
-  std::vector<Digest> ids;
-  Statement query(database_->connection(), "SELECT digest FROM distribution ORDER BY id");
+  std::vector<std::pair<std::int64_t, Digest>> rows;  // both are in an index
+  Statement query(database_->connection(), "SELECT id, digest FROM distribution WHERE " +
+                                               not_aside(schema_, "distribution", 4) +
+                                               " ORDER BY digest");
   while (query.step())
-    ids.push_back(id_of<Digest>(query.column_blob(0)));
-  for (const Digest& id : ids)
-    guarded("distribution", [&] {
-      if (!select_distribution(*database_, id).distribution)
-        note("distribution", id.hex() + ": damaged (checksum)");
-    });
+    rows.emplace_back(query.column_integer(0), id_of<Digest>(query.column_blob(1)));
+  for (const auto& [row, digest] : rows) {
+    const std::optional<Distribution> found = read_distribution(*database_, row).distribution;
+    if (!found || found->id != digest)
+      note("distribution", digest.hex() + ": damaged (checksum)");
+  }
 }
 
 }  // namespace

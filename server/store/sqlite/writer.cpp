@@ -18,7 +18,7 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   try {
     item.apply(batch);
   } catch (const SqliteError& error) {
-    if (!error.concerns_one_row())
+    if (!error.spares_transaction())
       throw;
     return error.error();
   } catch (const Failure& failure) {
@@ -28,6 +28,11 @@ std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
   }
   savepoint.keep();
   return std::nullopt;
+}
+
+bool is_damage(const Failure& failure) {
+  const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+  return error != nullptr && error->is_damage();
 }
 
 }  // namespace
@@ -146,6 +151,10 @@ void Writer::write(Items& items) {
     batch.raise_generations();
     transaction.commit();
   } catch (const Failure& failure) {
+    if (is_damage(failure)) {
+      write_apart(items);
+      return;
+    }
     fail(failure);
     const Error error = failure.error();
     finish_all(items, &error);
@@ -154,6 +163,36 @@ void Writer::write(Items& items) {
   }
   for (std::size_t i = 0; i < items.size(); ++i)
     items[i]->finish(errors[i] ? &*errors[i] : nullptr);
+}
+
+/// After damage that undid the batch: each item in a transaction of its own, so that the one that
+/// needs what is damaged fails alone. The rest of the file is fine, nothing is opened again.
+void Writer::write_apart(Items& items) {
+  for (auto& item : items) {
+    std::optional<Error> error;
+    if (!database_)
+      error = Error{ErrorCode::Storage, trouble()};
+    else
+      error = write_alone(*item);
+    item->finish(error ? &*error : nullptr);
+  }
+  if (!database_)
+    recover_if_due();
+}
+
+std::optional<Error> Writer::write_alone(WriteItem& item) {
+  try {
+    Transaction transaction(*database_, Transaction::Kind::Write);
+    Batch batch(*database_);
+    std::optional<Error> error = apply_alone(item, batch);
+    batch.raise_generations();
+    transaction.commit();
+    return error;
+  } catch (const Failure& failure) {
+    if (!is_damage(failure))
+      fail(failure);
+    return failure.error();
+  }
 }
 
 void Writer::finish_all(Items& items, const Error* error) {

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -50,8 +51,8 @@ class WriteItem {
   virtual std::size_t weight() const { return 1; }  ///< counts towards the cap of a batch
   virtual std::size_t bytes() const { return 0; }   ///< that it occupies while it waits
 
-  /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that
-  /// does not concern one row: that one undoes the batch.
+  /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that does
+  /// not spare the transaction: that one undoes the batch. May be called again for another batch.
   virtual void apply(Batch& batch) = 0;
 
   /// Called once, when the item is durable (no error) or undone, outside of any transaction. Must
@@ -76,10 +77,12 @@ struct WriterFailures {
 /// transaction and finishes the items after the commit is durable; nobody waits for a timer. When
 /// the WAL is long enough it checkpoints after that, so that no item waits for it.
 ///
-/// Fail-stop: on an I/O error, a full disk or damage, in a checkpoint too, it undoes the batch,
-/// finishes every item with the error, closes the connection and opens it again with checks, but
-/// never sooner than `retry_after` after the last try; until a try succeeds items are answered with
-/// the error.
+/// Where something is damaged the items are written one by one, and those that need it fail alone.
+///
+/// Fail-stop: on an I/O error or a full disk, in a checkpoint too, it undoes the batch, finishes
+/// every item with the error, closes the connection and opens it again with checks, but never
+/// sooner than `retry_after` after the last try; until a try succeeds items are answered with the
+/// error.
 class Writer {
  public:
   /// \param database  the connection to begin with.
@@ -111,6 +114,8 @@ class Writer {
   void run();
   Items take_batch();
   void write(Items& items);
+  void write_apart(Items& items);
+  std::optional<Error> write_alone(WriteItem& item);
   void finish_all(Items& items, const Error* error);
   void fail(const Failure& failure);
   bool recover_if_due();

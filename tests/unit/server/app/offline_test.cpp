@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "tests/support/temporary_directory.hpp"
@@ -39,6 +40,28 @@ TEST_F(Offline, TheVerbsDoWhatTheySay) {
   EXPECT_EQ(run(OfflineVerb::Check, store_), kDone);
   EXPECT_NE(out_.str().find("sound"), std::string::npos) << out_.str();
   EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(Offline, ARepairSaysWhatIsLostAndWhereTheDamagedStoreIs) {
+  EXPECT_EQ(run(OfflineVerb::Repair, store_), kFailed);  // from before there were checksums
+  EXPECT_NE(err_.str().find("bear no checksums"), std::string::npos) << err_.str();
+  ASSERT_EQ(run(OfflineVerb::Migrate, store_), kDone);
+  constexpr std::streamoff kPage = 1024;
+  for (std::streamoff page = 10; page < 14; ++page) {
+    std::fstream file(store_, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(page * kPage + 500);
+    file.write("damaged", 7);
+  }
+  EXPECT_EQ(run(OfflineVerb::Check, store_), kFailed);
+  EXPECT_NE(out_.str().find("page 11 is damaged (checksum): "), std::string::npos) << out_.str();
+  EXPECT_EQ(run(OfflineVerb::Repair, store_), kDone) << err_.str();
+  EXPECT_NE(out_.str().find("; 4 pages were damaged\n"), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("the damaged store is now '" + store_.string() + ".replaced-"),
+            std::string::npos)
+      << out_.str();
+  EXPECT_EQ(run(OfflineVerb::Repair, store_), kDone);  // nothing to do, and it does no harm
+  EXPECT_NE(out_.str().find("; 0 pages were damaged\nkept: "), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("nothing was lost\n"), std::string::npos) << out_.str();
 }
 
 TEST_F(Offline, ACheckIsOneDocumentForPrograms) {

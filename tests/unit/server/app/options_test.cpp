@@ -40,6 +40,7 @@ TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
   EXPECT_GE(options.workers, 1U);
   EXPECT_EQ(options.log_level, "info");
   EXPECT_EQ(options.rehearsal_fraction, 0.1);
+  EXPECT_EQ(options.scrub_mb_per_s, 4.0);
   EXPECT_EQ(options.free_space_watermark_mb, 64U);
   EXPECT_EQ(options.ballast_mb, 16U);
   EXPECT_EQ(options.max_wal_mb, 512U);
@@ -72,6 +73,13 @@ TEST_F(Options, ArgumentsAreTaken) {
   EXPECT_EQ(options.workers, 4U);
   EXPECT_EQ(options.network_interface, "eth0");
   EXPECT_EQ(options.log_level, "error");
+}
+
+TEST_F(Options, TheScrubHasARate) {
+  EXPECT_EQ(good({"--scrub-mb-per-s", "0.5"}).scrub_mb_per_s, 0.5);
+  EXPECT_EQ(good({"--scrub-mb-per-s", "0"}).scrub_mb_per_s, 0.0);
+  for (const char* const wrong : {"-1", "1001", "nan", "fast"})
+    EXPECT_EQ(code({"--scrub-mb-per-s", wrong}), kWrongUsage) << wrong;
 }
 
 TEST_F(Options, APartOfAProcessorIsANumberFromZeroToOne) {
@@ -128,6 +136,7 @@ TEST_F(Options, AVerbComesWithItsStoreAndFile) {
   EXPECT_EQ(verb({"backup", "copy.db"}).store, "/state/kinship/experience.db");
   EXPECT_TRUE(verb({"check", "--json"}).json);
   EXPECT_EQ(verb({"migrate"}).verb, OfflineVerb::Migrate);
+  EXPECT_EQ(verb({"repair", "--store", "fleet.db"}).verb, OfflineVerb::Repair);
   for (const std::vector<const char*>& arguments :
        std::vector<std::vector<const char*>>{{"backup"},
                                              {"restore", "--store", "fleet.db"},

@@ -30,6 +30,16 @@ TEST(Crc32c, OfTwoPartsIsThatOfTheWhole) {
     EXPECT_EQ(crc32c(all.subspan(cut), crc32c(all.first(cut))), crc32c(all)) << cut;
 }
 
+TEST(Crc32c, OfTheInstructionIsThatOfTheTables) {
+  std::mt19937 generator(2);
+  std::vector<std::uint8_t> bytes(4099);
+  for (std::uint8_t& byte : bytes)
+    byte = static_cast<std::uint8_t>(generator());
+  const std::span<const std::uint8_t> all(bytes);
+  for (std::size_t size = 0; size <= bytes.size(); size += 7)
+    EXPECT_EQ(crc32c(all.first(size), 5), crc32c_by_tables(all.first(size), 5)) << size;
+}
+
 TEST(Crc32c, FindsEveryFlippedBit) {
   std::vector<std::uint8_t> bytes(200, 0x5A);
   const std::uint32_t crc = crc32c(bytes);

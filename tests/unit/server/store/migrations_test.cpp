@@ -7,7 +7,9 @@
 #include <string>
 
 #include "proto/types/failure.hpp"
+#include "server/store/sqlite/seal_store.hpp"
 #include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/store_file.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::migrations_test {
@@ -24,8 +26,8 @@ std::string contents(const std::filesystem::path& file) {
 class Migrations : public testing::Test {
  protected:
   void run(std::span<const Migration> migrations) {
-    Database database(file_, Access::Create);
-    migrate(database, file_, migrations);
+    make_for_owner(file_);
+    open_migrated(file_, migrations);
   }
   std::string refusal(std::span<const Migration> migrations) {
     try {

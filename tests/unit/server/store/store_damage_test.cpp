@@ -1,0 +1,325 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <future>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "server/store/maintenance.hpp"
+#include "server/store/sqlite/page_scan.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/store_values.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+/// Damage in one place of a store, and what becomes of it and of everything else.
+namespace kinship::store::store_damage_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPageSize = 8192;
+constexpr const char* kFlipWaypoints =
+    "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 50) || x'A5' ||"
+    " substr(waypoints, 52) AS BLOB) WHERE id = 2";
+
+class StoreDamage : public testing::Test {
+ protected:
+  StoreDamage() { open(); }
+
+  void open(const SqliteOptions& options = {}) {
+    store_.reset();
+    store_ = open_sqlite_store(file_, options);
+    static_cast<void>(store_->register_robot(robot_));
+  }
+  Attempt attempt(std::uint64_t number, Eigen::Index waypoints = 20) const {
+    Attempt made = test::make_attempt(robot_.digest, "shelf", number);
+    made.path = test::make_path(number, test::kDof, waypoints);
+    return made;
+  }
+  Receipt report(const Attempt& reported) { return test::report(*store_, {reported}).at(0); }
+  std::vector<StoredPath> paths() const {
+    return store_->read_paths(robot_.digest, "shelf", {.after_id = 0, .limit = 100'000});
+  }
+  void drain() { test::report(*store_, {}); }
+
+  void edit(const std::string& sql) {
+    store_.reset();
+    Database database(file_, Access::ReadWrite);
+    database.execute(sql);
+    ASSERT_GT(database.changed_rows(), 0) << sql;
+  }
+  /// The pages that belong to a table or an index, in order.
+  std::vector<std::uint64_t> pages_of(const std::string& owner) const {
+    Database database(file_, Access::ReadOnly);
+    std::vector<std::uint64_t> all(fs::file_size(file_) / kPageSize);
+    for (std::uint64_t page = 1; page <= all.size(); ++page)
+      all[page - 1] = page;
+    std::vector<std::uint64_t> found;
+    for (const auto& [page, its] : owners_of(database, all))
+      if (its.words == owner)
+        found.push_back(page);
+    return found;
+  }
+  /// Of the closed store.
+  void flip(std::uint64_t page) const {
+    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
+    const auto offset = static_cast<std::streamoff>((page - 1) * kPageSize + 4000);
+    stream.seekg(offset);
+    const int byte = stream.get();
+    stream.seekp(offset);
+    stream.put(static_cast<char>(byte ^ 4));
+    ASSERT_TRUE(stream.good());
+  }
+  StoreCheck check() const {
+    return check_store(file_, [](double) {});
+  }
+
+  const test::TemporaryDirectory directory_;
+  const fs::path file_ = directory_ / "store.db";
+  const RobotRecord robot_ = test::make_robot("panda", 1);
+  std::unique_ptr<Store> store_;
+};
+
+// Duplicate vouches for what the report brought.
+
+TEST_F(StoreDamage, AResentReportWhosePathIsDamagedIsStoredAnew) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  edit(kFlipWaypoints);
+  open();
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Stored);  // nobody had read it yet
+  EXPECT_EQ(paths().size(), 3U);
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(report(attempt(1)).status, ReceiptStatus::Duplicate);
+  EXPECT_TRUE(store_->find_attempt(attempt(2).report_uuid)->path);
+  EXPECT_EQ(store_->status().paths, 3U);
+  EXPECT_EQ(store_->status().message.find("set aside"), std::string::npos);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+TEST_F(StoreDamage, TheSameContentAnewIsStoredAndServesTheFirstReportToo) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  edit(kFlipWaypoints);
+  open();
+  Attempt again = attempt(9);
+  again.path = attempt(2).path;
+  EXPECT_EQ(report(again).status, ReceiptStatus::Stored);
+  EXPECT_EQ(paths().size(), 3U);
+  EXPECT_TRUE(store_->find_attempt(attempt(2).report_uuid)->path);
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->generation(robot_.digest, "shelf"), 2U);
+}
+
+TEST_F(StoreDamage, AResentReportBringsItsDamagedSceneBack) {
+  Attempt unsolved = test::make_unsolved(robot_.digest, "shelf", 1);
+  unsolved.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
+  report(unsolved);
+  edit(
+      "UPDATE scene SET scene = CAST (substr(scene, 1, 20) || x'A5' || substr(scene, 22) AS BLOB)");
+  open();
+  EXPECT_EQ(report(unsolved).status, ReceiptStatus::Recorded);
+  EXPECT_TRUE(store_->find_attempt(unsolved.report_uuid)->scene);
+  EXPECT_EQ(report(unsolved).status, ReceiptStatus::Duplicate);
+}
+
+TEST_F(StoreDamage, ARetiredPathStaysRetiredWhateverIsDamaged) {
+  test::report(*store_, {attempt(1), attempt(2), attempt(3)});
+  EXPECT_EQ(store_->retire_path(attempt(2).report_uuid)->paths, 1U);
+  edit(kFlipWaypoints);
+  open();
+  EXPECT_EQ(report(attempt(2)).status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(paths().size(), 2U);
+  EXPECT_EQ(store_->retire_path(attempt(2).report_uuid)->paths, 0U);
+}
+
+TEST_F(StoreDamage, AResetTakesDamagedPathsToo) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 40; ++number)
+    attempts.push_back(attempt(number, 400));  // each lies on a page of its own too
+  test::report(*store_, attempts);
+  store_.reset();
+  flip(pages_of("table path").at(20));
+  open();
+  EXPECT_EQ(store_->reset_task("shelf")->paths, 40U);
+  EXPECT_EQ(store_->status().paths, 0U);
+  EXPECT_TRUE(paths().empty());
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->status().paths, 0U);
+}
+
+// A damaged page.
+
+TEST_F(StoreDamage, APageOfPathsIsSetAsideNamedAndMendedByAResend) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 200; ++number)
+    attempts.push_back(attempt(number, 60));
+  test::report(*store_, attempts);
+  store_.reset();
+  flip(pages_of("table path").at(5));
+  EXPECT_NE(testing::PrintToString(check().messages).find("table path"), std::string::npos);
+  open();
+  const std::size_t readable = paths().size();
+  EXPECT_LT(readable, 200U);
+  EXPECT_GT(readable, 190U);
+  drain();
+  EXPECT_EQ(store_->status().paths, readable);
+  EXPECT_NE(store_->status().message.find("damaged paths set aside"), std::string::npos)
+      << store_->status().message;
+  std::size_t stored = 0;
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    stored += receipt.status == ReceiptStatus::Stored ? 1U : 0U;
+  EXPECT_EQ(stored, 200 - readable);
+  EXPECT_EQ(paths().size(), 200U);
+  EXPECT_EQ(store_->status().paths, 200U);
+}
+
+/// Reports that find their place in a damaged page of an index.
+class StorePoison : public StoreDamage {
+ protected:
+  static constexpr std::uint64_t kBefore = 1500;
+
+  StorePoison() {
+    std::vector<Attempt> attempts;
+    for (std::uint64_t number = 0; number < kBefore; ++number)
+      attempts.push_back(attempt(number, 8));
+    test::report(*store_, std::move(attempts));
+    store_.reset();
+    const std::vector<std::uint64_t> pages = pages_of("index path_by_content");
+    EXPECT_GT(pages.size(), 5U);
+    flip(pages.at(3));
+    open();
+    for (std::uint64_t number = kBefore; poisoned_.size() < 8; ++number)
+      if (const Attempt tried = attempt(number, 8); report(tried).status == ReceiptStatus::TryAgain)
+        poisoned_.push_back(tried);
+  }
+  bool was_reopened() {
+    store_.reset();
+    return Database(file_, Access::ReadOnly)
+               .integer("SELECT count(*) FROM setting WHERE key = 'reopened_ms'") > 0;
+  }
+  /// Healthy reports a second, from one client.
+  double healthy_rate(std::uint64_t first, std::uint64_t count) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::uint64_t number = first; number < first + count; ++number)
+      EXPECT_EQ(report(test::make_unsolved(robot_.digest, "bin", number)).status,
+                ReceiptStatus::Recorded);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    return static_cast<double>(count) / time.count();
+  }
+
+  std::vector<Attempt> poisoned_;
+};
+
+TEST_F(StorePoison, IsToldWhyAndLeavesItsBatchAndTheFileAlone) {
+  const std::vector<Receipt> receipts = test::report(
+      *store_, {attempt(100'000, 8), poisoned_[0], test::make_unsolved(robot_.digest, "bin", 100'001)});
+  EXPECT_EQ(receipts[1].status, ReceiptStatus::TryAgain);
+  EXPECT_NE(receipts[1].message.find("damaged"), std::string::npos) << receipts[1].message;
+  EXPECT_EQ(receipts[2].status, ReceiptStatus::Recorded);
+  EXPECT_TRUE(store_->status().writable);
+  EXPECT_EQ(store_->find_attempt(poisoned_[0].report_uuid), std::nullopt);
+  EXPECT_FALSE(was_reopened());
+}
+
+TEST_F(StorePoison, EightClientsOfItCostAHealthyOneLittle) {
+  constexpr std::uint64_t kReports = 2000;
+  const double alone = healthy_rate(200'000, kReports);
+  std::mutex mutex;
+  std::condition_variable wake;
+  bool stop = false;
+  std::atomic<std::size_t> refused = 0;
+  std::vector<std::thread> clients;
+  for (const Attempt& attempt : poisoned_)
+    clients.emplace_back([&] {
+      constexpr std::chrono::milliseconds kPause{1};  // a client waits a second
+      std::unique_lock lock(mutex);
+      while (!wake.wait_for(lock, kPause, [&] { return stop; })) {
+        lock.unlock();
+        if (test::report(*store_, {attempt}).at(0).status == ReceiptStatus::TryAgain)
+          ++refused;
+        lock.lock();
+      }
+    });
+  const double beside = healthy_rate(300'000, kReports);
+  {
+    const std::lock_guard lock(mutex);
+    stop = true;
+  }
+  wake.notify_all();
+  for (std::thread& client : clients)
+    client.join();
+  std::cout << "healthy reports a second: " << alone << " alone, " << beside << " beside "
+            << refused << " refused ones: " << beside / alone << '\n';
+  EXPECT_GT(refused, 8U);
+  EXPECT_GT(beside, 0.5 * alone);  // 0.8 and more on a machine with nothing else to do
+  EXPECT_FALSE(was_reopened());
+}
+
+// The search for damage.
+
+TEST_F(StoreDamage, TheScrubFindsAPageThatNobodyReadsAndNamesIt) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 100; ++number)
+    attempts.push_back(attempt(number, 60));
+  test::report(*store_, std::move(attempts));
+  store_.reset();
+  const std::uint64_t page = pages_of("index attempt_by_task_robot").at(0);
+  flip(page);
+  std::promise<std::string> said;
+  open(
+      {.scrub_bytes_per_s = 1'000'000'000, .log = [&, first = true](std::string_view line) mutable {
+         if (std::exchange(first, false))
+           said.set_value(std::string(line));
+       }});
+  auto line = said.get_future();
+  ASSERT_EQ(line.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  const std::string name = "page " + std::to_string(page) + " (index attempt_by_task_robot)";
+  EXPECT_NE(line.get().find(name), std::string::npos);
+  const StoreStatus status = store_->status();
+  EXPECT_NE(status.message.find("kinshipd repair"), std::string::npos) << status.message;
+  store_.reset();
+}
+
+TEST_F(StoreDamage, ARepairSaysWhatIsLost) {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 0; number < 200; ++number)
+    attempts.push_back(attempt(number, 60));
+  test::report(*store_, attempts);
+  const Uuid epoch = store_->epoch();
+  store_.reset();
+  flip(pages_of("table path").at(5));
+  flip(pages_of("table attempt").at(2));
+  flip(pages_of("table robot").at(0));
+  flip(pages_of("index path_by_task_robot").at(0));
+  const Repaired repaired = repair_store(file_, [](double) {});
+  EXPECT_EQ(repaired.damaged_pages, 4U);
+  EXPECT_NE(repaired.restored.epoch, epoch);
+  EXPECT_TRUE(fs::exists(repaired.restored.replaced));
+  const auto lost = [&](const std::string& table) {
+    std::uint64_t rows = 0;
+    for (const Repaired::Lost& part : repaired.lost)
+      if (part.table == table && part.robot == "panda")
+        rows += part.rows;
+    return rows;
+  };
+  EXPECT_EQ(lost("robot"), 1U);
+  EXPECT_GT(lost("path"), 0U);
+  EXPECT_GT(lost("attempt"), 0U);
+  store_ = open_sqlite_store(file_);
+  EXPECT_TRUE(store_->robots().empty());
+  EXPECT_EQ(*store_->register_robot(robot_), RegisterStatus::Registered);
+  EXPECT_EQ(paths().size(), 200 - lost("path"));
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    EXPECT_NE(receipt.status, ReceiptStatus::TryAgain) << receipt.message;
+  EXPECT_EQ(paths().size(), 200U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+}  // namespace
+}  // namespace kinship::store::store_damage_test
