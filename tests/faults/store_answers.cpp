@@ -66,8 +66,8 @@ void ask_about_paths(const store::Store& store, const Digest& robot, const std::
   }
   ask([&] {
     const store::AttemptTotals totals = store.attempt_totals(robot, task);
-    for (const auto& [name, sums] : {std::pair("guided ", totals.guided),
-                                     std::pair("control ", totals.control)})
+    for (const auto& [name, sums] :
+         {std::pair("guided ", totals.guided), std::pair("control ", totals.control)})
       answers[name + pair] = std::to_string(sums.attempts) + " " + std::to_string(sums.solved) +
                              " " + std::to_string(sums.checks);
     for (const store::KnownAttempt& known : totals.recent)

@@ -193,7 +193,7 @@ class StorePoison : public StoreDamage {
     EXPECT_GT(pages.size(), 5U);
     flip(pages.at(3));
     open();
-    for (std::uint64_t number = kBefore; poisoned_.size() < 8; ++number)
+    for (std::uint64_t number = kBefore; poisoned_.size() < 8 && number < 3 * kBefore; ++number)
       if (const Attempt tried = attempt(number, 8); report(tried).status == ReceiptStatus::TryAgain)
         poisoned_.push_back(tried);
   }

@@ -1,6 +1,7 @@
 #include "server/store/sqlite/writer.hpp"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <atomic>
 #include <future>
@@ -42,6 +43,22 @@ class InsertItem : public WriteItem {
   std::size_t weight_;
   std::int64_t rows_ = 0;
   std::promise<Written> done_;
+};
+
+/// Meets content that SQLite makes no sense of, after which it refuses to write on in the batch.
+class DamagedItem : public WriteItem {
+ public:
+  std::future<std::string> outcome() { return done_.get_future(); }
+  void apply(Batch& batch) override {
+    batch.database().cached("INSERT INTO t VALUES (1000, NULL)")->run();
+    throw SqliteError(SQLITE_CORRUPT, "seen damaged");
+  }
+  void finish(const Error* error) override {
+    done_.set_value(error != nullptr ? error->message : "");
+  }
+
+ private:
+  std::promise<std::string> done_;
 };
 
 /// Holds the writer's thread inside a batch until it is let go.
@@ -135,6 +152,30 @@ TEST_F(WriterTest, UndoesAnItemWithABadRowAlone) {
   EXPECT_NE(get(submit(*w, 1)).error.find("UNIQUE"), std::string::npos);
   EXPECT_EQ(w->trouble(), "");
   EXPECT_EQ(get(submit(*w, 2)).error, "");
+  EXPECT_EQ(rows(), 2);
+}
+
+TEST_F(WriterTest, DamageUndoesTheItemThatMeetsItAndReopensNothing) {
+  int reopened = 0;
+  const auto w = writer(connect(), [&] {
+    ++reopened;
+    return connect();
+  });
+  std::promise<void> entered;
+  std::promise<void> gate;
+  w->submit(std::make_unique<GateItem>(entered, gate.get_future().share()));
+  entered.get_future().wait();
+  std::future<Written> before = submit(*w, 1);
+  auto damaged = std::make_unique<DamagedItem>();
+  std::future<std::string> said = damaged->outcome();
+  w->submit(std::move(damaged));
+  std::future<Written> after = submit(*w, 2);
+  gate.set_value();
+  EXPECT_EQ(said.get(), "seen damaged");
+  EXPECT_EQ(get(std::move(before)).error, "");
+  EXPECT_EQ(get(std::move(after)).error, "");
+  EXPECT_EQ(w->trouble(), "");
+  EXPECT_EQ(reopened, 0);
   EXPECT_EQ(rows(), 2);
 }
 
