@@ -187,6 +187,33 @@ inline constexpr std::tuple kFieldsOf<Job>{
     Field{"started_ms", &Job::started_ms},
     Field{"ended_ms", &Job::ended_ms}};
 
+/// How often something went wrong for clients since start.
+struct TroubleCount {
+  std::string what;
+  std::uint64_t count = 0;
+  std::string last;  ///< the last one, in words
+  std::int64_t last_ms = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<TroubleCount>{
+    Field{"what", &TroubleCount::what, {.limit = kMaxWordBytes}},
+    Field{"count", &TroubleCount::count},
+    Field{"last", &TroubleCount::last, {.limit = kMaxMessageBytes}},
+    Field{"last_ms", &TroubleCount::last_ms}};
+
+/// How much of something bounded there is.
+struct BoundUse {
+  std::string what;
+  std::uint64_t used = 0;
+  std::uint64_t limit = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<BoundUse>{
+    Field{"what", &BoundUse::what, {.limit = kMaxWordBytes}}, Field{"used", &BoundUse::used},
+    Field{"limit", &BoundUse::limit}};
+
 struct ServerStatus {
   std::string version;
   std::string store_file;
@@ -205,6 +232,8 @@ struct ServerStatus {
   std::uint64_t rehearsals = 0;         ///< done since start
   std::uint64_t queued_rehearsals = 0;  ///< waiting or under way
   double rehearsal_time_s = 0;          ///< processor time of those that are done
+  std::vector<TroubleCount> troubles = {};
+  std::vector<BoundUse> bounds = {};
 };
 
 template <>
@@ -233,6 +262,8 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"storage_message", &ServerStatus::storage_message, {.limit = kMaxPageBytes}},
     Field{"rehearsals", &ServerStatus::rehearsals, {.may_be_missing = true}},
     Field{"queued_rehearsals", &ServerStatus::queued_rehearsals, {.may_be_missing = true}},
-    Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}}};
+    Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}},
+    Field{"troubles", &ServerStatus::troubles, {.limit = kMaxStatusRows, .may_be_missing = true}},
+    Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}}};
 
 }  // namespace kinship

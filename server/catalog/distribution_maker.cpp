@@ -1,7 +1,9 @@
 #include "server/catalog/distribution_maker.hpp"
 
 #include <algorithm>
+#include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -12,6 +14,12 @@
 
 namespace kinship::catalog {
 namespace {
+
+/// What says nothing about the experience: the next attempt may find it well again.
+bool may_pass(ErrorCode code) {
+  return code == ErrorCode::Storage || code == ErrorCode::Unavailable ||
+         code == ErrorCode::TooLarge;
+}
 
 /// As many as the machine runs at once: fits are at low priority, and rarely many.
 int fit_threads() {
@@ -30,7 +38,8 @@ DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
                                             .robots = parts_.robots,
                                             .clock = parts_.clock,
                                             .fit_threads = fit_threads(),
-                                            .before = memory_.find(identify(key))},
+                                            .before = memory_.find(identify(key)),
+                                            .memory = parts_.memory},
                                            stop);
                  }) {}
 
@@ -40,9 +49,13 @@ fitting::FitOutcome DistributionMaker::make(const fitting::DistributionKey& key,
   try {
     return fit_(key, stop);
   } catch (const Failure& failure) {
-    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
-      throw;  // the next attempt may find it well again
+    if (may_pass(failure.code()))
+      throw;
     reason = failure.what();
+  } catch (const std::bad_alloc&) {
+    throw Failure(ErrorCode::Unavailable, "the fit found no memory");
+  } catch (const std::system_error& error) {  // no thread
+    throw Failure(ErrorCode::Unavailable, std::string("the fit could not go on: ") + error.what());
   } catch (const std::exception& exception) {
     reason = exception.what();
   }

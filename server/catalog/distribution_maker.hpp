@@ -17,6 +17,7 @@ class DistributionMaker {
     store::Store& store;
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
+    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
   };
 
   /// \param parts  outlive the maker.
@@ -27,7 +28,9 @@ class DistributionMaker {
   DistributionMaker& operator=(const DistributionMaker&) = delete;
 
   /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
-  /// \throws Failure(Storage or Unavailable), which may pass.
+  /// \throws Failure(Storage), Failure(Unavailable) for want of memory or threads, which may pass;
+  ///         Failure(TooLarge) if it would need more memory than there may be. These say nothing
+  ///         about the experience and take the place of no distribution.
   fitting::FitOutcome make(const fitting::DistributionKey& key, const std::stop_token& stop) const;
 
   /// Whether its paths were retired while it was made. \throws Failure(Storage)
