@@ -119,6 +119,11 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << count_text(status.followed, "distribution") << " followed\n"
       << "rehearsals     " << status.rehearsals << " done, " << status.queued_rehearsals
       << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n";
+  for (const TroubleCount& trouble : status.troubles)
+    out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
+        << time_text(trouble.last_ms) << ": " << trouble.last << '\n';
+  for (const BoundUse& bound : status.bounds)
+    out << "bound          " << bound.used << " of " << bound.limit << ' ' << bound.what << '\n';
 }
 
 }  // namespace

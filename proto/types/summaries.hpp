@@ -110,6 +110,7 @@ struct DistributionSummary {
   std::uint64_t configurations = 0;
   std::uint64_t paths = 0;
   std::int64_t fitted_ms = 0;
+  bool retired = false;  ///< made of paths that were retired since: it is not served any more
 };
 
 template <>
@@ -125,7 +126,8 @@ inline constexpr std::tuple kFieldsOf<DistributionSummary>{
     Field{"components", &DistributionSummary::components},
     Field{"configurations", &DistributionSummary::configurations},
     Field{"paths", &DistributionSummary::paths},
-    Field{"fitted_ms", &DistributionSummary::fitted_ms}};
+    Field{"fitted_ms", &DistributionSummary::fitted_ms},
+    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}}};
 
 /// What is kept of a distribution, and how it stands to the experience of now.
 struct Explanation {

@@ -69,6 +69,9 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
+  app.add_option("--backup-folder", options.backup_folder,
+                 "Folder that 'kinship backup' may write into; default: that of the store")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--fit-memory-mb", options.fit_memory_mb,
                  "Memory that all fits together may take; what could need more is refused")
       ->check(CLI::Range(kMinFitMemory_mb, kMaxFitMemory_mb))

@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
-#include "server/service/backup_job.hpp"
+#include "server/catalog/freshness.hpp"
 #include "server/service/explain_distribution.hpp"
 #include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
@@ -76,7 +77,7 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ResetTask:
       return reset_task(request.argument);
     case AdminVerb::Backup:
-      return begin(backup_job(parts_.store, request.argument, request_key));
+      return begin(backup_job(parts_.store, request.argument, parts_.backups, request_key));
     case AdminVerb::ListJobs:
       return list_jobs(parts_.jobs, request);
     case AdminVerb::ShowJob:
@@ -108,8 +109,10 @@ AdminPage Administration::list_paths(const AdminRequest& request) {
 AdminPage Administration::list_distributions(const AdminRequest& request) {
   const std::optional<Digest> robot = robot_filter(request);
   check_task_filter(request);
-  return page_of(
-      parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request)));
+  store::Page<DistributionSummary> page =
+      parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request));
+  mark_retired(parts_.store, page.rows);
+  return page_of(std::move(page));
 }
 
 AdminPage Administration::show_robot(const std::string& name) {
@@ -134,7 +137,12 @@ AdminPage Administration::show_path(const std::string& uuid) {
 }
 
 AdminPage Administration::show_distribution(const std::string& prefix) {
-  return page_of(find_distribution(prefix));
+  Distribution distribution = find_distribution(prefix);
+  if (catalog::is_retired(distribution, parts_.store.experience(distribution.task)))
+    distribution.reason = cut_text(
+        std::string(kNotServed) + (distribution.reason.empty() ? "" : "; ") + distribution.reason,
+        kMaxMessageBytes);
+  return page_of(std::move(distribution));
 }
 
 AdminPage Administration::explain(const std::string& prefix) {

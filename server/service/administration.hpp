@@ -14,6 +14,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/admin_page.hpp"
+#include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
 #include "server/store/store.hpp"
 
@@ -45,7 +46,8 @@ class Administration {
       return std::string();
     };
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
-    std::stop_token stop = {};                 ///< ends a reset between two of its transactions
+    BackupPlace backups = {};
+    std::stop_token stop = {};  ///< ends a reset between two of its transactions
     /// What was changed, in words, with its task (may be empty).
     std::function<void(const std::string& task, const std::string& what)> on_change =
         [](const std::string&, const std::string&) {};

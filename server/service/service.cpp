@@ -148,6 +148,7 @@ Administration::Parts Service::administration_parts() {
               },
           .fit_trouble = [this](const Digest& id) { return catalog_.trouble_of(id); },
           .memory = &memory_,
+          .backups = options_.backups,
           .stop = stop_source_.get_token(),
           .on_change =
               [this](const std::string& task, const std::string& what) {

@@ -41,6 +41,7 @@ struct ServiceOptions {
   std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
+  BackupPlace backups;
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;

@@ -182,6 +182,19 @@ ServerStatus every_status() {
   status.rehearsals = next.count();
   status.queued_rehearsals = next.count();
   status.rehearsal_time_s = next.real();
+  for (int i = 0; i < 2; ++i) {
+    TroubleCount trouble;
+    trouble.what = next.text("trouble");
+    trouble.count = next.count();
+    trouble.last = next.text("last");
+    trouble.last_ms = next.time_ms();
+    status.troubles.push_back(trouble);
+    BoundUse bound;
+    bound.what = next.text("bound");
+    bound.used = next.count();
+    bound.limit = next.count();
+    status.bounds.push_back(bound);
+  }
   return status;
 }
 
