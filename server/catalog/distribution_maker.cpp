@@ -6,6 +6,7 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "proto/types/failure.hpp"
 #include "proto/types/limits.hpp"
@@ -79,9 +80,35 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
                            std::string(failure.what());
     distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   }
+  if (distribution.revision > 0 && distribution.selection.since_ms > 0)
+    evict_old_dated(distribution);
   if (outcome.warm_state)
     remember(distribution, std::move(outcome.warm_state));
   return distribution;
+}
+
+void DistributionMaker::evict_old_dated(const Distribution& kept) const {
+  const std::int64_t oldest_ms =
+      parts_.clock.unix_ms() - std::chrono::milliseconds(kDatedAge).count();
+  std::vector<Digest> old;
+  try {
+    std::string cursor;
+    do {
+      const store::Page<DistributionSummary> page =
+          parts_.store.list_distributions(kept.robot, kept.task, cursor, kMaxPageRows);
+      for (const DistributionSummary& row : page.rows)
+        if (row.id != kept.id && row.fitted_ms < oldest_ms)
+          if (const auto other = parts_.store.find_distribution(row.id);
+              other && other->selection.since_ms > 0)
+            old.push_back(row.id);
+      cursor = page.next_cursor;
+    } while (!cursor.empty());
+    for (const Digest& id : old) {
+      parts_.store.evict_distribution(id);
+      memory_.erase(id);
+    }
+  } catch (const Failure&) {  // the next one finds them again
+  }
 }
 
 void DistributionMaker::remember(const Distribution& distribution,
