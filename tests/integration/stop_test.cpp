@@ -94,15 +94,15 @@ TEST_F(Stopping, DuringATransfer) {
 }
 
 TEST_F(Stopping, DuringAFitOfAThousandComponents) {
-  report(250);
+  report(750);
   begin_fit("default,pose_spacing=0.02,max_poses_per_path=300,components=1000");
-  expect_end_soon("a fit of 1000 components", milliseconds(6000));
+  expect_end_soon("a fit of 1000 components", milliseconds(1500));
 }
 
 TEST_F(Stopping, DuringAFitOfKernels) {
-  report(250);
+  report(750);
   begin_fit("default,pose_spacing=0.02,max_poses_per_path=300,estimator=kde");
-  expect_end_soon("a fit of kernels", milliseconds(6000));
+  expect_end_soon("a fit of kernels", milliseconds(1500));
 }
 
 TEST_F(Stopping, DuringARehearsal) {
