@@ -119,6 +119,7 @@ TEST_F(Quota, AFitOfAnotherClientComesBeforeTheSecondOfOne) {
       }
       reply->set_value(r);
     });
+    wait_for_short_tasks();  // so that fits are queued in this order
   };
   begin("greedy 0", 0);
   gate_.wait_for_calls(1);
@@ -156,9 +157,12 @@ TEST_F(Quota, AFitThatCouldNeedTooMuchMemoryIsRefusedInWordsAndTakesNoDistributi
                                  "the limit is 16 MB (kinshipd --fit-memory-mb)", "pose_spacing"})
     EXPECT_NE(own.message.find(word), std::string::npos) << own.message;
   EXPECT_EQ(fetch(request).status, FetchStatus::Ready);  // and a refit is begun behind
-  while (last("fit over the memory limit")
-             .find("distribution " + fetch(request).distribution->id.short_hex()) != 0)
+  const std::string refit = "distribution " + fetch(request).distribution->id.short_hex();
+  const auto give_up = std::chrono::steady_clock::now() + seconds(60);
+  while (!last("fit over the memory limit").starts_with(refit) &&
+         std::chrono::steady_clock::now() < give_up)
     wait_for_short_tasks();
+  EXPECT_TRUE(last("fit over the memory limit").starts_with(refit));
   const FetchReply still = fetch(request);
   EXPECT_EQ(still.status, FetchStatus::Ready) << still.message;
   EXPECT_EQ(still.distribution->revision, 1U);
