@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -58,11 +59,20 @@ class Stopping : public testing::Test {
         return bound.used;
     return 0;
   }
+  static void wait_until(const std::function<bool()>& holds) {
+    const auto give_up = std::chrono::steady_clock::now() + seconds(60);
+    while (!holds())
+      ASSERT_LT(std::chrono::steady_clock::now(), give_up);
+  }
   /// Asks for a fit and returns when it has begun.
   void begin_fit(const std::string& profile) {
     EXPECT_EQ(client_.fetch(request(profile)).value_or_throw().status, FetchStatus::Pending);
-    while (used(status(), "MB of memory of fits") == 0)
-      std::this_thread::yield();
+    wait_until([this] { return used(status(), "MB of memory of fits") > 0; });
+  }
+  /// No fit is complete: one was under way.
+  void expect_no_fit() const {
+    const std::string log = test::read_text(folder_ / "fleet.db.log");
+    EXPECT_EQ(log.find(" configurations from "), std::string::npos) << "it was over: " << log;
   }
   /// Lets it work for a while, then ends it.
   void expect_end_soon(const char* at, milliseconds after) {
@@ -72,8 +82,6 @@ class Stopping : public testing::Test {
     const auto took =
         std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begin);
     EXPECT_LT(took, kSoon) << at;
-    const std::string log = test::read_text(folder_ / "fleet.db.log");
-    EXPECT_EQ(log.find(" configurations from "), std::string::npos) << "it was over: " << log;
     std::cout << "ended within " << took.count() << " ms, at " << at << '\n';
   }
 
@@ -91,18 +99,21 @@ TEST_F(Stopping, DuringATransfer) {
   report(200);
   begin_fit("default,pose_spacing=0.01,max_poses_per_path=400,tracks=20,shape_steps=100");
   expect_end_soon("a transfer", milliseconds(300));
+  expect_no_fit();
 }
 
 TEST_F(Stopping, DuringAFitOfAThousandComponents) {
   report(750);
   begin_fit("default,pose_spacing=0.02,max_poses_per_path=300,components=1000");
   expect_end_soon("a fit of 1000 components", milliseconds(1500));
+  expect_no_fit();
 }
 
 TEST_F(Stopping, DuringAFitOfKernels) {
-  report(750);
+  report(1500);
   begin_fit("default,pose_spacing=0.02,max_poses_per_path=300,estimator=kde");
-  expect_end_soon("a fit of kernels", milliseconds(1500));
+  expect_end_soon("a fit of kernels", milliseconds(1900));
+  expect_no_fit();
 }
 
 TEST_F(Stopping, DuringARehearsal) {
@@ -110,10 +121,10 @@ TEST_F(Stopping, DuringARehearsal) {
   FetchRequest rehearsed = request("default");
   rehearsed.experience_bytes = 100'000;
   rehearsed.rehearsed = true;
-  rehearsed.deadline = seconds(1);
+  rehearsed.deadline = milliseconds(300);
   static_cast<void>(client_.fetch(rehearsed));
-  while (status().queued_rehearsals == 0)
-    std::this_thread::yield();
+  wait_until([this] { return status().queued_rehearsals > 0; });
+  EXPECT_EQ(status().rehearsals, 0U) << "it was over";
   expect_end_soon("a rehearsal", milliseconds(1000));
 }
 
