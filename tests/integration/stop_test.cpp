@@ -111,8 +111,8 @@ TEST_F(Stopping, DuringAFitOfAThousandComponents) {
 
 TEST_F(Stopping, DuringAFitOfKernels) {
   report(1500);
-  begin_fit("default,pose_spacing=0.02,max_poses_per_path=300,estimator=kde");
-  expect_end_soon("a fit of kernels", milliseconds(1900));
+  begin_fit("default,pose_spacing=0.01,max_poses_per_path=600,estimator=kde");
+  expect_end_soon("a fit of kernels", milliseconds(1500));
   expect_no_fit();
 }
 
