@@ -126,6 +126,19 @@ Result<std::vector<std::string>> parse_robot_names(std::string_view text) {
   return names;
 }
 
+namespace {
+
+/// Each moment is a distribution of its own: who asks again soon means the same one.
+milliseconds step_of_age(milliseconds age) {
+  constexpr std::chrono::hours kDay{24};
+  if (age >= 2 * kDay)
+    return kDay;
+  return age >= std::chrono::hours(2) ? milliseconds(std::chrono::hours(1))
+                                      : milliseconds(std::chrono::minutes(1));
+}
+
+}  // namespace
+
 Result<std::int64_t> parse_since(std::string_view text, std::chrono::system_clock::time_point now) {
   if (const auto time = utc_of(text))
     return time->count();
@@ -135,7 +148,8 @@ Result<std::int64_t> parse_since(std::string_view text, std::chrono::system_cloc
   if (!age)
     return not_a_time(text);
   const auto now_ms = std::chrono::duration_cast<milliseconds>(now.time_since_epoch());
-  return std::max(now_ms - *age, milliseconds(0)).count();
+  const milliseconds step = step_of_age(*age);
+  return std::max((now_ms - *age) / step * step, milliseconds(0)).count();
 }
 
 Result<Selection> read_selection(const SelectionArguments& arguments,

@@ -25,8 +25,10 @@ Result<std::vector<std::string>> parse_robot_names(std::string_view text);
 
 /// A moment: a date or time in UTC ("2026-11-21", "2026-11-21T05:32", "2026-11-21T05:32:14Z"), an
 /// age before `now`: a number and s, m, h, d or w ("90m", "14d"), or Unix time in ms as `--json`
-/// prints it: ten digits or more ("1795239134000").
-/// \return Unix time in ms, at least 0; or InvalidInput that shows the text.
+/// prints it: ten digits or more ("1795239134000"). An age goes back to the beginning of its
+/// minute, from two hours on of its hour, from two days on of its day in UTC: each moment is a
+/// distribution of its own, and who asks again soon means the same one. \return Unix time in ms, at
+/// least 0; or InvalidInput that shows the text.
 Result<std::int64_t> parse_since(std::string_view text, std::chrono::system_clock::time_point now);
 
 /// The selection but for its sources: their digests are known to the server only

@@ -97,7 +97,11 @@ int back_up(link::Client& server, const BackupOptions& options, std::ostream& ou
   constexpr const char* kCommand = "backup";
   AdminRequest request;
   request.verb = AdminVerb::Backup;
-  request.argument = std::filesystem::absolute(options.file).lexically_normal().string();
+  // A name alone is one in the server's folder of backups.
+  const std::filesystem::path file(options.file);
+  request.argument = file.has_parent_path()
+                         ? std::filesystem::absolute(file).lexically_normal().string()
+                         : file.string();
   if (options.wait)
     return run_job(server, request, options.waiting, kCommand, err, [&](const Job& job) {
       print(job, options.json, out);

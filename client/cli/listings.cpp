@@ -110,25 +110,26 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
 
 int list_distributions(link::Client& server, const ListOptions& options, std::ostream& out,
                        std::ostream& err) {
-  return list_rows(server,
-                   Listing{AdminVerb::ListDistributions, "distributions list",
-                           Table({"DISTRIBUTION", "REVISION", "TASK", "ROBOT", "PROFILE", "STATE",
-                                  "K", "CONFIGURATIONS", "PATHS", "FITTED"}),
-                           json::distribution_summary_from_json,
-                           [](const DistributionSummary& distribution) {
-                             return std::vector<std::string>{
-                                 distribution.id.short_hex(),
-                                 std::to_string(distribution.revision),
-                                 distribution.task,
-                                 distribution.label,
-                                 distribution.profile,
-                                 std::string(to_text(distribution.state)),
-                                 std::to_string(distribution.components),
-                                 std::to_string(distribution.configurations),
-                                 std::to_string(distribution.paths),
-                                 time_text(distribution.fitted_ms)};
-                           }},
-                   options, out, err);
+  return list_rows(
+      server,
+      Listing{AdminVerb::ListDistributions, "distributions list",
+              Table({"DISTRIBUTION", "REVISION", "TASK", "ROBOT", "PROFILE", "STATE", "K",
+                     "CONFIGURATIONS", "PATHS", "FITTED"}),
+              json::distribution_summary_from_json,
+              [](const DistributionSummary& distribution) {
+                return std::vector<std::string>{
+                    distribution.id.short_hex(),
+                    std::to_string(distribution.revision),
+                    distribution.task,
+                    distribution.label,
+                    distribution.profile,
+                    distribution.retired ? "retired" : std::string(to_text(distribution.state)),
+                    std::to_string(distribution.components),
+                    std::to_string(distribution.configurations),
+                    std::to_string(distribution.paths),
+                    time_text(distribution.fitted_ms)};
+              }},
+      options, out, err);
 }
 
 int list_jobs(link::Client& server, const ListOptions& options, std::ostream& out,

@@ -20,9 +20,11 @@ void add_backup(CLI::App& app, Session& session) {
                                   "kinship backup /var/backups/kinship-2026-11-21.db\n"
                                   "  kinship backup monday.db --no-wait");
   command
-      ->add_option("file", options->file,
-                   "New file, written by the server: on its machine, as its user. A relative name "
-                   "is completed with the folder here, which must be there too")
+      ->add_option(
+          "file", options->file,
+          "New file, written by the server: on its machine, as its user, below its folder of "
+          "backups (kinshipd --backup-folder). A name alone is a file in that folder; "
+          "one with a folder is completed with the folder here")
       ->required();
   CLI::Option* no_wait =
       command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");

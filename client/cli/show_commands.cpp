@@ -123,6 +123,11 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "
                                  : std::string())
       << number_text(100 * status.scrub_part, 0) << " % read\n";
+  for (const TroubleCount& trouble : status.troubles)
+    out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
+        << time_text(trouble.last_ms) << ": " << trouble.last << '\n';
+  for (const BoundUse& bound : status.bounds)
+    out << "bound          " << bound.used << " of " << bound.limit << ' ' << bound.what << '\n';
 }
 
 }  // namespace

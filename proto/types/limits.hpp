@@ -41,6 +41,7 @@ inline constexpr std::size_t kMaxFileNameBytes = 1024;  ///< of a file at the se
 inline constexpr std::size_t kMaxSelectedSources = 256;
 inline constexpr std::size_t kMaxSameArms = 1024;
 inline constexpr std::size_t kMaxHistoryMarkBytes = 64;
+inline constexpr std::size_t kMaxStatusRows = 64;  ///< of a list in a status
 inline constexpr double kMaxJointValue = 1e4;      ///< joint units, of joints without limits
 inline constexpr double kMaxPlacement_m = 1000.0;  ///< largest coordinate of a placement or pose
 

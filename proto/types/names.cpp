@@ -89,6 +89,24 @@ std::optional<Error> check_label(std::string_view label) {
   return check_name("label", label, kMaxLabelBytes);
 }
 
+std::optional<Error> check_part_name(std::string_view what, std::string_view name) {
+  if (name.size() > kMaxLinkNameBytes)
+    return Error{ErrorCode::InvalidInput, std::string(what) + ": name of " +
+                                              std::to_string(name.size()) + " bytes exceeds " +
+                                              std::to_string(kMaxLinkNameBytes)};
+  const auto bad = std::find_if(name.begin(), name.end(), is_control_character);
+  if (bad == name.end())
+    return std::nullopt;
+  return Error{ErrorCode::InvalidInput, std::string(what) + " '" + on_one_line(std::string(name)) +
+                                            "': byte " + std::to_string(bad - name.begin() + 1) +
+                                            " of the name is a control character"};
+}
+
+std::string on_one_line(std::string text) {
+  std::replace_if(text.begin(), text.end(), is_control_character, '?');
+  return text;
+}
+
 std::optional<Error> check_machine(std::string_view machine) {
   return check_free_text("machine", machine, kMaxMachineBytes, is_control_character);
 }

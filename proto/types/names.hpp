@@ -14,6 +14,12 @@ namespace kinship {
 /// UTF-8 without control characters, up to 128 bytes, may be empty.
 std::optional<Error> check_task(std::string_view task);
 std::optional<Error> check_label(std::string_view label);
+/// Name of a link or joint, called `what` in the message: up to kMaxLinkNameBytes, without control
+/// characters, which a URDF can bring in by references such as `&#27;`: names go into messages,
+/// logs and listings as they are.
+std::optional<Error> check_part_name(std::string_view what, std::string_view name);
+/// Words of others for a message: each control character, line feeds too, becomes '?'.
+std::string on_one_line(std::string text);
 std::optional<Error> check_machine(std::string_view machine);
 std::optional<Error> check_planner(std::string_view planner);
 

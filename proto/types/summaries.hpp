@@ -110,6 +110,7 @@ struct DistributionSummary {
   std::uint64_t configurations = 0;
   std::uint64_t paths = 0;
   std::int64_t fitted_ms = 0;
+  bool retired = false;  ///< made of paths that were retired since: it is not served any more
 };
 
 template <>
@@ -125,7 +126,8 @@ inline constexpr std::tuple kFieldsOf<DistributionSummary>{
     Field{"components", &DistributionSummary::components},
     Field{"configurations", &DistributionSummary::configurations},
     Field{"paths", &DistributionSummary::paths},
-    Field{"fitted_ms", &DistributionSummary::fitted_ms}};
+    Field{"fitted_ms", &DistributionSummary::fitted_ms},
+    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}}};
 
 /// What is kept of a distribution, and how it stands to the experience of now.
 struct Explanation {
@@ -187,6 +189,33 @@ inline constexpr std::tuple kFieldsOf<Job>{
     Field{"started_ms", &Job::started_ms},
     Field{"ended_ms", &Job::ended_ms}};
 
+/// How often something went wrong for clients since start.
+struct TroubleCount {
+  std::string what;
+  std::uint64_t count = 0;
+  std::string last;  ///< the last one, in words
+  std::int64_t last_ms = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<TroubleCount>{
+    Field{"what", &TroubleCount::what, {.limit = kMaxWordBytes}},
+    Field{"count", &TroubleCount::count},
+    Field{"last", &TroubleCount::last, {.limit = kMaxMessageBytes}},
+    Field{"last_ms", &TroubleCount::last_ms}};
+
+/// How much of something bounded there is.
+struct BoundUse {
+  std::string what;
+  std::uint64_t used = 0;
+  std::uint64_t limit = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<BoundUse>{
+    Field{"what", &BoundUse::what, {.limit = kMaxWordBytes}}, Field{"used", &BoundUse::used},
+    Field{"limit", &BoundUse::limit}};
+
 struct ServerStatus {
   std::string version;
   std::string store_file;
@@ -208,6 +237,8 @@ struct ServerStatus {
   std::uint64_t rollbacks = 0;          ///< of the store, noticed since start
   std::int64_t scrubbed_ms = 0;  ///< when the store was last read through for damage; 0: never
   double scrub_part = 0;         ///< 0 to 1: how much of it was read since then
+  std::vector<TroubleCount> troubles = {};
+  std::vector<BoundUse> bounds = {};
 };
 
 template <>
@@ -239,6 +270,8 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"rehearsal_time_s", &ServerStatus::rehearsal_time_s, {.min = 0, .may_be_missing = true}},
     Field{"rollbacks", &ServerStatus::rollbacks, {.may_be_missing = true}},
     Field{"scrubbed_ms", &ServerStatus::scrubbed_ms, {.may_be_missing = true}},
-    Field{"scrub_part", &ServerStatus::scrub_part, {.min = 0, .may_be_missing = true}}};
+    Field{"scrub_part", &ServerStatus::scrub_part, {.min = 0, .may_be_missing = true}},
+    Field{"troubles", &ServerStatus::troubles, {.limit = kMaxStatusRows, .may_be_missing = true}},
+    Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}}};
 
 }  // namespace kinship

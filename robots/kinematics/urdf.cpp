@@ -125,9 +125,8 @@ class HeldJoints {
              const std::set<std::string>& on_chain)
       : model_(model), held_(held), on_chain_(on_chain) {
     for (const auto& [name, value] : held) {
-      if (name.size() > kMaxLinkNameBytes)
-        throw refused("held joint: name of " + std::to_string(name.size()) + " bytes exceeds " +
-                      std::to_string(kMaxLinkNameBytes));
+      if (const auto error = check_part_name("held joint", name))
+        throw Failure(*error);
       const urdf::JointConstSharedPtr joint = model.getJoint(name);
       if (joint == nullptr)
         throw refused("held joint '" + name + "': not in the URDF");
@@ -253,9 +252,8 @@ void check_description(const RobotDescription& description) {
                                    std::pair("tip link", &description.tip_link)}) {
     if (name->empty())
       throw refused(std::string(what) + ": name is empty");
-    if (name->size() > kMaxLinkNameBytes)
-      throw refused(std::string(what) + ": name of " + std::to_string(name->size()) +
-                    " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
+    if (const auto error = check_part_name(what, *name))
+      throw Failure(*error);
   }
   if (description.held_joints.size() > kMaxHeldJoints)
     throw refused("held joints: " + std::to_string(description.held_joints.size()) + " exceed " +

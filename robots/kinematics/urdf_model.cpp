@@ -67,9 +67,8 @@ Error invalid_urdf(const std::string& message) {
 template <typename Map>
 std::optional<Error> check_names(std::string_view what, const Map& named) {
   for (const auto& [name, value] : named)
-    if (name.size() > kMaxLinkNameBytes)
-      return invalid_urdf(std::string(what) + " name of " + std::to_string(name.size()) +
-                          " bytes exceeds " + std::to_string(kMaxLinkNameBytes));
+    if (const auto error = check_part_name(what, name))
+      return invalid_urdf(error->message);
   return std::nullopt;
 }
 
@@ -101,6 +100,7 @@ Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
   } catch (const std::exception& exception) {
     errors += errors.empty() ? exception.what() : std::string("; ") + exception.what();
   }
+  errors = on_one_line(std::move(errors));  // the parser cites names before they are checked
   if (model == nullptr || model->getRoot() == nullptr)
     return invalid_urdf(errors.empty() ? "not understood" : errors);
   if (const auto error = check_names("link", model->links_))

@@ -49,11 +49,12 @@ class Endpoints::Implementation {
       : register_(participant, loop,
                   [&service](RobotDescription description,
                              const dds::Answer<RegisterConversation>& answer) {
-                    service.register_robot(std::move(description), answer);
+                    service.register_robot(std::move(description), answer,
+                                           answer.head().client_id.text());
                   }),
         report_(participant, loop,
                 [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-                  service.report(std::move(request), answer);
+                  service.report(std::move(request), answer, answer.head().client_id.text());
                 }),
         fetch_(
             participant, loop,

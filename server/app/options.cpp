@@ -91,6 +91,7 @@ const CLI::Validator& is_rate() {
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
+  constexpr std::size_t kMinFitMemory_mb = 16, kMaxFitMemory_mb = std::size_t{1} << 24U;
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
@@ -103,6 +104,13 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "Network interface to serve, e.g. eth0; default: loopback, this machine only");
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
+      ->capture_default_str();
+  app.add_option("--backup-folder", options.backup_folder,
+                 "Folder that 'kinship backup' may write into; default: that of the store")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--fit-memory-mb", options.fit_memory_mb,
+                 "Memory that all fits together may take; what could need more is refused")
+      ->check(CLI::Range(kMinFitMemory_mb, kMaxFitMemory_mb))
       ->capture_default_str();
   app.add_option("--fit-niceness", options.fit_niceness,
                  "How far these threads step back for others on this machine")

@@ -16,9 +16,11 @@ namespace kinship::app {
 struct ServerOptions {
   std::filesystem::path store;
   std::uint32_t domain = 0;
-  std::string network_interface;  ///< empty: loopback
-  std::size_t workers = 1;        ///< threads that transfer and fit
-  int fit_niceness = 10;          ///< of these threads, 0 to 19
+  std::string network_interface;        ///< empty: loopback
+  std::size_t workers = 1;              ///< threads that transfer and fit
+  std::filesystem::path backup_folder;  ///< empty: the folder of the store
+  std::size_t fit_memory_mb = 2048;     ///< of all fits together, at most
+  int fit_niceness = 10;                ///< of these threads, 0 to 19
   /// Part of one processor that rehearsing takes in the mean, 0 to 1; 0: nothing is rehearsed.
   double rehearsal_fraction = 0.1;
   std::uint64_t free_space_watermark_mb = 64;  ///< with less free, no report is taken; 0: no limit

@@ -39,6 +39,8 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service::ServiceOptions service;
   service.version = KINSHIP_VERSION;
   service.fit_threads = options.workers;
+  service.backups.folder = options.backup_folder;
+  service.fit_memory_bytes = options.fit_memory_mb << 20U;
   service.fit_niceness = options.fit_niceness;
   service.rehearsal_fraction = options.rehearsal_fraction;
   service.log = [](std::string_view line) { spdlog::info("{}", line); };

@@ -30,21 +30,28 @@ Catalog::Catalog(const Parts& parts, Options options)
     : parts_(parts),
       options_(std::move(options)),
       adviser_(options_.advice),
-      maker_({.store = parts.store, .robots = parts.robots, .clock = parts.clock}, options_.fit),
+      maker_({.store = parts.store,
+              .robots = parts.robots,
+              .clock = parts.clock,
+              .memory = parts.memory},
+             options_.fit),
       state_(parts.clock, options_.limits, work()) {}
 
 CatalogState::Work Catalog::work() {
   return {.look_up =
-              [this](const Digest& id) {
+              [this](const Digest& id, const std::string& client) {
                 return parts_.short_task_pool.submit(
-                    Priority::Interactive, {.run = [this, id] { look_up(id); }, .abandon = {}});
+                    Priority::Interactive,
+                    {.run = [this, id] { look_up(id); }, .abandon = {}, .client = client});
               },
           .fit =
-              [this](const Digest& id, Priority priority) {
-                return parts_.fitters.submit(priority,
-                                             {.run = [this, id] { run_fit(id); }, .abandon = {}});
+              [this](const Digest& id, Priority priority, const std::string& client) {
+                return parts_.fitters.submit(
+                    priority,
+                    {.run = [this, id] { run_fit(id); }, .abandon = {}, .client = client});
               },
-          .busy = [this](const std::string& message) { return busy(message); }};
+          .busy = [this](const std::string& message) { return busy(message); },
+          .over_quota = [this](const std::string& message) { options_.on_over_quota(message); }};
 }
 
 template <typename Change>
@@ -131,6 +138,16 @@ std::size_t Catalog::followed() const {
   return state_.followed();
 }
 
+CatalogUse Catalog::use() const {
+  const std::lock_guard lock(mutex_);
+  return {.waiters = state_.waiters(), .holds = state_.holds()};
+}
+
+std::string Catalog::trouble_of(const Digest& id) const {
+  const std::lock_guard lock(mutex_);
+  return state_.trouble_of(id);
+}
+
 void Catalog::look_up(const Digest& id) {
   std::optional<CatalogState::LookUpInput> input;
   change([&](Afterwards&) { input = state_.begin_look_up(id); });
@@ -159,9 +176,17 @@ void Catalog::run_fit(const Digest& id) {
     if (outcome.kind == fitting::FitOutcome::Kind::NoExperience)
       return end(id, no_experience(*key), version);
     complete(id, *key, maker_.keep(std::move(outcome)), version);
-  } catch (const std::exception& exception) {  // the store cannot be read
-    end(id, busy(exception.what()), std::nullopt);
+  } catch (const Failure& failure) {
+    fail(id, failure.code() == ErrorCode::TooLarge ? FetchStatus::Refused : FetchStatus::Busy,
+         failure.what());
+  } catch (const std::exception& exception) {  // no memory for its reply
+    fail(id, FetchStatus::Busy, exception.what());
   }
+}
+
+void Catalog::fail(const Digest& id, FetchStatus status, const std::string& message) {
+  options_.on_trouble(id, status, message);
+  change([&](Afterwards& after) { state_.fail(id, status, message, after); });
 }
 
 /// Fits until no path was retired meanwhile.

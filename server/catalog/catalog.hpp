@@ -22,6 +22,12 @@
 
 namespace kinship::catalog {
 
+/// How much of what is bounded there is in a catalog.
+struct CatalogUse {
+  std::size_t waiters = 0;  ///< fetches that wait
+  std::size_t holds = 0;    ///< on leases
+};
+
 /// Answers fetches: from memory, from the store, or by a fit, of which there is at most one per
 /// distribution at a time. A distribution that fell behind its task's experience is served as it
 /// is and fitted again behind (freshness.hpp): when it is fetched, or, while somebody holds a lease
@@ -39,6 +45,7 @@ class Catalog {
     runtime::WorkerPool& short_task_pool;  ///< asks the store
     runtime::WorkerPool& fitters;          ///< transfers and fits
     const runtime::Clock& clock;
+    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
   };
 
   struct Options {
@@ -47,6 +54,13 @@ class Catalog {
     AdviceSource advice;
     /// Called on a worker after each fit, ready or failed.
     std::function<void(const Distribution&)> on_fit = [](const Distribution&) {};
+    /// Called on a worker after each fit that made nothing, but may later: Busy, or Refused if it
+    /// would need more memory than there may be.
+    std::function<void(const Digest& id, FetchStatus status, const std::string& message)>
+        on_trouble = [](const Digest&, FetchStatus, const std::string&) {};
+    /// A client was told that it has as many leases, waiting fetches or fits as one may have.
+    /// Called from any thread, under the lock: must not call the catalog.
+    std::function<void(const std::string& message)> on_over_quota = [](const std::string&) {};
     /// Called on a worker after each fit of a distribution under a lease that was stored.
     std::function<void(const Announcement&)> announce = [](const Announcement&) {};
     /// Nobody holds a lease on a distribution any more. Called from any thread.
@@ -58,7 +72,8 @@ class Catalog {
   Catalog(const Parts& parts, Options options);
 
   /// `done` is called once, on this thread, a worker, or in expire() or stop(); it must not block.
-  /// \param waiter  who asks. If the same waiter asks again its earlier `done` is forgotten.
+  /// \param waiter  the name of the request (client_of). Sent again, its earlier `done` is
+  /// forgotten.
   void fetch(const FetchRequest& request, const std::string& waiter, FetchDone done);
 
   /// When expire() has something to do next; empty: not before the next fetch or report.
@@ -87,6 +102,9 @@ class Catalog {
   std::uint64_t fetches_from_memory() const noexcept { return fetches_from_memory_; }
   std::uint64_t fits() const noexcept { return fits_; }
   std::size_t followed() const;  ///< distributions under a lease
+  CatalogUse use() const;
+  /// Why the last fit of a distribution made nothing, in words; empty: it did.
+  std::string trouble_of(const Digest& id) const;
 
  private:
   using Afterwards = CatalogState::Afterwards;
@@ -103,6 +121,7 @@ class Catalog {
                           ExperienceVersion& version);
   void complete(const Digest& id, const fitting::DistributionKey& key, Distribution distribution,
                 const ExperienceVersion& version);
+  void fail(const Digest& id, FetchStatus status, const std::string& message);
   void end(const Digest& id, const FetchReply& reply,
            const std::optional<ExperienceVersion>& version);
 

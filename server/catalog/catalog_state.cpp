@@ -21,14 +21,15 @@ CatalogState::CatalogState(const runtime::Clock& clock, const Limits& limits, Wo
     : clock_(clock),
       limits_(limits),
       work_(std::move(work)),
-      leases_(limits.max_leases),
+      leases_(limits.max_leases, limits.client_leases),
       memory_(limits.memory) {}
 
 AdvisedReply CatalogState::fetch(const Digest& id, const fitting::DistributionKey& key,
                                  Waiter waiter, std::optional<TimePoint> follow_until,
                                  Afterwards& after) {
-  if (follow_until)
-    follow(id, key, *follow_until);
+  if (follow_until && !follow(id, key, *follow_until, std::string(client_of(waiter.key))))
+    return {over_quota("follows " + std::to_string(limits_.client_leases) + " distributions",
+                       limits_.client_leases)};
   AdvisedReply known = find(id, key, waiter.minimum_generation);
   if (!known.reply) {
     FetchDone done = waiter.done;
@@ -40,15 +41,26 @@ AdvisedReply CatalogState::fetch(const Digest& id, const fitting::DistributionKe
 }
 
 /// Takes or extends a lease; what memory knows about the distribution need not be asked for.
-void CatalogState::follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until) {
+/// \return false if the client has as many leases as one may have.
+bool CatalogState::follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
+                          const std::string& client) {
   if (stopping_)
-    return;
-  leases_.take(id, key, until);
+    return true;
+  if (!leases_.take(id, key, until, client))
+    return false;
   Leases::Lease* const lease = leases_.find(id);
   const DistributionCache::Entry* const entry = memory_.find(id);
   if (lease != nullptr && !lease->compared && entry != nullptr)
     lease->compared =
         comparison_of(*entry->reply.reply->distribution, entry->version, entry->behind);
+  return true;
+}
+
+SharedReply CatalogState::over_quota(const std::string& what, std::size_t limit) const {
+  const std::string message = "this client " + what + " already, the most one client may have (" +
+                              std::to_string(limit) + ")";
+  work_.over_quota(message);
+  return shared(work_.busy(message));
 }
 
 /// What memory holds, if that is an answer. Has it fitted again behind if it is time for that.
@@ -62,7 +74,8 @@ AdvisedReply CatalogState::find(const Digest& id, const fitting::DistributionKey
     return {};
   const AdvisedReply reply = entry->reply;
   const bool due = (entry->behind || entry->version != version) &&
-                   may_refit(*reply.reply->distribution, clock_.unix_ms());
+                   may_refit(*reply.reply->distribution, clock_.unix_ms()) &&
+                   troubles_.find(id, clock_.now()) == nullptr;
   // A failure that may have been overtaken is no answer; a mixture is, whatever came after it.
   const bool is_answer =
       !(reply.reply->status == FetchStatus::Failed && due) && satisfies(*reply.reply, generation);
@@ -75,7 +88,18 @@ SharedReply CatalogState::join(const Digest& id, const fitting::DistributionKey&
                                Waiter waiter) {
   if (pending_.waiters() >= limits_.max_waiters)
     return shared(work_.busy("too many wait already"));
+  const std::string client(client_of(waiter.key));
+  if (limits_.client_waiters > 0 && pending_.waiters_of(client) >= limits_.client_waiters)
+    return over_quota("waits for " + std::to_string(limits_.client_waiters) + " replies",
+                      limits_.client_waiters);
   const auto [pending, is_new] = pending_.open(id, key);
+  if (is_new && limits_.client_fits > 0 && pending_.fits_of(client) >= limits_.client_fits) {
+    pending_.close(id);
+    return over_quota("has " + std::to_string(limits_.client_fits) + " fits under way",
+                      limits_.client_fits);
+  }
+  if (is_new)
+    pending.client = client;
   if (pending.stage == Stage::Idle && !request_look_up(id, pending)) {
     if (is_new)
       pending_.close(id);
@@ -103,7 +127,7 @@ bool CatalogState::refresh(const Digest& id, const fitting::DistributionKey& key
 bool CatalogState::request_look_up(const Digest& id, PendingFit& pending) {
   if (Leases::Lease* const lease = leases_.find(id))
     lease->last_look_up = clock_.now();
-  if (!work_.look_up(id))
+  if (!work_.look_up(id, pending.client))
     return false;
   pending.stage = Stage::LookingUp;
   pending.look_up_due.reset();
@@ -119,7 +143,7 @@ void CatalogState::look_up_soon(const Digest& id, PendingFit& pending, Afterward
 }
 
 bool CatalogState::request_fit(const Digest& id, PendingFit& pending, Priority priority) {
-  if (!work_.fit(id, priority))
+  if (!work_.fit(id, priority, pending.client))
     return false;
   pending.stage = Stage::Queued;
   pending.urgent = priority == Priority::Interactive;
@@ -151,6 +175,9 @@ void CatalogState::schedule(const Digest& id, Afterwards& after) {
                                      : std::chrono::milliseconds(0));
   if (due && lease->last_look_up)
     due = std::max(*due, *lease->last_look_up + kLookUpSpacing);
+  const FitTrouble* const trouble = troubles_.find(id, now);
+  if (due && trouble != nullptr)
+    due = std::max(*due, trouble->next_try);
   const PendingFit* const pending = pending_.find(id);
   if (pending != nullptr && pending->stage != Stage::Idle)
     due.reset();  // until it is idle
@@ -199,6 +226,7 @@ void CatalogState::look_up_again(std::string_view task, Afterwards& after) {
 
 void CatalogState::evict(const Digest& id, Afterwards& after) {
   memory_.erase(id);
+  troubles_.erase(id);
   if (PendingFit* const pending = pending_.find(id))
     pending->was_evicted = true;
   if (Leases::Lease* const lease = leases_.find(id))
@@ -247,7 +275,9 @@ void CatalogState::resolve_pending(const Digest& id, PendingFit& pending, const 
     if (known.reply->status == FetchStatus::Ready || !refit)
       pending.answer_satisfied(known.reply, after.answers);
   }
-  pending.answer_without_deadline(shared_pending(), after.answers);
+  const FitTrouble* const trouble = troubles_.find(id, clock_.now());
+  pending.answer_without_deadline(
+      trouble == nullptr ? shared_pending() : shared(reply_in(*trouble)), after.answers);
 
   // A fit helps those whose generation has arrived; the others wait for reports.
   const std::uint64_t generation = generation_of(pending.key().robot, found.experience);
@@ -257,10 +287,13 @@ void CatalogState::resolve_pending(const Digest& id, PendingFit& pending, const 
                                     return waiter.minimum_generation <= generation;
                                   });
   const bool wanted = urgent || refit || !known.reply;
-  if (wanted && request_fit(id, pending, urgent ? Priority::Interactive : Priority::Background))
+  if (wanted && trouble == nullptr &&
+      request_fit(id, pending, urgent ? Priority::Interactive : Priority::Background))
     return;
   if (urgent)
-    pending.answer_all(shared(work_.busy("too many fits wait already")), after.answers);
+    pending.answer_all(
+        shared(trouble == nullptr ? work_.busy("too many fits wait already") : reply_in(*trouble)),
+        after.answers);
   idle(id, pending, version, after);
 }
 
@@ -294,6 +327,7 @@ void CatalogState::set_stored(const Digest& id, std::string_view task, Experienc
 
 bool CatalogState::complete(const Digest& id, std::string_view task, const AdvisedReply& reply,
                             const ExperienceVersion& version, Afterwards& after) {
+  troubles_.erase(id);
   PendingFit* const pending = pending_.find(id);
   if (pending == nullptr)
     return false;
@@ -309,6 +343,38 @@ bool CatalogState::complete(const Digest& id, std::string_view task, const Advis
   }
   idle(id, *pending, version, after);
   return is_followed;
+}
+
+void CatalogState::fail(const Digest& id, FetchStatus status, const std::string& message,
+                        Afterwards& after) {
+  const FitTrouble& trouble = troubles_.add(id, clock_.now(), status, message);
+  PendingFit* const pending = pending_.find(id);
+  if (pending == nullptr)
+    return;
+  pending->answer_all(shared(reply_in(trouble)), after.answers);
+  pending_.close(id);
+  schedule(id, after);
+}
+
+FetchReply CatalogState::reply_in(const FitTrouble& trouble) const {
+  if (trouble.status != FetchStatus::Busy)
+    return without_distribution(trouble.status, trouble.message);
+  FetchReply reply = work_.busy(trouble.message);
+  reply.retry_after =
+      std::max(reply.retry_after,
+               std::chrono::ceil<std::chrono::milliseconds>(trouble.next_try - clock_.now()));
+  return reply;
+}
+
+std::string CatalogState::trouble_of(const Digest& id) const {
+  const FitTrouble* const trouble = troubles_.last(id);
+  if (trouble == nullptr)
+    return {};
+  const auto left =
+      std::chrono::ceil<std::chrono::seconds>(trouble->next_try - clock_.now()).count();
+  return "the last fit made nothing (" + std::to_string(trouble->failures) +
+         (trouble->failures == 1 ? " time" : " times in a row") + "): " + trouble->message +
+         (left > 0 ? "; it is not tried again for " + std::to_string(left) + " s" : "");
 }
 
 void CatalogState::end(const Digest& id, const FetchReply& reply,

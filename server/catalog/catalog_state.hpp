@@ -9,6 +9,7 @@
 #include "server/catalog/adviser.hpp"
 #include "server/catalog/distribution_cache.hpp"
 #include "server/catalog/experience_versions.hpp"
+#include "server/catalog/fit_troubles.hpp"
 #include "server/catalog/leases.hpp"
 #include "server/catalog/look_up.hpp"
 #include "server/catalog/pending_fits.hpp"
@@ -27,17 +28,23 @@ class CatalogState {
 
   /// How work is begun. None of them waits or calls back.
   struct Work {
-    /// False if there is no room for it.
-    std::function<bool(const Digest& id)> look_up;
-    std::function<bool(const Digest& id, Priority priority)> fit;
+    /// False if there is no room for it. `client` is who wants it, empty: nobody in particular.
+    std::function<bool(const Digest& id, const std::string& client)> look_up;
+    std::function<bool(const Digest& id, Priority priority, const std::string& client)> fit;
     /// The reply to who cannot be served now.
     std::function<FetchReply(const std::string& message)> busy;
+    /// A client was told that it has as many of something as one may have.
+    std::function<void(const std::string& message)> over_quota = [](const std::string&) {};
   };
 
   struct Limits {
     DistributionCache::Limits memory;
     std::size_t max_waiters = 4096;
-    std::size_t max_leases = 4096;
+    std::size_t max_leases = 16'384;  ///< holds on leases, of all clients
+    // Of one client, 0: no limit. A robot needs one of each for what it plans at a time.
+    std::size_t client_waiters = 256;
+    std::size_t client_leases = 256;
+    std::size_t client_fits = 64;  ///< looked up or fitted because it asked first
   };
 
   /// What is to be done once no lock is held.
@@ -91,13 +98,23 @@ class CatalogState {
   void end(const Digest& id, const FetchReply& reply,
            const std::optional<ExperienceVersion>& version, Afterwards& after);
 
+  /// A fit made nothing, for a reason that may pass: who waits is told, and it is tried again after
+  /// a while. What was served before is served on.
+  void fail(const Digest& id, FetchStatus status, const std::string& message, Afterwards& after);
+  /// Why the last fit made nothing; empty: it did.
+  std::string trouble_of(const Digest& id) const;
+
+  std::size_t waiters() const { return pending_.waiters(); }
+  std::size_t holds() const { return leases_.holds(); }
   std::size_t followed() const { return leases_.count(clock_.now()); }
 
  private:
   AdvisedReply find(const Digest& id, const fitting::DistributionKey& key,
                     std::uint64_t generation);
   SharedReply join(const Digest& id, const fitting::DistributionKey& key, Waiter waiter);
-  void follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until);
+  bool follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
+              const std::string& client);
+  SharedReply over_quota(const std::string& what, std::size_t limit) const;
   bool refresh(const Digest& id, const fitting::DistributionKey& key);
   bool request_look_up(const Digest& id, PendingFit& pending);
   void look_up_soon(const Digest& id, PendingFit& pending, Afterwards& after);
@@ -109,6 +126,7 @@ class CatalogState {
                 bool behind);
   void idle(const Digest& id, PendingFit& pending, const ExperienceVersion& version,
             Afterwards& after);
+  FetchReply reply_in(const FitTrouble& trouble) const;
   void schedule(const Digest& id, Afterwards& after);
   void look_up_again(std::string_view task, Afterwards& after);
 
@@ -119,6 +137,7 @@ class CatalogState {
   Leases leases_;
   DistributionCache memory_;
   ExperienceVersions versions_;
+  FitTroubles troubles_;
   bool stopping_ = false;
 };
 

@@ -1,9 +1,12 @@
 #include "server/catalog/distribution_maker.hpp"
 
 #include <algorithm>
+#include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "proto/types/failure.hpp"
 #include "proto/types/limits.hpp"
@@ -12,6 +15,12 @@
 
 namespace kinship::catalog {
 namespace {
+
+/// What says nothing about the experience: the next attempt may find it well again.
+bool may_pass(ErrorCode code) {
+  return code == ErrorCode::Storage || code == ErrorCode::Unavailable ||
+         code == ErrorCode::TooLarge;
+}
 
 /// As many as the machine runs at once: fits are at low priority, and rarely many.
 int fit_threads() {
@@ -30,7 +39,8 @@ DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
                                             .robots = parts_.robots,
                                             .clock = parts_.clock,
                                             .fit_threads = fit_threads(),
-                                            .before = memory_.find(identify(key))},
+                                            .before = memory_.find(identify(key)),
+                                            .memory = parts_.memory},
                                            stop);
                  }) {}
 
@@ -40,9 +50,13 @@ fitting::FitOutcome DistributionMaker::make(const fitting::DistributionKey& key,
   try {
     return fit_(key, stop);
   } catch (const Failure& failure) {
-    if (failure.code() == ErrorCode::Storage || failure.code() == ErrorCode::Unavailable)
-      throw;  // the next attempt may find it well again
+    if (may_pass(failure.code()))
+      throw;
     reason = failure.what();
+  } catch (const std::bad_alloc&) {
+    throw Failure(ErrorCode::Unavailable, "the fit found no memory");
+  } catch (const std::system_error& error) {  // no thread
+    throw Failure(ErrorCode::Unavailable, std::string("the fit could not go on: ") + error.what());
   } catch (const std::exception& exception) {
     reason = exception.what();
   }
@@ -66,9 +80,35 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
                            std::string(failure.what());
     distribution.reason = cut_text(distribution.reason, kMaxMessageBytes);
   }
+  if (distribution.revision > 0 && distribution.selection.since_ms > 0)
+    evict_old_dated(distribution);
   if (outcome.warm_state)
     remember(distribution, std::move(outcome.warm_state));
   return distribution;
+}
+
+void DistributionMaker::evict_old_dated(const Distribution& kept) const {
+  const std::int64_t oldest_ms =
+      parts_.clock.unix_ms() - std::chrono::milliseconds(kDatedAge).count();
+  std::vector<Digest> old;
+  try {
+    std::string cursor;
+    do {
+      const store::Page<DistributionSummary> page =
+          parts_.store.list_distributions(kept.robot, kept.task, cursor, kMaxPageRows);
+      for (const DistributionSummary& row : page.rows)
+        if (row.id != kept.id && row.fitted_ms < oldest_ms)
+          if (const auto other = parts_.store.find_distribution(row.id);
+              other && other->selection.since_ms > 0)
+            old.push_back(row.id);
+      cursor = page.next_cursor;
+    } while (!cursor.empty());
+    for (const Digest& id : old) {
+      parts_.store.evict_distribution(id);
+      memory_.erase(id);
+    }
+  } catch (const Failure&) {  // the next one finds them again
+  }
 }
 
 void DistributionMaker::remember(const Distribution& distribution,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <stop_token>
 
@@ -17,6 +18,7 @@ class DistributionMaker {
     store::Store& store;
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
+    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
   };
 
   /// \param parts  outlive the maker.
@@ -27,7 +29,9 @@ class DistributionMaker {
   DistributionMaker& operator=(const DistributionMaker&) = delete;
 
   /// A fit that threw becomes a failure with its reason, so that it is not tried for ever.
-  /// \throws Failure(Storage or Unavailable), which may pass.
+  /// \throws Failure(Storage), Failure(Unavailable) for want of memory or threads, which may pass;
+  ///         Failure(TooLarge) if it would need more memory than there may be. These say nothing
+  ///         about the experience and take the place of no distribution.
   fitting::FitOutcome make(const fitting::DistributionKey& key, const std::stop_token& stop) const;
 
   /// Whether its paths were retired while it was made. \throws Failure(Storage)
@@ -36,13 +40,17 @@ class DistributionMaker {
   /// Stores it, gives it its revision and remembers what it left for the next fit. If the store
   /// cannot take it, it is of use all the same while this server runs: with revision 0, and the
   /// reason says so; the next fit is a full one then.
-  /// \param outcome  with a distribution.
+  /// \param outcome  with a distribution. One with a date takes the place of others of its task and
+  ///                 robot with dates that were not fitted for kDatedAge: who asks for the last
+  ///                 two weeks each day means another one each day.
   Distribution keep(fitting::FitOutcome outcome) const;
+  static constexpr std::chrono::hours kDatedAge{7 * 24};
 
   /// The next fit of this distribution begins anew.
   void forget(const Digest& id) const { memory_.erase(id); }
 
  private:
+  void evict_old_dated(const Distribution& kept) const;
   void remember(const Distribution& distribution,
                 std::shared_ptr<fitting::WarmState> warm_state) const;
 

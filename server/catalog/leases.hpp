@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,38 +29,47 @@ struct Comparison {
 Comparison comparison_of(const Distribution& distribution, const ExperienceVersion& version,
                          bool behind);
 
-/// Interest in distributions: whoever follows one holds a lease on it, and as long as it is held
-/// the distribution is kept up with the experience without being fetched. A bounded number; the
-/// one that ends first goes first. Not shared between threads.
+/// Interest in distributions: clients that follow one hold a lease on it, and as long as one of
+/// them does the distribution is kept up with the experience without being fetched. A bounded
+/// number of holds, in all and of each client. When all are taken the client with the most of them
+/// loses the one that ends first, so that nobody's long leases end others'. Not shared between
+/// threads.
 class Leases {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   struct Lease {
     fitting::DistributionKey key;
-    TimePoint until;
-    std::optional<Comparison> compared;     ///< missing: not yet, or not any more
+    TimePoint until;                           ///< the last hold on it ends
+    std::map<std::string, TimePoint> holders;  ///< by client: until when; at least one
+    std::optional<Comparison> compared;        ///< missing: not yet, or not any more
     std::optional<TimePoint> last_look_up;  ///< when it was compared with the store, or tried to be
     std::optional<TimePoint> due;           ///< when to look again; set by set_due()
   };
 
-  explicit Leases(std::size_t max_leases) : max_leases_(max_leases) {}
+  /// \param max_holds       of all clients together.
+  /// \param max_per_client  of each; 0: no limit.
+  explicit Leases(std::size_t max_holds, std::size_t max_per_client = 0)
+      : max_holds_(max_holds), max_per_client_(max_per_client) {}
 
-  /// Takes a lease, or extends the one that is there; never shortens it.
-  void take(const Digest& id, const fitting::DistributionKey& key, TimePoint until);
+  /// Takes a lease for a client, or extends the one it has; never shortens it.
+  /// \return false if the client has as many as one may have.
+  bool take(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
+            const std::string& client = {});
   void end(Digest id);  // by value: callers name it out of what is erased here
   void end_all();
 
-  /// Forgets the leases that have ended.
+  /// Forgets the holds that have ended.
   void expire(TimePoint now);
   /// Whose leases ended in any way since the last call, and were not taken again.
   std::vector<Digest> take_ended();
 
   /// The lease, also one that has ended and was not forgotten yet; null if there is none. Its key,
-  /// `until` and `due` are not to be changed through it.
+  /// `until`, `holders` and `due` are not to be changed through it.
   Lease* find(const Digest& id);
   bool holds(const Digest& id, TimePoint now) const;
-  std::size_t count(TimePoint now) const;  ///< of those that have not ended
+  std::size_t count(TimePoint now) const;                ///< of those that have not ended
+  std::size_t holds() const noexcept { return holds_; }  ///< of all clients, not yet forgotten
   std::vector<Digest> of_task(std::string_view task) const;
 
   /// \return whether next_due() is earlier than before.
@@ -69,10 +79,29 @@ class Leases {
 
  private:
   using ByTime = std::set<std::pair<TimePoint, Digest>>;
+  /// How many holds a client has, how soon the first of them ends, and who it is; the greatest is
+  /// the one that makes room for others.
+  using Load = std::tuple<std::size_t, TimePoint::duration, std::string>;
+  struct Client {
+    ByTime by_end;  // at least one
+    Load load;
+  };
 
-  std::size_t max_leases_;
+  void hold(const Digest& id, TimePoint until, const std::string& client);
+  void drop(const Digest& id, const std::string& client);
+  void set_until(const Digest& id, Lease& lease);
+  void make_room(const std::string& client);
+  void forget(const Digest& id);
+  void weigh(const std::string& client);
+  std::size_t count_of(const std::string& client) const;
+
+  std::size_t max_holds_, max_per_client_;
+  std::size_t holds_ = 0;
   std::map<Digest, Lease> leases_;
+  std::map<std::string, Client> clients_;
+  std::set<Load> loads_;
   ByTime by_end_, by_due_;
+  std::set<std::tuple<TimePoint, Digest, std::string>> ends_;  // of holds
   std::map<std::string, std::set<Digest>, std::less<>> by_task_;
   std::set<Digest> ended_;
 };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,9 +26,15 @@ void give(const Answers& answers);
 /// Whether a distribution is there that knows this generation of its robot's own experience.
 bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation);
 
+/// Who sent a request: the name of a request is its client's and a number, with a space between.
+inline std::string_view client_of(std::string_view request_key) {
+  return request_key.substr(0, request_key.find(' '));
+}
+
 /// Somebody who waits for a distribution.
 struct Waiter {
-  std::string key;  ///< a second waiter of the same key takes the place of the first
+  /// The name of its request: a second waiter of the same one takes the place of the first.
+  std::string key;
   std::uint64_t minimum_generation = 0;
   /// When it is told Pending. Empty: it takes what the store has.
   std::optional<std::chrono::steady_clock::time_point> deadline;
@@ -51,6 +58,7 @@ class PendingFit {
   Stage stage = Stage::Idle;
   bool urgent = false;       ///< while Queued: before the background jobs
   bool is_wanted = false;    ///< somebody asked, and not a lease alone
+  std::string client;        ///< who asked first; empty: nobody but a lease
   bool was_evicted = false;  ///< the distribution, since the look began or the fit was compared
   /// While Idle: its experience changed, but the short task pool had no room; when to try again.
   std::optional<std::chrono::steady_clock::time_point> look_up_due;

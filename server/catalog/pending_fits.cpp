@@ -1,5 +1,7 @@
 #include "server/catalog/pending_fits.hpp"
 
+#include <algorithm>
+
 namespace kinship::catalog {
 
 PendingFit* PendingFits::find(const Digest& id) {
@@ -32,6 +34,21 @@ std::size_t PendingFits::waiters() const {
   for (const auto& [id, pending] : pending_)
     count += pending.waiters().size();
   return count;
+}
+
+std::size_t PendingFits::waiters_of(std::string_view client) const {
+  std::size_t count = 0;
+  for (const auto& [id, pending] : pending_)
+    count += static_cast<std::size_t>(std::ranges::count_if(
+        pending.waiters(),
+        [client](const Waiter& waiter) { return client_of(waiter.key) == client; }));
+  return count;
+}
+
+std::size_t PendingFits::fits_of(std::string_view client) const {
+  return static_cast<std::size_t>(std::ranges::count_if(pending_, [client](const auto& entry) {
+    return entry.second.client == client && entry.second.stage != PendingFit::Stage::Idle;
+  }));
 }
 
 std::optional<PendingFits::TimePoint> PendingFits::next_deadline() const {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -28,6 +29,9 @@ class PendingFits {
   void answer_expired(TimePoint now, const SharedReply& reply, Answers& answers);
 
   std::size_t waiters() const;
+  std::size_t waiters_of(std::string_view client) const;
+  /// That a client asked for first and that are being looked up or fitted.
+  std::size_t fits_of(std::string_view client) const;
   /// When somebody's deadline passes, or a look is due.
   std::optional<TimePoint> next_deadline() const;
 

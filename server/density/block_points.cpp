@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/stopped.hpp"
+
 namespace kinship::density {
 namespace {
 
@@ -15,8 +17,8 @@ using Rank = std::uint32_t;  // of a distinct point
 class NeighbourOrder {
  public:
   NeighbourOrder(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                 const std::vector<std::uint32_t>& columns)
-      : configurations_(configurations), columns_(columns), places_(columns.size()) {
+                 const std::vector<std::uint32_t>& columns, const std::stop_token& stop)
+      : configurations_(configurations), columns_(columns), stop_(stop), places_(columns.size()) {
     for (std::size_t i = 0; i < places_.size(); ++i)
       places_[i].rank = static_cast<Rank>(i);
     order(0, places_.size());
@@ -39,6 +41,7 @@ class NeighbourOrder {
 
   void order(std::size_t begin, std::size_t end) {
     while (end - begin > kBlockPoints) {
+      throw_if_stopped(stop_);
       const std::size_t blocks = (end - begin + kBlockPoints - 1) / kBlockPoints;
       const std::size_t middle = begin + blocks / 2 * kBlockPoints;
       const Eigen::Index joint = widest_joint(begin, end);
@@ -72,15 +75,17 @@ class NeighbourOrder {
 
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
   const std::vector<std::uint32_t>& columns_;
+  const std::stop_token& stop_;
   std::vector<Place> places_;
 };
 
 }  // namespace
 
 BlockPoints::BlockPoints(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
-                         DistinctPoints distinct, Eigen::VectorXd offset)
+                         DistinctPoints distinct, Eigen::VectorXd offset,
+                         const std::stop_token& stop)
     : offset_(std::move(offset)), size_(static_cast<Eigen::Index>(distinct.columns.size())) {
-  const std::vector<Rank> order = NeighbourOrder(configurations, distinct.columns).ranks();
+  const std::vector<Rank> order = NeighbourOrder(configurations, distinct.columns, stop).ranks();
   const auto count = static_cast<int>((size_ + kBlockPoints - 1) / kBlockPoints);
   const auto padded = static_cast<std::size_t>(count) * kBlockPoints;
   points_.resize(padded * static_cast<std::size_t>(dimension()));
@@ -88,6 +93,7 @@ BlockPoints::BlockPoints(const Eigen::Ref<const Eigen::MatrixXd>& configurations
   centres_.resize(dimension(), count);
   half_widths_.resize(dimension(), count);
   for (int block = 0; block < count; ++block) {
+    throw_if_stopped(stop);
     const std::size_t first = static_cast<std::size_t>(block) * kBlockPoints;
     Eigen::Map<Eigen::MatrixXd> rows(points_.data() + first * static_cast<std::size_t>(dimension()),
                                      kBlockPoints, dimension());

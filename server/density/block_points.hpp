@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "server/density/aligned_numbers.hpp"
 #include "server/density/distinct_points.hpp"
@@ -15,8 +16,9 @@ class BlockPoints {
  public:
   /// \param configurations  d x N; of them those that `distinct` names, at least one.
   /// \param offset          d, becomes the origin.
+  /// \throws Stopped.
   BlockPoints(const Eigen::Ref<const Eigen::MatrixXd>& configurations, DistinctPoints distinct,
-              Eigen::VectorXd offset);
+              Eigen::VectorXd offset, const std::stop_token& stop = {});
 
   int dimension() const noexcept { return static_cast<int>(offset_.size()); }
   Eigen::Index size() const noexcept { return size_; }  ///< number of points

@@ -33,7 +33,9 @@ ComponentSearch prune_components(Mixture start, const BlockPoints& training,
     if (components >= current.size())
       continue;
     try {
-      current = run_em(merged(current, components), training, step_options).mixture;
+      current =
+          run_em(merged(current, components, options.computation.stop), training, step_options)
+              .mixture;
     } catch (const Failure&) {
       break;  // too wide beside its floor to be factored, as fewer would be
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "proto/types/stopped.hpp"
+
 namespace kinship::density {
 namespace {
 
@@ -21,13 +23,18 @@ struct Candidate {
 
 DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
-                               const std::vector<std::uint8_t>& wanted) {
+                               const std::vector<std::uint8_t>& wanted,
+                               const std::stop_token& stop) {
   std::vector<Candidate> order;
   order.reserve(static_cast<std::size_t>(weights.size()));
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     if (weights[i] > 0 && (wanted.empty() || wanted[static_cast<std::size_t>(i)] != 0))
       order.push_back({configurations(0, i), static_cast<std::uint32_t>(i)});
+  std::uint32_t compared = 0;
   const auto less = [&](const Candidate& a, const Candidate& b) {
+    constexpr std::uint32_t kSome = 1U << 16U;  // about a millisecond
+    if (++compared % kSome == 0)
+      throw_if_stopped(stop);
     if (a.first != b.first)
       return a.first < b.first;
     for (Eigen::Index joint = 1; joint < configurations.rows(); ++joint)

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 namespace kinship::density {
@@ -17,8 +18,10 @@ struct DistinctPoints {
 /// \param configurations  d x N, finite, N below 2^32.
 /// \param weights         N, finite, non-negative. Equal configurations add up.
 /// \param wanted          N, 0: left out; empty: all.
+/// \throws Stopped.
 DistinctPoints distinct_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
-                               const std::vector<std::uint8_t>& wanted = {});
+                               const std::vector<std::uint8_t>& wanted = {},
+                               const std::stop_token& stop = {});
 
 }  // namespace kinship::density

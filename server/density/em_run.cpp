@@ -27,11 +27,13 @@ Mixture start_mixture(const BlockPoints& all_points, Eigen::Index components, st
                       const EmOptions& options) {
   const BlockPoints points = thinned(all_points, kSamplePoints);
   const SimdKernels& kernels = *options.computation.kernels;
+  const std::stop_token& stop = options.computation.stop;
   std::mt19937_64 generator(seed);
-  const Eigen::MatrixXd centres = move_centres(
-      points, choose_centres(points, components, kernels, generator), kLloydIterations, kernels);
+  const Eigen::MatrixXd centres =
+      move_centres(points, choose_centres(points, components, kernels, generator, stop),
+                   kLloydIterations, kernels, stop);
   return maximisation(
-      moments_of_clusters(points, nearest_centres(points, centres, kernels), centres.cols()),
+      moments_of_clusters(points, nearest_centres(points, centres, kernels, stop), centres.cols()),
       points.offset(), options.floors);
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "proto/types/stopped.hpp"
 #include "server/density/aligned_numbers.hpp"
 #include "server/density/packed_mixture.hpp"
 #include "server/density/parallel.hpp"
@@ -144,6 +145,7 @@ void visit_blocks(const PackedMixture& packed, const BlockPoints& points, int ch
     BlockPosterior posterior(packed, *computation.kernels, computation.prune);
     const int end = begin_of_chunk(points, chunk + 1, chunk_count);
     for (int block = begin_of_chunk(points, chunk, chunk_count); block < end; ++block) {
+      throw_if_stopped(computation.stop);
       posterior.evaluate(points, block);
       visit(chunk, block, posterior);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "proto/types/mixture.hpp"
 #include "server/density/block_points.hpp"
@@ -15,6 +16,7 @@ struct Computation {
   int threads = 1;
   bool prune = true;  ///< leave out what no digit of the result shows
   const SimdKernels* kernels = &widest_simd_kernels();
+  std::stop_token stop = {};  ///< looked at in each block of points: Stopped is thrown
 };
 
 /// What the points say about each component: sums over the points, weighted by point weight and

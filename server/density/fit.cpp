@@ -107,7 +107,7 @@ class Fit {
   Fit(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
       const Eigen::Ref<const Eigen::VectorXd>& weights, const FitOptions& options)
       : configurations_(configurations),
-        data_(configurations, weights, options.path_of_configuration),
+        data_(configurations, weights, options.path_of_configuration, options.computation.stop),
         options_(options),
         em_(em_options(configurations.rows(), options)) {}
 
@@ -225,7 +225,7 @@ class Fit {
       few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
       const BlockPoints sample = thinned(points, sample_size(components));
       start = run_em(std::move(start), sample, for_share(few, share_of(sample, points))).mixture;
-      start = merged(start, components);
+      start = merged(start, components, em_.computation.stop);
     }
     few.max_iterations = points.size() > sample_size(components)
                              ? std::min(em_.max_iterations, kWarmPasses)
@@ -250,7 +250,7 @@ Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configur
                                const FitOptions& options) {
   check_options(configurations, weights, options);
   return estimate_of(configurations, weights, em_options(configurations.rows(), options).floors,
-                     "fit", [&](DistinctPoints distinct) {
+                     "fit", options.computation.stop, [&](DistinctPoints distinct) {
                        return Fit(configurations, weights, options).run(std::move(distinct));
                      });
 }

@@ -80,7 +80,7 @@ struct FitSummary {
 /// \return the mixture, or InvalidInput if there are fewer than d + 1 distinct configurations of
 ///         positive weight, a number is not finite or too large, no weight is positive, or the
 ///         configurations are degenerate and the covariance floor too small to make up for it.
-/// \throws std::invalid_argument if sizes differ or an option is outside its range.
+/// \throws std::invalid_argument if sizes differ or an option is outside its range; Stopped.
 /// Source: Bishop, Pattern Recognition and Machine Learning (2006), section 9.2; Arthur and
 /// Vassilvitskii, k-means++ (2007).
 Result<FitSummary> fit_mixture(const Eigen::Ref<const Eigen::MatrixXd>& configurations,

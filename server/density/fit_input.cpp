@@ -10,7 +10,7 @@ namespace kinship::density {
 
 Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                      const Eigen::Ref<const Eigen::VectorXd>& weights,
-                                     std::string_view who) {
+                                     std::string_view who, const std::stop_token& stop) {
   const auto refusal = [who](const std::string& why) {
     return Error{ErrorCode::InvalidInput, std::string(who) + ": " + why};
   };
@@ -25,7 +25,7 @@ Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& co
   if (!(weights.sum() > 0) || !std::isfinite(weights.sum()))
     return refusal("weights have sum " + std::to_string(weights.sum()) +
                    ", must be positive and finite");
-  DistinctPoints points = distinct_points(configurations, weights);
+  DistinctPoints points = distinct_points(configurations, weights, {}, stop);
   const auto count = static_cast<Eigen::Index>(points.columns.size());
   const Eigen::Index least = configurations.rows() + 1;
   if (count < least)
@@ -78,7 +78,7 @@ std::uint32_t WeightedConfigurations::paths() const {
 
 BlockPoints WeightedConfigurations::blocks_of(DistinctPoints distinct) const {
   const Eigen::VectorXd mean = mean_of(configurations_, distinct);
-  return {configurations_, std::move(distinct), mean};
+  return {configurations_, std::move(distinct), mean, stop_};
 }
 
 std::optional<WeightedConfigurations::Split> WeightedConfigurations::split(
@@ -96,7 +96,7 @@ DistinctPoints WeightedConfigurations::part(const std::vector<std::uint8_t>& hel
   wanted.reserve(path_of_configuration_.size());
   for (const std::uint32_t path : path_of_configuration_)
     wanted.push_back((held_out[path] != 0) == of_held_out ? 1 : 0);
-  return distinct_points(configurations_, weights_, wanted);
+  return distinct_points(configurations_, weights_, wanted, stop_);
 }
 
 double log_uniform(const Eigen::Ref<const Eigen::MatrixXd>& configurations,

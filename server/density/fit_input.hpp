@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -22,9 +23,10 @@ inline constexpr double kLargestValue = 1e6;  ///< joint units; squares still le
 /// not finite or too large, a weight below 0, a sum of weights that is not positive and finite, or
 /// fewer distinct configurations than the d + 1 that a covariance needs.
 /// \param who  named in the message.
+/// \throws Stopped.
 Result<DistinctPoints> usable_points(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                                      const Eigen::Ref<const Eigen::VectorXd>& weights,
-                                     std::string_view who);
+                                     std::string_view who, const std::stop_token& stop = {});
 
 /// InvalidInput: a computation with covariances failed, so the floors are too small for the data.
 Error too_flat(const Failure& failure, const Eigen::VectorXd& floors, std::string_view who);
@@ -36,8 +38,8 @@ template <typename Make>
 Result<std::invoke_result_t<Make, DistinctPoints>> estimate_of(
     const Eigen::Ref<const Eigen::MatrixXd>& configurations,
     const Eigen::Ref<const Eigen::VectorXd>& weights, const Eigen::VectorXd& floors,
-    std::string_view who, const Make& make) {
-  Result<DistinctPoints> points = usable_points(configurations, weights, who);
+    std::string_view who, const std::stop_token& stop, const Make& make) {
+  Result<DistinctPoints> points = usable_points(configurations, weights, who, stop);
   if (!points)
     return points.error();
   try {
@@ -67,10 +69,12 @@ class WeightedConfigurations {
   /// \param path_of_configuration  N, or empty where nobody asks for paths.
   WeightedConfigurations(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                          const Eigen::Ref<const Eigen::VectorXd>& weights,
-                         const std::vector<std::uint32_t>& path_of_configuration)
+                         const std::vector<std::uint32_t>& path_of_configuration,
+                         std::stop_token stop = {})
       : configurations_(configurations),
         weights_(weights),
-        path_of_configuration_(path_of_configuration) {}
+        path_of_configuration_(path_of_configuration),
+        stop_(std::move(stop)) {}
 
   std::uint32_t paths() const;  ///< how many
   /// Relative to their mean.
@@ -90,6 +94,7 @@ class WeightedConfigurations {
   const Eigen::Ref<const Eigen::MatrixXd>& configurations_;
   const Eigen::Ref<const Eigen::VectorXd>& weights_;
   const std::vector<std::uint32_t>& path_of_configuration_;
+  const std::stop_token stop_;
 };
 
 /// Logarithm of the density of the uniform distribution within limits.

@@ -144,7 +144,7 @@ class Estimate {
   Estimate(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
            const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options)
       : dimension_(configurations.rows()),
-        data_(configurations, weights, options.path_of_configuration),
+        data_(configurations, weights, options.path_of_configuration, options.computation.stop),
         options_(options),
         log_uniform_(log_uniform(configurations, options.limits)) {}
 
@@ -261,7 +261,7 @@ Result<KernelDensity> estimate_kernel_density(
     const Eigen::Ref<const Eigen::VectorXd>& weights, const KernelDensityOptions& options) {
   check_options(configurations, weights, options);
   return estimate_of(configurations, weights, options.floors_of_joints, "kernels",
-                     [&](DistinctPoints distinct) {
+                     options.computation.stop, [&](DistinctPoints distinct) {
                        return Estimate(configurations, weights, options).run(std::move(distinct));
                      });
 }

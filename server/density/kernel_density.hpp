@@ -51,7 +51,7 @@ struct KernelDensity {
 /// \param configurations  d x N, at most 1e6 in magnitude, joint units.
 /// \param weights         N, non-negative, positive sum.
 /// \return InvalidInput as fit_mixture.
-/// \throws std::invalid_argument if sizes differ or an option is outside its range.
+/// \throws std::invalid_argument if sizes differ or an option is outside its range; Stopped.
 /// Source: Silverman, Density Estimation for Statistics and Data Analysis (1986), sections 3.4.4
 /// (likelihood cross-validation) and 4.2; Iversen and Ellekilde, Kernel density estimation based
 /// self-learning sampling strategy for motion planning of repetitive tasks (2016), for the use in

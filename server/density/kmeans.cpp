@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "proto/types/stopped.hpp"
+
 namespace kinship::density {
 namespace {
 
@@ -136,7 +138,8 @@ void find_candidates(const BlockPoints& points, int block,
 }  // namespace
 
 Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
-                               const SimdKernels& kernels, std::mt19937_64& generator) {
+                               const SimdKernels& kernels, std::mt19937_64& generator,
+                               const std::stop_token& stop) {
   const int tries = 2 + static_cast<int>(std::log(static_cast<double>(count)));
   Eigen::MatrixXd centres(points.dimension(), count);
   Distances distances(points, kernels);
@@ -145,6 +148,7 @@ Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
   distances.try_centre(centres.col(0).data(), best);
   distances.apply(best);
   for (Eigen::Index chosen = 1; chosen < count; ++chosen) {
+    throw_if_stopped(stop);
     if (!(distances.total() > 0))
       return centres.leftCols(chosen);  // every point is a centre already
     for (int attempt = 0; attempt < tries; ++attempt) {
@@ -162,12 +166,13 @@ Eigen::MatrixXd choose_centres(const BlockPoints& points, Eigen::Index count,
 
 std::vector<int> nearest_centres(const BlockPoints& points,
                                  const Eigen::Ref<const Eigen::MatrixXd>& centres,
-                                 const SimdKernels& kernels) {
+                                 const SimdKernels& kernels, const std::stop_token& stop) {
   std::vector<int> nearest(static_cast<std::size_t>(points.size()));
   std::vector<int> candidates;
   Eigen::MatrixXd near(centres.rows(), centres.cols());
   alignas(64) double chosen[kBlockPoints];
   for (int block = 0; block < points.blocks(); ++block) {
+    throw_if_stopped(stop);
     find_candidates(points, block, centres, candidates);
     for (std::size_t i = 0; i < candidates.size(); ++i)
       near.col(static_cast<Eigen::Index>(i)) = centres.col(candidates[i]);
@@ -181,10 +186,10 @@ std::vector<int> nearest_centres(const BlockPoints& points,
 }
 
 Eigen::MatrixXd move_centres(const BlockPoints& points, Eigen::MatrixXd centres, int max_iterations,
-                             const SimdKernels& kernels) {
+                             const SimdKernels& kernels, const std::stop_token& stop) {
   std::vector<int> previous;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    std::vector<int> nearest = nearest_centres(points, centres, kernels);
+    std::vector<int> nearest = nearest_centres(points, centres, kernels, stop);
     if (nearest == previous)
       break;
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(centres.rows(), centres.cols());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proto/types/failure.hpp"
+#include "proto/types/stopped.hpp"
 
 namespace kinship::density {
 namespace {
@@ -48,7 +49,7 @@ double cost_of(const Component& a, const Component& b) {
 /// Components and, for each, its cheapest partner of a higher index.
 class Merging {
  public:
-  explicit Merging(const Mixture& mixture) {
+  Merging(const Mixture& mixture, const std::stop_token& stop) : stop_(stop) {
     for (Eigen::Index k = 0; k < mixture.size(); ++k) {
       const Eigen::MatrixXd& covariance = mixture.covariance(k);
       components_.push_back(
@@ -113,21 +114,23 @@ class Merging {
       partners_[i] = {other, cost};
   }
   void find_partner(std::size_t i) {
+    throw_if_stopped(stop_);  // a thousand pairs cost some milliseconds
     partners_[i] = {};
     for (std::size_t other = i + 1; other < components_.size(); ++other)
       offer(i, other);
   }
 
+  const std::stop_token& stop_;
   std::vector<Component> components_;
   std::vector<Partner> partners_;
 };
 
 }  // namespace
 
-Mixture merged(const Mixture& mixture, Eigen::Index components) {
+Mixture merged(const Mixture& mixture, Eigen::Index components, const std::stop_token& stop) {
   if (mixture.size() <= components)
     return mixture;
-  Merging merging(mixture);
+  Merging merging(mixture, stop);
   while (merging.size() > static_cast<std::size_t>(components))
     merging.merge_cheapest();
   return merging.mixture();

@@ -9,6 +9,7 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/stopped.hpp"
 #include "server/density/fit.hpp"
 #include "server/density/kernel_density.hpp"
 #include "server/fitting/branch_cuts.hpp"
@@ -93,16 +94,19 @@ std::vector<std::uint8_t> new_configurations(const PooledConfigurations& pool,
 /// One fit on its way.
 class Fit {
  public:
-  Fit(const DistributionKey& key, const FitContext& context)
+  Fit(const DistributionKey& key, const FitContext& context, const std::stop_token& stop)
       : key_(key),
         context_(context),
+        stop_(stop),
         target_(context.robots.find(key.robot).value_or_throw()),
         transfer_(context.store, context.robots, key, *target_,
                   {.known = known_of(context.before),
                    .threads = context.fit_threads,
-                   .leaves_out = context.leaves_out}) {}
+                   .leaves_out = context.leaves_out,
+                   .memory = context.memory}) {}
 
-  FitOutcome run(const std::stop_token& stop);
+  /// \throws Stopped.
+  FitOutcome run();
 
  private:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -121,18 +125,18 @@ class Fit {
 
   const DistributionKey& key_;
   const FitContext& context_;
+  const std::stop_token& stop_;
   runtime::RobotRegistry::RobotPointer target_;
   SourceTransfer transfer_;
   std::vector<SourceSummary> sources_;
 };
 
-FitOutcome Fit::run(const std::stop_token& stop) {
+FitOutcome Fit::run() {
   const std::vector<store::ExperienceSummary> experience =
       selected_experience(key_, context_.store.experience(key_.task));
   const TimePoint begin = context_.clock.now();
-  sources_ = transfer_sources(transfer_, key_, experience, context_.max_paths, stop);
-  if (stop.stop_requested())
-    return {FitOutcome::Kind::Abandoned, std::nullopt};
+  sources_ = transfer_sources(transfer_, key_, experience, context_.max_paths, stop_);
+  throw_if_stopped(stop_);
   if (std::all_of(sources_.begin(), sources_.end(),
                   [](const SourceSummary& summary) { return summary.paths_selected == 0; }))
     return {FitOutcome::Kind::NoExperience, std::nullopt};
@@ -175,20 +179,24 @@ Result<density::FitSummary> Fit::fit_mixture(Distribution& distribution,
   distribution.cuts = why.empty() ? before->cuts : find_cuts(target_->chain, configurations);
   distribution.limits = limits_with(distribution.cuts, target_->chain);
   wrap(distribution.cuts, configurations);
-  if (parameters.estimator == Estimator::Kernels)
-    return fit_kernels(configurations, weights,
-                       {.floors_of_joints = covariance_floors(target_->chain, parameters),
-                        .seed = key_.profile.seed,
-                        .computation = {.threads = context_.fit_threads},
-                        .path_of_configuration = pool.path_of_configuration(),
-                        .limits = distribution.limits});
+  throw_if_stopped(stop_);
+  const density::Computation computation{.threads = context_.fit_threads, .stop = stop_};
+  if (parameters.estimator == Estimator::Kernels) {
+    density::KernelDensityOptions kernels;
+    kernels.floors_of_joints = covariance_floors(target_->chain, parameters);
+    kernels.seed = key_.profile.seed;
+    kernels.computation = computation;
+    kernels.path_of_configuration = pool.path_of_configuration();
+    kernels.limits = distribution.limits;
+    return fit_kernels(configurations, weights, kernels);
+  }
   density::FitOptions options;
   options.components = parameters.components;
   options.prior = parameters.prior;
   options.floors_of_joints = covariance_floors(target_->chain, parameters);
   options.seed = key_.profile.seed;
   options.limits = distribution.limits;
-  options.computation.threads = context_.fit_threads;
+  options.computation = computation;
   if (why.empty())
     options.warm_start = {*before->mixture, new_configurations(pool, before->paths),
                           before->full.prior_scatter};
@@ -260,7 +268,11 @@ void Fit::fail(Distribution& distribution, const std::string& message) const {
 
 FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
                             const std::stop_token& stop) {
-  return Fit(key, context).run(stop);
+  try {
+    return Fit(key, context, stop).run();
+  } catch (const Stopped&) {
+    return {FitOutcome::Kind::Abandoned, std::nullopt};
+  }
 }
 
 Distribution failed_distribution(const DistributionKey& key, const FitContext& context,

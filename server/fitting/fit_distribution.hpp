@@ -9,6 +9,7 @@
 #include "proto/types/distribution.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/fitting/fit_memory.hpp"
+#include "server/fitting/memory_ceiling.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/store.hpp"
@@ -30,6 +31,7 @@ struct FitContext {
   /// Paths that are not used, by the report that brought them; empty: all are. What is left out is
   /// not told: such a distribution is for comparisons.
   std::function<bool(const Uuid& report)> leaves_out = {};
+  MemoryCeiling* memory = nullptr;  ///< of all fits together; null: there is no limit
 };
 
 /// A distribution is thin if fewer of its sources' poses were solved, each source counted by its
@@ -47,9 +49,10 @@ struct FitOutcome {
 /// Reads the selected experience of a task, transfers it to the target robot and fits a mixture.
 /// The revision is left 0. Paths and robots that cannot be used are left out, and the reason says
 /// so. Equal store content, key and `before`: equal distribution, but for the times; without
-/// `before` its mixture is that of any other full fit. \param stop  looked at
-/// between paths: Abandoned. \throws Failure(NotFound or InvalidInput) for the target robot;
-/// Failure(Storage). Source: Lehner et al., ICRA 2022, section IV.
+/// `before` its mixture is that of any other full fit. \param stop  looked at all the
+/// time: Abandoned. \throws Failure(NotFound or InvalidInput) for the target robot;
+/// Failure(Storage); Failure(TooLarge), before a path is transferred, if it could need more memory
+/// than there may be. Source: Lehner et al., ICRA 2022, section IV.
 FitOutcome fit_distribution(const DistributionKey& key, const FitContext& context,
                             const std::stop_token& stop);
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
+#include "proto/types/stopped.hpp"
 #include "server/density/parallel.hpp"
 #include "server/transfer/collision_filter.hpp"
 #include "server/transfer/transfer.hpp"
@@ -26,6 +28,21 @@ Eigen::Isometry3d T_target_source(const std::optional<Eigen::Isometry3d>& T_task
   if (snapped(source).matrix() == target.matrix())
     return identity;
   return target.inverse(Eigen::Isometry) * source;
+}
+
+/// Called where an exception was caught: one that is not the path's fault ends the fit, which would
+/// else be made of fewer paths than there are.
+void rethrow_if_passing() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::Storage)
+      throw;
+  } catch (const std::exception&) {
+    return;
+  }
 }
 
 }  // namespace
@@ -93,18 +110,22 @@ void PathTransfer::transfer_group(std::span<const store::StoredPath> paths,
     try {
       prepared.push_back(prepare(paths[i], i, pair, lane));
     } catch (const std::exception& exception) {
+      rethrow_if_passing();
       outcomes[i] = {std::nullopt, false, exception.what()};
     }
   }
   try {
-    transfer_all(paths, prepared, pair, outcomes);
+    transfer_all(paths, prepared, pair, stop, outcomes);
+  } catch (const Stopped&) {
+    return;
   } catch (const std::exception&) {  // one by one, the one that is to blame is found
     for (const Prepared& one : prepared) {
-      if (stop.stop_requested())
-        return;
       try {
-        transfer_all(paths, {&one, 1}, pair, outcomes);
+        transfer_all(paths, {&one, 1}, pair, stop, outcomes);
+      } catch (const Stopped&) {
+        return;
       } catch (const std::exception& exception) {
+        rethrow_if_passing();
         outcomes[one.index] = {std::nullopt, false, exception.what()};
       }
     }
@@ -127,6 +148,7 @@ PathTransfer::Prepared PathTransfer::prepare(const store::StoredPath& stored, st
 
 void PathTransfer::transfer_all(std::span<const store::StoredPath> paths,
                                 std::span<const Prepared> prepared, const transfer::ArmPair& pair,
+                                const std::stop_token& stop,
                                 std::vector<PathOutcome>& outcomes) const {
   std::vector<transfer::PathToTransfer> group;
   for (const Prepared& one : prepared) {
@@ -135,7 +157,7 @@ void PathTransfer::transfer_all(std::span<const store::StoredPath> paths,
         {stored.path, T_target_source(key_.T_task_base, stored.T_task_base), one.filters});
   }
   std::vector<transfer::TransferredPath> transferred =
-      transfer::transfer_paths(group, pair, key_.profile.transfer, key_.profile.seed);
+      transfer::transfer_paths(group, pair, key_.profile.transfer, key_.profile.seed, stop);
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     KnownPath known = prepared[i].known;
     known.path = std::make_shared<const transfer::TransferredPath>(std::move(transferred[i]));

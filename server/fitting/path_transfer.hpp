@@ -35,8 +35,7 @@ class PathTransfer {
                const KnownPaths* known, int threads);
 
   /// \param pair  of the paths' robot and the target.
-  /// \param stop  looked at before each group of paths: those that are left have neither path nor
-  ///              problem.
+  /// \param stop  looked at all the time: those that are left have neither path nor problem.
   /// \return      one per path, in their order. A bad path costs nothing but itself.
   std::vector<PathOutcome> transfer(std::span<const store::StoredPath> paths,
                                     const transfer::ArmPair& pair, const std::stop_token& stop);
@@ -62,7 +61,8 @@ class PathTransfer {
   Prepared prepare(const store::StoredPath& stored, std::size_t index,
                    const transfer::ArmPair& pair, Lane& lane) const;
   void transfer_all(std::span<const store::StoredPath> paths, std::span<const Prepared> prepared,
-                    const transfer::ArmPair& pair, std::vector<PathOutcome>& outcomes) const;
+                    const transfer::ArmPair& pair, const std::stop_token& stop,
+                    std::vector<PathOutcome>& outcomes) const;
 
   const store::Store& store_;
   const DistributionKey& key_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "proto/types/failure.hpp"
+#include "server/fitting/fit_need.hpp"
 #include "server/fitting/selected_experience.hpp"
 
 namespace kinship::fitting {
@@ -64,18 +66,36 @@ SourceTransfer::SourceTransfer(const store::Store& store, runtime::RobotRegistry
       key_(key),
       target_(target),
       leaves_out_(options.leaves_out),
+      threads_(options.threads),
+      memory_(options.memory),
       transfer_(store, key, target, options.known, options.threads),
       pool_(target.chain.dof()) {}
 
-std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience) const {
+std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience,
+                                             const std::stop_token& stop) const {
   if (key_.since_ms == 0)
     return experience.paths;
   std::uint64_t count = 0;
-  visit_pages(store_, experience.robot, key_, [&count](const std::vector<store::StoredPath>& page) {
+  visit_pages(store_, experience.robot, key_, [&](const std::vector<store::StoredPath>& page) {
     count += page.size();
-    return true;
+    return !stop.stop_requested();
   });
   return std::min(count, experience.paths);  // others may arrive meanwhile
+}
+
+void SourceTransfer::reserve(const std::vector<store::ExperienceSummary>& experience,
+                             const std::vector<std::uint64_t>& wanted,
+                             const std::stop_token& stop) {
+  if (memory_ == nullptr)
+    return;
+  const FitSize size{key_, experience, wanted, target_.chain.dof(), threads_};
+  FitNeed need = need_at_most(size);
+  if (need.bytes > memory_->max_bytes())
+    need = need_by_length(size, store_, stop);
+  if (need.bytes > memory_->max_bytes())
+    throw Failure(ErrorCode::TooLarge, describe(need, memory_->max_bytes()));
+  reservation_ = memory_->reserve(need.bytes, stop);
+  reserved_bytes_ = need.bytes;
 }
 
 SourceSummary SourceTransfer::add(const store::ExperienceSummary& experience,
@@ -126,6 +146,11 @@ void SourceTransfer::add_path(const store::StoredPath& stored, const PathOutcome
   }
   ++summary.source.paths_used;
   pool_.add(outcome.path->path, stored.report_uuid);
+  if (memory_ != nullptr &&
+      static_cast<std::size_t>(pool_.size()) * bytes_of_configuration(target_.chain.dof()) >
+          reserved_bytes_)
+    throw Failure(ErrorCode::TooLarge, std::to_string(pool_.size()) +
+                                           " configurations are more than memory was reserved for");
   summary.source += outcome.path->path->summary;
   count_scene(*outcome.path, summary);
   (stored.T_task_base ? summary.has_placed : summary.has_unplaced) = true;
@@ -150,9 +175,10 @@ std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const Dist
   std::vector<std::uint64_t> selected;
   selected.reserve(experience.size());
   for (const store::ExperienceSummary& source : experience)
-    selected.push_back(transfer.count_selected(source));
+    selected.push_back(transfer.count_selected(source, stop));
   const std::vector<std::uint64_t> wanted =
       share_paths(selected, max_paths, key.profile.density.weighting);
+  transfer.reserve(experience, wanted, stop);
   std::vector<SourceSummary> summaries;
   for (std::size_t i = 0; i < experience.size(); ++i)
     summaries.push_back(transfer.add(experience[i], selected[i], wanted[i], stop));

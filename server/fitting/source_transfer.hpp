@@ -9,6 +9,7 @@
 #include "proto/types/distribution.hpp"
 #include "server/fitting/distribution_key.hpp"
 #include "server/fitting/known_paths.hpp"
+#include "server/fitting/memory_ceiling.hpp"
 #include "server/fitting/path_transfer.hpp"
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -40,6 +41,7 @@ class SourceTransfer {
     const KnownPaths* known = nullptr;
     int threads = 1;  ///< that transfer; what comes out does not depend on them
     std::function<bool(const Uuid& report)> leaves_out = {};  ///< see FitContext
+    MemoryCeiling* memory = nullptr;  ///< outlives the transfer; null: there is no limit
   };
 
   /// \param robots, store, key, target  outlive it.
@@ -50,12 +52,19 @@ class SourceTransfer {
                  const DistributionKey& key, const runtime::Robot& target, const Options& options);
 
   /// How many paths of the source the key wants.
-  std::uint64_t count_selected(const store::ExperienceSummary& experience) const;
+  std::uint64_t count_selected(const store::ExperienceSummary& experience,
+                               const std::stop_token& stop) const;
+
+  /// Reserves the memory that the paths and a fit of them could need, until the transfer ends.
+  /// \param wanted  paths, one number per source.
+  /// \throws Failure(TooLarge), in words, if there may never be so much; Failure(Storage); Stopped.
+  void reserve(const std::vector<store::ExperienceSummary>& experience,
+               const std::vector<std::uint64_t>& wanted, const std::stop_token& stop);
 
   /// Adds `wanted` of the `selected` paths of a source, spread evenly over their order of arrival.
   /// Bad paths and robots that cannot be read cost nothing but themselves; the summary says so.
   /// \param stop  looked at between groups of paths: what was transferred until then is incomplete.
-  /// \throws Failure(Storage)
+  /// \throws Failure(Storage); Failure(TooLarge) if they become more than was reserved for.
   SourceSummary add(const store::ExperienceSummary& experience, std::uint64_t selected,
                     std::uint64_t wanted, const std::stop_token& stop);
 
@@ -76,6 +85,10 @@ class SourceTransfer {
   const DistributionKey& key_;
   const runtime::Robot& target_;
   const std::function<bool(const Uuid& report)> leaves_out_;
+  const int threads_;
+  MemoryCeiling* const memory_;
+  MemoryCeiling::Reservation reservation_;
+  std::size_t reserved_bytes_ = 0;
   PathTransfer transfer_;
   PooledConfigurations pool_;
   KnownPaths used_;
@@ -84,7 +97,9 @@ class SourceTransfer {
 
 /// Adds every source's share of at most `max_paths` paths.
 /// \return how each source fared, in their order.
-/// \throws Failure(Storage)
+/// \throws Failure(Storage); Failure(TooLarge), before the first, if they could need more memory
+/// than
+///         there may be; Stopped.
 std::vector<SourceSummary> transfer_sources(SourceTransfer& transfer, const DistributionKey& key,
                                             const std::vector<store::ExperienceSummary>& experience,
                                             std::size_t max_paths, const std::stop_token& stop);

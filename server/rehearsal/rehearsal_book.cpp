@@ -9,6 +9,7 @@
 
 #include "proto/types/enum_text.hpp"
 #include "proto/types/failure.hpp"
+#include "proto/types/stopped.hpp"
 #include "robots/planning/planning_budget.hpp"
 #include "server/fitting/fit_distribution.hpp"
 #include "server/fitting/selected_experience.hpp"
@@ -31,7 +32,8 @@ std::optional<Mixture> fit_without(std::size_t half, const fitting::Distribution
       {.store = parts.store,
        .robots = parts.robots,
        .clock = parts.clock,
-       .leaves_out = [half](const Uuid& report) { return half_of(report) == half; }},
+       .leaves_out = [half](const Uuid& report) { return half_of(report) == half; },
+       .memory = parts.memory},
       stop);
   return outcome.distribution ? outcome.distribution->mixture : std::nullopt;
 }
@@ -171,6 +173,7 @@ void RehearsalBook::work(const Digest& id) {
   try {
     if (is_out_of_date(before.key, before))
       rehearse(id, before.key);
+  } catch (const Stopped&) {  // everybody who waited was answered
   } catch (
       const std::exception& exception) {  // the store cannot be read: who asks next tries again
     options_.log("rehearsal " + id.short_hex() + ": " + exception.what());
@@ -219,6 +222,7 @@ Result<Subject> RehearsalBook::subject_of(const RehearsalKey& key) {
       subject.robot->chain, ways ? to_experience(*ways) : TaskExperience{});
   for (std::size_t half = 0; half < kHalves; ++half)
     subject.mixtures.at(half) = fit_without(half, key.distribution, parts_, stop);
+  throw_if_stopped(stop);
   return subject;
 }
 
@@ -228,7 +232,9 @@ void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
   Rehearsal result;
   result.is_complete = true;
   if (Result<Subject> subject = subject_of(key)) {
-    Rehearsing rehearsing(*std::move(subject), options_.plan);
+    RehearsalOptions plan = options_.plan;
+    plan.stop = stop_source_.get_token();
+    Rehearsing rehearsing(*std::move(subject), plan);
     double rested_s = planning::thread_time_s();
     std::size_t kept_rounds = 0;
     while (!stop_source_.stop_requested() && rehearsing.step()) {

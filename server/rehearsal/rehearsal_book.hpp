@@ -20,6 +20,7 @@
 #include "server/catalog/experience_book.hpp"
 #include "server/catalog/experience_versions.hpp"
 #include "server/fitting/distribution_key.hpp"
+#include "server/fitting/memory_ceiling.hpp"
 #include "server/rehearsal/rehearse.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -74,6 +75,7 @@ class RehearsalBook {
     runtime::RobotRegistry& robots;
     const runtime::Clock& clock;
     catalog::ExperienceBook& experience;
+    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
   };
 
   RehearsalBook(const Parts& parts, RehearsalBookOptions options);

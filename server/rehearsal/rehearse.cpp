@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proto/types/split_mix.hpp"
+#include "proto/types/stopped.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/guided_sampler.hpp"
@@ -91,7 +92,8 @@ void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const
   const planning::GuidedSampler guided =
       planning::guided_sampler(subject_.robot->chain, posed.query, mixture ? &*mixture : nullptr,
                                subject_.experience, {.guide = tried.guide});
-  const planning::IsFree is_free = [&posed](const Eigen::VectorXd& q) {
+  const planning::IsFree is_free = [this, &posed](const Eigen::VectorXd& q) {
+    throw_if_stopped(options_.stop);
     return !posed.world->collides(q);
   };
   planning::BirrtOptions options;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "proto/types/mixture.hpp"
@@ -34,6 +35,7 @@ struct Subject {
 struct RehearsalOptions {
   std::size_t rounds = 4;  ///< times that each query is planned with each guide, each with a seed
   std::uint64_t max_checks = 20'000;  ///< of one plan
+  std::stop_token stop = {};          ///< looked at before each check
 };
 
 /// Plans recorded queries with each guide in turn, a query a step, so that who runs it may rest
@@ -43,7 +45,7 @@ class Rehearsing {
  public:
   explicit Rehearsing(Subject subject, const RehearsalOptions& options = {});
 
-  /// Plans the next query. \return false: there was none.
+  /// Plans the next query. \return false: there was none. \throws Stopped.
   bool step();
 
   std::size_t rounds() const noexcept { return round_; }  ///< that are over

@@ -1,5 +1,6 @@
 #include "server/runtime/robot_registry.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -64,18 +65,24 @@ std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
                                                   const kinematics::Chain& chain) {
   std::vector<std::string> labels;
   store::Page<RobotSummary> page;
+  std::size_t compared = 0;
+  const auto is_over = [&] {
+    return labels.size() == kMaxSameArms || compared == kMaxSameArms || is_stopping_;
+  };
   try {
     do {
       page = store_.list_robots(page.next_cursor, kMaxPageRows);
       for (const RobotSummary& other : page.rows) {
-        if (other.robot == robot || labels.size() == kMaxSameArms)
+        if (other.robot == robot || other.dof != static_cast<std::uint32_t>(chain.dof()) ||
+            is_over())
           continue;
+        ++compared;
         const Result<RobotPointer> known = find(other.robot);
         if (known && kinematics::compare_arms(chain, known.value()->chain) !=
                          kinematics::ArmLikeness::Different)
           labels.push_back(other.label);
       }
-    } while (!page.next_cursor.empty() && labels.size() < kMaxSameArms);
+    } while (!page.next_cursor.empty() && !is_over());
   } catch (const Failure&) {  // the robot is registered; whom it is like can be asked again
   }
   return labels;
@@ -84,6 +91,13 @@ std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
 Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
   if (RobotPointer known = find_in_memory(robot))
     return known;
+  Result<RobotPointer> found = read(robot);
+  if (!found && found.error().code == ErrorCode::Storage)
+    options_.on_unreadable(found.error().message);
+  return found;
+}
+
+Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
   std::optional<store::RobotRecord> record;
   try {
     record = store_.find_robot(robot);
@@ -96,10 +110,9 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
   Result<kinematics::Chain> chain = kinematics::read_chain(record->description);
   const std::string name = "robot '" + record->description.label + "' (" + robot.short_hex() + ")";
   if (!chain)
-    return Error{ErrorCode::InvalidInput,
-                 name + " cannot be read any more: " + chain.error().message};
+    return Error{ErrorCode::Storage, name + " cannot be read any more: " + chain.error().message};
   if (chain->digest() != robot)
-    return Error{ErrorCode::InvalidInput,
+    return Error{ErrorCode::Storage,
                  name + " now reads as another robot, " + chain->digest().short_hex()};
   return keep(robot_of(record->description, std::move(chain).value()));
 }
@@ -107,13 +120,29 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
 RobotRegistry::RobotPointer RobotRegistry::find_in_memory(const Digest& robot) const {
   const std::lock_guard lock(mutex_);
   const auto found = robots_.find(robot);
-  return found == robots_.end() ? nullptr : found->second;
+  if (found == robots_.end())
+    return nullptr;
+  found->second.last_used = ++uses_;
+  return found->second.robot;
+}
+
+std::size_t RobotRegistry::in_memory() const {
+  const std::lock_guard lock(mutex_);
+  return robots_.size();
 }
 
 RobotRegistry::RobotPointer RobotRegistry::keep(Robot robot) {
   const auto pointer = std::make_shared<const Robot>(std::move(robot));
   const std::lock_guard lock(mutex_);
-  return robots_.emplace(pointer->digest, pointer).first->second;
+  Known& known = robots_[pointer->digest];
+  if (!known.robot)
+    known.robot = pointer;
+  known.last_used = ++uses_;
+  RobotPointer kept = known.robot;
+  if (robots_.size() > options_.max_robots)
+    robots_.erase(std::ranges::min_element(
+        robots_, {}, [](const auto& entry) { return entry.second.last_used; }));
+  return kept;
 }
 
 }  // namespace kinship::runtime

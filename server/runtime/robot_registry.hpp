@@ -1,10 +1,14 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proto/types/conversations.hpp"
@@ -26,40 +30,65 @@ struct Robot {
   geometry::RobotShapes shapes = {};
 };
 
-/// Knows the robots of a store and keeps their chains in memory once they were parsed. May be
+/// Knows the robots of a store and keeps those that were used last parsed in memory. May be
 /// shared between threads; no lock is held while it parses or reads the store.
 class RobotRegistry {
  public:
   /// The registry and whoever computes with the robot share it: it never changes.
   using RobotPointer = std::shared_ptr<const Robot>;
 
+  struct Options {
+    std::size_t max_robots = 1024;  ///< in memory; the one not used for longest goes first
+    /// A stored robot cannot be read, with its name and why. Called from any thread.
+    std::function<void(const std::string& message)> on_unreadable = [](const std::string&) {};
+  };
+
   /// \param store  outlives the registry.
-  explicit RobotRegistry(store::Store& store) : store_(store) {}
+  explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
+  RobotRegistry(store::Store& store, Options options)
+      : store_(store), options_(std::move(options)) {}
 
   /// Parses, identifies and stores a robot, and tells which other robots of the store are the same
   /// arm: at most kMaxSameArms labels, in their order, none if the store cannot tell. Refused, with
   /// the reason, if the description breaks a rule or its label belongs to another robot.
   ///
-  /// The first call after a start reads every robot of the store; later ones find them in memory.
+  /// It is compared with robots of as many joints, the first kMaxSameArms of them; those that are
+  /// not in memory are read.
   /// \param now_ms  Unix time, UTC.
   /// \throws Failure(Storage)
   RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms);
 
   /// From memory, or read from the store and parsed.
-  /// \return NotFound if the store has no such robot; InvalidInput if its description cannot be
-  ///         read any more; Storage if its row is damaged or the store cannot be read.
+  /// \return NotFound if the store has no such robot; Storage if its row is damaged, its
+  /// description
+  ///         cannot be read any more (as after an upgrade with a stricter parser) or the store
+  ///         cannot be read: a fault of the server's own, which nobody else's report is refused
+  ///         for.
   Result<RobotPointer> find(const Digest& robot);
 
   /// From memory only; null if it is not there.
   RobotPointer find_in_memory(const Digest& robot) const;
+  std::size_t in_memory() const;
+
+  /// Comparing with other robots ends: whoever registers is told of those found until then.
+  void stop() noexcept { is_stopping_ = true; }
 
  private:
+  struct Known {
+    RobotPointer robot;
+    std::uint64_t last_used = 0;
+  };
+
+  Result<RobotPointer> read(const Digest& robot);
   RobotPointer keep(Robot robot);
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
 
   store::Store& store_;
-  mutable std::mutex mutex_;  // guards robots_
-  std::map<Digest, RobotPointer> robots_;
+  const Options options_;
+  std::atomic<bool> is_stopping_ = false;
+  mutable std::mutex mutex_;  // guards what follows
+  mutable std::map<Digest, Known> robots_;
+  mutable std::uint64_t uses_ = 0;
 };
 
 }  // namespace kinship::runtime

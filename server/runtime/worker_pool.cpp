@@ -13,7 +13,9 @@
 namespace kinship::runtime {
 
 WorkerPool::WorkerPool(const Options& options)
-    : queue_limit_(options.queue_limit), thread_count_(std::max<std::size_t>(options.threads, 1)) {
+    : queue_limit_(options.queue_limit),
+      client_limit_(options.client_limit),
+      thread_count_(std::max<std::size_t>(options.threads, 1)) {
   threads_.reserve(thread_count_);
   try {
     for (std::size_t i = 0; i < thread_count_; ++i)
@@ -33,23 +35,27 @@ bool WorkerPool::submit(Priority priority, Job job) {
     const std::lock_guard lock(mutex_);
     if (stopping_ || interactive_.size() + background_.size() >= queue_limit_)
       return false;
-    (priority == Priority::Interactive ? interactive_ : background_).push_back(std::move(job));
+    if (client_limit_ > 0 && !job.client.empty() &&
+        interactive_.size_of(job.client) >= client_limit_)
+      return false;
+    const std::string client = job.client;
+    (priority == Priority::Interactive ? interactive_ : background_).push(client, std::move(job));
   }
   wake_.notify_one();
   return true;
 }
 
 void WorkerPool::stop(Leftovers leftovers) {
-  std::deque<Job> abandoned;
+  std::vector<Job> abandoned;
   std::vector<std::thread> threads;
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
     threads.swap(threads_);
     if (leftovers == Leftovers::Abandon) {
-      abandoned.swap(interactive_);
-      std::move(background_.begin(), background_.end(), std::back_inserter(abandoned));
-      background_.clear();
+      for (FairQueue<Job>* const queue : {&interactive_, &background_})
+        while (!queue->empty())
+          abandoned.push_back(queue->pop());
     }
   }
   wake_.notify_all();
@@ -79,11 +85,10 @@ void WorkerPool::work(int niceness) {
 bool WorkerPool::next_job(Job& job) {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [this] { return stopping_ || !interactive_.empty() || !background_.empty(); });
-  std::deque<Job>& queue = interactive_.empty() ? background_ : interactive_;
+  FairQueue<Job>& queue = interactive_.empty() ? background_ : interactive_;
   if (queue.empty())
     return false;
-  job = std::move(queue.front());
-  queue.pop_front();
+  job = queue.pop();
   return true;
 }
 

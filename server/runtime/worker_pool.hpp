@@ -2,22 +2,25 @@
 
 #include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "server/runtime/fair_queue.hpp"
 
 namespace kinship::runtime {
 
 /// A fixed number of threads and a bounded queue: interactive jobs before background ones, each
-/// kind in the order of arrival. May be shared between threads.
+/// kind of each client in turn (fair_queue.hpp). May be shared between threads.
 class WorkerPool {
  public:
   struct Options {
     std::size_t threads = 1;
     std::size_t queue_limit = 64;  ///< jobs that wait, of both kinds
     int niceness = 0;              ///< 0 to 19, of each thread; 19 yields most
+    std::size_t client_limit = 0;  ///< interactive ones of one client that wait; 0: no limit
   };
 
   enum class Priority { Interactive, Background };
@@ -26,6 +29,7 @@ class WorkerPool {
   struct Job {
     std::function<void()> run;
     std::function<void()> abandon;  ///< may be empty
+    std::string client = {};        ///< who wants it; empty: the server itself, without a limit
   };
 
   /// What stop() does with jobs that nobody has begun.
@@ -37,7 +41,8 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// \return false, with the job untouched, if the queue is full or the pool stops.
+  /// \return false, with the job untouched, if the queue is full, also for its client, or the pool
+  ///         stops.
   bool submit(Priority priority, Job job);
 
   /// Accepts nothing more, deals with the queue, and returns when every thread has ended. Not to
@@ -51,11 +56,11 @@ class WorkerPool {
   void work(int niceness);
   bool next_job(Job& job);
 
-  const std::size_t queue_limit_;
+  const std::size_t queue_limit_, client_limit_;
   const std::size_t thread_count_;
   mutable std::mutex mutex_;  // guards what follows, but for the threads
   std::condition_variable wake_;
-  std::deque<Job> interactive_, background_;
+  FairQueue<Job> interactive_, background_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;  // changed by the constructor and by the first stop() only
 };

@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
-#include "server/service/backup_job.hpp"
+#include "server/catalog/freshness.hpp"
 #include "server/service/explain_distribution.hpp"
 #include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
@@ -76,7 +77,7 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ResetTask:
       return reset_task(request.argument);
     case AdminVerb::Backup:
-      return begin(backup_job(parts_.store, request.argument, request_key));
+      return begin(backup_job(parts_.store, request.argument, parts_.backups, request_key));
     case AdminVerb::ListJobs:
       return list_jobs(parts_.jobs, request);
     case AdminVerb::ShowJob:
@@ -108,16 +109,20 @@ AdminPage Administration::list_paths(const AdminRequest& request) {
 AdminPage Administration::list_distributions(const AdminRequest& request) {
   const std::optional<Digest> robot = robot_filter(request);
   check_task_filter(request);
-  return page_of(
-      parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request)));
+  store::Page<DistributionSummary> page =
+      parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request));
+  mark_retired(parts_.store, page.rows);
+  return page_of(std::move(page));
 }
 
 AdminPage Administration::show_robot(const std::string& name) {
-  store::RobotRecord record = find_robot(parts_.store, name).value_or_throw();
-  RobotSummary summary = summary_of(record.digest);
+  RobotSummary summary = find_robot(parts_.store, name).value_or_throw();
+  std::optional<store::RobotRecord> record = parts_.store.find_robot(summary.robot);
+  if (!record)
+    return page_of(not_found("robot", name));
   name_solver(summary);
   AdminPage page = page_of(std::move(summary));
-  page.rows.emplace_back(std::move(record.description));
+  page.rows.emplace_back(std::move(record->description));
   return page;
 }
 
@@ -132,7 +137,12 @@ AdminPage Administration::show_path(const std::string& uuid) {
 }
 
 AdminPage Administration::show_distribution(const std::string& prefix) {
-  return page_of(find_distribution(prefix));
+  Distribution distribution = find_distribution(prefix);
+  if (catalog::is_retired(distribution, parts_.store.experience(distribution.task)))
+    distribution.reason = cut_text(
+        std::string(kNotServed) + (distribution.reason.empty() ? "" : "; ") + distribution.reason,
+        kMaxMessageBytes);
+  return page_of(std::move(distribution));
 }
 
 AdminPage Administration::explain(const std::string& prefix) {
@@ -141,6 +151,8 @@ AdminPage Administration::explain(const std::string& prefix) {
     distribution.advice = parts_.advise(distribution);
   Explanation explanation =
       explain_distribution(parts_.store, std::move(distribution), parts_.clock.unix_ms());
+  if (const std::string trouble = parts_.fit_trouble(explanation.distribution.id); !trouble.empty())
+    explanation.next_fit += "; " + trouble;
   if (const std::shared_ptr<const Rehearsal> known = parts_.rehearsal(explanation.distribution.id))
     explanation.rehearsal = *known;
   return page_of(std::move(explanation));
@@ -148,8 +160,10 @@ AdminPage Administration::explain(const std::string& prefix) {
 
 AdminPage Administration::export_configurations(const std::string& prefix,
                                                 const std::string& request_key) {
-  const fitting::FitContext context{
-      .store = parts_.store, .robots = parts_.robots, .clock = parts_.clock};
+  const fitting::FitContext context{.store = parts_.store,
+                                    .robots = parts_.robots,
+                                    .clock = parts_.clock,
+                                    .memory = parts_.memory};
   return begin(export_configurations_job(context, find_distribution(prefix), request_key));
 }
 
@@ -171,11 +185,27 @@ AdminPage Administration::export_paths(const AdminRequest& request) {
 }
 
 AdminPage Administration::retire_path(const std::string& uuid) {
-  return retired(parts_.store.retire_path(report_of(uuid)), "path " + uuid);
+  const Uuid report = report_of(uuid);
+  try {
+    return retired(parts_.store.retire_path(report), "path " + uuid);
+  } catch (const std::exception&) {  // it may be retired all the same
+    if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
+      parts_.forget_task(attempt->task);
+    throw;
+  }
 }
 
 AdminPage Administration::reset_task(const std::string& task) {
-  return retired(parts_.store.reset_task(task), "reset");
+  Result<Retirement> retirement = Error{};
+  try {
+    retirement = parts_.store.reset_task(task, parts_.stop);
+  } catch (const std::exception&) {  // some of its paths may be retired
+    parts_.forget_task(task);
+    throw;
+  }
+  if (!retirement && retirement.error().code == ErrorCode::Unavailable)
+    parts_.forget_task(task);
+  return retired(std::move(retirement), "reset");
 }
 
 AdminPage Administration::retired(Result<Retirement> retirement, const std::string& what) {
@@ -196,7 +226,7 @@ AdminPage Administration::begin(Result<Jobs::Task> task) {
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {
   if (request.robot.empty())
     return std::nullopt;
-  return find_robot(parts_.store, request.robot).value_or_throw().digest;
+  return find_robot(parts_.store, request.robot).value_or_throw().robot;
 }
 
 void Administration::check_task_filter(const AdminRequest& request) const {
@@ -210,18 +240,6 @@ Distribution Administration::find_distribution(const std::string& prefix) const 
   if (!distribution)
     throw Failure(not_found("distribution", prefix));
   return std::move(*distribution);
-}
-
-RobotSummary Administration::summary_of(const Digest& robot) const {
-  std::string cursor;
-  do {
-    const store::Page<RobotSummary> page = parts_.store.list_robots(cursor, kMaxPageRows);
-    for (const RobotSummary& summary : page.rows)
-      if (summary.robot == robot)
-        return summary;
-    cursor = page.next_cursor;
-  } while (!cursor.empty());
-  throw Failure(not_found("robot", robot.short_hex()));
 }
 
 void Administration::name_solver(RobotSummary& summary) {

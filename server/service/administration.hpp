@@ -3,15 +3,18 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
+#include "server/fitting/memory_ceiling.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/admin_page.hpp"
+#include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
 #include "server/store/store.hpp"
 
@@ -38,6 +41,13 @@ class Administration {
     std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
     /// Paths of a task were retired: nothing that was made of them may be served.
     std::function<void(const std::string& task)> forget_task = [](const std::string&) {};
+    /// Why the last fit of a distribution made nothing, in words; empty: it did.
+    std::function<std::string(const Digest&)> fit_trouble = [](const Digest&) {
+      return std::string();
+    };
+    fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
+    BackupPlace backups = {};
+    std::stop_token stop = {};  ///< ends a reset between two of its transactions
     /// What was changed, in words, with its task (may be empty).
     std::function<void(const std::string& task, const std::string& what)> on_change =
         [](const std::string&, const std::string&) {};
@@ -71,7 +81,6 @@ class Administration {
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   void check_task_filter(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
-  RobotSummary summary_of(const Digest& robot) const;
   void name_solver(RobotSummary& summary);
   AdminPage retired(Result<Retirement> retirement, const std::string& what);
 

@@ -1,6 +1,8 @@
 #include "server/service/explain_distribution.hpp"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,8 +48,7 @@ std::string next_fit(const Distribution& distribution, const Explanation& explan
                      std::int64_t now_ms) {
   const std::string paths = " (" + describe_paths(distribution, experience) + ")";
   if (is_retired)
-    return "at the next fetch: paths that it may be made of were retired, it is not served any "
-           "more";
+    return std::string("at the next fetch: ") + kNotServed;
   if (!explanation.behind)
     return has_mixture(distribution.state)
                ? "when the paths have grown by 5, or by 5 % if that is more" + paths
@@ -60,6 +61,19 @@ std::string next_fit(const Distribution& distribution, const Explanation& explan
 }
 
 }  // namespace
+
+void mark_retired(const store::Store& store, std::vector<DistributionSummary>& distributions) {
+  std::map<std::string, std::vector<store::ExperienceSummary>> experience;  // by task
+  for (DistributionSummary& summary : distributions) {
+    const std::optional<Distribution> distribution = store.find_distribution(summary.id);
+    if (!distribution)
+      continue;  // damaged, or evicted meanwhile
+    const auto [known, is_new] = experience.try_emplace(summary.task);
+    if (is_new)
+      known->second = store.experience(summary.task);
+    summary.retired = catalog::is_retired(*distribution, known->second);
+  }
+}
 
 Explanation explain_distribution(const store::Store& store, Distribution distribution,
                                  std::int64_t now_ms) {

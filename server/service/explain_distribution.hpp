@@ -7,6 +7,14 @@
 
 namespace kinship::service {
 
+/// Of a distribution whose paths were retired.
+inline constexpr const char* kNotServed =
+    "paths that it may be made of were retired, it is not served any more";
+
+/// Marks those of the distributions that were made of paths which are retired: they are in the
+/// store and not served. \throws Failure(Storage)
+void mark_retired(const store::Store& store, std::vector<DistributionSummary>& distributions);
+
 /// How a distribution stands to the experience of now, and when it is fitted next. Its mixture is
 /// left out, and so is what was rehearsed.
 /// \param now_ms  Unix time, UTC.

@@ -71,7 +71,8 @@ std::string header(Eigen::Index dof) {
 }
 
 void write_rows(const fitting::PooledConfigurations& pool, const Eigen::VectorXd& weights,
-                const Distribution& distribution, std::uint64_t seed, JobRows& rows) {
+                const Distribution& distribution, std::uint64_t seed, JobRun& run) {
+  JobRows& rows = run.rows;
   rows.add(header(distribution.limits.cols()));
   const auto count = static_cast<std::uint32_t>(pool.paths().size());
   // An incremental fit keeps the score of the fit before it, which had fewer paths.
@@ -84,6 +85,8 @@ void write_rows(const fitting::PooledConfigurations& pool, const Eigen::VectorXd
   Eigen::Index row = 0;
   std::size_t path_index = 0;
   for (const fitting::PooledConfigurations::PooledPath& pooled : pool.paths()) {
+    if (run.should_stop())
+      return;
     const std::string whose =
         pooled.report.text() + "," + distribution.sources[pooled.source].robot.hex() + ",";
     const transfer::TransferredPath& path = *pooled.path;
@@ -103,7 +106,8 @@ bool run_export(const fitting::FitContext& context, const fitting::DistributionK
                 const Distribution& distribution, JobRun& run) {
   const runtime::RobotRegistry::RobotPointer target =
       context.robots.find(key.robot).value_or_throw();
-  fitting::SourceTransfer transfer(context.store, context.robots, key, *target);
+  fitting::SourceTransfer transfer(context.store, context.robots, key, *target,
+                                   {.memory = context.memory});
   const std::vector<fitting::SourceSummary> sources = transfer_sources(
       transfer, key, experience_then(distribution), context.max_paths, run.stop_token());
   if (run.should_stop())
@@ -111,7 +115,9 @@ bool run_export(const fitting::FitContext& context, const fitting::DistributionK
   require_same(distribution, sources);
   run.set_progress(0.9);
   const fitting::PooledConfigurations& pool = transfer.pool();
-  write_rows(pool, pool.weights(key.profile.density), distribution, key.profile.seed, run.rows);
+  write_rows(pool, pool.weights(key.profile.density), distribution, key.profile.seed, run);
+  if (run.should_stop())
+    return false;
   run.message = std::to_string(pool.size()) + " configurations of revision " +
                 std::to_string(distribution.revision);
   return true;

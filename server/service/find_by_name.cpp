@@ -35,28 +35,31 @@ bool begins_with(const Digest& digest, const std::string& prefix) {
 
 }  // namespace
 
-Result<store::RobotRecord> find_robot(const store::Store& store, const std::string& name) {
-  std::vector<store::RobotRecord> robots = store.robots();
-  const auto labelled = std::find_if(robots.begin(), robots.end(), [&](const auto& robot) {
-    return robot.description.label == name;
-  });
-  if (labelled != robots.end())
-    return std::move(*labelled);
+Result<RobotSummary> find_robot(const store::Store& store, const std::string& name) {
   const std::string prefix = digest_prefix(name);
-  if (!prefix.empty())
-    std::erase_if(robots, [&](const auto& robot) { return !begins_with(robot.digest, prefix); });
+  std::vector<RobotSummary> alike;  // by their digest, the first two
+  std::string cursor;
+  do {
+    store::Page<RobotSummary> page = store.list_robots(cursor, kMaxPageRows);
+    for (RobotSummary& robot : page.rows) {
+      if (robot.label == name)
+        return std::move(robot);
+      if (!prefix.empty() && alike.size() < 2 && begins_with(robot.robot, prefix))
+        alike.push_back(std::move(robot));
+    }
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
   if (prefix.empty() && name.size() < kMinPrefix && is_hexadecimal(name))
     return Error{ErrorCode::NotFound, not_found("robot", name).message +
                                           "; a prefix of a digest needs at least " +
                                           std::to_string(kMinPrefix) + " digits"};
-  if (prefix.empty() || robots.empty())
+  if (alike.empty())
     return not_found("robot", name);
-  if (robots.size() == 1)
-    return std::move(robots.front());
-  return Error{ErrorCode::Conflict,
-               "robot '" + name + "' could be '" + robots[0].description.label + "' (" +
-                   robots[0].digest.short_hex() + ") or '" + robots[1].description.label + "' (" +
-                   robots[1].digest.short_hex() + ")"};
+  if (alike.size() == 1)
+    return std::move(alike.front());
+  return Error{ErrorCode::Conflict, "robot '" + name + "' could be '" + alike[0].label + "' (" +
+                                        alike[0].robot.short_hex() + ") or '" + alike[1].label +
+                                        "' (" + alike[1].robot.short_hex() + ")"};
 }
 
 Result<Digest> find_distribution_id(const store::Store& store, const std::string& name) {

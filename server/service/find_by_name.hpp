@@ -4,14 +4,15 @@
 
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
+#include "proto/types/summaries.hpp"
 #include "server/store/store.hpp"
 
 /// Things as people name them.
 namespace kinship::service {
 
-/// By label or by a digest prefix of at least four digits.
+/// By label or by a digest prefix of at least four digits; reads no description.
 /// \return NotFound, or Conflict that names two candidates.
-Result<store::RobotRecord> find_robot(const store::Store& store, const std::string& name);
+Result<RobotSummary> find_robot(const store::Store& store, const std::string& name);
 
 /// By an id prefix of at least four digits.
 /// \return NotFound, InvalidInput for what is no prefix, or Conflict that names two candidates.

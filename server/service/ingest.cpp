@@ -28,7 +28,8 @@ struct Ingest::Batch {
   std::vector<Receipt> receipts;
   std::vector<std::size_t> accepted;  // positions of what the store was given
   std::size_t bytes = 0;
-  bool counted = false;  // among attempts_ and bytes_
+  bool counted = false;  // among load_, and its client's
+  std::string client;
   Done done;
 };
 
@@ -39,8 +40,9 @@ Ingest::Ingest(store::Store& store, runtime::RobotRegistry& robots,
       short_task_pool_(short_task_pool),
       options_(std::move(options)) {}
 
-void Ingest::submit(std::vector<Attempt> attempts, Done done) {
+void Ingest::submit(std::vector<Attempt> attempts, Done done, const std::string& client) {
   const auto batch = std::make_shared<Batch>();
+  batch->client = client;
   batch->done = std::move(done);
   for (const Attempt& attempt : attempts) {
     batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
@@ -51,8 +53,8 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   batch->attempts = std::move(attempts);
   received_ += batch->receipts.size();
 
-  if (!take_in(*batch))
-    return answer_try_again(*batch, "the server is busy or stopping");
+  if (const std::string why = take_in(*batch); !why.empty())
+    return answer_try_again(*batch, why);
   const bool in_memory = std::all_of(
       batch->attempts.begin(), batch->attempts.end(),
       [this](const Attempt& attempt) { return robots_.find_in_memory(attempt.robot) != nullptr; });
@@ -61,20 +63,58 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done) {
   const bool accepted = short_task_pool_.submit(
       runtime::WorkerPool::Priority::Interactive,
       {.run = [this, batch] { check_and_commit(batch); },
-       .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); }});
+       .abandon = [this, batch] { answer_try_again(*batch, "the server is stopping"); },
+       .client = client});
   if (!accepted)
     answer_try_again(*batch, "the server is busy");
 }
 
-bool Ingest::take_in(Batch& batch) {
+std::string Ingest::take_in(Batch& batch) {
+  std::string over_quota;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto exceeds = [&batch](const Load& load, std::size_t attempts, std::size_t bytes) {
+      return load.attempts + batch.receipts.size() > attempts || load.bytes + batch.bytes > bytes;
+    };
+    if (draining_ || exceeds(load_, options_.max_attempts, options_.max_bytes))
+      return "the server is busy or stopping";
+    const bool is_limited = options_.client_attempts > 0 && !batch.client.empty();
+    const auto known = clients_.find(batch.client);
+    const Load own = known == clients_.end() ? Load{} : known->second;
+    if (is_limited && exceeds(own, options_.client_attempts, options_.client_bytes))
+      over_quota = "this client has " + std::to_string(own.attempts) +
+                   " attempts on their way already; one client may have " +
+                   std::to_string(options_.client_attempts) + " of " +
+                   std::to_string(options_.client_bytes >> 20U) + " MB together";
+    if (over_quota.empty()) {
+      for (Load* const load : {&load_, &clients_[batch.client]}) {
+        load->attempts += batch.receipts.size();
+        load->bytes += batch.bytes;
+      }
+      batch.counted = true;
+      return {};
+    }
+  }
+  options_.on_over_quota(over_quota);
+  return over_quota;
+}
+
+/// Before the answer: who has got it may send the next ones at once.
+void Ingest::let_go_of_client(const Batch& batch) {
   const std::lock_guard lock(mutex_);
-  if (draining_ || attempts_ + batch.receipts.size() > options_.max_attempts ||
-      bytes_ + batch.bytes > options_.max_bytes)
-    return false;
-  attempts_ += batch.receipts.size();
-  bytes_ += batch.bytes;
-  batch.counted = true;
-  return true;
+  Load& own = clients_[batch.client];
+  own.attempts -= batch.receipts.size();
+  own.bytes -= batch.bytes;
+  if (own.attempts == 0)
+    clients_.erase(batch.client);
+}
+
+/// After the answer: draining ends when everybody has got one.
+void Ingest::let_go(const Batch& batch) {
+  const std::lock_guard lock(mutex_);
+  load_.attempts -= batch.receipts.size();
+  load_.bytes -= batch.bytes;
+  answered_.notify_all();
 }
 
 void Ingest::check_and_commit(const BatchPointer& batch) {
@@ -132,13 +172,11 @@ void Ingest::answer(Batch& batch) {
       batch.receipts.begin(), batch.receipts.end(),
       [](const Receipt& receipt) { return receipt.status == ReceiptStatus::Refused; }));
   options_.on_answer(batch.costs, batch.receipts);
+  if (batch.counted)
+    let_go_of_client(batch);
   batch.done(batch.receipts);
-  if (!batch.counted)
-    return;
-  const std::lock_guard lock(mutex_);
-  attempts_ -= batch.receipts.size();
-  bytes_ -= batch.bytes;
-  answered_.notify_all();
+  if (batch.counted)
+    let_go(batch);
 }
 
 void Ingest::answer_try_again(Batch& batch, std::string_view message) {
@@ -152,12 +190,12 @@ void Ingest::answer_try_again(Batch& batch, std::string_view message) {
 void Ingest::drain() {
   std::unique_lock lock(mutex_);
   draining_ = true;
-  answered_.wait(lock, [this] { return attempts_ == 0; });
+  answered_.wait(lock, [this] { return load_.attempts == 0; });
 }
 
 std::size_t Ingest::queued() const {
   const std::lock_guard lock(mutex_);
-  return attempts_;
+  return load_.attempts;
 }
 
 }  // namespace kinship::service

@@ -4,9 +4,11 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +28,11 @@ class Ingest {
   struct Options {
     std::size_t max_attempts = 4096;  ///< taken in and not yet answered; more are asked to wait
     std::size_t max_bytes = std::size_t{64} << 20U;  ///< of their waypoints and scenes
+    // Of one client, 0: no limit.
+    std::size_t client_attempts = 1024;
+    std::size_t client_bytes = std::size_t{16} << 20U;
+    /// A client was told that it has as many on their way as one may have.
+    std::function<void(const std::string& message)> on_over_quota = [](const std::string&) {};
     /// Called on the store's writer thread for each task that has a new path, before the reply.
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
     /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how
@@ -46,7 +53,8 @@ class Ingest {
 
   /// `done` is called once, on this thread, a worker of `short_task_pool` or the store's writer
   /// thread; it must not throw or block. TryAgain for all of them if too much waits already.
-  void submit(std::vector<Attempt> attempts, Done done);
+  /// \param client  whose they are; empty: nobody's, without a quota.
+  void submit(std::vector<Attempt> attempts, Done done, const std::string& client = {});
 
   /// From now on everything is answered TryAgain; returns when everything before is answered.
   void drain();
@@ -60,7 +68,15 @@ class Ingest {
   struct Batch;
   using BatchPointer = std::shared_ptr<Batch>;
 
-  bool take_in(Batch& batch);
+  /// How much of something has been taken in and not yet answered.
+  struct Load {
+    std::size_t attempts = 0, bytes = 0;
+  };
+
+  /// \return why not; empty: it was.
+  std::string take_in(Batch& batch);
+  void let_go_of_client(const Batch& batch);
+  void let_go(const Batch& batch);
   void check_and_commit(const BatchPointer& batch);
   void check(Batch& batch);
   void commit(const BatchPointer& batch);
@@ -76,7 +92,8 @@ class Ingest {
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable answered_;
-  std::size_t attempts_ = 0, bytes_ = 0;  // taken in and not yet answered
+  Load load_;
+  std::map<std::string, Load> clients_;  // with attempts that are not yet answered
   bool draining_ = false;
 };
 

@@ -12,6 +12,11 @@
 namespace kinship::service {
 namespace {
 
+using runtime::Trouble;
+using Priority = runtime::WorkerPool::Priority;
+
+constexpr std::size_t kMaxResets = 16;  // that wait
+
 std::string seconds(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", value);
@@ -24,10 +29,18 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
     : options_(std::move(options)),
       started_(options_.clock.now()),
       store_(std::move(store)),
-      robots_(*store_),
+      troubles_(options_.clock, options_.log),
+      robots_(*store_, {.max_robots = options_.max_robots,
+                        .on_unreadable =
+                            [this](const std::string& message) {
+                              troubles_.add(Trouble::RobotUnreadable, message);
+                            }}),
       experience_(*store_, robots_),
       events_(options_.clock, options_.on_event),
-      short_task_pool_({.threads = 1, .queue_limit = options_.short_task_queue, .niceness = 0}),
+      short_task_pool_({.threads = 1,
+                        .queue_limit = options_.short_task_queue,
+                        .niceness = 0,
+                        .client_limit = options_.client_short_tasks}),
       advice_([this](const Digest& robot,
                      const std::string& task) { return store_->attempt_totals(robot, task); },
               [this](const Digest& id) -> std::optional<catalog::Context> {
@@ -40,15 +53,19 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
                 return short_task_pool_.submit(runtime::WorkerPool::Priority::Background,
                                                {.run = std::move(run), .abandon = {}});
               }),
+      memory_(options_.fit_memory_bytes),
       fitters_({.threads = options_.fit_threads,
                 .queue_limit = options_.fit_queue,
                 .niceness = options_.fit_niceness}),
-      catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock},
+      catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock, &memory_},
                catalog_options(options_)),
-      rehearsals_({*store_, robots_, options_.clock, experience_}, rehearsal_options()),
+      rehearsals_({*store_, robots_, options_.clock, experience_, &memory_}, rehearsal_options()),
       ingest_(
           *store_, robots_, short_task_pool_,
           {.max_attempts = options_.max_queued_attempts,
+           .client_attempts = options_.client_attempts,
+           .on_over_quota =
+               [this](const std::string& message) { troubles_.add(Trouble::ReportQuota, message); },
            .on_new_experience =
                [this](std::string_view task) {
                  experience_.new_experience(task);
@@ -58,17 +75,25 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
            .on_answer = [this](std::span<const catalog::AttemptCost> costs,
                                std::span<const Receipt> receipts) { answered(costs, receipts); }}),
       jobs_(options_.clock, job_options(options_)),
-      administration_(administration_parts()) {}
+      administration_(administration_parts()),
+      reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}) {}
 
 Service::~Service() { shutdown(); }
 
 catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options) {
   catalog::Catalog::Options catalog;
-  catalog.limits.memory = options.memory;
+  catalog.limits = options.catalog;
   catalog.fit = options.fit;
   catalog.on_fit = [this](const Distribution& distribution) {
     log_fit(distribution);
     publish_fit(events_, robots_, distribution);
+  };
+  catalog.on_trouble = [this](const Digest& id, FetchStatus status, const std::string& message) {
+    troubles_.add(status == FetchStatus::Busy ? Trouble::FitEnded : Trouble::FitMemory,
+                  "distribution " + id.short_hex() + ": " + message);
+  };
+  catalog.on_over_quota = [this](const std::string& message) {
+    troubles_.add(Trouble::FetchQuota, message);
   };
   catalog.announce = [this](Announcement announcement) {
     announcement.store_epoch = store_->epoch();
@@ -123,6 +148,10 @@ Administration::Parts Service::administration_parts() {
                 rehearsals_.forget(task);
                 catalog_.forget(task);
               },
+          .fit_trouble = [this](const Digest& id) { return catalog_.trouble_of(id); },
+          .memory = &memory_,
+          .backups = options_.backups,
+          .stop = stop_source_.get_token(),
           .on_change =
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
@@ -140,42 +169,48 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
 }
 
 void Service::register_robot(RobotDescription description,
-                             std::function<void(const RegisterReply&)> done) {
+                             std::function<void(const RegisterReply&)> done,
+                             const std::string& client) {
   auto run = [this, description = std::move(description), done = std::move(done)] {
-    RegisterReply reply;
     try {
-      reply = robots_.register_robot(description, options_.clock.unix_ms());
-    } catch (const std::exception& exception) {
-      reply.status = RegisterStatus::Refused;
-      reply.message = exception.what();
+      done(registered(description));
+    } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
+      troubles_.add(Trouble::RobotUnanswered, "'" + description.label + "': " + exception.what());
     }
-    options_.log("register '" + description.label + "': " +
-                 (reply.status == RegisterStatus::Registered ? "robot " + reply.robot.short_hex()
-                  : reply.status == RegisterStatus::Known
-                      ? "known as robot " + reply.robot.short_hex()
-                      : "refused: " + reply.message));
-    publish_registered(events_, description, reply);
-    done(reply);
   };
-  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}}))
-    options_.log("register: not answered, busy or stopping");
+  if (!short_task_pool_.submit(Priority::Interactive,
+                               {.run = std::move(run), .abandon = {}, .client = client}))
+    troubles_.add(Trouble::RobotUnanswered, "busy or stopping");
 }
 
-void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done) {
+/// \throws Failure(Storage), std::bad_alloc: a refusal would be final.
+RegisterReply Service::registered(const RobotDescription& description) {
+  const RegisterReply reply = robots_.register_robot(description, options_.clock.unix_ms());
+  if (reply.status == RegisterStatus::Refused)
+    troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);
+  else
+    options_.log("register '" + description.label +
+                 "': " + (reply.status == RegisterStatus::Known ? "known as robot " : "robot ") +
+                 reply.robot.short_hex());
+  publish_registered(events_, description, reply);
+  return reply;
+}
+
+void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done,
+                     const std::string& client) {
   if (!store_->has_lost(request.known_mark))
-    return take_in(std::move(request), std::move(done));
+    return take_in(std::move(request), std::move(done), client);
   // No answer if it fails: a newer mark in it would make the client forget the lost one.
-  auto run = [this, request = std::move(request), done = std::move(done)]() mutable {
+  auto run = [this, request = std::move(request), done = std::move(done), client]() mutable {
     try {
       begin_epoch(request.known_mark);
     } catch (const std::exception& exception) {
       return options_.log(std::string("store: rolled back, no new epoch yet: ") + exception.what());
     }
-    take_in(std::move(request), std::move(done));
+    take_in(std::move(request), std::move(done), client);
   };
-  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}}))
+  if (!short_task_pool_.submit(Priority::Interactive,
+                               {.run = std::move(run), .abandon = {}, .client = client}))
     options_.log("report: not answered, busy or stopping");
 }
 
@@ -188,18 +223,21 @@ void Service::begin_epoch(const HistoryMark& lost) {
   events_.tell(EventKind::Administration, "", {}, [&] { return what; });
 }
 
-void Service::take_in(ReportRequest request, std::function<void(const ReportReply&)> done) {
+void Service::take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
+                      const std::string& client) {
   refused_before_ += request.refused.size();
   publish_refused(events_, request.refused);
-  ingest_.submit(std::move(request.attempts),
-                 [this, refused = std::move(request.refused),
-                  done = std::move(done)](const std::vector<Receipt>& receipts) {
-                   store::StorePoint point = store_->point();
-                   ReportReply reply{point.epoch, receipts, std::move(point.mark)};
-                   reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
-                   log_refused(reply.receipts);
-                   done(reply);
-                 });
+  ingest_.submit(
+      std::move(request.attempts),
+      [this, refused = std::move(request.refused),
+       done = std::move(done)](const std::vector<Receipt>& receipts) {
+        store::StorePoint point = store_->point();
+        ReportReply reply{point.epoch, receipts, std::move(point.mark)};
+        reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
+        count_refused(reply.receipts);
+        done(reply);
+      },
+      client);
 }
 
 /// A distribution in memory is the one in the store, also if an epoch began meanwhile.
@@ -216,6 +254,10 @@ catalog::FetchDone Service::of_this_epoch(catalog::FetchDone done) const {
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
+  done = [this, done = std::move(done)](const FetchReply& reply) {
+    count_fetch(reply);
+    done(reply);
+  };
   done = of_this_epoch(std::move(done));
   if (request.experience_bytes > 0)
     done =
@@ -237,15 +279,23 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
+  // A reset takes long, and nobody else's request waits for it.
+  runtime::WorkerPool& pool = request.verb == AdminVerb::ResetTask ? reset_pool_ : short_task_pool_;
   auto run = [this, request = std::move(request), request_key, done] {
-    done(administration_.answer(request, request_key));
+    const AdminPage page = administration_.answer(request, request_key);
+    count_admin(page);
+    done(page);
   };
-  if (short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
-                              {.run = std::move(run), .abandon = {}}))
-    return;
-  AdminPage page;
-  page.message = "the server is busy or stopping";
-  done(page);
+  const auto decline = [this, done] {
+    AdminPage page;
+    page.message = "the server is busy or stopping";
+    count_admin(page);
+    done(page);
+  };
+  if (!pool.submit(Priority::Interactive, {.run = std::move(run),
+                                           .abandon = decline,
+                                           .client = std::string(catalog::client_of(request_key))}))
+    decline();
 }
 
 std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {
@@ -296,19 +346,52 @@ ServerStatus Service::status() const {
   status.rehearsals = rehearsals.done;
   status.queued_rehearsals = rehearsals.queued;
   status.rehearsal_time_s = rehearsals.processor_time_s;
+  status.troubles = troubles_.counts();
+  status.bounds = bounds();
   return status;
 }
 
-void Service::log_refused(const std::vector<Receipt>& receipts) const {
-  const auto is_refused = [](const Receipt& receipt) {
-    return receipt.status == ReceiptStatus::Refused;
+std::vector<BoundUse> Service::bounds() const {
+  const catalog::CatalogUse use = catalog_.use();
+  return {{"reports on their way", ingest_.queued(), options_.max_queued_attempts},
+          {"fits that wait", fitters_.queued(), options_.fit_queue},
+          {"MB of memory of fits", memory_.reserved() >> 20U, options_.fit_memory_bytes >> 20U},
+          {"fetches that wait", use.waiters, options_.catalog.max_waiters},
+          {"leases", use.holds, options_.catalog.max_leases},
+          {"short tasks that wait", short_task_pool_.queued(), options_.short_task_queue},
+          {"jobs", jobs_.active(), options_.jobs.queued + 1},
+          {"robots in memory", robots_.in_memory(), options_.max_robots}};
+}
+
+void Service::count_refused(const std::vector<Receipt>& receipts) {
+  const auto count = [&](ReceiptStatus status, Trouble what, const std::string& words) {
+    const auto is_one = [status](const Receipt& receipt) { return receipt.status == status; };
+    const auto first = std::find_if(receipts.begin(), receipts.end(), is_one);
+    if (first == receipts.end())
+      return;
+    const auto number = std::count_if(first, receipts.end(), is_one);
+    troubles_.add(what,
+                  std::to_string(number) + " of " + std::to_string(receipts.size()) + " attempts " +
+                      words + ", first: " + first->message,
+                  static_cast<std::uint64_t>(number));
   };
-  const auto first = std::find_if(receipts.begin(), receipts.end(), is_refused);
-  if (first == receipts.end())
-    return;
-  options_.log("report: " + std::to_string(std::count_if(first, receipts.end(), is_refused)) +
-               " of " + std::to_string(receipts.size()) +
-               " attempts refused, first: " + first->message);
+  count(ReceiptStatus::Refused, Trouble::ReportRefused, "refused");
+  count(ReceiptStatus::TryAgain, Trouble::ReportTryAgain, "to be sent again");
+  count(ReceiptStatus::UnknownRobot, Trouble::ReportUnknown, "of robots that are not registered");
+}
+
+void Service::count_fetch(const FetchReply& reply) {
+  if (reply.status == FetchStatus::Busy)
+    troubles_.add(Trouble::FetchBusy, reply.message);
+  else if (reply.status == FetchStatus::Refused)
+    troubles_.add(Trouble::FetchRefused, reply.message);
+}
+
+void Service::count_admin(const AdminPage& page) {
+  if (page.status == AdminStatus::Failed)
+    troubles_.add(Trouble::AdminFailed, page.message);
+  else if (page.status == AdminStatus::Refused)
+    troubles_.add(Trouble::AdminRefused, page.message);
 }
 
 void Service::log_fit(const Distribution& distribution) const {
@@ -327,12 +410,16 @@ void Service::log_fit(const Distribution& distribution) const {
 }
 
 void Service::shutdown() {
+  using runtime::WorkerPool;
+  stop_source_.request_stop();  // resets
+  robots_.stop();
   catalog_.stop();
+  experience_.stop();  // a rehearsal waits for it
   rehearsals_.stop();
   jobs_.stop();
-  short_task_pool_.stop(runtime::WorkerPool::Leftovers::Run);
-  fitters_.stop(runtime::WorkerPool::Leftovers::Abandon);
-  experience_.stop();
+  reset_pool_.stop(WorkerPool::Leftovers::Abandon);
+  short_task_pool_.stop(WorkerPool::Leftovers::Abandon);  // each of them can be asked for again
+  fitters_.stop(WorkerPool::Leftovers::Abandon);
   ingest_.drain();
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,7 @@
 #include "server/rehearsal/rehearsal_book.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
+#include "server/runtime/trouble_book.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/service/administration.hpp"
 #include "server/service/event_feed.hpp"
@@ -28,12 +30,18 @@ namespace kinship::service {
 struct ServiceOptions {
   std::string version;
   std::size_t fit_threads = 1;
-  std::size_t fit_queue = 256;          ///< fits that wait; more are answered Busy
-  int fit_niceness = 10;                ///< so that planners on the same machine come first
-  double rehearsal_fraction = 0.1;      ///< see RehearsalBookOptions::processor_fraction
-  std::size_t short_task_queue = 1024;  ///< short jobs that wait: registering, listing, looking up
+  std::size_t fit_memory_bytes = std::size_t{2048} << 20U;  ///< of all fits together, at most
+  std::size_t fit_queue = 256;           ///< fits that wait; more are answered Busy
+  int fit_niceness = 10;                 ///< so that planners on the same machine come first
+  double rehearsal_fraction = 0.1;       ///< see RehearsalBookOptions::processor_fraction
+  std::size_t short_task_queue = 1024;   ///< short jobs that wait: registering, listing, looking up
+  std::size_t client_short_tasks = 128;  ///< of one client that wait
   std::size_t max_queued_attempts = 4096;
-  catalog::DistributionCache::Limits memory;
+  std::size_t client_attempts = 1024;  ///< of one client, taken in and not yet answered
+  std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
+  /// Of replies, leases, waiting fetches and fits, in all and of one client.
+  catalog::CatalogState::Limits catalog;
+  BackupPlace backups;
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;
@@ -63,8 +71,11 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   /// `done` is not called if the server is busy or stopping: the client asks again.
-  void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done);
-  void report(ReportRequest request, std::function<void(const ReportReply&)> done);
+  /// \param client  who asks, here and below; empty: nobody in particular, without a quota.
+  void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done,
+                      const std::string& client = {});
+  void report(ReportRequest request, std::function<void(const ReportReply&)> done,
+              const std::string& client = {});
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
   /// \param request_key  the request's name; see Administration::answer.
@@ -87,28 +98,37 @@ class Service {
   rehearsal::RehearsalBookOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
   Administration::Parts administration_parts();
-  void take_in(ReportRequest request, std::function<void(const ReportReply&)> done);
+  void take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
+               const std::string& client);
   void begin_epoch(const HistoryMark& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
-  void log_refused(const std::vector<Receipt>& receipts) const;
+  RegisterReply registered(const RobotDescription& description);
+  void count_refused(const std::vector<Receipt>& receipts);
+  void count_fetch(const FetchReply& reply);
+  void count_admin(const AdminPage& page);
+  std::vector<BoundUse> bounds() const;
   void log_fit(const Distribution& distribution) const;
 
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
+  runtime::TroubleBook troubles_;
+  std::stop_source stop_source_;
   runtime::RobotRegistry robots_;
   catalog::ExperienceBook experience_;
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
   runtime::WorkerPool short_task_pool_;
   catalog::AdviceBook advice_;
+  fitting::MemoryCeiling memory_;
   runtime::WorkerPool fitters_;
   catalog::Catalog catalog_;
   rehearsal::RehearsalBook rehearsals_;
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;
+  runtime::WorkerPool reset_pool_;  // last: its thread uses the administration
 };
 
 }  // namespace kinship::service

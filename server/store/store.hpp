@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -162,10 +163,15 @@ class Store {
   /// Takes a path, or all paths of a task, out of every fit, durable on return. They are kept for
   /// the record, their report UUIDs stay known, and their content may be reported anew. Raises
   /// generation and retired_generation of each (robot, task) that lost a path.
+  /// A reset is made of many transactions; what throws in the midst of it leaves some of the paths
+  /// retired.
+  /// \param stop  looked at between them.
   /// \return what was retired; NotFound for an unknown report or task; InvalidInput for a report
-  ///         that brought no path.
+  ///         that brought no path; Unavailable, with what was retired until then, for a reset that
+  ///         was stopped.
   virtual Result<Retirement> retire_path(const Uuid& report_uuid) = 0;
-  virtual Result<Retirement> reset_task(std::string_view task) = 0;
+  virtual Result<Retirement> reset_task(std::string_view task,
+                                        const std::stop_token& stop = {}) = 0;
 
   virtual AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const = 0;
 

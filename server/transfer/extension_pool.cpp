@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "proto/types/stopped.hpp"
+
 namespace kinship::transfer {
 
 ExtensionPool::ExtensionPool(const ArmPair& pair)
@@ -10,11 +12,15 @@ ExtensionPool::ExtensionPool(const ArmPair& pair)
       space_(pair.target()),
       found_(Eigen::MatrixXd::Zero(pair.target().dof(), ShapeLanes::kCount)) {}
 
-void ExtensionPool::run(const std::vector<ShapeTracker*>& trackers) {
-  for (ShapeTracker* tracker : trackers)
+void ExtensionPool::run(const std::vector<ShapeTracker*>& trackers, const std::stop_token& stop) {
+  for (ShapeTracker* tracker : trackers) {
+    throw_if_stopped(stop);
     enqueue(*tracker, tracker->begin_round());
-  for (fill(); lanes_.run(); fill())
+  }
+  for (fill(); lanes_.run(); fill()) {
+    throw_if_stopped(stop);
     hand_over();
+  }
 }
 
 void ExtensionPool::enqueue(ShapeTracker& tracker, std::vector<TrackExtension> extensions) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <deque>
+#include <stop_token>
 #include <vector>
 
 #include "robots/inverse/joint_space.hpp"
@@ -22,7 +23,8 @@ class ExtensionPool {
 
   /// Until no tracker has anything left to try.
   /// \param trackers  of the pair.
-  void run(const std::vector<ShapeTracker*>& trackers);
+  /// \throws Stopped.
+  void run(const std::vector<ShapeTracker*>& trackers, const std::stop_token& stop = {});
 
  private:
   /// An extension and whose it is.

@@ -101,7 +101,7 @@ struct PathUnderWay {
 
 /// Tracks, and random solutions where they are missing.
 TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
-                                      const TransferParameters& parameters, std::uint64_t seed) {
+                                      const TransferParameters& parameters, const Search& search) {
   PathSolutions solutions(pair.target().dof(), path.poses.size());
   TransferCounts summary;
   for (const Track& track : path.tracker.tracks()) {
@@ -112,7 +112,7 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
   summary.tracks_through = path.tracker.came_through();
   const std::vector<bool> covered = solutions.covered();
   std::vector<RandomSolutions> random =
-      solve_uncovered(pair, path.poses, covered, parameters, seed, path.counted);
+      solve_uncovered(pair, path.poses, covered, parameters, search, path.counted);
   for (std::size_t pose = 0; pose < covered.size(); ++pose) {
     if (covered[pose]) {
       ++summary.poses_on_tracks;
@@ -131,7 +131,7 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
 std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,
-                                            std::uint64_t seed) {
+                                            std::uint64_t seed, const std::stop_token& stop) {
   check_tracking(parameters);
   std::vector<TransferredPath> results(paths.size());
   std::deque<PathUnderWay> under_way;  // trackers stay where they are
@@ -150,9 +150,9 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
     under_way.emplace_back(i, waypoints, paths[i], pair, parameters, seed);
     trackers.push_back(&under_way.back().tracker);
   }
-  ExtensionPool(pair).run(trackers);
+  ExtensionPool(pair).run(trackers, stop);
   for (PathUnderWay& path : under_way)
-    results[path.index] = with_random_solutions(path, pair, parameters, seed);
+    results[path.index] = with_random_solutions(path, pair, parameters, {seed, stop});
   return results;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "proto/types/path.hpp"
@@ -36,12 +37,12 @@ struct PathToTransfer {
 ///              (uncovered_poses.hpp).
 /// \return      one per path, in their order.
 /// \throws std::invalid_argument if path.dof() is not that of the pair's source, or `parameters`
-///         break the rules of `resample` or of `inverse::InverseOptions`.
+///         break the rules of `resample` or of `inverse::InverseOptions`; Stopped.
 /// Source: Lehner et al., ICRA 2022, section IV A.
 std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,
-                                            std::uint64_t seed);
+                                            std::uint64_t seed, const std::stop_token& stop = {});
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
 inline constexpr int kTransferVersion = 10;

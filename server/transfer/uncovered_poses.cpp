@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "proto/types/stopped.hpp"
 #include "robots/inverse/joint_space.hpp"
 
 namespace kinship::transfer {
@@ -53,12 +54,13 @@ RandomSolutions random_solutions(const inverse::Solver& target,
 std::vector<RandomSolutions> solve_uncovered(const ArmPair& pair, const PathPoses& poses,
                                              const std::vector<bool>& covered,
                                              const TransferParameters& parameters,
-                                             std::uint64_t seed, CountedFilters& filters) {
+                                             const Search& search, CountedFilters& filters) {
   const std::size_t count = covered.size();
   std::vector<RandomSolutions> found(count);
   const auto look = [&](std::size_t pose, bool exhaustive) {
+    throw_if_stopped(search.stop);
     found[pose] = random_solutions(pair.target_solver(), poses.T_base_transfer[pose], parameters,
-                                   seed, filters, exhaustive);
+                                   search.seed, filters, exhaustive);
   };
   const auto is_reached = [&](std::size_t pose) {
     return found[pose].reason == inverse::NoSolution::None;

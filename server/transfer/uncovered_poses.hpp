@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "proto/types/profile.hpp"
@@ -31,6 +33,15 @@ RandomSolutions random_solutions(const inverse::Solver& target,
                                  const TransferParameters& parameters, std::uint64_t seed,
                                  CountedFilters& filters, bool exhaustive = true);
 
+/// What a search depends on besides what is looked for.
+struct Search {
+  Search(std::uint64_t the_seed, std::stop_token the_stop = {})  // NOLINT: a seed is a search
+      : seed(the_seed), stop(std::move(the_stop)) {}
+
+  std::uint64_t seed;
+  std::stop_token stop;  ///< looked at before each pose
+};
+
 /// Random solutions of the poses of a path that no track covers.
 ///
 /// A pose without a solution costs far more than one with some, and such poses stand side by side.
@@ -42,9 +53,10 @@ RandomSolutions random_solutions(const inverse::Solver& target,
 ///
 /// \param covered  one per pose.
 /// \return         one per pose; without configurations and reason where `covered`.
+/// \throws Stopped.
 std::vector<RandomSolutions> solve_uncovered(const ArmPair& pair, const PathPoses& poses,
                                              const std::vector<bool>& covered,
                                              const TransferParameters& parameters,
-                                             std::uint64_t seed, CountedFilters& filters);
+                                             const Search& search, CountedFilters& filters);
 
 }  // namespace kinship::transfer

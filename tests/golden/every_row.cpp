@@ -185,6 +185,19 @@ ServerStatus every_status() {
   status.rollbacks = next.count();
   status.scrubbed_ms = next.time_ms();
   status.scrub_part = next.real();
+  for (int i = 0; i < 2; ++i) {
+    TroubleCount trouble;
+    trouble.what = next.text("trouble");
+    trouble.count = next.count();
+    trouble.last = next.text("last");
+    trouble.last_ms = next.time_ms();
+    status.troubles.push_back(trouble);
+    BoundUse bound;
+    bound.what = next.text("bound");
+    bound.used = next.count();
+    bound.limit = next.count();
+    status.bounds.push_back(bound);
+  }
   return status;
 }
 

@@ -6,10 +6,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <string>
 #include <utility>
+
+#include "proto/types/uuid.hpp"
 
 namespace kinship::store {
 namespace {
@@ -29,6 +33,66 @@ bool is_named(int descriptor, const fs::path& name) {
          open_file.st_dev == named_file.st_dev && open_file.st_ino == named_file.st_ino;
 }
 
+constexpr const char* kPartInfix = ".kinship-";
+constexpr const char* kPartSuffix = ".part";
+constexpr std::size_t kPartDigits = 8;
+
+/// The name of the part that an entry of the folder of `file` is, or lies beside; empty: it has
+/// nothing to do with it.
+std::string part_of(const fs::path& file, const std::string& entry) {
+  const std::string prefix = file.filename().string() + kPartInfix;
+  const std::size_t size = prefix.size() + kPartDigits + std::strlen(kPartSuffix);
+  const std::string part = entry.substr(0, size);
+  const std::string digits = part.substr(std::min(prefix.size(), part.size()), kPartDigits);
+  const bool is_part = part.size() == size && part.starts_with(prefix) &&
+                       part.ends_with(kPartSuffix) &&
+                       digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return is_part ? part : std::string();
+}
+
+/// Whether the file is one that this program began: its user's, empty or a database.
+bool is_ours(int descriptor) {
+  constexpr char kMagic[] = "SQLite format 3";
+  struct stat status {};
+  char begin[sizeof kMagic] = {};
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode) || status.st_uid != geteuid())
+    return false;
+  return status.st_size == 0 || (pread(descriptor, begin, sizeof begin, 0) == sizeof begin &&
+                                 std::memcmp(begin, kMagic, sizeof kMagic) == 0);
+}
+
+/// \throws Failure(Conflict) if somebody is writing it.
+void remove_leftover(const fs::path& file, const fs::path& part) {
+  const int descriptor = open(part.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) {
+    if (errno == ENOENT)  // its process was killed while it removed it
+      remove_companions(part);
+    return;
+  }
+  const bool ours = is_ours(descriptor);
+  const bool locked = ours && flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (locked && is_named(descriptor, part)) {
+    unlink(part.c_str());
+    remove_companions(part);
+  }
+  close(descriptor);
+  if (ours && !locked)
+    throw Failure(ErrorCode::Conflict, "file '" + file.string() + "': somebody else is writing it");
+}
+
+/// What killed processes left of the same file; files of other names or contents stay.
+void remove_leftovers(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::set<std::string> parts;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (std::string part = part_of(file, entry->path().filename().string()); !part.empty())
+      parts.insert(std::move(part));
+  for (const std::string& part : parts)
+    remove_leftover(file, folder / part);
+}
+
 void sync_opened(const fs::path& name, int flags, const std::string& kind) {
   const int descriptor = open(name.c_str(), flags);
   const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
@@ -41,23 +105,20 @@ void sync_opened(const fs::path& name, int flags, const std::string& kind) {
 
 }  // namespace
 
-NewFile::NewFile(fs::path file) : file_(std::move(file)), part_(file_.string() + ".part") {
+NewFile::NewFile(fs::path file) : file_(std::move(file)) {
   std::error_code error;
   const fs::file_type type = fs::symlink_status(file_, error).type();
   if (type != fs::file_type::not_found && type != fs::file_type::none)
     throw Failure(ErrorCode::Conflict, "file '" + file_.string() + "': is there already");
+  remove_leftovers(file_);
   constexpr mode_t kOwnerOnly = 0600;
-  descriptor_ = open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kOwnerOnly);
+  part_ = file_.string() + kPartInfix + Uuid::random().text().substr(0, kPartDigits) + kPartSuffix;
+  descriptor_ = open(part_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kOwnerOnly);
   if (descriptor_ < 0)
     fail("cannot be made", errno);
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || !is_named(descriptor_, part_)) {
-    close(descriptor_);
-    throw Failure(ErrorCode::Conflict,
-                  "file '" + file_.string() + "': somebody else is writing it");
-  }
-  remove_companions(part_);
-  if (ftruncate(descriptor_, 0) != 0 || fchmod(descriptor_, kOwnerOnly) != 0) {
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || fchmod(descriptor_, kOwnerOnly) != 0) {
     const int reason = errno;
+    unlink(part_.c_str());
     close(descriptor_);
     fail("cannot be made", reason);
   }

@@ -6,11 +6,13 @@
 
 namespace kinship::store {
 
-/// A file that has its name only once it is complete: it is written as FILE.part, for its owner
-/// alone, and removed with everything that SQLite laid beside it unless it is published.
+/// A file that has its name only once it is complete: it is written as
+/// FILE.kinship-XXXXXXXX.part, a name that nobody has, for its owner alone, and removed with
+/// everything that SQLite laid beside it unless it is published.
 class NewFile {
  public:
-  /// Takes over what a killed process left under FILE.part.
+  /// Removes what killed processes left of the same file: by its name, owner and content; whatever
+  /// else has such a name stays.
   /// \throws Failure(Conflict) if the file is there already, or another process is writing it;
   ///         Failure(Storage) if it cannot be made. Both name the file.
   explicit NewFile(std::filesystem::path file);

@@ -188,7 +188,7 @@ class SqliteStore : public Store {
     return write([&](Batch& batch) { return store::retire_path(batch, report_uuid); });
   }
 
-  Result<Retirement> reset_task(std::string_view task) override {
+  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop) override {
     const Result<TaskReset> reset =
         write([&](Batch& batch) { return begin_reset(batch.database(), task); });
     if (!reset)
@@ -196,7 +196,11 @@ class SqliteStore : public Store {
     Retirement retired;
     retired.task = task;
     while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired); }))
-      continue;
+      if (stop.stop_requested())
+        return Error{ErrorCode::Unavailable, "task '" + retired.task +
+                                                 "': the server is stopping after " +
+                                                 std::to_string(retired.paths) +
+                                                 " paths were retired; ask again for the others"};
     return retired;
   }
 

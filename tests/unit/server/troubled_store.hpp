@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <new>
 #include <utility>
 
 #include "server/store/sqlite/database.hpp"
@@ -14,16 +16,19 @@ inline void damage_robot(const std::filesystem::path& file, const std::string& l
   database.execute("UPDATE robot SET dof = dof + 1 WHERE label = '" + label + "'");
 }
 
-/// A store that has no memory left for reports, and where something may happen whenever paths were
-/// read; else the real one.
+/// A store that has no memory left for reports (unless it is told to take them), and where
+/// something may happen whenever paths were read or a task is reset; else the real one.
 class TroubledStore final : public store::Store {
  public:
   explicit TroubledStore(
       Store& store, std::function<void()> on_paths_read = [] {})
       : store_(store), on_paths_read_(std::move(on_paths_read)) {}
 
-  void commit_reports(std::vector<Attempt> /*attempts*/, ReportsDone /*done*/) override {
-    throw std::bad_alloc();
+  bool takes_reports = false;
+  void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
+    if (!takes_reports)
+      throw std::bad_alloc();
+    store_.commit_reports(std::move(attempts), std::move(done));
   }
 
   Uuid epoch() const override { return store_.epoch(); }
@@ -39,7 +44,11 @@ class TroubledStore final : public store::Store {
   std::optional<store::RobotRecord> find_robot(const Digest& robot) const override {
     return store_.find_robot(robot);
   }
-  std::vector<store::RobotRecord> robots() const override { return store_.robots(); }
+  mutable std::atomic<int> descriptions_read = 0;  ///< how often all of them were
+  std::vector<store::RobotRecord> robots() const override {
+    ++descriptions_read;
+    return store_.robots();
+  }
   std::vector<store::ExperienceSummary> experience(std::string_view task) const override {
     return store_.experience(task);
   }
@@ -58,7 +67,12 @@ class TroubledStore final : public store::Store {
   Result<Retirement> retire_path(const Uuid& report_uuid) override {
     return store_.retire_path(report_uuid);
   }
-  Result<Retirement> reset_task(std::string_view task) override { return store_.reset_task(task); }
+  /// Called when a task is to be reset; may retire some of its paths, and throw.
+  std::function<void(std::string_view task)> on_reset = [](std::string_view) {};
+  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop) override {
+    on_reset(task);
+    return store_.reset_task(task, stop);
+  }
   store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
     return store_.attempt_totals(robot, task);
   }

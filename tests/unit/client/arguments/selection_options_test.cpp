@@ -33,10 +33,14 @@ TEST(ParseSince, ReadsDatesAndTimesInUtc) {
 }
 
 TEST(ParseSince, CountsAgesFromNow) {
-  EXPECT_EQ(*parse_since("0s", kNow), kMidnight_ms + 1);
-  EXPECT_EQ(*parse_since("90m", kNow), kMidnight_ms + 1 - 90 * 60'000);
-  EXPECT_EQ(*parse_since("12h", kNow), kMidnight_ms + 1 - 12 * 3'600'000);
-  EXPECT_EQ(*parse_since("14d", kNow), kMidnight_ms + 1 - 14 * std::int64_t{86'400'000});
+  EXPECT_EQ(*parse_since("0s", kNow), kMidnight_ms);
+  EXPECT_EQ(*parse_since("90m", kNow), kMidnight_ms - 90 * 60'000);
+  EXPECT_EQ(*parse_since("12h", kNow), kMidnight_ms - 12 * 3'600'000);
+  EXPECT_EQ(*parse_since("14d", kNow), kMidnight_ms - 14 * std::int64_t{86'400'000});
+  for (const int hours : {1, 11, 23})  // all day long the same distribution
+    EXPECT_EQ(*parse_since("14d", kNow + std::chrono::hours(hours)), *parse_since("14d", kNow));
+  EXPECT_EQ(*parse_since("90m", kNow + std::chrono::seconds(59)), *parse_since("90m", kNow));
+  EXPECT_NE(*parse_since("12h", kNow + std::chrono::hours(1)), *parse_since("12h", kNow));
   EXPECT_EQ(*parse_since("2w", kNow), *parse_since("14d", kNow));
   EXPECT_EQ(*parse_since("100d", Time(std::chrono::hours(24))), 0) << "before 1970";
 }

@@ -75,7 +75,22 @@ TEST(UrdfModel, RefusesLinksThatFormNoTree) {
 
 TEST(UrdfModel, RefusesLongNames) {
   EXPECT_EQ(message(robot_text(std::string(129, 'x'), "")),
-            "URDF: link name of 129 bytes exceeds 128");
+            "URDF: link: name of 129 bytes exceeds 128");
+}
+
+TEST(UrdfModel, RefusesControlCharactersThatReferencesBringIn) {
+  EXPECT_EQ(message(robot_text("ba&#27;[31mse", "")),
+            "URDF: link 'ba?[31mse': byte 3 of the name is a control character");
+  EXPECT_EQ(message(robot_text("base&#10;2026-01-01 info all&#x20;is&#x20;well", "")).find('\n'),
+            std::string::npos);
+  const std::string joint = joint_text("j&#x1b;1", "fixed", "base", "tip");
+  EXPECT_EQ(message(robot_text("base tip", joint)),
+            "URDF: joint 'j?1': byte 2 of the name is a control character");
+  // What the parser itself complains of is cited before names are checked.
+  const std::string orphan =
+      message(robot_text("base tip", joint_text("j1", "fixed", "base", "ha&#27;nd&#10;")));
+  for (const char c : orphan)
+    EXPECT_GE(static_cast<unsigned char>(c), 0x20) << orphan;
 }
 
 TEST(UrdfModel, PrintsNothingAndLeavesTheMessagesOfOthersAlone) {

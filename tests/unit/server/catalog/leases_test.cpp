@@ -100,5 +100,43 @@ TEST(Leases, MayBeForbidden) {
   EXPECT_FALSE(leases.holds(id(1), kNow));
 }
 
+TEST(Leases, OfTooManyThoseOfTheClientWithTheMostGo) {
+  Leases leases(6);
+  for (std::uint8_t i = 1; i <= 2; ++i)
+    leases.take(id(i), key("a"), kNow + seconds(60), "robot");
+  for (std::uint8_t i = 10; i < 30; ++i)
+    EXPECT_TRUE(leases.take(id(i), key("a"), kNow + seconds(86'400 + i), "greedy"));
+  EXPECT_EQ(leases.holds(), 6U);
+  EXPECT_TRUE(leases.holds(id(1), kNow) && leases.holds(id(2), kNow));
+  EXPECT_TRUE(leases.holds(id(29), kNow) && leases.holds(id(26), kNow));
+  EXPECT_FALSE(leases.holds(id(25), kNow)) << "its own that end first make room";
+}
+
+TEST(Leases, EveryHolderKeepsALeaseForAsLongAsItAskedFor) {
+  Leases leases(3);
+  leases.take(id(1), key("a"), kNow + seconds(60), "robot");
+  leases.take(id(1), key("a"), kNow + seconds(600), "greedy");
+  leases.take(id(2), key("a"), kNow + seconds(600), "greedy");
+  leases.take(id(3), key("a"), kNow + seconds(700), "greedy");  // its hold on 1 or 2 goes
+  EXPECT_TRUE(leases.holds(id(1), kNow + seconds(59)));
+  leases.expire(kNow + seconds(60));
+  EXPECT_EQ(leases.count(kNow + seconds(60)), 2U);
+  leases.end(id(3));
+  leases.expire(kNow + seconds(600));
+  EXPECT_EQ(leases.holds(), 0U);
+  EXPECT_EQ(leases.of_task("a"), std::vector<Digest>{});
+}
+
+TEST(Leases, AClientHasItsLimitAndMayExtendWhatItHas) {
+  Leases leases(10, 2);
+  EXPECT_TRUE(leases.take(id(1), key("a"), kNow + seconds(5), "one"));
+  EXPECT_TRUE(leases.take(id(2), key("a"), kNow + seconds(5), "one"));
+  EXPECT_FALSE(leases.take(id(3), key("a"), kNow + seconds(5), "one"));
+  EXPECT_TRUE(leases.take(id(1), key("a"), kNow + seconds(9), "one"));
+  EXPECT_TRUE(leases.take(id(3), key("a"), kNow + seconds(5), "two"));
+  EXPECT_EQ(leases.find(id(1))->until, kNow + seconds(9));
+  EXPECT_EQ(leases.take_ended(), std::vector<Digest>{});
+}
+
 }  // namespace
 }  // namespace kinship::catalog::leases_test

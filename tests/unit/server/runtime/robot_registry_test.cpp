@@ -124,7 +124,27 @@ TEST_F(Registry, ADescriptionThatReadsAsAnotherRobotIsNotUsed) {
       {.digest = wrong, .description = fleet::teacher(), .dof = 3, .registered_ms = 1}));
   const auto found = registry_.find(wrong);
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().code, ErrorCode::InvalidInput);
+  EXPECT_EQ(found.error().code, ErrorCode::Storage) << "nobody's report is refused for it";
+}
+
+TEST_F(Registry, KeepsThoseThatWereUsedLast) {
+  std::vector<std::string> unreadable;
+  RobotRegistry registry(*store_, {.max_robots = 2, .on_unreadable = [&](const std::string& why) {
+                                     unreadable.push_back(why);
+                                   }});
+  std::vector<Digest> robots;
+  for (const char* const label : {"a", "b", "c"})
+    robots.push_back(
+        registry.register_robot(fleet::planar(label, {0.1 * (label[0] - 'a' + 1), 0.3}), 1).robot);
+  EXPECT_EQ(registry.in_memory(), 2U);
+  EXPECT_EQ(registry.find_in_memory(robots[0]), nullptr);
+  EXPECT_TRUE(registry.find(robots[0])) << "it is read again";
+  EXPECT_EQ(registry.find_in_memory(robots[1]), nullptr) << "it was not used for longest";
+  EXPECT_NE(registry.find_in_memory(robots[2]), nullptr);
+  EXPECT_TRUE(unreadable.empty());
+  store::damage_robot(directory_ / "fleet.db", "b");
+  EXPECT_FALSE(registry.find(robots[1]));
+  EXPECT_EQ(unreadable.size(), 1U);
 }
 
 TEST_F(Registry, ADamagedRobotIsAnErrorOfTheStoreAndNoException) {

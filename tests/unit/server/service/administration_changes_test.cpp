@@ -140,14 +140,61 @@ TEST_F(AdministrationChanges, ABackupNeverTouchesWhatIsThere) {
   EXPECT_NE(answer(folder + "/thesis.txt").find("thesis.txt': is there already"),
             std::string::npos);
   EXPECT_NE(answer(folder + "/link").find("is there already"), std::string::npos);
-  EXPECT_NE(answer("copy.db").find("the name must begin with '/'"), std::string::npos);
-  EXPECT_NE(answer("").find("the name must begin with '/'"), std::string::npos);
+  EXPECT_NE(answer("").find("has no name"), std::string::npos);
+  EXPECT_NE(answer("thesis.txt").find("is there already"), std::string::npos);
   EXPECT_NE(answer(folder).find("is a folder"), std::string::npos);
   EXPECT_NE(answer(folder + "/").find("is a folder"), std::string::npos);
   EXPECT_NE(answer(folder + "/fleet.db").find("belongs to the store"), std::string::npos);
   EXPECT_NE(answer(folder + "/fleet.db-journal").find("belongs to the store"), std::string::npos);
   EXPECT_NE(answer(folder + "/nowhere/copy.db").find("there is no folder"), std::string::npos);
   EXPECT_TRUE(ask(AdminVerb::ListJobs).rows.empty());
+}
+
+TEST_F(AdministrationChanges, ABackupStaysInItsFolder) {
+  const test::TemporaryDirectory elsewhere;
+  std::filesystem::create_directory(directory_ / "backups");
+  std::filesystem::create_directory_symlink(elsewhere.path(), directory_ / "backups" / "out");
+  adjust_ = [this](ServiceOptions& options) { options.backups.folder = directory_ / "backups"; };
+  start();
+  for (const std::string& file :
+       {(elsewhere / "copy.db").string(), (directory_ / "copy.db").string(),
+        std::string("../copy.db"), std::string("out/copy.db"), std::string("/etc/copy.db")}) {
+    const AdminPage page = ask(AdminVerb::Backup, file);
+    EXPECT_EQ(page.status, AdminStatus::Refused) << file;
+    EXPECT_NE(page.message.find("is outside of '" + (directory_ / "backups").string() + "'"),
+              std::string::npos)
+        << page.message;
+    EXPECT_NE(page.message.find("--backup-folder"), std::string::npos);
+  }
+  const Job job = end_of(ask(AdminVerb::Backup, "monday.db"));
+  EXPECT_EQ(job.state, JobState::Done) << job.message;
+  EXPECT_TRUE(std::filesystem::exists(directory_ / "backups" / "monday.db"));
+}
+
+TEST_F(AdministrationChanges, ABackupWithoutRoomIsRefusedWithBothNumbers) {
+  adjust_ = [](ServiceOptions& options) {
+    options.backups.free_bytes = [](const std::filesystem::path&) { return std::uint64_t{4096}; };
+  };
+  start();
+  const AdminPage page = ask(AdminVerb::Backup, "copy.db");
+  EXPECT_EQ(page.status, AdminStatus::Refused);
+  EXPECT_NE(page.message.find("needs up to " + std::to_string(service_->status().store_bytes) +
+                              " bytes, but its file system has 4096 left"),
+            std::string::npos)
+      << page.message;
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "copy.db"));
+}
+
+TEST_F(AdministrationChanges, ARetiredDistributionIsListedAndShownAsOne) {
+  report(fleet::solved(teacher_, "shelf", 6, 1));
+  const std::string id = fetched().id.hex();
+  EXPECT_FALSE(row<DistributionSummary>(ask(AdminVerb::ListDistributions)).retired);
+  EXPECT_EQ(row<Distribution>(ask(AdminVerb::ShowDistribution, id)).reason.find("retired"),
+            std::string::npos);
+  ask(AdminVerb::ResetTask, "shelf");
+  EXPECT_TRUE(row<DistributionSummary>(ask(AdminVerb::ListDistributions)).retired);
+  EXPECT_NE(row<Distribution>(ask(AdminVerb::ShowDistribution, id)).reason.find("retired"),
+            std::string::npos);
 }
 
 TEST_F(AdministrationChanges, ExportSaysWhichConfigurationsWereHeldOut) {

@@ -188,6 +188,20 @@ TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefuse
   EXPECT_EQ(administration_.answer(request).status, AdminStatus::Refused);
 }
 
+TEST_F(AdministrationTest, AFilterByRobotReadsNoDescriptions) {
+  report(fleet::solved(teacher_, "shelf", 2, 1));
+  store::TroubledStore watched(*store_);
+  Administration::Parts watched_parts{
+      .store = watched, .robots = registry_, .jobs = jobs_, .clock = clock_, .status = {}};
+  Administration administration(watched_parts);
+  for (const std::string& name : {std::string("teacher"), teacher_.digest.short_hex()}) {
+    AdminRequest request = fleet::question(AdminVerb::ListPaths);
+    request.robot = name;
+    EXPECT_EQ(administration.answer(request).rows.size(), 2U);
+  }
+  EXPECT_EQ(watched.descriptions_read, 0);
+}
+
 TEST_F(AdministrationTest, DistributionsAreShownByIdPrefix) {
   report({fleet::solved(teacher_, "shelf", 1)});
   const Distribution a = put_distribution(0xAB, 1);

@@ -100,6 +100,22 @@ TEST_F(CatalogExperienceTest, ATaskWhoseExperienceIsAllGoneHasNone) {
   EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
 }
 
+TEST_F(CatalogExperienceTest, DistributionsWithDatesThatNobodyAsksForAnyMoreGo) {
+  teach(6);
+  const auto count = [this] { return service_->status().distributions; };
+  ASSERT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+  FetchRequest dated = request_for(pupil_);
+  constexpr std::int64_t kDay_ms = 86'400'000;
+  for (int day = 0; day < 20; ++day) {
+    dated.selection.since_ms = 1'600'000'000'000 + day * kDay_ms;
+    ASSERT_EQ(fetch(dated).status, FetchStatus::Ready);
+    advance(std::chrono::hours(24));
+  }
+  EXPECT_EQ(count(), 1U + 8U) << "the one without a date, and those of a week";
+  FetchRequest undated = request_for(pupil_);
+  EXPECT_EQ(fetch(undated).distribution->revision, 1U);
+}
+
 TEST_F(CatalogExperienceTest, AnEvictedDistributionIsFittedAnew) {
   teach(6);
   const std::string id = fetch(request_for(pupil_)).distribution->id.hex();

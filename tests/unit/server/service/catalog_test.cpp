@@ -339,6 +339,7 @@ TEST_F(CatalogTest, AFitThatTheStoreEndedIsBusyAndTriedAgain) {
   EXPECT_EQ(reply.status, FetchStatus::Busy);
   EXPECT_EQ(reply.message, "disk I/O error");
   gate_.set_trouble({});
+  advance(catalog::FitTroubles::kFirstRetry);
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::Ready);
 }
 

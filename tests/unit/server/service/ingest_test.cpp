@@ -104,6 +104,30 @@ TEST_F(IngestTest, MoreThanItMayHoldIsAskedToTryAgain) {
   EXPECT_EQ(submit(fleet::solved(robot_, "shelf", 16, 1)).get()[0].status, ReceiptStatus::Stored);
 }
 
+TEST_F(IngestTest, OneClientMayHaveSoManyOnTheirWay) {
+  std::vector<std::string> told;
+  Ingest ingest(*store_, registry_, short_task_pool_,
+                {.client_attempts = 4,
+                 .on_over_quota = [&](const std::string& message) { told.push_back(message); }});
+  const auto send = [&](int count, const std::string& client) {
+    const auto done = std::make_shared<std::promise<Receipt>>();
+    std::future<Receipt> receipt = done->get_future();
+    ingest.submit(
+        fleet::solved(robot_, "shelf", count, static_cast<std::uint64_t>(100 * count)),
+        [done](const std::vector<Receipt>& receipts) { done->set_value(receipts[0]); }, client);
+    return receipt.get();
+  };
+  const Receipt receipt = send(5, "greedy");
+  EXPECT_EQ(receipt.status, ReceiptStatus::TryAgain);
+  EXPECT_EQ(receipt.message,
+            "this client has 0 attempts on their way already; one client may have 4 of 16 MB "
+            "together");
+  EXPECT_EQ(told, std::vector{receipt.message});
+  for (int i = 0; i < 3; ++i)  // what is answered counts no more
+    EXPECT_EQ(send(4 - i, "greedy").status, ReceiptStatus::Stored);
+  EXPECT_EQ(send(6, "").status, ReceiptStatus::Stored) << "nobody's have no quota";
+}
+
 TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
   runtime::RobotRegistry cold(*store_);
   Ingest ingest(*store_, cold, short_task_pool_, {});

@@ -18,6 +18,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/unit/server/fleet.hpp"
+#include "tests/unit/server/troubled_store.hpp"
 
 namespace kinship::service {
 
@@ -104,7 +105,16 @@ class ServiceFixture : public testing::Test {
   void start() {
     service_.reset();
     context_.reset();
+    registry_.reset();
+    real_store_.reset();
     std::unique_ptr<store::Store> store = store::open_sqlite_store(directory_ / "fleet.db");
+    if (may_trouble_store_) {
+      real_store_ = std::move(store);
+      auto troubled = std::make_unique<store::TroubledStore>(*real_store_);
+      troubled->takes_reports = true;
+      troubled_ = troubled.get();
+      store = std::move(troubled);
+    }
     registry_ = std::make_unique<runtime::RobotRegistry>(*store);
     context_ = std::make_unique<fitting::FitContext>(
         fitting::FitContext{.store = *store, .robots = *registry_, .clock = clock_});
@@ -196,6 +206,10 @@ class ServiceFixture : public testing::Test {
           },
       .unix_ms = [this] { return time_ms_.load(); }};
   std::size_t fit_threads_ = 2, fit_queue_ = 64, short_task_queue_ = 1024;
+  /// Whether the service has a store that may be troubled, between itself and the real one.
+  bool may_trouble_store_ = false;
+  std::unique_ptr<store::Store> real_store_;
+  store::TroubledStore* troubled_ = nullptr;
   std::function<void(ServiceOptions&)> adjust_;  ///< of what start() would use; may be empty
   GatedFit gate_;
   std::mutex log_mutex_;
