@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/faults/captured_packets.hpp"
 #include "tests/faults/reporting_client.hpp"
 
 int main(int argc, char** argv) {
   using Role = std::function<int(const std::vector<std::string>&)>;
-  const std::map<std::string, Role> roles = {{"report", kinship::test::run_reporting_client}};
+  const std::map<std::string, Role> roles = {{"captured", kinship::test::run_captured_client},
+                                             {"report", kinship::test::run_reporting_client}};
   const auto role = argc > 1 ? roles.find(argv[1]) : roles.end();
   if (role == roles.end()) {
     testing::InitGoogleTest(&argc, argv);
