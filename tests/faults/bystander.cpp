@@ -21,12 +21,26 @@ FetchRequest sweep_request(const Digest& robot) {
   return request;
 }
 
+/// \param call  returns what was answered instead of what was asked for; empty: nothing.
 template <typename Call>
 void time_call(Bystander::Calls& calls, const Call& call) {
   const Clock::time_point start = Clock::now();
-  if (!call())
+  if (std::string answer = call(); !answer.empty()) {
     ++calls.unanswered;
+    calls.answer = std::move(answer);
+  }
   calls.times_s.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+}
+
+/// What came instead of what was asked for; empty if that came.
+template <typename Reply>
+std::string instead(const std::string& call, const Result<Reply>& reply, bool is_good) {
+  if (is_good)
+    return "";
+  if (!reply)
+    return call + ": " + reply.error().message;
+  return call + ": status " + std::to_string(static_cast<int>(reply->status)) + ", '" +
+         reply->message + "'";
 }
 
 std::string median_and_longest_ms(std::vector<double> times_s) {
@@ -56,15 +70,17 @@ Bystander::Rounds Bystander::live(int rounds) {
   for (int round = 0; round < rounds && result.unanswered() == 0; ++round) {
     time_call(result.status, [&] {
       const auto reply = client_.admin({});
-      return reply && reply->status == AdminStatus::Ok;
+      return instead("status", reply, reply && reply->status == AdminStatus::Ok);
     });
     time_call(result.fetch, [&] {
       const auto reply = client_.fetch(sweep_request(panda_));
-      return reply && reply->status == FetchStatus::Ready;
+      return instead("cached fetch", reply, reply && reply->status == FetchStatus::Ready);
     });
     time_call(result.report, [&] {
-      const auto receipts = client_.deliver({panda_attempt(panda_, "beside", 100 + reports_++)});
-      return receipts && receipts->at(0).status == ReceiptStatus::Stored;
+      auto receipts = client_.deliver({panda_attempt(panda_, "beside", 100 + reports_++)});
+      const Result<Receipt> receipt =
+          receipts ? Result<Receipt>(receipts->at(0)) : Result<Receipt>(receipts.error());
+      return instead("report", receipt, receipt && receipt->status == ReceiptStatus::Stored);
     });
   }
   return result;

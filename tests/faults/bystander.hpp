@@ -21,6 +21,7 @@ class Bystander {
   struct Calls {
     std::vector<double> times_s;
     std::size_t unanswered = 0;  ///< within 20 s, or not with what was asked for
+    std::string answer;          ///< the last of those
   };
   struct Rounds {
     Calls status, fetch, report;
@@ -28,6 +29,7 @@ class Bystander {
     std::size_t unanswered() const {
       return status.unanswered + fetch.unanswered + report.unanswered;
     }
+    std::string answers() const { return status.answer + fetch.answer + report.answer; }
   };
 
   /// Asks for the server's status, for the distribution in memory, and hands over a report until it
