@@ -12,12 +12,15 @@
 #include "tests/faults/captured_packets.hpp"
 #include "tests/faults/neighbours.hpp"
 #include "tests/faults/reporting_client.hpp"
+#include "tests/faults/short_lived_clients.hpp"
 
 int main(int argc, char** argv) {
   using Role = std::function<int(const std::vector<std::string>&)>;
-  const std::map<std::string, Role> roles = {{"captured", kinship::test::run_captured_client},
-                                             {"neighbour", kinship::test::run_neighbour},
-                                             {"report", kinship::test::run_reporting_client}};
+  const std::map<std::string, Role> roles = {
+      {"captured", kinship::test::run_captured_client},
+      {"neighbour", kinship::test::run_neighbour},
+      {"report", kinship::test::run_reporting_client},
+      {"short-lived", kinship::test::run_short_lived_clients}};
   const auto role = argc > 1 ? roles.find(argv[1]) : roles.end();
   if (role == roles.end()) {
     testing::InitGoogleTest(&argc, argv);
