@@ -17,7 +17,7 @@ namespace {
 using std::chrono::seconds;
 
 /// As many leases as the server keeps, of a day each, do not end another client's of a minute.
-TEST(Leases, OfOneClientDoNotEndAnothers) {
+TEST(FleetLeases, OfOneClientDoNotEndAnothers) {
   const ReservedDomain domain;
   const TemporaryDirectory directory;
   ServerProcess server(

@@ -65,7 +65,7 @@ TEST_F(ShortLivedClients, LeaveNoGrowth) {
             << " more: " << before.resident_mb << " -> " << after.resident_mb << " MB, "
             << before.threads << " -> " << after.threads << " threads, " << before.descriptors
             << " -> " << after.descriptors << " descriptors\n";
-  EXPECT_LT(after.resident_mb, before.resident_mb + 15);
+  EXPECT_LT(after.resident_mb, before.resident_mb + 15 + kQuarantine_mb);
   EXPECT_LE(after.threads, before.threads + 1);
   EXPECT_LE(after.descriptors, before.descriptors + 4);
   EXPECT_EQ(bystander_.live(3).unanswered(), 0U);

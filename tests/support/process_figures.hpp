@@ -16,6 +16,13 @@ struct ProcessFigures {
   int descriptors = 0;
 };
 
+/// What a program of this build may keep of what it has freed: AddressSanitizer's quarantine.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr double kQuarantine_mb = 800;
+#else
+inline constexpr double kQuarantine_mb = 0;
+#endif
+
 /// Those of a process of this user, now.
 /// \throws std::runtime_error if it has ended.
 inline ProcessFigures figures_of(pid_t process) {
