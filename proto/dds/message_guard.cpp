@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_cdrstream.h>
 #include <dds/ddsi/ddsi_serdata_default.h>
+#include <dds/ddsi/ddsi_xt_impl.h>
 #include <dlfcn.h>
 
 #include <cstring>
@@ -193,7 +194,19 @@ extern "C" bool dds_stream_normalize(void* data, std::uint32_t size, bool swappe
   return kBehind(data, size, swapped, version, type, just_key, actual_size);
 }
 
+/// In front of the function of this name in Cyclone DDS, which is asked about the type of each
+/// reader and writer that a peer announces, and ends the process at kinds it does not know.
+extern "C" bool ddsi_typeinfo_valid(const ddsi_typeinfo_t* type) {
+  static const auto kBehind = reinterpret_cast<decltype(&ddsi_typeinfo_valid)>(
+      dlsym(RTLD_NEXT, "ddsi_typeinfo_valid"));  // NOLINT: what dlsym is for
+  return type->x.minimal.typeid_with_size.type_id._d == DDS_XTypes_EK_MINIMAL &&
+         type->x.complete.typeid_with_size.type_id._d == DDS_XTypes_EK_COMPLETE && kBehind(type);
+}
+
 bool kinship::dds::is_message_guard_in_place() {
-  return dlsym(RTLD_DEFAULT, "dds_stream_normalize") ==
-         reinterpret_cast<void*>(&dds_stream_normalize);
+  const auto is_in_front = [](const char* name, auto* function) {
+    return dlsym(RTLD_DEFAULT, name) == reinterpret_cast<void*>(function);  // NOLINT: as above
+  };
+  return is_in_front("dds_stream_normalize", &dds_stream_normalize) &&
+         is_in_front("ddsi_typeinfo_valid", &ddsi_typeinfo_valid);
 }

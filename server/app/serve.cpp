@@ -16,6 +16,7 @@
 #include "proto/dds/wait_loop.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/join.hpp"
+#include "server/app/line_limit.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/service/service.hpp"
@@ -43,7 +44,6 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service.fit_memory_bytes = options.fit_memory_mb << 20U;
   service.fit_niceness = options.fit_niceness;
   service.rehearsal_fraction = options.rehearsal_fraction;
-  service.log = [](std::string_view line) { spdlog::info("{}", line); };
   return service;
 }
 
@@ -72,7 +72,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   const dds::Publisher<codec::EventPublication> events(participant);
   const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
   dds::WaitLoop loop(participant);
+  LineLimit log([](std::string_view line) { spdlog::info("{}", line); }, {});
   service::ServiceOptions settings = service_options(options);
+  settings.log = [&log](std::string_view line) { log.write(line); };
   settings.on_event = [&events](const Event& event) { events.publish(event); };
   settings.on_announcement = [&announcements](const Announcement& announcement) {
     announcements.publish(announcement);
