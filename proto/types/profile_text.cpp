@@ -29,9 +29,9 @@ void for_each_option(Profile& profile, Visit visit) {
 
 Error refusal(std::string_view text, const std::string& why) {
   // Half of it for the text: it may be anything.
-  return {ErrorCode::InvalidInput,
-          cut_text("profile '" + cut_text(text, kMaxMessageBytes / 2) + "': " + why,
-                   kMaxMessageBytes)};
+  return {
+      ErrorCode::InvalidInput,
+      cut_text("profile '" + cut_text(text, kMaxMessageBytes / 2) + "': " + why, kMaxMessageBytes)};
 }
 
 /// The value of an option, or nothing if the text is none within its limits. `auto` components are

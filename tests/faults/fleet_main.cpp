@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tests/faults/captured_packets.hpp"
-#include "tests/faults/neighbours.hpp"
 #include "tests/faults/fleet_reporter.hpp"
+#include "tests/faults/neighbours.hpp"
 #include "tests/faults/short_lived_clients.hpp"
 
 int main(int argc, char** argv) {

@@ -125,7 +125,7 @@ std::vector<Case<AdminWire>> admin_cases() {
       {"rows of a garbage job", verb(19, "99999999999999999999"), {"99999999999999999999"}},
       {"cancelling nothing", verb(18, ""), {"job"}},
       {"a backup to a device", verb(15, "/dev/null"), {"/dev/null"}},
-      {"a backup to a relative path", verb(15, "backup.db"), {"backup.db", "begin with '/'"}},
+      {"a backup outside of the folder", verb(15, "../backup.db"), {"backup.db", "outside of"}},
       {"a backup to a folder that is not there", verb(15, "/nowhere/at/all.db"), {"/nowhere"}},
       {"a backup to a name of 1025 bytes",
        verb(15, "/" + std::string(1024, 'b')),

@@ -96,13 +96,18 @@ void fit(FitOptions options, const std::stop_token& stop) {
 /// Stopped at several moments, each ends within a fraction of a second of its own computing time.
 void expect_stops(const char* what, const Work& work) {
   constexpr double kSoon_s = 0.5;
+  constexpr int kEnough = 3;
   double most_s = 0;
+  int stopped = 0;
   for (const auto after : {1ms, 20ms, 60ms, 150ms, 300ms, 700ms}) {
     const std::optional<double> left_s = time_to_stop(work, after);
-    ASSERT_TRUE(left_s) << what << " was over within " << after.count() << " ms";
+    if (!left_s)
+      break;  // it was over by itself
+    ++stopped;
     EXPECT_LT(*left_s, kSoon_s) << what << " after " << after.count() << " ms";
     most_s = std::max(most_s, *left_s);
   }
+  EXPECT_GE(stopped, kEnough) << what;
   testing::Test::RecordProperty(what, std::to_string(most_s));
 }
 

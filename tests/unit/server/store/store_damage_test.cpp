@@ -217,7 +217,8 @@ class StorePoison : public StoreDamage {
 
 TEST_F(StorePoison, IsToldWhyAndLeavesItsBatchAndTheFileAlone) {
   const std::vector<Receipt> receipts = test::report(
-      *store_, {attempt(100'000, 8), poisoned_[0], test::make_unsolved(robot_.digest, "bin", 100'001)});
+      *store_,
+      {attempt(100'000, 8), poisoned_[0], test::make_unsolved(robot_.digest, "bin", 100'001)});
   EXPECT_EQ(receipts[1].status, ReceiptStatus::TryAgain);
   EXPECT_NE(receipts[1].message.find("damaged"), std::string::npos) << receipts[1].message;
   EXPECT_EQ(receipts[2].status, ReceiptStatus::Recorded);
