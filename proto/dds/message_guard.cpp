@@ -183,6 +183,7 @@ bool overruns(std::span<const std::uint8_t> bytes, bool swapped, std::uint32_t v
 
 /// In front of the function of this name in Cyclone DDS, which calls it for each message from the
 /// network: a program's own symbols come before those of libraries.
+// NOLINTNEXTLINE(readability-function-size): its parameters are Cyclone DDS's
 extern "C" bool dds_stream_normalize(void* data, std::uint32_t size, bool swapped,
                                      std::uint32_t version, const ddsi_sertype_default* type,
                                      bool just_key, std::uint32_t* actual_size) {

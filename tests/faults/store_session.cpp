@@ -55,7 +55,7 @@ store::SqliteOptions StoreSession::small_options() {
   return options;
 }
 
-std::unique_ptr<store::Store> StoreSession::open(store::SqliteOptions options) const {
+std::unique_ptr<store::Store> StoreSession::open(const store::SqliteOptions& options) const {
   return store::open_sqlite_store(file(), options);
 }
 

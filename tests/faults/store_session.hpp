@@ -41,7 +41,7 @@ class StoreSession {
   std::filesystem::path file() const { return directory_ / kStoreName; }
 
   /// \param options  with a WAL so small that checkpoints come often, and tries 1 ms apart.
-  std::unique_ptr<store::Store> open(store::SqliteOptions options = small_options()) const;
+  std::unique_ptr<store::Store> open(const store::SqliteOptions& options = small_options()) const;
   static store::SqliteOptions small_options();
 
   void register_robots(store::Store& store);

@@ -127,7 +127,8 @@ std::uint64_t PageReader::count() const {
 
 std::optional<PageBytes> PageReader::read(std::uint64_t number) {
   const HolesAllowed free_pages;
-  const auto offset = static_cast<sqlite3_int64>((number - 1) * bytes_.size());
+  const auto offset =
+      static_cast<sqlite3_int64>(number - 1) * static_cast<sqlite3_int64>(bytes_.size());
   const int code =
       file_->pMethods->xRead(file_, bytes_.data(), static_cast<int>(bytes_.size()), offset);
   if (code == kDamagedPage)

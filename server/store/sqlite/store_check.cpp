@@ -62,6 +62,32 @@ std::string not_aside(std::int64_t schema, const std::string& table, int kind) {
          " AND set_aside.id = " + table + ".id)";
 }
 
+/// What holds since paths may be retired (schema 2), and of scenes since there are any (3).
+void add_rules_since_retirement(std::vector<Rule>& rules, std::int64_t schema,
+                                const std::string& counted) {
+  const std::string path_kept = not_aside(schema, "path", 1);
+  const std::string attempt_kept = not_aside(schema, "attempt", 2);
+  rules.push_back({"path",
+                   "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
+                   "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                   "WHERE " +
+                       path_kept + " AND " + attempt_kept +
+                       " AND path.received_ms <> attempt.received_ms"});
+  rules.push_back({"evicted_distribution",
+                   "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
+                   "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
+                       not_aside(schema, "distribution", 4)});
+  if (schema > 2)
+    rules.push_back({"path",
+                     "SELECT 'path ' || path.id || ': has another scene than its attempt' "
+                     "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                     "WHERE " +
+                         path_kept + " AND " + attempt_kept +
+                         " AND path.scene_id IS NOT attempt.scene_id"});
+  for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
+    rules.push_back(rule_of_sums(mode, code, counted));
+}
+
 std::vector<Rule> rules_of(std::int64_t schema) {
   const std::string path_kept = not_aside(schema, "path", 1);
   const std::string attempt_kept = not_aside(schema, "attempt", 2);
@@ -105,27 +131,8 @@ std::vector<Rule> rules_of(std::int64_t schema) {
            "FROM attempt WHERE attempt.task_id = experience.task_id "
            "AND attempt.robot_id = experience.robot_id AND " +
            counted + ") AS found FROM experience) WHERE attempts <> found"}};
-  if (schema < 2)
-    return rules;
-  rules.push_back({"path",
-                   "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
-                   "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
-                   "WHERE " +
-                       path_kept + " AND " + attempt_kept +
-                       " AND path.received_ms <> attempt.received_ms"});
-  rules.push_back({"evicted_distribution",
-                   "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
-                   "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
-                       not_aside(schema, "distribution", 4)});
-  if (schema > 2)
-    rules.push_back({"path",
-                     "SELECT 'path ' || path.id || ': has another scene than its attempt' "
-                     "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
-                     "WHERE " +
-                         path_kept + " AND " + attempt_kept +
-                         " AND path.scene_id IS NOT attempt.scene_id"});
-  for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
-    rules.push_back(rule_of_sums(mode, code, counted));
+  if (schema > 1)
+    add_rules_since_retirement(rules, schema, counted);
   return rules;
 }
 

@@ -113,7 +113,7 @@ TEST_F(IngestTest, OneClientMayHaveSoManyOnTheirWay) {
     const auto done = std::make_shared<std::promise<Receipt>>();
     std::future<Receipt> receipt = done->get_future();
     ingest.submit(
-        fleet::solved(robot_, "shelf", count, static_cast<std::uint64_t>(100 * count)),
+        fleet::solved(robot_, "shelf", count, 100 * static_cast<std::uint64_t>(count)),
         [done](const std::vector<Receipt>& receipts) { done->set_value(receipts[0]); }, client);
     return receipt.get();
   };
