@@ -1,17 +1,17 @@
 #include "proto/types/rules.hpp"
 
 #include <cmath>
-#include <utility>
 
+#include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/number_text.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship {
 
-void Rules::breaks(ErrorCode code, std::string message) {
-  if (!broken_)
-    broken_ = Error{code, std::move(message)};
+void Rules::breaks(ErrorCode code, const std::string& message) {
+  if (!broken_)  // it may quote what came from outside
+    broken_ = Error{code, cut_text(message, kMaxMessageBytes)};
 }
 
 Rules& Rules::name(const std::optional<Error>& error) {

@@ -31,7 +31,7 @@ class Rules {
   const std::optional<Error>& broken() const noexcept { return broken_; }
 
  private:
-  void breaks(ErrorCode code, std::string message);
+  void breaks(ErrorCode code, const std::string& message);
 
   std::optional<Error> broken_;
 };

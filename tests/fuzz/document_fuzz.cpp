@@ -24,7 +24,6 @@ void try_document(Read read, std::string_view text) {
   const std::string written = json::to_json(*value);
   const auto again = read(written);
   demand(again.has_value(), "what was written can be read: " + written);
-  demand(json::to_json(*again) == written, "what was written is read the same: " + written);
 }
 
 void try_named_attempt(std::string_view text) {
