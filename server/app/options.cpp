@@ -40,17 +40,16 @@ std::size_t default_workers() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
-/// Takes numbers from 0 to 1; CLI::Range lets what is no number pass.
-const CLI::Validator& is_part() {
-  static const CLI::Validator kPart(
-      [](std::string& text) {
-        double part = 0;
-        return CLI::detail::lexical_cast(text, part) && part >= 0 && part <= 1
-                   ? std::string()
-                   : "'" + text + "' is not a number from 0 to 1";
-      },
-      "FLOAT in [0 - 1]");
-  return kPart;
+/// Takes numbers from 0 to `highest`; CLI::Range lets what is no number pass.
+CLI::Validator is_number_up_to(int highest) {
+  const std::string range = std::to_string(highest);
+  return {[highest, range](std::string& text) {
+            double number = 0;
+            return CLI::detail::lexical_cast(text, number) && number >= 0 && number <= highest
+                       ? std::string()
+                       : "'" + text + "' is not a number from 0 to " + range;
+          },
+          "FLOAT in [0 - " + range + "]"};
 }
 
 /// What the store may take of its disk.
@@ -73,24 +72,10 @@ void add_disk_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
-constexpr double kMaxScrubMbPerS = 1000;
-
-/// Takes numbers from 0 to kMaxScrubMbPerS.
-const CLI::Validator& is_rate() {
-  static const CLI::Validator kRate(
-      [](std::string& text) {
-        double rate = 0;
-        return CLI::detail::lexical_cast(text, rate) && rate >= 0 && rate <= kMaxScrubMbPerS
-                   ? std::string()
-                   : "'" + text + "' is not a number from 0 to 1000";
-      },
-      "FLOAT in [0 - 1000]");
-  return kRate;
-}
-
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
+  constexpr int kMaxScrubMbPerS = 1000;
   constexpr std::size_t kMinFitMemory_mb = 16, kMaxFitMemory_mb = std::size_t{1} << 24U;
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
@@ -119,13 +104,13 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--rehearsal-cpu", options.rehearsal_fraction,
                  "Part of one processor, in the mean, for planning recorded queries again to find "
                  "out what guides them best; 0: none")
-      ->check(is_part())
+      ->check(is_number_up_to(1))
       ->capture_default_str();
   add_disk_options(app, options);
   app.add_option("--scrub-mb-per-s", options.scrub_mb_per_s,
                  "How fast the store is read through, again and again, in search of damage, MB a "
                  "second; 0: not at all")
-      ->check(is_rate())
+      ->check(is_number_up_to(kMaxScrubMbPerS))
       ->capture_default_str();
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))

@@ -14,6 +14,7 @@
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/types/names.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
@@ -72,7 +73,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   const dds::Publisher<codec::EventPublication> events(participant);
   const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
   dds::WaitLoop loop(participant);
-  LineLimit log([](std::string_view line) { spdlog::info("{}", line); }, {});
+  LineLimit log([](std::string_view line) { spdlog::info("{}", on_one_line(std::string(line))); },
+                {});
   service::ServiceOptions settings = service_options(options);
   settings.log = [&log](std::string_view line) { log.write(line); };
   settings.on_event = [&events](const Event& event) { events.publish(event); };
