@@ -189,6 +189,8 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
     out << "experience    " << selection << '\n';
   if (!distribution.reason.empty())
     out << "note          " << distribution.reason << '\n';
+  if (!distribution.filters.empty())
+    out << "filters       " << distribution.filters << '\n';
   out << '\n';
   if (!distribution.component_scores.empty())
     print_curve(distribution, out);

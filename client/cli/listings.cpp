@@ -77,7 +77,7 @@ int list_tasks(link::Client& server, const ListOptions& options, std::ostream& o
               json::task_summary_from_json,
               [](const TaskSummary& task) {
                 return std::vector<std::string>{task.task, std::to_string(task.robots.size()),
-                                                std::to_string(task.paths),
+                                                kept_text(task.paths, task.dropped),
                                                 std::to_string(task.attempts)};
               }},
       options, out, err);
@@ -103,7 +103,9 @@ int list_paths(link::Client& server, const ListOptions& options, std::ostream& o
                                  std::string(to_text(path.record.sampling_mode)),
                                  path.machine,
                                  time_text(path.received_ms),
-                                 path.retired_ms == 0 ? "-" : time_text(path.retired_ms)};
+                                 path.retired_ms == 0 ? "-"
+                                                      : (path.dropped ? "dropped " : "") +
+                                                            time_text(path.retired_ms)};
                            }},
                    options, out, err);
 }

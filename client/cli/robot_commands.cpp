@@ -13,6 +13,7 @@
 #include "client/files/lines.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/types/pose.hpp"
+#include "robots/collision/fitted_links.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/solver.hpp"
@@ -75,6 +76,20 @@ std::optional<geometry::RobotShapes> read_geometry(const char* command,
     return *std::move(shapes);
   err << command << ": without collision geometry: " << shapes.error().message << '\n';
   return std::nullopt;
+}
+
+/// Tells the server of the meshes that are here, or `err` why not.
+void add_mesh_solids(const char* command, const models::RobotArguments& arguments,
+                     RobotDescription& description, std::ostream& err) {
+  const auto geometry = read_geometry(command, arguments, description, err);
+  if (!geometry)
+    return;
+  auto fitted =
+      collision::fit_robot(kinematics::read_chain(description).value_or_throw(), *geometry);
+  if (fitted)
+    description.mesh_solids = std::move(fitted).value().mesh_solids;
+  else
+    err << command << ": no solids around its meshes: " << fitted.error().message << '\n';
 }
 
 const char* reason_text(inverse::NoSolution reason) {
@@ -166,6 +181,16 @@ std::string geometry_text(const geometry::RobotShapes& geometry) {
          " of links never checked against each other";
 }
 
+/// What a server can filter with for a robot with meshes, and how well that does.
+void print_filter(const collision::FittedRobot& fitted, std::ostream& out) {
+  const collision::FilterAgreement& agreement = fitted.agreement;
+  out << "server      gets " << count_text(fitted.mesh_solids.solids.size(), "solid")
+      << " around the meshes, which find " << agreement.found << " of " << agreement.colliding
+      << " self-collisions and take " << agreement.lost << " of " << agreement.free
+      << " free configurations for some; "
+      << count_text(fitted.mesh_solids.unfiltered.size(), "pair") << " of links not compared\n";
+}
+
 void print_check(const RobotCheck& check, const RobotDescription& description,
                  const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
   out << "robot       " << check.robot.hex() << '\n'
@@ -218,6 +243,11 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
     out << json::to_json(check) << '\n';
   else
     print_check(check, robot->description, geometry, out);
+  if (options.json || !geometry)
+    return kDone;
+  const auto fitted = collision::fit_robot(chain, *geometry);
+  if (fitted && !fitted->mesh_solids.solids.empty())
+    print_filter(*fitted, out);
   return kDone;
 }
 
@@ -254,11 +284,12 @@ int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::os
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
                    std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "robots register";
-  const auto description = models::describe_robot(arguments);
-  if (!description)
-    return refuse(kCommand, description.error(), err);
-  read_geometry(kCommand, arguments, *description, err);
-  const auto reply = server.register_robot(*description);
+  auto described = models::describe_robot(arguments);
+  if (!described)
+    return refuse(kCommand, described.error(), err);
+  RobotDescription description = *std::move(described);
+  add_mesh_solids(kCommand, arguments, description, err);
+  const auto reply = server.register_robot(description);
   if (!reply)
     return refuse(kCommand, reply.error(), err);
   if (reply->status == RegisterStatus::Refused) {
@@ -266,14 +297,18 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
     return kWrongUsage;
   }
   if (!reply->message.empty())
-    err << kCommand << ": " << reply->message << "; the label '" << description->label
+    err << kCommand << ": " << reply->message << "; the label '" << description.label
         << "' is not kept\n";
   if (json)
-    out << json::to_json(*reply, description->label) << '\n';
+    out << json::to_json(*reply, description.label) << '\n';
   else
-    out << (reply->message.empty() ? description->label + " is " : "") << "robot "
+    out << (reply->message.empty() ? description.label + " is " : "") << "robot "
         << reply->robot.short_hex() << ": " << reply->dof << " joints, " << reply->solver
         << (reply->status == RegisterStatus::Known ? " (known already)" : "") << '\n';
+  if (!json && !reply->geometry.empty())
+    out << (reply->took_geometry ? "better geometry than before, it counts from now on: "
+                                 : "the server filters with: ")
+        << reply->geometry << '\n';
   if (!json)
     print_same_arms(reply->same_arms, out);
   return kDone;

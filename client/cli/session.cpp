@@ -47,8 +47,9 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
   const auto options = std::make_shared<ListOptions>();
   CLI::App* command = add_command(group, "list", "List " + group.get_name(),
                                   "kinship " + group.get_name() + " list --json");
+  constexpr std::size_t kMostRows = 1'000'000'000;
   command->add_option("--limit", options->limit, "Rows at most (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::size_t{0}, kMostRows));
   if (can_filter) {
     command->add_option("--task", options->task, "Of this task");
     command->add_option("--robot", options->robot, "Of this robot: label or digest prefix");

@@ -53,6 +53,9 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
       << "chain       " << robot.base_link << " -> " << robot.tip_link << ", " << robot.dof
       << " joints\n";
   print_transfer(description, out);
+  if (!robot.geometry.empty())
+    out << "geometry    " << robot.geometry
+        << (robot.geometry_ms > 0 ? ", taken over at " + time_text(robot.geometry_ms) : "") << '\n';
   out << "solver      " << robot.solver << '\n'
       << "experience  " << robot.paths << " paths, " << robot.attempts << " attempts\n"
       << "registered  " << time_text(robot.registered_ms) << '\n';
@@ -60,10 +63,11 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
 
 void print_task(const TaskSummary& task, std::ostream& out) {
   out << "task        " << task.task << '\n'
-      << "experience  " << task.paths << " paths, " << task.attempts << " attempts\n\n";
+      << "experience  " << kept_text(task.paths, task.dropped) << " paths, " << task.attempts
+      << " attempts\n\n";
   Table table({"ROBOT", "LABEL", "PATHS", "ATTEMPTS", "GENERATION"});
   for (const TaskRobotSummary& robot : task.robots)
-    table.add_row({robot.robot.short_hex(), robot.label, std::to_string(robot.paths),
+    table.add_row({robot.robot.short_hex(), robot.label, kept_text(robot.paths, robot.dropped),
                    std::to_string(robot.attempts), std::to_string(robot.generation)});
   table.print(out);
 }
@@ -86,6 +90,9 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
   out << '\n';
   if (attempt.scene)
     print_scene(*attempt.scene, out);
+  if (!attempt.path && record.outcome == Outcome::Solved)
+    out << "waypoints   not kept: beyond the cap of its robot and task (kinshipd "
+           "--max-paths-per-pair)\n";
   if (!attempt.path)
     return;
   out << "waypoints   " << attempt.path->size() << '\n';
@@ -107,8 +114,11 @@ void print_status(const ServerStatus& status, std::ostream& out) {
     out << (status.writable ? "note           " : "because        ") << status.storage_message
         << '\n';
   out << "holds          " << count_text(status.robots, "robot") << ", "
-      << count_text(status.tasks, "task") << ", " << count_text(status.paths, "path") << ", "
-      << count_text(status.attempts, "attempt") << ", "
+      << count_text(status.tasks, "task") << ", " << count_text(status.paths, "path")
+      << (status.dropped_paths > 0
+              ? " (" + std::to_string(status.dropped_paths) + " more were beyond the cap)"
+              : "")
+      << ", " << count_text(status.attempts, "attempt") << ", "
       << count_text(status.distributions, "distribution") << '\n'
       << "since start    " << count_text(status.reports_received, "report") << " ("
       << status.reports_refused << " refused), " << status.fetches << " fetches ("
@@ -175,7 +185,7 @@ int show_task(link::Client& server, const std::string& task, bool json, std::ost
 int show_path(link::Client& server, const std::string& id, bool json, std::ostream& out,
               std::ostream& err) {
   return show(server, {AdminVerb::ShowPath, id, "paths show", json}, out, err,
-              json::attempt_from_json,
+              json::stored_attempt_from_json,
               [&](const json::NamedAttempt& named) { print_attempt(named.attempt, out); });
 }
 

@@ -72,6 +72,10 @@ std::string number_text(double value, int digits) {
 
 std::string percent_text(double part) { return number_text(100 * part, 0) + "%"; }
 
+std::string kept_text(std::uint64_t kept, std::uint64_t dropped) {
+  return std::to_string(kept) + (dropped > 0 ? " of " + std::to_string(kept + dropped) : "");
+}
+
 std::string count_text(std::uint64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -34,6 +34,9 @@ std::string percent_text(double part);  ///< 0.25: "25%"
 /// "1 path", "6 paths", "0 paths".
 std::string count_text(std::uint64_t count, const std::string& noun);
 
+/// "20000 of 35012" where a cap left some out, else the number alone.
+std::string kept_text(std::uint64_t kept, std::uint64_t dropped);
+
 std::string pose_text(const Eigen::Isometry3d& T_a_b);  ///< x y z qx qy qz qw
 
 }  // namespace kinship::cli

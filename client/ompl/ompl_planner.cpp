@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "client/ompl/guided_state_sampler.hpp"
+#include "client/ompl/motion_validity.hpp"
 #include "client/ompl/ompl_planners.hpp"
 #include "client/ompl/region_state_space.hpp"
 #include "client/ompl/state_space.hpp"
@@ -35,7 +36,7 @@ struct PlanningSpace {
   std::function<void(const Eigen::VectorXd&, ob::State&)> copy_to;
   /// What was checked between two states: dof x n.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> way;
-  std::function<bool(const Eigen::VectorXd&)> holds;  ///< the constraint
+  std::function<bool(const Eigen::VectorXd&)> holds;  ///< the constraint; empty: there is none
 };
 
 PlanningSpace straight_space(const Eigen::Matrix2Xd& bounds, double step) {
@@ -45,6 +46,8 @@ PlanningSpace straight_space(const Eigen::Matrix2Xd& bounds, double step) {
   // A little shorter, so that a distance of whole steps is cut alike here and there.
   const double part = step * (1 - 1e-9);
   planning.information->setStateValidityCheckingResolution(part / space->getMaximumExtent());
+  planning.information->setMotionValidator(
+      std::make_shared<StraightMotionValidator>(planning.information));
   const Eigen::Index dof = bounds.cols();
   planning.configuration = [dof](const ob::State& state) { return to_configuration(state, dof); };
   planning.copy_to = copy_to_state;
@@ -53,7 +56,6 @@ PlanningSpace straight_space(const Eigen::Matrix2Xd& bounds, double step) {
     ends << from, to;
     return densified(ends, part);
   };
-  planning.holds = [](const Eigen::VectorXd&) { return true; };
   return planning;
 }
 
@@ -86,8 +88,10 @@ class OmplQuery {
         budget_(is_free, options.limits.max_checks, options.limits.time_limit),
         end_(std::chrono::steady_clock::now() + options.limits.time_limit),
         planner_(make_ompl_planner(options.planner, options.range, space_.information)) {
-    space_.information->setStateValidityChecker(
-        [this](const ob::State* state) { return is_free_at(space_.configuration(*state)); });
+    space_.information->setStateValidityChecker(std::make_shared<SeveralStatesValidity>(
+        space_.information,
+        [this](const ob::State& state) { return is_free_at(space_.configuration(state)); },
+        [this](const Eigen::Ref<const Eigen::MatrixXd>& qs) { return free_ahead(qs); }));
     problem_ = std::make_shared<ob::ProblemDefinition>(space_.information);
     const auto first_path =
         std::make_shared<ob::PathLengthOptimizationObjective>(space_.information);
@@ -107,7 +111,17 @@ class OmplQuery {
 
  private:
   bool is_free_at(const Eigen::VectorXd& q) {
-    const bool free = space_.holds(q) && budget_.is_free(q);
+    const bool free = (!space_.holds || space_.holds(q)) && budget_.is_free(q);
+    if (budget_.reason() != NoPath::None)
+      ended_ = true;
+    return free;
+  }
+
+  Eigen::Index free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+    Eigen::Index holding = space_.holds ? 0 : qs.cols();
+    while (holding < qs.cols() && space_.holds(qs.col(holding)))
+      ++holding;
+    const Eigen::Index free = holding == 0 ? 0 : budget_.free_ahead(qs.leftCols(holding));
     if (budget_.reason() != NoPath::None)
       ended_ = true;
     return free;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/ompl/motion_validity.hpp"
 #include "client/ompl/region_ompl_constraint.hpp"
 
 namespace kinship::planning {
@@ -87,6 +88,9 @@ bool RegionMotionValidator::checkMotion(const ob::State* from, const ob::State* 
   const auto way = space_.way(begin, end);
   if (!way)
     return false;
+  if (const auto* several =
+          dynamic_cast<const SeveralStatesValidity*>(si_->getStateValidityChecker().get()))
+    return several->are_valid(way->rightCols(way->cols() - 1));
   ob::State* passed = space_.allocState();
   bool free = true;
   for (Eigen::Index i = 1; free && i < way->cols(); ++i) {

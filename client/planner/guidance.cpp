@@ -55,11 +55,12 @@ std::string describe(const TaskExperience& experience) {
 
 /// "rehearsed on 50 queries: guide retreat+ways".
 std::string describe(const Rehearsal& rehearsal) {
-  if (!rehearsal.message.empty())
+  if (rehearsal.queries == 0 && !rehearsal.message.empty())
     return rehearsal.message;
   return "rehearsed on " + std::to_string(rehearsal.queries) + " recorded queries" +
          (rehearsal.is_complete ? "" : " so far") + ": guide " +
-         std::string(to_text(rehearsal.guide));
+         std::string(to_text(rehearsal.guide)) +
+         (rehearsal.message.empty() ? "" : " (" + rehearsal.message + ")");
 }
 
 /// Why a distribution cannot guide this robot; empty if it can.
@@ -105,6 +106,8 @@ GuidanceAnswer answer_with(const Distribution* distribution, SharedExperience ex
     answer.message += " (" + advice.evidence + ")";
   if (distribution != nullptr && !distribution->reason.empty())
     answer.message += "; warning: " + distribution->reason;
+  if (distribution != nullptr && !distribution->filters.empty())
+    answer.message += "; filters: " + distribution->filters;
   return answer;
 }
 

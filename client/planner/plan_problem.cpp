@@ -102,11 +102,11 @@ class Planning {
         T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
         world_(robot.solids,
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
-        is_free_([this, &stop](const Eigen::VectorXd& q) {
-          if (stop())
-            throw Interrupted();
-          return !world_.collides(q);
-        }),
+        is_free_(planning::free_in(world_,
+                                   [&stop] {
+                                     if (stop())
+                                       throw Interrupted();
+                                   })),
         bounds_(planning::planning_bounds(robot.chain, problem.start)),
         generator_(problem.seed) {
     if (problem.constraint)
@@ -174,16 +174,28 @@ class Planning {
         first_goal_ = goals.col(0);
       return goals;
     }
-    const planning::IsFree is_free = [this](const Eigen::VectorXd& q) {
+    const auto remember = [this](const Eigen::Ref<const Eigen::VectorXd>& q) {
       if (!first_goal_)
         first_goal_ = q;
-      return is_free_(q);
     };
+    const planning::IsFree is_free{[&](const Eigen::VectorXd& q) {
+                                     remember(q);
+                                     return is_free_(q);
+                                   },
+                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+                                     remember(qs.col(0));
+                                     return is_free_.ahead(qs);
+                                   },
+                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+                                     remember(qs.col(0));
+                                     return is_free_.blocked_ahead(qs);
+                                   }};
     planning::GoalOptions options;
     options.max_configurations = settings_.max_goals;
     options.seed = problem_.seed;
     planning::GoalConfigurations goals = planning::goal_configurations(
-        robot_.chain, T_task_base_.inverse() * *problem_.T_task_goal, bounds_, is_free, options);
+        robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_goal, bounds_,
+        is_free, options);
     result.goal_checks = goals.collision_checks;
     result.reason = explain(goals.reason);
     return std::move(goals.configurations);

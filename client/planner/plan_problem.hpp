@@ -14,6 +14,7 @@
 #include "proto/types/problem.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planner {
@@ -22,10 +23,11 @@ namespace kinship::planner {
 struct PlannedRobot {
   /// \throws Failure(InvalidInput) as collision::RobotSolids says.
   PlannedRobot(kinematics::Chain its_chain, const geometry::RobotShapes& shapes)
-      : chain(std::move(its_chain)), solids(chain, shapes) {}
+      : chain(std::move(its_chain)), solids(chain, shapes), solver(chain) {}
 
   kinematics::Chain chain;
   collision::RobotSolids solids;  ///< shared by the worlds of all problems
+  inverse::Solver solver;
 };
 
 struct PlannedProblem {

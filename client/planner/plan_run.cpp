@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <ostream>
 #include <string>
@@ -14,6 +15,7 @@
 #include "client/planner/scene_record.hpp"
 #include "client/planner/server_line.hpp"
 #include "proto/json/problem_json.hpp"
+#include "robots/collision/fitted_links.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "robots/models/scene_meshes.hpp"
 
@@ -53,10 +55,20 @@ class SceneRecorder {
       : wanted_(options.record_scenes), chain_(chain), messages_(messages) {}
 
   void add(const Problem& problem, Attempt& attempt) {
-    const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty();
+    const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty() &&
+                         problem.scene.clouds.empty();
     if (!wanted_ || (is_open && problem.attached.empty() && !problem.constraint))
       return;
-    Result<RecordedScene> scene = record_scene(chain_, problem);
+    Result<RecordedScene> scene = records_.record(chain_, problem);
+    const bool has_mesh = !problem.scene.meshes.empty() || !problem.scene.clouds.empty() ||
+                          std::ranges::any_of(problem.attached, [](const AttachedObject& each) {
+                            return each.mesh.has_value();
+                          });
+    if (scene && has_mesh && !std::exchange(told_of_meshes_, true))
+      messages_ << "problem '" << problem.name
+                << "' is reported with solids around its meshes and clouds (approximate): the "
+                   "server filters "
+                   "with these\n";
     if (scene)
       attempt.scene = std::move(scene).value();
     else if (!std::exchange(told_, true))
@@ -68,7 +80,8 @@ class SceneRecorder {
   const bool wanted_;
   const kinematics::Chain& chain_;
   std::ostream& messages_;
-  bool told_ = false;
+  SceneRecords records_;
+  bool told_ = false, told_of_meshes_ = false;
 };
 
 /// The answer to a problem whose meshes cannot be had.
@@ -164,7 +177,9 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
                     const std::function<bool()>& stop) {
   const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
-  ServerLine server(options, robot.description, streams.messages, stop);
+  ServerLine server(
+      options, robot.description,
+      [&robot] { return collision::fit_robot(robot.chain, robot.shapes); }, streams.messages, stop);
   if (server.is_robot_refused()) {
     streams.messages << "nothing is planned: the robot cannot be registered\n";
     return {kFailed, false};

@@ -1,13 +1,19 @@
 #include "client/planner/scene_record.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "robots/geometry/mesh_cover.hpp"
+#include "robots/geometry/point_cloud.hpp"
+
 namespace kinship::planner {
 namespace {
+
+constexpr std::size_t kBoxesOfACloud = 128;  // of some 2000 objects that a scene may hold
 
 /// Pose of a link in the transfer frame if both are fixed to each other.
 std::optional<Eigen::Isometry3d> T_transfer_link(const kinematics::Chain& chain,
@@ -25,19 +31,55 @@ std::optional<Eigen::Isometry3d> T_transfer_link(const kinematics::Chain& chain,
 
 }  // namespace
 
-Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem) {
-  const auto held_mesh = std::find_if(problem.attached.begin(), problem.attached.end(),
-                                      [](const AttachedObject& each) { return each.mesh; });
-  if (!problem.scene.meshes.empty() || held_mesh != problem.attached.end())
-    return Error{
-        ErrorCode::InvalidInput,
-        "'" + (problem.scene.meshes.empty() ? held_mesh->name : problem.scene.meshes.front().name) +
-            "' is a mesh, and the server keeps scenes of shapes only"};
+Result<SceneRecords::Solids> SceneRecords::around(const Mesh& mesh, const std::string& name) {
+  if (!mesh.triangles || mesh.triangles->cols() == 0)
+    return invalid_input("'" + name + "' is a mesh that was not read");
+  Solids& solids = solids_[mesh.triangles];
+  if (!solids)
+    solids = std::make_shared<const std::vector<geometry::FittedShape>>(
+        geometry::cover_mesh(*mesh.triangles));
+  return solids;
+}
+
+std::optional<Error> SceneRecords::add_held(const AttachedObject& attached,
+                                            const Eigen::Isometry3d& T_transfer_object,
+                                            RecordedScene& scene) {
+  if (!attached.mesh) {
+    scene.held.push_back({attached.name, attached.shape, T_transfer_object});
+    return std::nullopt;
+  }
+  const Result<Solids> solids = around(*attached.mesh, attached.name);
+  if (!solids)
+    return solids.error();
+  for (const geometry::FittedShape& solid : **solids)
+    scene.held.push_back(
+        {attached.name, solid.shape, T_transfer_object * solid.T_points_shape, true});
+  return std::nullopt;
+}
+
+Result<RecordedScene> SceneRecords::record(const kinematics::Chain& chain, const Problem& problem) {
   RecordedScene scene;
   scene.objects = problem.scene.objects;
+  for (const SceneMesh& object : problem.scene.meshes) {
+    const Result<Solids> solids = around(object.mesh, object.name);
+    if (!solids)
+      return solids.error();
+    for (const geometry::FittedShape& solid : **solids)
+      scene.objects.push_back(
+          {object.name, solid.shape, object.T_task_mesh * solid.T_points_shape, true});
+  }
+  for (const SceneCloud& object : problem.scene.clouds) {
+    if (!object.cloud.voxels)
+      return invalid_input("'" + object.name + "' is a point cloud that was not read");
+    for (const geometry::VoxelBlock& block :
+         geometry::blocks_of(*object.cloud.voxels, object.cloud.voxel_m, kBoxesOfACloud))
+      scene.objects.push_back({object.name, BoxShape{block.size},
+                               object.T_task_cloud * Eigen::Translation3d(block.center), true});
+  }
   for (const AttachedObject& attached : problem.attached)
     if (const auto T = T_transfer_link(chain, attached.link))
-      scene.held.push_back({attached.name, attached.shape, *T * attached.T_link_object});
+      if (const auto error = add_held(attached, *T * attached.T_link_object, scene))
+        return *error;
   std::set<std::string_view> names;
   for (const SceneObject& object : scene.objects)
     names.insert(object.name);
@@ -50,6 +92,10 @@ Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem
   if (const auto error = check_scene(scene))
     return *error;
   return scene;
+}
+
+Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem) {
+  return SceneRecords().record(chain, problem);
 }
 
 }  // namespace kinship::planner

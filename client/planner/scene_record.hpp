@@ -1,17 +1,44 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "proto/types/problem.hpp"
 #include "proto/types/recorded_scene.hpp"
 #include "proto/types/result.hpp"
+#include "robots/geometry/fitted_shape.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planner {
 
-/// A problem's scene and constraint without its robot, as the server is told of them. What is
-/// attached to the tip, or to a link that is fixed to it, is said in the transfer frame; what
-/// another link carries, and allowed pairs that name a link, are left out: another robot has no
-/// such link.
-/// \return Error that names the mesh, or the rule which the scene breaks: too large, an empty name.
+/// Says the scenes of problems as the server is told of them. Solids around a mesh are fitted once,
+/// however many problems have it. Used by one thread.
+class SceneRecords {
+ public:
+  /// A problem's scene and constraint without its robot. What is attached to the tip, or to a link
+  /// that is fixed to it, is said in the transfer frame; what another link carries, and allowed
+  /// pairs that name a link, are left out: another robot has no such link. A mesh is there as
+  /// solids around it, which have its name and are marked as approximate; so is a point cloud, as
+  /// boxes.
+  /// \param problem  its meshes and clouds have been read.
+  /// \return Error that names the rule which the scene breaks: too large, an empty name.
+  Result<RecordedScene> record(const kinematics::Chain& chain, const Problem& problem);
+
+ private:
+  using Solids = std::shared_ptr<const std::vector<geometry::FittedShape>>;
+
+  Result<Solids> around(const Mesh& mesh, const std::string& name);
+  std::optional<Error> add_held(const AttachedObject& attached,
+                                const Eigen::Isometry3d& T_transfer_object, RecordedScene& scene);
+
+  std::map<std::shared_ptr<const Eigen::Matrix3Xd>, Solids> solids_;  // by the mesh's triangles
+};
+
+/// The same for one problem alone.
 Result<RecordedScene> record_scene(const kinematics::Chain& chain, const Problem& problem);
 
 }  // namespace kinship::planner

@@ -23,9 +23,13 @@ NoGuidance why_not(const Error& error) {
 
 }  // namespace
 
-ServerLine::ServerLine(const PlanOptions& options, const RobotDescription& description,
+ServerLine::ServerLine(const PlanOptions& options, RobotDescription description, FitRobot fit,
                        std::ostream& messages, const std::function<bool()>& stop)
-    : options_(options), description_(description), messages_(messages), stop_(stop) {
+    : options_(options),
+      description_(std::move(description)),
+      fit_(std::move(fit)),
+      messages_(messages),
+      stop_(stop) {
   if (options_.guidance == GuidanceMode::Uniform)
     why_unguided_ = options_.task.empty() ? "no task is named" : "--guidance uniform";
   if (options_.guidance == GuidanceMode::Uniform && !options_.report)
@@ -59,9 +63,32 @@ Result<Reply> ServerLine::wait_for(const std::function<Result<Reply>()>& call) {
   }
 }
 
+Result<RegisterReply> ServerLine::send_description() {
+  return wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
+}
+
+/// \return whether there are any, which were not there before.
+bool ServerLine::add_mesh_solids() {
+  if (!description_.mesh_solids.solids.empty())
+    return false;
+  Result<collision::FittedRobot> fitted = fit_();
+  if (!fitted)
+    messages_ << "robot '" << description_.label
+              << "': no solids around its meshes: " << fitted.error().message << '\n';
+  else
+    description_.mesh_solids = std::move(fitted).value().mesh_solids;
+  return !description_.mesh_solids.solids.empty();
+}
+
 void ServerLine::register_robot() {
-  const Result<RegisterReply> reply =
-      wait_for<RegisterReply>([this] { return client_->register_robot(description_); });
+  Result<RegisterReply> reply = send_description();
+  // A server that does not tell has no use for solids.
+  if (reply && reply->status != RegisterStatus::Refused && !reply->geometry.empty() &&
+      reply->geometry_grade < GeometryGrade::Approximate && add_mesh_solids())
+    reply = send_description();
+  if (reply && !reply->geometry.empty() && reply->geometry_grade != GeometryGrade::Exact)
+    messages_ << "robot '" << description_.label
+              << "', as the server filters for it: " << reply->geometry << '\n';
   trouble_.reset();
   is_robot_refused_ = reply && reply->status == RegisterStatus::Refused;
   if (!reply)

@@ -13,6 +13,7 @@
 #include "client/planner/problem_lines.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/robot_description.hpp"
+#include "robots/collision/fitted_links.hpp"
 
 namespace kinship::planner {
 
@@ -20,11 +21,16 @@ namespace kinship::planner {
 /// works: there is no guidance, and reports stay in the outbox.
 class ServerLine {
  public:
+  using FitRobot = std::function<Result<collision::FittedRobot>()>;
+
   /// Registers the robot if the options need the server. A line that cannot be had, or a refused
   /// registration, is said and means no guidance.
+  /// \param fit       fits solids around the robot's meshes; called if the server knows the robot
+  /// no
+  ///                  better without them. Borrowed.
   /// \param messages  for people; borrowed.
   /// \param stop      asked while a server is waited for; true ends the waiting. Borrowed.
-  ServerLine(const PlanOptions& options, const RobotDescription& description,
+  ServerLine(const PlanOptions& options, RobotDescription description, FitRobot fit,
              std::ostream& messages, const std::function<bool()>& stop);
 
   /// Asks for guidance for every placement of the problems, and says what came of it.
@@ -55,11 +61,14 @@ class ServerLine {
   Result<Reply> wait_for(const std::function<Result<Reply>()>& call);
 
   void register_robot();
+  Result<RegisterReply> send_description();
+  bool add_mesh_solids();
   std::optional<Error> find_sources(Selection& selection);
   void flush();
 
   const PlanOptions options_;
-  const RobotDescription description_;
+  RobotDescription description_;
+  const FitRobot fit_;
   std::ostream& messages_;
   const std::function<bool()>& stop_;
   std::unique_ptr<link::Client> client_;  // null: no server needed, or no line to be had

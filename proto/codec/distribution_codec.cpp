@@ -126,6 +126,7 @@ std::optional<Error> check(const Distribution& distribution) {
       .text("profile", distribution.profile, kMaxProfileBytes)
       .text("engines", distribution.engines, kMaxEnginesBytes)
       .text("reason", distribution.reason, kMaxMessageBytes)
+      .text("filters", distribution.filters, kMaxMessageBytes)
       .text("evidence", distribution.advice.evidence, kMaxMessageBytes)
       .at_most("sources", distribution.sources.size(), kMaxSources)
       .between("recommended_share", distribution.advice.recommended_share, 0, 1)
@@ -191,6 +192,7 @@ void write_distribution(const Distribution& distribution, Arena& arena,
   write_list(distribution.component_scores, arena, wire.component_scores);
   write_cuts(distribution.cuts, arena, wire);
   write_optional(distribution.fit, arena, wire.fit);
+  wire.filters = arena.text(distribution.filters);
 }
 
 Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& reader) {
@@ -237,6 +239,7 @@ Distribution read_distribution(const kinship_wire_Distribution& wire, Reader& re
   distribution.component_scores = read_list<ComponentScore>(wire.component_scores, reader);
   distribution.cuts = read_cuts(wire, limits.size() / 2, reader);
   distribution.fit = read_optional<FitOrigin>(wire.fit, reader, " of a full fit");
+  distribution.filters = reader.text("filters", wire.filters, kMaxMessageBytes);
   return distribution;
 }
 

@@ -3,6 +3,7 @@
 #include "proto/codec/reader.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/recorded_scene.hpp"
 
 namespace kinship::codec {
 namespace {
@@ -15,7 +16,49 @@ std::optional<Error> check(const RegisterReply& reply) {
       .at_most("same_arms", reply.same_arms.size(), kMaxSameArms);
   for (const std::string& label : reply.same_arms)
     rules.text("same_arms", label, kMaxLabelBytes);
+  rules.text("geometry", reply.geometry, kMaxMessageBytes);
   return rules.broken();
+}
+
+void write_mesh_solids(const MeshSolids& mesh_solids, Arena& arena,
+                       kinship_wire_RegisterRequest& wire) {
+  arena.resize(wire.mesh_solids, mesh_solids.solids.size());
+  for (std::size_t i = 0; i < mesh_solids.solids.size(); ++i) {
+    const LinkSolid& solid = mesh_solids.solids[i];
+    auto& element = wire.mesh_solids._buffer[i];
+    element.link = arena.text(solid.link);
+    const ShapeNumbers numbers = to_numbers(solid.shape);
+    element.shape = static_cast<std::uint32_t>(numbers.kind);
+    std::copy(numbers.sizes.begin(), numbers.sizes.end(), std::begin(element.size));
+    const PoseArray pose = to_pose_array(solid.T_link_shape);
+    std::copy(pose.begin(), pose.end(), std::begin(element.pose));
+  }
+  arena.resize(wire.unfiltered, mesh_solids.unfiltered.size());
+  for (std::size_t i = 0; i < mesh_solids.unfiltered.size(); ++i) {
+    const auto& [first, second] = mesh_solids.unfiltered[i];
+    wire.unfiltered._buffer[i] = {arena.text(first), arena.text(second)};
+  }
+}
+
+MeshSolids read_mesh_solids(const kinship_wire_RegisterRequest& wire, Reader& reader) {
+  MeshSolids mesh_solids;
+  reader.rules.at_most("mesh_solids", elements(wire.mesh_solids).size(), kMaxMeshSolids)
+      .at_most("unfiltered", elements(wire.unfiltered).size(), kMaxCollisionPairs);
+  if (reader.rules.broken())
+    return mesh_solids;
+  constexpr std::uint32_t kLastKind = std::variant_size_v<Shape> - 1;
+  for (const auto& element : elements(wire.mesh_solids)) {
+    LinkSolid solid;
+    solid.link = reader.text("mesh_solids", element.link, kMaxLinkNameBytes);
+    const std::uint32_t kind = reader.enumerator("mesh_solids: shape", element.shape, kLastKind);
+    solid.shape = to_shape({kind, {element.size[0], element.size[1], element.size[2]}});
+    solid.T_link_shape = reader.pose("mesh_solids", element.pose);
+    mesh_solids.solids.push_back(std::move(solid));
+  }
+  for (const auto& pair : elements(wire.unfiltered))
+    mesh_solids.unfiltered.emplace_back(reader.text("unfiltered", pair.first, kMaxLinkNameBytes),
+                                        reader.text("unfiltered", pair.second, kMaxLinkNameBytes));
+  return mesh_solids;
 }
 
 }  // namespace
@@ -42,7 +85,9 @@ std::optional<Error> check(const RobotDescription& description) {
   for (const auto& [first, second] : description.never_colliding)
     for (const std::string* link : {&first, &second})
       rules.not_empty("never_colliding", *link).text("never_colliding", *link, kMaxLinkNameBytes);
-  return rules.broken();
+  if (rules.broken())
+    return rules.broken();
+  return check_mesh_solids(description.mesh_solids);
 }
 
 Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
@@ -68,6 +113,7 @@ Result<Message<kinship_wire_RegisterRequest>> encode(const Head& head,
   i = 0;
   for (const auto& [first, second] : description.never_colliding)
     wire.never_colliding._buffer[i++] = {arena.text(first), arena.text(second)};
+  write_mesh_solids(description.mesh_solids, arena, wire);
   return limited(std::move(message));
 }
 
@@ -94,6 +140,7 @@ Result<RobotDescription> decode(const kinship_wire_RegisterRequest& wire) {
     description.never_colliding.emplace_back(
         reader.text("never_colliding", pair.first, kMaxLinkNameBytes),
         reader.text("never_colliding", pair.second, kMaxLinkNameBytes));
+  description.mesh_solids = read_mesh_solids(wire, reader);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(description))
@@ -114,6 +161,9 @@ Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const Regis
   message.arena->resize(wire.same_arms, reply.same_arms.size());
   for (std::size_t i = 0; i < reply.same_arms.size(); ++i)
     wire.same_arms._buffer[i] = message.arena->text(reply.same_arms[i]);
+  wire.geometry_grade = static_cast<std::uint32_t>(reply.geometry_grade);
+  wire.took_geometry = reply.took_geometry;
+  wire.geometry = message.arena->text(reply.geometry);
   return message;
 }
 
@@ -130,6 +180,10 @@ Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
     return *reader.rules.broken();
   for (const char* label : elements(wire.same_arms))
     reply.same_arms.push_back(reader.text("same_arms", label, kMaxLabelBytes));
+  reply.geometry_grade =
+      reader.enumerator("geometry_grade", wire.geometry_grade, GeometryGrade::Exact);
+  reply.took_geometry = wire.took_geometry;
+  reply.geometry = reader.text("geometry", wire.geometry, kMaxMessageBytes);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

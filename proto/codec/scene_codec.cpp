@@ -11,13 +11,14 @@ namespace {
 constexpr std::uint32_t kLastShape = std::variant_size_v<Shape> - 1;
 
 void write_solid(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T,
-                 Arena& arena, kinship_wire_SceneSolid& wire) {
+                 bool approximate, Arena& arena, kinship_wire_SceneSolid& wire) {
   wire.name = arena.text(name);
   const ShapeNumbers numbers = to_numbers(shape);
   wire.shape = static_cast<std::uint32_t>(numbers.kind);
   std::copy(numbers.sizes.begin(), numbers.sizes.end(), std::begin(wire.size));
   const PoseArray pose = to_pose_array(T);
   std::copy(pose.begin(), pose.end(), std::begin(wire.pose));
+  wire.approximate = approximate;
 }
 
 Shape read_shape(const kinship_wire_SceneSolid& wire, Reader& reader) {
@@ -31,7 +32,7 @@ Thing read_solid(const kinship_wire_SceneSolid& wire, Reader& reader) {
   std::string name = reader.text("scene: a name", wire.name, kMaxLinkNameBytes);
   Shape shape = read_shape(wire, reader);
   const Eigen::Isometry3d T = reader.pose("scene: '" + name + "'", wire.pose);
-  return {std::move(name), shape, T};
+  return {std::move(name), shape, T, wire.approximate};
 }
 
 void write_region(const TaskSpaceRegion& region, kinship_wire_TaskSpaceRegion& wire) {
@@ -58,12 +59,14 @@ void write_scene(const RecordedScene& scene, Arena& arena, kinship_wire_Recorded
   arena.resize(wire.objects, scene.objects.size());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    write_solid(object.name, object.shape, object.T_task_object, arena, wire.objects._buffer[i]);
+    write_solid(object.name, object.shape, object.T_task_object, object.approximate, arena,
+                wire.objects._buffer[i]);
   }
   arena.resize(wire.held, scene.held.size());
   for (std::size_t i = 0; i < scene.held.size(); ++i) {
     const HeldObject& held = scene.held[i];
-    write_solid(held.name, held.shape, held.T_transfer_object, arena, wire.held._buffer[i]);
+    write_solid(held.name, held.shape, held.T_transfer_object, held.approximate, arena,
+                wire.held._buffer[i]);
   }
   arena.resize(wire.allowed_collisions, scene.allowed_collisions.size());
   for (std::size_t i = 0; i < scene.allowed_collisions.size(); ++i) {

@@ -25,9 +25,7 @@ bool is_loopback(const std::string& host) {
 }
 
 std::string interfaces(const ParticipantOptions& options) {
-  std::string name = checked("network interface", options.network_interface);
-  if (name.empty() && (options.role == Role::Server || is_loopback(options.server)))
-    name = "lo";
+  const std::string name = chosen_interface(options);
   if (name.empty())
     return {};
   return "<Interfaces><NetworkInterface name=\"" + name + "\" multicast=\"false\"/></Interfaces>";
@@ -44,6 +42,13 @@ std::string discovery(const ParticipantOptions& options) {
 }
 
 }  // namespace
+
+std::string chosen_interface(const ParticipantOptions& options) {
+  const std::string& name = checked("network interface", options.network_interface);
+  if (name.empty() && (options.role == Role::Server || is_loopback(options.server)))
+    return "lo";
+  return name;
+}
 
 std::uint16_t discovery_port(std::uint32_t domain) {
   if (domain > kMaxDomain)

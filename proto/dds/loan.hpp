@@ -14,6 +14,8 @@ namespace kinship::dds {
 /// proto/dds only.
 class Loan {
  public:
+  static constexpr std::size_t kMaxSamples = 16;
+
   /// \throws Failure(Internal) if they cannot be taken.
   Loan(const Entity& reader, std::string_view what) : reader_(reader.get()) {
     const auto capacity = static_cast<std::uint32_t>(samples_.size());
@@ -35,8 +37,8 @@ class Loan {
 
  private:
   Handle reader_;
-  std::array<void*, 16> samples_{};  // null: Cyclone DDS lends its own
-  std::array<dds_sample_info_t, 16> infos_{};
+  std::array<void*, kMaxSamples> samples_{};  // null: Cyclone DDS lends its own
+  std::array<dds_sample_info_t, kMaxSamples> infos_{};
   std::int32_t count_ = 0;
 };
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <optional>
 
+#include "proto/dds/wire.hpp"
+
 namespace kinship::dds {
 namespace {
 
@@ -173,6 +175,20 @@ class Walk {
 
 }  // namespace
 
+bool is_too_long(std::size_t size, std::string_view type) {
+  return size > kMaxShortRequestBytes && (type == kinship_wire_FetchRequest_desc.m_typename ||
+                                          type == kinship_wire_AdminRequest_desc.m_typename);
+}
+
+bool LongRequests::admit(std::chrono::steady_clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (now - begin_ >= std::chrono::seconds(1)) {
+    begin_ = now;
+    count_ = 0;
+  }
+  return ++count_ <= kMaxPerSecond;
+}
+
 bool overruns(std::span<const std::uint8_t> bytes, bool swapped, std::uint32_t version,
               const std::uint32_t* ops) {
   Walk walk(bytes, swapped, version);
@@ -189,6 +205,11 @@ extern "C" bool dds_stream_normalize(void* data, std::uint32_t size, bool swappe
                                      bool just_key, std::uint32_t* actual_size) {
   static const auto kBehind = reinterpret_cast<decltype(&dds_stream_normalize)>(
       dlsym(RTLD_NEXT, "dds_stream_normalize"));  // NOLINT: what dlsym is for
+  const char* const name = type->c.type_name;
+  static kinship::dds::LongRequests admitted;
+  if (name != nullptr && kinship::dds::is_too_long(size, name) &&
+      !admitted.admit(std::chrono::steady_clock::now()))
+    return false;
   const std::span<const std::uint8_t> bytes(static_cast<const std::uint8_t*>(data), size);
   if (!just_key && kinship::dds::overruns(bytes, swapped, version, type->type.ops.ops))
     return false;

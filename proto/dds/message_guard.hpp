@@ -1,7 +1,11 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <span>
+#include <string_view>
 
 namespace kinship::dds {
 
@@ -17,6 +21,23 @@ namespace kinship::dds {
 /// \param ops      what idlc says of the type: dds_topic_descriptor_t::m_ops.
 bool overruns(std::span<const std::uint8_t> bytes, bool swapped, std::uint32_t version,
               const std::uint32_t* ops);
+
+/// Whether a message is longer than one of its type ever is: many of them wait for the server
+/// (Topics::held_requests), who has to hold them.
+/// \param type  its name: kinship::wire::FetchRequest.
+bool is_too_long(std::size_t size, std::string_view type);
+
+/// Lets some of them in, to be refused in words. May be shared between threads.
+class LongRequests {
+ public:
+  static constexpr int kMaxPerSecond = 64;
+  bool admit(std::chrono::steady_clock::time_point now);
+
+ private:
+  std::mutex mutex_;
+  std::chrono::steady_clock::time_point begin_{};  // of a second; guarded by mutex_, like all below
+  int count_ = 0;                                  // in it
+};
 
 /// Whether Cyclone DDS asks overruns() before it reads a message: this library puts a function
 /// in front of Cyclone DDS's own, which a program that is linked otherwise may miss.

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "proto/dds/log.hpp"
+#include "proto/dds/network_interface.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -22,6 +23,14 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   if (const std::string line = last_log_line(); !line.empty())
     message += ": " + line;
   return message + ")";
+}
+
+void require_usable_interface(const ParticipantOptions& options) {
+  const std::string name = chosen_interface(options);
+  const std::string why = name.empty() ? "" : explain_unusable(name, network_interfaces());
+  if (!why.empty())
+    throw Failure(ErrorCode::Unavailable,
+                  "domain " + std::to_string(options.domain) + ": cannot join: " + why);
 }
 
 }  // namespace
@@ -54,6 +63,7 @@ class Participant::Domain {
     limit_log();
     if (std::getenv("CYCLONEDDS_URI"))
       return;  // the user's configuration, read by Cyclone DDS
+    require_usable_interface(options);
     const Handle handle = dds_create_domain(options.domain, configuration.c_str());
     if (handle < 0)
       throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));

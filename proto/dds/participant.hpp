@@ -31,6 +31,11 @@ std::uint16_t discovery_port(std::uint32_t domain);
 /// UDP ports that the server of a domain needs: discovery_port(), and the next one for data.
 std::array<std::uint16_t, 2> server_ports(std::uint32_t domain);
 
+/// Name of the network interface that a participant asks for: the one of its options; loopback for
+/// servers without one and for clients of this machine; empty: Cyclone DDS chooses.
+/// \throws Failure(InvalidInput) for a name that cannot be.
+std::string chosen_interface(const ParticipantOptions& options);
+
 /// The configuration of Cyclone DDS that a participant is given, as XML: a star over unicast.
 /// \throws Failure(InvalidInput) for a domain or host that cannot be.
 std::string cyclone_configuration(const ParticipantOptions& options);

@@ -35,11 +35,9 @@ Qos request_qos() {
   return qos;
 }
 
-Qos request_reader_qos() {
-  // Bounds what waits for the server; a request that is pushed out is sent again.
-  constexpr std::int32_t kWaitingRequests = 256;
+Qos request_reader_qos(int depth) {
   Qos qos = reliable_volatile_qos();
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWaitingRequests);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   return qos;
 }
 

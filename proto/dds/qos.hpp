@@ -18,8 +18,9 @@ using Qos = std::unique_ptr<dds_qos, DeleteQos>;
 /// Of a client's writer: reliable, keep all, volatile; blocks for at most 100 ms.
 Qos request_qos();
 
-/// Of the server's reader: reliable, keep last 256, volatile.
-Qos request_reader_qos();
+/// Of the server's reader: reliable, keep last `depth`, volatile. A bound for memory: a reader
+/// holds them until they are taken.
+Qos request_reader_qos(int depth);
 
 /// Reliable, keep last 64, volatile, without autodispose: a writer never blocks, and a lost reply
 /// is asked for again.

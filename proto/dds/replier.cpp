@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <exception>
+#include <string>
 #include <utility>
 
+#include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
 #include "proto/dds/reply_line.hpp"
 
@@ -65,27 +67,62 @@ class Replier<Conversation>::Implementation {
   Implementation(const Participant& participant, WaitLoop& loop, Handler handler)
       : line_(std::make_shared<ReplyLine>(participant, Wire<Conversation>::topics())),
         handler_(std::move(handler)) {
-    loop.attach(line_->reader(), [this] { take_requests(); });
+    loop.attach(line_->reader(), [this] { return serve_some(); });
   }
 
  private:
   using WireRequest = typename Wire<Conversation>::Request;
+  using Decoded = Result<typename Conversation::Request>;
 
-  void take_requests() {
-    const Loan requests(line_->reader(), "requests of " + line_->name());
-    for (std::size_t i = 0; i < requests.size(); ++i)
-      if (requests[i])
-        serve(*static_cast<const WireRequest*>(requests[i]));
+  /// \return whether more waits.
+  bool serve_some() {
+    constexpr int kInTurn = 4;  // then the other conversations
+    for (int served = 0; served < kInTurn; ++served) {
+      take_requests();
+      auto next = waiting_.pop();
+      if (!next)
+        return false;
+      serve(next->first, std::move(next->second));
+    }
+    return waiting_.size() > 0;
   }
 
-  void serve(const WireRequest& wire) {
+  /// All that the reader holds, before each one that is served: it keeps the newest, whose ever
+  /// they are, so that of many of one client the others' would be pushed out.
+  void take_requests() {
+    constexpr int kMaxLoans = 2 * kHeldShortRequests / static_cast<int>(Loan::kMaxSamples);
+    for (int i = 0; i < kMaxLoans; ++i) {
+      const Loan requests(line_->reader(), what_);
+      for (std::size_t j = 0; j < requests.size(); ++j)
+        if (requests[j])
+          take(*static_cast<const WireRequest*>(requests[j]));
+      if (requests.size() < Loan::kMaxSamples)
+        return;
+    }
+  }
+
+  void take(const WireRequest& wire) {
     const codec::Head head = codec::head_of(wire);
+    if (waiting_.admit(head))
+      waiting_.push(head, decoded(wire));
+  }
+
+  /// What decoding throws (no memory) is that request's own.
+  static Decoded decoded(const WireRequest& wire) {
+    try {
+      return codec::decode(wire);
+    } catch (const std::exception& error) {
+      return Error{ErrorCode::Internal, error.what()};
+    }
+  }
+
+  void serve(const codec::Head& head, Decoded request) {
     if (!line_->begin(head))
       return;
     const Answer<Conversation> answer(
         std::make_shared<typename Answer<Conversation>::State>(line_, head));
     try {
-      handler_(codec::decode(wire).value_or_throw(), answer);
+      handler_(std::move(request).value_or_throw(), answer);
     } catch (const Failure& failure) {
       answer(Conversation::refuse(failure.error()));
     } catch (const std::exception& error) {
@@ -93,8 +130,12 @@ class Replier<Conversation>::Implementation {
     }
   }
 
+  static constexpr std::size_t kWaitingRequests = 256;
+
   std::shared_ptr<ReplyLine> line_;  // shared for the moment in which an Answer sends
+  const std::string what_ = "requests of " + line_->name();
   Handler handler_;
+  FairQueue<Decoded> waiting_{kWaitingRequests};
 };
 
 template <typename Conversation>

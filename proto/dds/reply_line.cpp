@@ -12,8 +12,8 @@ ReplyLine::ReplyLine(const Participant& participant, const Topics& topics)
       reply_topic_(dds_create_topic(participant.get(), &topics.reply, topics.reply_topic().c_str(),
                                     nullptr, nullptr),
                    "topic " + topics.reply_topic()),
-      reader_(dds_create_reader(participant.get(), request_topic_.get(), request_reader_qos().get(),
-                                nullptr),
+      reader_(dds_create_reader(participant.get(), request_topic_.get(),
+                                request_reader_qos(topics.held_requests).get(), nullptr),
               "reader " + topics.request_topic()) {
   for (unsigned number = 0; number < kReplyPartitions; ++number) {
     const Qos partition = partition_qos(reply_partition(number));

@@ -75,11 +75,13 @@ RequestLine::Outcome RequestLine::call(const codec::Head& head, const void* requ
 RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* request,
                                                  Clock::time_point deadline) {
   int sends = 0;
+  bool has_waited = false;  // what is there before that ends the first wait
   std::uint64_t servers_seen = servers_seen_;
   Clock::time_point next_send = Clock::now();
   while (true) {
-    notice_servers();
-    hand_out_replies();
+    const bool has_server = notice_servers();
+    if (has_waited)
+      hand_out_replies(call);
     {
       const std::lock_guard lock(mutex_);
       if (call.is_answered)
@@ -98,11 +100,12 @@ RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* r
     if (now >= next_send) {
       // Without a server the sample would be lost; its appearance ends the wait below. A time-out
       // of the writer means that the sample was not sent: it is, next time.
-      if (has_server() && dds_write(writer_.get(), request) == DDS_RETCODE_OK)
+      if (has_server && dds_write(writer_.get(), request) == DDS_RETCODE_OK)
         sends++;
       next_send = Clock::now() + delay_after(std::max(sends, 1));
     }
     wait(call.waiter, std::min(deadline, next_send));
+    has_waited = true;
   }
 }
 
@@ -116,7 +119,7 @@ void RequestLine::wait(const Waiter& waiter, Clock::time_point until) const {
   require(dds_take_guardcondition(waiter.guard.get(), &ignored), "guard condition");
 }
 
-void RequestLine::hand_out_replies() {
+void RequestLine::hand_out_replies(const Call& own) {
   std::vector<Handle> others;
   while (true) {
     const Loan replies(reader_, "replies of " + name_);
@@ -134,21 +137,25 @@ void RequestLine::hand_out_replies() {
         continue;
       call->second->on_reply(replies[i]);
       call->second->is_answered = true;
-      others.push_back(call->second->waiter.guard.get());
+      if (call->second != &own)
+        others.push_back(call->second->waiter.guard.get());
     }
+    if (replies.size() < Loan::kMaxSamples)
+      break;
   }
   for (const Handle guard : others)
     dds_set_guardcondition(guard, true);
 }
 
-void RequestLine::notice_servers() {
+bool RequestLine::notice_servers() {
   dds_publication_matched_status_t status{};
   require(dds_get_publication_matched_status(writer_.get(), &status), "writer " + name_);
-  if (status.current_count_change == 0 && status.total_count_change == 0)
-    return;
-  if (status.total_count_change > 0)
-    ++servers_seen_;
-  wake_all();  // reading the status took it from the other callers
+  if (status.current_count_change != 0 || status.total_count_change != 0) {
+    if (status.total_count_change > 0)
+      ++servers_seen_;
+    wake_all();  // reading the status took it from the other callers
+  }
+  return status.current_count > 0;
 }
 
 std::uint64_t RequestLine::count_servers() {

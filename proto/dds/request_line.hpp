@@ -53,8 +53,8 @@ class RequestLine {
   void release_waiter(std::unique_ptr<Waiter> waiter);
   Outcome wait_for_reply(const Call& call, const void* request, Clock::time_point deadline);
   void wait(const Waiter& waiter, Clock::time_point until) const;
-  void hand_out_replies();
-  void notice_servers();
+  void hand_out_replies(const Call& own);  ///< and wakes the callers of others
+  bool notice_servers();                   ///< whether there is one
   void wake_all();
 
   Handle participant_;

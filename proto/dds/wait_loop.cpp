@@ -31,29 +31,25 @@ class WaitLoop::Implementation {
     require(dds_waitset_attach(waitset_.get(), wake_up_.get(), kWakeUp), "waitset");
   }
 
-  void attach(const Entity& reader, std::function<void()> on_data) {
+  void attach(const Entity& reader, std::function<bool()> on_data) {
     Entity condition(dds_create_readcondition(reader.get(), DDS_ANY_STATE), "read condition");
     require(dds_waitset_attach(waitset_.get(), condition.get(),
                                static_cast<dds_attach_t>(sources_.size())),
             "waitset");
-    sources_.push_back({std::move(condition), std::move(on_data)});
+    sources_.push_back({std::move(condition), std::move(on_data), false});
   }
 
   void run(const std::function<Clock::time_point()>& on_wake) {
-    std::array<dds_attach_t, 16> ready{};
     while (!stopped_) {
       const Clock::time_point next = on_wake();
       if (stopped_)
         return;
-      const std::int32_t count =
-          require(dds_waitset_wait(waitset_.get(), ready.data(), ready.size(), time_until(next)),
-                  "waitset");
-      bool ignored = false;
-      require(dds_take_guardcondition(wake_up_.get(), &ignored), "guard condition");
-      const auto end = std::min(static_cast<std::size_t>(count), ready.size());
-      for (std::size_t i = 0; i < end && !stopped_; ++i)
-        if (ready[i] != kWakeUp)
-          sources_[static_cast<std::size_t>(ready[i])].on_data();
+      const bool has_more =
+          std::ranges::any_of(sources_, [](const Source& source) { return source.has_more; });
+      wait(has_more ? 0 : time_until(next));
+      for (Source& source : sources_)
+        if (source.has_more && !stopped_)
+          source.has_more = source.on_data();
     }
   }
 
@@ -65,9 +61,23 @@ class WaitLoop::Implementation {
   }
 
  private:
+  /// Notes who has samples.
+  void wait(dds_duration_t time) {
+    std::array<dds_attach_t, 16> ready{};
+    const std::int32_t count =
+        require(dds_waitset_wait(waitset_.get(), ready.data(), ready.size(), time), "waitset");
+    bool ignored = false;
+    require(dds_take_guardcondition(wake_up_.get(), &ignored), "guard condition");
+    const auto end = std::min(static_cast<std::size_t>(count), ready.size());
+    for (std::size_t i = 0; i < end; ++i)
+      if (ready[i] != kWakeUp)
+        sources_[static_cast<std::size_t>(ready[i])].has_more = true;
+  }
+
   struct Source {
     Entity condition;
-    std::function<void()> on_data;
+    std::function<bool()> on_data;
+    bool has_more = false;
   };
 
   Entity waitset_;
@@ -89,7 +99,7 @@ void WaitLoop::wake() { implementation_->wake(); }
 
 void WaitLoop::stop() { implementation_->stop(); }
 
-void WaitLoop::attach(const Entity& reader, std::function<void()> on_data) {
+void WaitLoop::attach(const Entity& reader, std::function<bool()> on_data) {
   implementation_->attach(reader, std::move(on_data));
 }
 

@@ -29,9 +29,10 @@ class WaitLoop {
   void wake();  ///< has on_wake called soon
   void stop();  ///< run() returns after the handler it is in; also if called before run()
 
-  /// For repliers: `on_data` is called on the loop's thread when `reader` has samples. Call before
-  /// run(); the reader must live as long as the loop runs.
-  void attach(const Entity& reader, std::function<void()> on_data);
+  /// For repliers: `on_data` is called on the loop's thread when `reader` has samples, and, as long
+  /// as it returns true, again after the others' turn. Call before run(); the reader must live as
+  /// long as the loop runs.
+  void attach(const Entity& reader, std::function<bool()> on_data);
 
  private:
   class Implementation;

@@ -17,11 +17,19 @@
 /// The messages and topics of each conversation and publication. For sources of proto/dds only.
 namespace kinship::dds {
 
+/// How many requests a reader holds until they are taken: a flood sends thousands while the thread
+/// that takes them waits for a processor. Long ones are fewer, for the memory.
+inline constexpr int kHeldRequests = 256;
+inline constexpr int kHeldShortRequests = 2048;
+/// Of requests of such a conversation that are longer only some are let in (message_guard.hpp).
+inline constexpr std::size_t kMaxShortRequestBytes = 65'536;
+
 /// What the type-erased parts need to know of a conversation.
 struct Topics {
   std::string name;  ///< e.g. "fetch": topics kinship/fetch/request and kinship/fetch/reply
   const dds_topic_descriptor_t& request;
   const dds_topic_descriptor_t& reply;
+  int held_requests = kHeldRequests;
 
   std::string request_topic() const { return "kinship/" + name + "/request"; }
   std::string reply_topic() const { return "kinship/" + name + "/reply"; }
@@ -53,7 +61,8 @@ struct Wire<codec::FetchConversation> {
   using Request = kinship_wire_FetchRequest;
   using Reply = kinship_wire_FetchReply;
   static Topics topics() {
-    return {"fetch", kinship_wire_FetchRequest_desc, kinship_wire_FetchReply_desc};
+    return {"fetch", kinship_wire_FetchRequest_desc, kinship_wire_FetchReply_desc,
+            kHeldShortRequests};
   }
 };
 
@@ -62,7 +71,8 @@ struct Wire<codec::AdminConversation> {
   using Request = kinship_wire_AdminRequest;
   using Reply = kinship_wire_AdminReply;
   static Topics topics() {
-    return {"admin", kinship_wire_AdminRequest_desc, kinship_wire_AdminReply_desc};
+    return {"admin", kinship_wire_AdminRequest_desc, kinship_wire_AdminReply_desc,
+            kHeldShortRequests};
   }
 };
 

@@ -20,13 +20,18 @@ void read_robot(const Reader& reader, NamedAttempt& named) {
   named.label = text;
 }
 
-std::optional<Path> read_path(const Reader& reader, Outcome outcome) {
+/// Whether a solved attempt may be without its waypoints.
+enum class Waypoints { Required, MayBeDropped };
+
+std::optional<Path> read_path(const Reader& reader, Outcome outcome, Waypoints rule) {
   const auto waypoints = reader.find("waypoints");
   if (outcome != Outcome::Solved) {
     if (waypoints)
       waypoints->refuse("must be null unless record.outcome is 'solved'");
     return std::nullopt;
   }
+  if (!waypoints && rule == Waypoints::MayBeDropped)
+    return std::nullopt;
   if (!waypoints)
     reader.at("waypoints").refuse("must not be null if record.outcome is 'solved'");
   Eigen::MatrixXd matrix = waypoints->columns(kMaxDof, kMaxWaypoints);
@@ -36,9 +41,7 @@ std::optional<Path> read_path(const Reader& reader, Outcome outcome) {
   return Path(std::move(matrix));
 }
 
-}  // namespace
-
-NamedAttempt read_attempt(const Reader& reader) {
+NamedAttempt read(const Reader& reader, Waypoints rule) {
   NamedAttempt named;
   Attempt& attempt = named.attempt;
   attempt.report_uuid = reader.at("report_uuid").uuid();
@@ -49,13 +52,18 @@ NamedAttempt read_attempt(const Reader& reader) {
   if (const auto placement = reader.find("T_task_base"))
     attempt.T_task_base = placement->pose();
   attempt.record = read_as<PlanningRecord>(reader.at("record"));
-  attempt.path = read_path(reader, attempt.record.outcome);
+  attempt.path = read_path(reader, attempt.record.outcome, rule);
   if (const auto scene = reader.find("scene"))
     attempt.scene = read_recorded_scene(*scene);
-  if (const auto error = find_fault(attempt))
+  const bool is_dropped = !attempt.path && attempt.record.outcome == Outcome::Solved;
+  if (const auto error = is_dropped ? std::nullopt : find_fault(attempt))
     throw Failure(*error);
   return named;
 }
+
+}  // namespace
+
+NamedAttempt read_attempt(const Reader& reader) { return read(reader, Waypoints::Required); }
 
 std::string to_json(const Attempt& attempt) {
   OrderedJson object;
@@ -73,6 +81,11 @@ std::string to_json(const Attempt& attempt) {
 
 Result<NamedAttempt> attempt_from_json(std::string_view text) {
   return read_document(text, "experience", read_attempt);
+}
+
+Result<NamedAttempt> stored_attempt_from_json(std::string_view text) {
+  return read_document(text, "experience",
+                       [](const Reader& reader) { return read(reader, Waypoints::MayBeDropped); });
 }
 
 }  // namespace kinship::json

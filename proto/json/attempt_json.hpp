@@ -21,4 +21,7 @@ std::string to_json(const Attempt& attempt);  ///< robot as digest
 ///         64 hexadecimal digits are a digest, anything else is a label.
 Result<NamedAttempt> attempt_from_json(std::string_view text);
 
+/// The same of a store's attempt, whose path may have been dropped: solved, without waypoints.
+Result<NamedAttempt> stored_attempt_from_json(std::string_view text);
+
 }  // namespace kinship::json

@@ -40,7 +40,8 @@ constexpr std::tuple kFit{
     Field{"fitted_ms", &Distribution::fitted_ms, {.may_be_missing = true}},
     Field{"transfer_time_s", &Distribution::transfer_time_s, {.min = 0, .may_be_missing = true}},
     Field{"fit_time_s", &Distribution::fit_time_s, {.min = 0, .may_be_missing = true}},
-    Field{"fit", &Distribution::fit}};
+    Field{"fit", &Distribution::fit},
+    Field{"filters", &Distribution::filters, {.limit = kMaxMessageBytes, .may_be_missing = true}}};
 
 /// Refuses a count that exceeds another one.
 void require_at_most(const Reader& object, std::string_view member, std::uint64_t limit) {

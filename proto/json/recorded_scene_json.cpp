@@ -11,9 +11,10 @@ namespace kinship::json {
 namespace {
 
 HeldObject read_held(const Reader& reader) {
-  reader.allow_only({"name", "shape", "T_transfer_object"});
+  reader.allow_only({"name", "shape", "T_transfer_object", "approximate"});
+  const auto approximate = reader.find("approximate");
   return {read_name(reader.at("name")), read_shape(reader.at("shape")),
-          reader.at("T_transfer_object").pose()};
+          reader.at("T_transfer_object").pose(), approximate && approximate->boolean()};
 }
 
 }  // namespace
@@ -26,6 +27,8 @@ OrderedJson recorded_scene_object(const RecordedScene& scene) {
     entry["name"] = each.name;
     entry["shape"] = shape_object(each.shape);
     entry["T_transfer_object"] = pose_list(each.T_transfer_object);
+    if (each.approximate)
+      entry["approximate"] = true;
     held.push_back(std::move(entry));
   }
   document["held"] = std::move(held);
@@ -36,12 +39,12 @@ OrderedJson recorded_scene_object(const RecordedScene& scene) {
 }
 
 RecordedScene read_recorded_scene(const Reader& reader) {
-  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes", "held",
+  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes", "clouds", "held",
                      "allowed_collisions", "constraint"});
   RecordedScene scene;
-  if (const auto meshes = reader.find("meshes");
-      meshes && !meshes->elements(kMaxHeldObjects).empty())
-    meshes->refuse("only shapes are kept here");
+  for (const char* key : {"meshes", "clouds"})
+    if (const auto files = reader.find(key); files && !files->elements(kMaxHeldObjects).empty())
+      files->refuse("only shapes are kept here");
   scene.objects = read_solids(reader).objects;
   if (const auto held = reader.find("held"))
     for (const Reader& each : held->elements(kMaxHeldObjects))

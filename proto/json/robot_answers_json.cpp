@@ -37,6 +37,9 @@ std::string to_json(const RegisterReply& reply, const std::string& label) {
   document["dof"] = reply.dof;
   document["solver"] = reply.solver;
   document["same_arms"] = reply.same_arms;
+  document["geometry"] = reply.geometry;
+  document["geometry_grade"] = to_text(reply.geometry_grade);
+  document["took_geometry"] = reply.took_geometry;
   return write(document);
 }
 

@@ -7,6 +7,7 @@
 #include "proto/json/name_pairs_json.hpp"
 #include "proto/json/parts.hpp"
 #include "proto/json/reader.hpp"
+#include "proto/json/scene_json.hpp"
 #include "proto/json/writer.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
@@ -22,6 +23,34 @@ TaskAxes read_axes(const Reader& reader) {
   if (!axes)
     reader.refuse(axes.error().message);
   return *axes;
+}
+
+MeshSolids read_mesh_solids(const Reader& reader) {
+  reader.allow_only({"solids", "unfiltered"});
+  MeshSolids mesh_solids;
+  for (const Reader& each : reader.at("solids").elements(kMaxMeshSolids)) {
+    each.allow_only({"link", "shape", "T_link_shape"});
+    mesh_solids.solids.push_back({each.at("link").text(kMaxLinkNameBytes),
+                                  read_shape(each.at("shape")), each.at("T_link_shape").pose()});
+  }
+  mesh_solids.unfiltered = read_pairs(reader.at("unfiltered"));
+  if (const auto error = check_mesh_solids(mesh_solids))
+    throw Failure(*error);
+  return mesh_solids;
+}
+
+OrderedJson mesh_solids_object(const MeshSolids& mesh_solids) {
+  OrderedJson object;
+  object["solids"] = OrderedJson::array();
+  for (const LinkSolid& solid : mesh_solids.solids) {
+    OrderedJson entry;
+    entry["link"] = solid.link;
+    entry["shape"] = shape_object(solid.shape);
+    entry["T_link_shape"] = pose_list(solid.T_link_shape);
+    object["solids"].push_back(std::move(entry));
+  }
+  object["unfiltered"] = pair_list(mesh_solids.unfiltered);
+  return object;
 }
 
 }  // namespace
@@ -47,6 +76,8 @@ RobotDescription read_robot_description(const Reader& reader) {
     }
   if (const auto pairs = reader.find("never_colliding"))
     description.never_colliding = read_pairs(*pairs);
+  if (const auto mesh_solids = reader.find("mesh_solids"))
+    description.mesh_solids = read_mesh_solids(*mesh_solids);
   return description;
 }
 
@@ -66,6 +97,8 @@ OrderedJson robot_description_object(const RobotDescription& description) {
   for (const auto& [joint, value] : description.held_joints)
     object["held_joints"][joint] = value;
   object["never_colliding"] = pair_list(description.never_colliding);
+  if (!description.mesh_solids.solids.empty())
+    object["mesh_solids"] = mesh_solids_object(description.mesh_solids);
   return object;
 }
 

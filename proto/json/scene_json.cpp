@@ -50,12 +50,17 @@ Eigen::Isometry3d read_center(const Reader& reader) {
   return T;
 }
 
+std::string read_file_name(const Reader& file) {
+  std::string name = file.text(kMaxFileNameBytes);
+  if (name.empty())
+    file.refuse("is empty");
+  return name;
+}
+
 /// A mesh without its triangles: reading files is not for this library.
 Mesh read_mesh(const Reader& file, const std::optional<Reader>& scale) {
   Mesh mesh;
-  mesh.file = file.text(kMaxFileNameBytes);
-  if (mesh.file.empty())
-    file.refuse("is empty");
+  mesh.file = read_file_name(file);
   if (scale) {
     const auto factors = scale->elements(3);
     if (factors.size() != 3)
@@ -79,6 +84,8 @@ void read_objects(const Reader& reader, std::string_view key, Scene& scene, Read
   for (const Reader& element : objects->elements(kMaxObjects)) {
     SceneObject object = read(element);
     object.name = read_name(element.at("name"));
+    if (const auto approximate = element.find("approximate"))
+      object.approximate = approximate->boolean();
     scene.objects.push_back(std::move(object));
   }
 }
@@ -131,6 +138,8 @@ OrderedJson scene_object(const Scene& scene) {
   for (const SceneObject& object : scene.objects) {
     OrderedJson entry;
     entry["name"] = object.name;
+    if (object.approximate)
+      entry["approximate"] = true;
     const auto add_round = [&](const char* key, double radius_m, double length_m) {
       entry["pose"] = pose_list(object.T_task_object);
       entry["radius"] = radius_m;
@@ -163,11 +172,19 @@ OrderedJson scene_object(const Scene& scene) {
     entry["scale"] = list(object.mesh.scale);
     document["meshes"].push_back(std::move(entry));
   }
+  for (const SceneCloud& object : scene.clouds) {
+    OrderedJson entry;
+    entry["name"] = object.name;
+    entry["file"] = object.cloud.file;
+    entry["pose"] = pose_list(object.T_task_cloud);
+    entry["voxel"] = object.cloud.voxel_m;
+    document["clouds"].push_back(std::move(entry));
+  }
   return document;
 }
 
 Scene read_scene(const Reader& reader) {
-  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes"});
+  reader.allow_only({"boxes", "cylinders", "spheres", "capsules", "meshes", "clouds"});
   Scene scene = read_solids(reader);
   if (const auto meshes = reader.find("meshes"))
     for (const Reader& mesh : meshes->elements(kMaxObjects)) {
@@ -175,6 +192,15 @@ Scene read_scene(const Reader& reader) {
       scene.meshes.push_back({read_name(mesh.at("name")),
                               read_mesh(mesh.at("file"), mesh.find("scale")),
                               mesh.at("pose").pose()});
+    }
+  if (const auto clouds = reader.find("clouds"))
+    for (const Reader& cloud : clouds->elements(kMaxObjects)) {
+      cloud.allow_only({"name", "file", "pose", "voxel"});
+      SceneCloud object{read_name(cloud.at("name")), {}, cloud.at("pose").pose()};
+      object.cloud.file = read_file_name(cloud.at("file"));
+      if (const auto voxel = cloud.find("voxel"))
+        object.cloud.voxel_m = voxel->number(kMinVoxel_m, kMaxVoxel_m);
+      scene.clouds.push_back(std::move(object));
     }
   return scene;
 }

@@ -10,6 +10,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/mesh_solids.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/selection.hpp"
@@ -28,6 +29,10 @@ struct RegisterReply {
   std::string solver;                       ///< what inverse kinematics will use for it
   std::string message;                      ///< why Refused
   std::vector<std::string> same_arms = {};  ///< labels of known robots that are the same arm
+  GeometryGrade geometry_grade = GeometryGrade::None;  ///< of what the server filters with now
+  bool took_geometry = false;  ///< Known, and this registration's geometry is better: it counts now
+  /// What is filtered with what, and what is not and why, in words; empty from older servers.
+  std::string geometry = {};
 };
 
 enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
@@ -37,7 +42,9 @@ enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, Unkno
 struct Receipt {
   Uuid report_uuid;
   ReceiptStatus status = ReceiptStatus::TryAgain;
-  std::string message;  ///< why Refused, TryAgain or UnknownRobot
+  /// Why Refused, TryAgain or UnknownRobot; or why the path of a solved attempt is not kept:
+  /// Recorded.
+  std::string message;
 };
 
 /// A point of a store's history, sealed by the server that gave it: to be kept and given back as it

@@ -72,6 +72,9 @@ struct Distribution {
   /// [cut, cut + 2 pi]. Empty if no joint is continuous.
   std::vector<std::optional<double>> cuts;
   std::optional<FitOrigin> fit;  ///< of its mixture; missing in what older servers stored
+  /// What its configurations were filtered with, what not and why, in words; empty in what older
+  /// servers stored.
+  std::string filters = {};
 };
 
 }  // namespace kinship

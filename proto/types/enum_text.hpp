@@ -8,6 +8,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/mesh_solids.hpp"
 #include "proto/types/profile.hpp"
 #include "proto/types/publications.hpp"
 #include "proto/types/rehearsal.hpp"
@@ -48,6 +49,12 @@ template <>
 struct Words<DistributionState> {
   static constexpr std::string_view kWhat = "state";
   static constexpr std::array<std::string_view, 3> kWords = {"ready", "failed", "thin"};
+};
+template <>
+struct Words<GeometryGrade> {
+  static constexpr std::string_view kWhat = "geometry_grade";
+  static constexpr std::array<std::string_view, 4> kWords = {"none", "partial", "approximate",
+                                                             "exact"};
 };
 template <>
 struct Words<Relation> {

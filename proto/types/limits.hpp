@@ -18,12 +18,14 @@ inline constexpr std::size_t kMaxPlannerBytes = 128;
 inline constexpr std::size_t kMaxPlannerOptionsBytes = 1024;
 inline constexpr std::size_t kMaxHeldJoints = 64;
 inline constexpr std::size_t kMaxCollisionPairs = 4096;
+inline constexpr std::size_t kMaxMeshSolids = 1024;  ///< of one robot
 inline constexpr std::size_t kMaxAttemptsPerBatch = 256;
 inline constexpr std::size_t kMaxBatchBytes = 512 * 1024;  ///< of waypoints, 8 bytes each
 inline constexpr std::size_t kMaxSceneBytes = 256 * 1024;  ///< of one scene; and of a batch's
 inline constexpr std::size_t kMaxSceneObjects = 2048;
 inline constexpr std::size_t kMaxHeldObjects = 64;
-inline constexpr std::size_t kMaxAllowedPairs = 1024;  ///< of a recorded scene
+inline constexpr std::size_t kMaxAllowedPairs = 1024;          ///< of a recorded scene
+inline constexpr double kMinVoxel_m = 0.001, kMaxVoxel_m = 1;  ///< of a point cloud
 inline constexpr std::size_t kMaxComponents = 1024;
 inline constexpr std::size_t kMaxKernels = 4000;  ///< components that share one covariance
 inline constexpr std::size_t kMaxComponentScores = 64;

@@ -117,14 +117,18 @@ RoundedPose rounded(const Eigen::Isometry3d& T) {
 /// A thing as numbers and text that compare equal where its content does.
 using Thing = std::tuple<std::string, std::size_t, std::array<std::int64_t, 10>>;
 
-Thing thing_of(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T) {
+/// Beside the kinds of shapes: so that digests of exact things are those from before.
+constexpr std::size_t kApproximateKind = 1000;
+
+Thing thing_of(const std::string& name, const Shape& shape, const Eigen::Isometry3d& T,
+               bool approximate) {
   std::array<std::int64_t, 10> numbers{};
   const std::array<double, 3> sizes = to_numbers(shape).sizes;
   std::transform(sizes.begin(), sizes.end(), numbers.begin(), [](double n) { return rounded(n); });
   const RoundedPose pose = rounded(T);
   std::copy_n(pose.begin(), std::holds_alternative<SphereShape>(shape) ? 3 : pose.size(),
               numbers.begin() + 3);
-  return {name, shape.index(), numbers};
+  return {name, shape.index() + (approximate ? kApproximateKind : 0), numbers};
 }
 
 void add(std::vector<Thing> things, Sha256& hash) {
@@ -223,11 +227,11 @@ Digest content_digest(const RecordedScene& scene) {
   Sha256 hash;
   std::vector<Thing> things;
   for (const SceneObject& object : scene.objects)
-    things.push_back(thing_of(object.name, object.shape, object.T_task_object));
+    things.push_back(thing_of(object.name, object.shape, object.T_task_object, object.approximate));
   add(std::move(things), hash);
   things.clear();
   for (const HeldObject& held : scene.held)
-    things.push_back(thing_of(held.name, held.shape, held.T_transfer_object));
+    things.push_back(thing_of(held.name, held.shape, held.T_transfer_object, held.approximate));
   add(std::move(things), hash);
   std::set<Pair> pairs;
   for (const auto& [first, second] : scene.allowed_collisions)

@@ -20,10 +20,11 @@ struct HeldObject {
   std::string name;
   Shape shape;
   Eigen::Isometry3d T_transfer_object = Eigen::Isometry3d::Identity();  ///< of the shape's centre
+  bool approximate = false;  ///< fitted around a mesh, which lies inside
 };
 
 /// The scene in which an attempt was planned, said without its robot: no link names, because the
-/// scene is there for other robots. Primitives only.
+/// scene is there for other robots. Primitives only; a mesh is there as solids around it.
 struct RecordedScene {
   std::vector<SceneObject> objects;  ///< in the task frame
   std::vector<HeldObject> held;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/mesh_solids.hpp"
 #include "proto/types/task_axes.hpp"
 
 namespace kinship {
@@ -20,6 +21,7 @@ struct RobotDescription {
   TaskAxes task_axes;
   std::map<std::string, double> held_joints;  ///< joints off the chain, joint units
   std::vector<std::pair<std::string, std::string>> never_colliding;  ///< pairs of link names
+  MeshSolids mesh_solids = {};  ///< for a server, which cannot read the URDF's meshes
 };
 
 }  // namespace kinship

@@ -33,6 +33,7 @@ struct SceneObject {
   std::string name;
   Shape shape;
   Eigen::Isometry3d T_task_object = Eigen::Isometry3d::Identity();
+  bool approximate = false;  ///< fitted around a mesh, which lies inside
 };
 
 /// A surface of triangles in a file, as a problem names it.
@@ -51,6 +52,22 @@ struct SceneMesh {
   Eigen::Isometry3d T_task_mesh = Eigen::Isometry3d::Identity();
 };
 
+/// What a sensor saw, in a file as a problem names it: the cubes of a grid that hold points.
+struct PointCloud {
+  std::string file;       ///< as a mesh's
+  double voxel_m = 0.02;  ///< edge of a cube
+  /// The middles of the cubes in the cloud's own frame, each once: 3 x n, m, odd multiples of half
+  /// an edge. Null until models::SceneMeshes has read the file. Shared by copies, never changed.
+  std::shared_ptr<const Eigen::Matrix3Xd> voxels = nullptr;
+};
+
+/// An obstacle of a scene that is a point cloud.
+struct SceneCloud {
+  std::string name;
+  PointCloud cloud;
+  Eigen::Isometry3d T_task_cloud = Eigen::Isometry3d::Identity();
+};
+
 /// Something held by the robot.
 struct AttachedObject {
   std::string name;
@@ -65,6 +82,7 @@ struct AttachedObject {
 struct Scene {
   std::vector<SceneObject> objects;
   std::vector<SceneMesh> meshes = {};
+  std::vector<SceneCloud> clouds = {};
 };
 
 }  // namespace kinship

@@ -27,6 +27,8 @@ struct RobotSummary {
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::int64_t registered_ms = 0;
+  std::string geometry = {};     ///< what its shapes are, in words
+  std::int64_t geometry_ms = 0;  ///< when better geometry was taken over last; 0: never
 };
 
 template <>
@@ -39,7 +41,9 @@ inline constexpr std::tuple kFieldsOf<RobotSummary>{
     Field{"solver", &RobotSummary::solver, {.limit = kMaxMessageBytes}},
     Field{"paths", &RobotSummary::paths},
     Field{"attempts", &RobotSummary::attempts},
-    Field{"registered_ms", &RobotSummary::registered_ms}};
+    Field{"registered_ms", &RobotSummary::registered_ms},
+    Field{"geometry", &RobotSummary::geometry, {.limit = kMaxMessageBytes, .may_be_missing = true}},
+    Field{"geometry_ms", &RobotSummary::geometry_ms, {.may_be_missing = true}}};
 
 struct TaskRobotSummary {
   Digest robot;
@@ -47,27 +51,32 @@ struct TaskRobotSummary {
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::uint64_t generation = 0;
+  std::uint64_t dropped = 0;  ///< paths that were beyond the cap
 };
 
 template <>
 inline constexpr std::tuple kFieldsOf<TaskRobotSummary>{
     Field{"robot", &TaskRobotSummary::robot},
     Field{"label", &TaskRobotSummary::label, {.limit = kMaxLabelBytes}},
-    Field{"paths", &TaskRobotSummary::paths}, Field{"attempts", &TaskRobotSummary::attempts},
-    Field{"generation", &TaskRobotSummary::generation}};
+    Field{"paths", &TaskRobotSummary::paths},
+    Field{"attempts", &TaskRobotSummary::attempts},
+    Field{"generation", &TaskRobotSummary::generation},
+    Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}}};
 
 struct TaskSummary {
   std::string task;
   std::uint64_t paths = 0;
   std::uint64_t attempts = 0;
   std::vector<TaskRobotSummary> robots;
+  std::uint64_t dropped = 0;  ///< paths that were beyond the cap of a robot and task
 };
 
 template <>
 inline constexpr std::tuple kFieldsOf<TaskSummary>{
     Field{"task", &TaskSummary::task, {.limit = kMaxTaskBytes}},
     Field{"paths", &TaskSummary::paths}, Field{"attempts", &TaskSummary::attempts},
-    Field{"robots", &TaskSummary::robots, {.limit = kMaxSources}}};
+    Field{"robots", &TaskSummary::robots, {.limit = kMaxSources}},
+    Field{"dropped", &TaskSummary::dropped, {.may_be_missing = true}}};
 
 struct PathSummary {
   Uuid report_uuid;
@@ -81,6 +90,7 @@ struct PathSummary {
   double length = 0;  ///< joint units
   std::int64_t received_ms = 0;
   std::int64_t retired_ms = 0;  ///< 0: in use
+  bool dropped = false;         ///< then, because it was beyond the cap; its waypoints are gone
 };
 
 template <>
@@ -95,7 +105,8 @@ inline constexpr std::tuple kFieldsOf<PathSummary>{
     Field{"waypoints", &PathSummary::waypoints},
     Field{"length", &PathSummary::length, {.min = 0}},
     Field{"received_ms", &PathSummary::received_ms},
-    Field{"retired_ms", &PathSummary::retired_ms}};
+    Field{"retired_ms", &PathSummary::retired_ms},
+    Field{"dropped", &PathSummary::dropped, {.may_be_missing = true}}};
 
 struct DistributionSummary {
   Digest id;
@@ -239,6 +250,7 @@ struct ServerStatus {
   double scrub_part = 0;         ///< 0 to 1: how much of it was read since then
   std::vector<TroubleCount> troubles = {};
   std::vector<BoundUse> bounds = {};
+  std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
 };
 
 template <>
@@ -272,6 +284,7 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"scrubbed_ms", &ServerStatus::scrubbed_ms, {.may_be_missing = true}},
     Field{"scrub_part", &ServerStatus::scrub_part, {.min = 0, .may_be_missing = true}},
     Field{"troubles", &ServerStatus::troubles, {.limit = kMaxStatusRows, .may_be_missing = true}},
-    Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}}};
+    Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}},
+    Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}}};
 
 }  // namespace kinship

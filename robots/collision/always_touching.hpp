@@ -1,37 +1,30 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-#include <map>
-#include <random>
-#include <type_traits>
+#include <set>
+#include <string>
+#include <utility>
 
-#include "robots/kinematics/chain.hpp"
+#include "robots/collision/robot_solids.hpp"
 
 namespace kinship::collision {
 
-/// The pairs of things that touch wherever a robot goes: in at least `least` of `samples` random
-/// configurations within the limits. Seeded: equal input, equal answers.
-/// \param touching_at  configuration -> the set of pairs that touch there.
-template <typename TouchingAt>
-auto always_touching(const kinematics::Chain& chain, int samples, int least,
-                     const TouchingAt& touching_at) {
-  using Pairs = std::invoke_result_t<TouchingAt, const Eigen::VectorXd&>;
-  constexpr std::uint64_t kSeed = 1;
-  std::mt19937_64 generator(kSeed);
-  std::map<typename Pairs::value_type, int> touches;
-  Eigen::VectorXd q(chain.dof());
-  for (int sample = 0; sample < samples; ++sample) {
-    for (Eigen::Index i = 0; i < q.size(); ++i)
-      q[i] = std::uniform_real_distribution<double>(chain.lower()[i], chain.upper()[i])(generator);
-    for (const auto& pair : touching_at(q))
-      ++touches[pair];
-  }
-  Pairs always;
-  for (const auto& [pair, count] : touches)
-    if (count >= least)
-      always.insert(pair);
-  return always;
-}
+/// So many random configurations, and in how many of them two things have to touch to be called
+/// always touching.
+struct TouchSamples {
+  int count = 0;
+  int least = 0;
+};
+
+/// The links of a robot that touch wherever it goes: in at least samples.least of samples.count
+/// random configurations within the limits. Seeded: equal input, equal answers.
+/// \param robot  its unchecked pairs of links are left out.
+LinkPairs links_always_touching(const RobotSolids::Parts& robot, const TouchSamples& samples);
+
+/// The names of two things each that touch in the same sense among all that could: links,
+/// attachments and obstacles.
+/// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
+std::set<std::pair<std::string, std::string>> always_touching(const RobotSolids& robot,
+                                                              const Surroundings& surroundings,
+                                                              const TouchSamples& samples);
 
 }  // namespace kinship::collision

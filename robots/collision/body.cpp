@@ -9,6 +9,8 @@
 namespace kinship::collision {
 namespace {
 
+constexpr std::size_t kBlocksOfACloud = 64;  // each an obstacle, so that most are far away
+
 [[noreturn]] void refuse(const std::string& message) {
   throw Failure(ErrorCode::InvalidInput, message);
 }
@@ -153,6 +155,17 @@ void add_surroundings(const kinematics::Chain& chain, const Surroundings& surrou
     require_finite(object.T_task_mesh, what);
     const PlacedSolid placed = place_mesh(object.mesh, object.T_task_mesh, what);
     add_obstacle(object.name, placed.T_frame_solid, placed.solid);
+  }
+  for (const SceneCloud& object : surroundings.scene.clouds) {
+    const std::string what = "scene object '" + object.name + "'";
+    require_finite(object.T_task_cloud, what);
+    const PointCloud& cloud = object.cloud;
+    if (!cloud.voxels)
+      refuse(what + ": point cloud '" + cloud.file + "' has not been read");
+    for (const geometry::VoxelBlock& block :
+         geometry::blocks_of(*cloud.voxels, cloud.voxel_m, kBlocksOfACloud))
+      add_obstacle(object.name, object.T_task_cloud * Eigen::Translation3d(block.center),
+                   Solid(block, cloud.voxel_m));
   }
   require_known_names(bodies, chain, surroundings);
 }

@@ -18,6 +18,7 @@ struct Surroundings {
   Scene scene;  ///< in the task frame
   std::vector<AttachedObject> attached;
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
+  bool checks_links = true;  ///< false: whether links touch each other is not looked at
 };
 
 enum class BodyKind { Link, Attached, Obstacle };

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <set>
+#include <map>
+#include <string_view>
 
 namespace kinship::collision {
 namespace {
@@ -20,26 +21,39 @@ std::vector<std::vector<int>> tree_edges(const std::vector<kinematics::ChainLink
   return edges;
 }
 
+/// Which pairs of some bodies may touch, by their indices: there are many pairs, and few of these.
 class Permissions {
  public:
-  explicit Permissions(const Surroundings& surroundings) {
+  Permissions(const std::vector<Body>& bodies, const Surroundings& surroundings)
+      : is_named_(bodies.size(), false) {
+    std::map<std::string_view, std::vector<std::size_t>> named;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      named[bodies[i].name].push_back(i);
     for (const auto& [a, b] : surroundings.allowed_collisions)
-      allowed_.insert(std::minmax(a, b));
+      for (const std::size_t i : named[a])
+        for (const std::size_t j : named[b])
+          permit(i, j);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      for (const std::string& link : bodies[i].touch_links)
+        for (const std::size_t j : named[link])
+          if (bodies[j].kind == BodyKind::Link)
+            permit(i, j);
+    std::sort(permitted_.begin(), permitted_.end());
   }
 
-  bool may_touch(const Body& a, const Body& b) const {
-    return touches_link(a, b) || touches_link(b, a) ||
-           allowed_.count(std::minmax(a.name, b.name)) > 0;
+  bool may_touch(std::size_t i, std::size_t j) const {
+    return is_named_[i] && is_named_[j] &&
+           std::binary_search(permitted_.begin(), permitted_.end(), BodyPair(std::minmax(i, j)));
   }
 
  private:
-  static bool touches_link(const Body& attached, const Body& link) {
-    return link.kind == BodyKind::Link &&
-           std::find(attached.touch_links.begin(), attached.touch_links.end(), link.name) !=
-               attached.touch_links.end();
+  void permit(std::size_t i, std::size_t j) {
+    permitted_.emplace_back(std::minmax(i, j));
+    is_named_[i] = is_named_[j] = true;
   }
 
-  std::set<std::pair<std::string, std::string>> allowed_;  // first <= second
+  std::vector<bool> is_named_;       // in a pair
+  std::vector<BodyPair> permitted_;  // first <= second, ascending
 };
 
 }  // namespace
@@ -86,36 +100,37 @@ LinkPairs unchecked_links(const std::vector<Body>& bodies, const kinematics::Cha
 
 std::vector<BodyPair> moving_pairs(const std::vector<Body>& bodies, const LinkPairs& unchecked,
                                    const Surroundings& surroundings) {
-  const Permissions permissions(surroundings);
-  std::vector<BodyPair> pairs;
+  const Permissions permissions(bodies, surroundings);
+  std::vector<std::vector<BodyPair>> of_joint;  // by the last joint that moves either
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const Body &a = bodies[i], &b = bodies[j];
-      if (a.joint == b.joint || permissions.may_touch(a, b))
+      if (a.joint == b.joint)
         continue;
       const bool links = a.kind == BodyKind::Link && b.kind == BodyKind::Link;
-      if (links && unchecked.count(std::minmax(a.link, b.link)) > 0)
+      if (links && (!surroundings.checks_links || unchecked.count(std::minmax(a.link, b.link)) > 0))
         continue;
-      pairs.emplace_back(i, j);
+      if (permissions.may_touch(i, j))
+        continue;
+      const auto joint = static_cast<std::size_t>(std::max(a.joint, b.joint));
+      of_joint.resize(std::max(of_joint.size(), joint + 1));
+      of_joint[joint].emplace_back(i, j);
     }
-  const auto last_joint = [&](const BodyPair& pair) {
-    return std::max(bodies[pair.first].joint, bodies[pair.second].joint);
-  };
-  std::stable_sort(pairs.begin(), pairs.end(), [&](const BodyPair& a, const BodyPair& b) {
-    return last_joint(a) > last_joint(b);
-  });
+  std::vector<BodyPair> pairs;
+  for (auto joint = of_joint.rbegin(); joint != of_joint.rend(); ++joint)
+    pairs.insert(pairs.end(), joint->begin(), joint->end());
   return pairs;
 }
 
 std::vector<BodyPair> standing_pairs(const std::vector<Body>& bodies,
                                      const Surroundings& surroundings) {
-  const Permissions permissions(surroundings);
+  const Permissions permissions(bodies, surroundings);
   std::vector<BodyPair> pairs;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const Body &a = bodies[i], &b = bodies[j];
       if (a.joint < 0 && b.joint < 0 && a.kind != BodyKind::Obstacle &&
-          b.kind == BodyKind::Obstacle && !permissions.may_touch(a, b))
+          b.kind == BodyKind::Obstacle && !permissions.may_touch(i, j))
         pairs.emplace_back(i, j);
     }
   return pairs;

@@ -1,14 +1,33 @@
 #include "robots/collision/collision_world.hpp"
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
+
+#include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::collision {
 
+namespace {
+
+void require_finite(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  const auto is_finite = [](const auto& values) {  // of what is not, no number
+    return (values - values).sum() == 0;
+  };
+  const bool in_one_piece = qs.outerStride() == qs.rows();
+  if (in_one_piece ? !is_finite(Eigen::Map<const Eigen::ArrayXd>(qs.data(), qs.size()))
+                   : !is_finite(qs.array()))
+    throw std::invalid_argument("CollisionWorld: q is not finite");
+}
+
+}  // namespace
+
 CollisionWorld::CollisionWorld(const RobotSolids& robot, const Surroundings& surroundings)
-    : robot_(robot), bodies_(robot.parts().bodies) {
-  add_surroundings(robot.parts().chain, surroundings, bodies_);
-  pairs_ = moving_pairs(bodies_, robot.parts().unchecked, surroundings);
-  T_base_bodies_ = standing_poses(bodies_);
+    : robot_(robot),
+      bodies_(bodies_among(robot, surroundings)),
+      T_base_bodies_(standing_poses(bodies_)),
+      pairs_(moving_pairs(bodies_, robot.parts().unchecked, surroundings)),
+      lanes_(robot.parts().chain, bodies_, pairs_) {
   for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
     if (touching(pair))
       standing_contacts_.push_back(pair);
@@ -19,8 +38,52 @@ CollisionWorld::CollisionWorld(const kinematics::Chain& chain, const geometry::R
     : CollisionWorld(RobotSolids(chain, shapes), surroundings) {}
 
 bool CollisionWorld::collides(const Eigen::Ref<const Eigen::VectorXd>& q) {
-  ++checks_;
-  return first_contact(q).has_value();
+  return free_ahead(q) == 0;
+}
+
+Eigen::Index CollisionWorld::free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  return alike_ahead(qs, false);
+}
+
+Eigen::Index CollisionWorld::colliding_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  return alike_ahead(qs, true);
+}
+
+Eigen::Index CollisionWorld::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                         bool colliding) {
+  if (qs.rows() != robot_.parts().chain.dof())
+    throw std::invalid_argument("CollisionWorld: " + std::to_string(qs.rows()) + " values for " +
+                                std::to_string(robot_.parts().chain.dof()) + " joints");
+  require_finite(qs);
+  for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
+    const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
+    const auto together = qs.middleCols(first, count);
+    const LaneAnswer answer = colliding ? lanes_.ask(together) : lanes_.ask_ahead(together);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      ++checks_;
+      const bool collides = !standing_contacts_.empty() || (answer.surely >> i & 1U) != 0 ||
+                            ((answer.maybe >> i & 1U) != 0 &&
+                             touches_in_doubt(static_cast<int>(i), qs.col(first + i)));
+      if (collides != colliding)
+        return first + i;
+    }
+  }
+  return qs.cols();
+}
+
+bool CollisionWorld::touches_in_doubt(int lane, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  if (!lanes_.doubtful_pairs(lane, doubtful_))
+    return first_contact(q).has_value();
+  kinematics::joint_poses(robot_.parts().chain, q, T_base_joints_);
+  for (const auto& [a, b] : doubtful_) {
+    for (const std::size_t i : {a, b})
+      if (bodies_[i].joint >= 0)
+        T_base_bodies_[i] =
+            T_base_joints_[static_cast<std::size_t>(bodies_[i].joint)] * bodies_[i].T_joint_body;
+    if (touching({a, b}))
+      return true;
+  }
+  return false;
 }
 
 std::optional<std::pair<std::string, std::string>> CollisionWorld::find_contact(
@@ -44,8 +107,7 @@ std::set<std::pair<std::string, std::string>> CollisionWorld::find_contacts(
 }
 
 void CollisionWorld::place(const Eigen::Ref<const Eigen::VectorXd>& q) {
-  if (!q.allFinite())
-    throw std::invalid_argument("CollisionWorld: q is not finite");
+  require_finite(q);
   place_bodies(robot_.parts().chain, bodies_, q, T_base_bodies_);
 }
 

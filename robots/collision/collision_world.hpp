@@ -10,6 +10,7 @@
 
 #include "robots/collision/body.hpp"
 #include "robots/collision/body_pairs.hpp"
+#include "robots/collision/lane_world.hpp"
 #include "robots/collision/robot_solids.hpp"
 
 namespace kinship::collision {
@@ -36,6 +37,16 @@ class CollisionWorld {
   /// \throws std::invalid_argument if q has the wrong size or is not finite.
   bool collides(const Eigen::Ref<const Eigen::VectorXd>& q);
 
+  /// How many configurations, from the first on, are free before one collides. Asks for several at
+  /// once; counts a check for each of the free ones and for the one that collides, as if they had
+  /// been asked for one after the other.
+  /// \param qs  dof x n, joint units
+  /// \throws std::invalid_argument as collides().
+  Eigen::Index free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
+  /// The same the other way round: how many collide before one is free, which is counted too.
+  Eigen::Index colliding_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
   /// Names of two things that touch at q, for messages; empty if none do. Counts no check.
   std::optional<std::pair<std::string, std::string>> find_contact(
       const Eigen::Ref<const Eigen::VectorXd>& q);
@@ -47,6 +58,10 @@ class CollisionWorld {
   std::uint64_t checks() const noexcept { return checks_; }
 
  private:
+  /// How many, from the first on, answer alike before one does not.
+  Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool colliding);
+  /// Whether what the lanes could not decide touches. \param lane  q's, of the last question.
+  bool touches_in_doubt(int lane, const Eigen::Ref<const Eigen::VectorXd>& q);
   /// Moves the bodies to q.
   void place(const Eigen::Ref<const Eigen::VectorXd>& q);
   std::optional<BodyPair> first_contact(const Eigen::Ref<const Eigen::VectorXd>& q);
@@ -58,6 +73,9 @@ class CollisionWorld {
   std::vector<Eigen::Isometry3d> T_base_bodies_;  // one per body; moving ones change per check
   std::vector<BodyPair> pairs_;
   std::vector<BodyPair> standing_contacts_;  // each makes every configuration collide
+  LaneWorld lanes_;
+  std::vector<BodyPair> doubtful_;  // kept, as what follows is, so that asking needs no heap
+  std::vector<Eigen::Isometry3d> T_base_joints_;
   std::uint64_t checks_ = 0;
 };
 

@@ -1,6 +1,5 @@
 #include "robots/collision/robot_solids.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "robots/collision/always_touching.hpp"
@@ -8,24 +7,7 @@
 namespace kinship::collision {
 namespace {
 
-constexpr int kTouchSamples = 200;
-constexpr int kAlwaysTouching = 190;  // of kTouchSamples
-
-/// Links that touch wherever the robot is, not those that are unchecked anyway.
-LinkPairs touching_links(const RobotSolids::Parts& robot) {
-  const std::vector<Body>& bodies = robot.bodies;
-  const std::vector<BodyPair> pairs = moving_pairs(bodies, robot.unchecked, {});
-  std::vector<Eigen::Isometry3d> T_base_bodies = standing_poses(bodies);
-  return always_touching(
-      robot.chain, kTouchSamples, kAlwaysTouching, [&](const Eigen::VectorXd& q) {
-        place_bodies(robot.chain, bodies, q, T_base_bodies);
-        LinkPairs touched;
-        for (const auto& [a, b] : pairs)
-          if (touch(bodies[a].solid, T_base_bodies[a], bodies[b].solid, T_base_bodies[b]))
-            touched.insert(std::minmax(bodies[a].link, bodies[b].link));
-        return touched;
-      });
-}
+constexpr TouchSamples kTouchSamples{.count = 200, .least = 190};
 
 }  // namespace
 
@@ -33,8 +15,14 @@ RobotSolids::RobotSolids(const kinematics::Chain& chain, const geometry::RobotSh
   Parts parts{chain, link_bodies(chain, shapes), {}};
   parts.unchecked = unchecked_links(parts.bodies, chain, shapes);
   if (shapes.never_colliding.empty())
-    parts.unchecked.merge(touching_links(parts));
+    parts.unchecked.merge(links_always_touching(parts, kTouchSamples));
   parts_ = std::make_shared<const Parts>(std::move(parts));
+}
+
+std::vector<Body> bodies_among(const RobotSolids& robot, const Surroundings& surroundings) {
+  std::vector<Body> bodies = robot.parts().bodies;
+  add_surroundings(robot.parts().chain, surroundings, bodies);
+  return bodies;
 }
 
 }  // namespace kinship::collision

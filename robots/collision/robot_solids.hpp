@@ -30,4 +30,8 @@ class RobotSolids {
   std::shared_ptr<const Parts> parts_;
 };
 
+/// The links of a robot and what surrounds it.
+/// \throws Failure(InvalidInput) as CollisionWorld's constructor says.
+std::vector<Body> bodies_among(const RobotSolids& robot, const Surroundings& surroundings);
+
 }  // namespace kinship::collision

@@ -1,11 +1,13 @@
 #include "robots/collision/solid.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
+#include <octomap/OcTree.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,7 @@ namespace kinship::collision {
 namespace {
 
 constexpr int kMaxCoverSpheres = 4;
+constexpr int kMostOfAShape = 16, kMostOfASurface = 64;  // spheres that hold it closely
 constexpr double kSlack_m = 1e-9;  // so that rounding never calls touching solids apart
 
 std::shared_ptr<const fcl::CollisionGeometry<double>> make_geometry(const Shape& shape) {
@@ -44,6 +47,35 @@ std::shared_ptr<const fcl::CollisionGeometry<double>> make_mesh(const Eigen::Mat
   return mesh;
 }
 
+/// \param voxels  in the solid's frame, which lies on a corner of their grid
+std::shared_ptr<const fcl::CollisionGeometry<double>> make_octree(const Eigen::Matrix3Xd& voxels,
+                                                                  double voxel_m) {
+  auto tree = std::make_shared<octomap::OcTree>(voxel_m);
+  for (const auto& voxel : voxels.colwise())
+    if (tree->updateNode(voxel.x(), voxel.y(), voxel.z(), /*occupied=*/true, /*lazy_eval=*/true) ==
+        nullptr)
+      throw Failure(ErrorCode::InvalidInput,
+                    "point cloud: a voxel lies farther than OctoMap's keys");
+  tree->updateInnerOccupancy();
+  auto octree = std::make_shared<fcl::OcTree<double>>(tree);
+  octree->computeLocalAABB();
+  return octree;
+}
+
+/// Spheres that hold the cubes of a block, in the frame of its centre.
+std::vector<CoverSphere> cover_voxels(const geometry::VoxelBlock& block, double voxel_m) {
+  std::vector<CoverSphere> spheres;
+  for (const geometry::VoxelBlock& part :
+       geometry::blocks_of(block.voxels, voxel_m, kMostOfASurface)) {
+    const Eigen::Vector3d middle =
+        (part.voxels.rowwise().minCoeff() + part.voxels.rowwise().maxCoeff()) / 2;
+    const double farthest_m = (part.voxels.colwise() - middle).colwise().norm().maxCoeff();
+    spheres.push_back(
+        {middle - block.center, farthest_m + voxel_m * std::sqrt(3.0) / 2 + kSlack_m, 0});
+  }
+  return spheres;
+}
+
 Eigen::Vector3d half_extents(const Shape& shape) {
   if (const auto* box = std::get_if<BoxShape>(&shape))
     return box->size / 2;
@@ -67,23 +99,39 @@ double cross_radius(const Shape& shape, const Eigen::Vector3d& half, Eigen::Inde
 
 }  // namespace
 
-Solid::Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles) {
+Solid::Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles)
+    : shape_(shape), is_hollow_(triangles != nullptr) {
   if (const auto why = geometry::broken_rule(shape))
     throw Failure(ErrorCode::InvalidInput, *why);
   geometry_ = triangles != nullptr ? make_mesh(*triangles) : make_geometry(shape);
-  half_extents_m_ = half_extents(shape);
+  cover_ = std::make_shared<const std::vector<CoverSphere>>(
+      is_hollow_ ? cover_triangles(*triangles, kMostOfASurface)
+                 : cover_shape(shape, kMostOfAShape));
+  bound();
+}
+
+Solid::Solid(const geometry::VoxelBlock& block, double voxel_m)
+    : shape_(BoxShape{block.size}),
+      is_hollow_(true),
+      cover_(std::make_shared<const std::vector<CoverSphere>>(cover_voxels(block, voxel_m))),
+      geometry_(make_octree(block.voxels.colwise() - block.center, voxel_m)) {
+  bound();
+}
+
+void Solid::bound() {
+  half_extents_m_ = half_extents(shape_);
   Eigen::Index axis = 2;
-  if (!std::holds_alternative<SphereShape>(shape))
+  if (!std::holds_alternative<SphereShape>(shape_))
     half_extents_m_.maxCoeff(&axis);
   const double half_length = half_extents_m_[axis];
-  const double cross = cross_radius(shape, half_extents_m_, axis);
+  const double cross = cross_radius(shape_, half_extents_m_, axis);
   const bool round_ends =
-      std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape);
+      std::holds_alternative<SphereShape>(shape_) || std::holds_alternative<CapsuleShape>(shape_);
   radius_m_ = (round_ends ? half_length : std::hypot(half_length, cross)) + kSlack_m;
 
   // `count` slices along the longest axis, each within one sphere about the slice's centre.
   const int count =
-      std::clamp(static_cast<int>(std::ceil(half_length / cross)), 1, kMaxCoverSpheres);
+      static_cast<int>(std::clamp(std::ceil(half_length / cross), 1.0, double{kMaxCoverSpheres}));
   cover_radius_m_ = count == 1 ? radius_m_ : std::hypot(half_length / count, cross) + kSlack_m;
   for (int i = 0; i < count; ++i) {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "proto/types/scene.hpp"
+#include "robots/collision/sphere_cover.hpp"
+#include "robots/geometry/point_cloud.hpp"
 
 namespace fcl {
 template <typename S>
@@ -25,18 +27,36 @@ class Solid {
   /// \throws Failure(InvalidInput) if a size is not finite and positive, or the triangles are none.
   explicit Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles = nullptr);
 
+  /// The cubes of a block of a point cloud, each of them solid; the solid's frame is at the centre
+  /// of the block's box.
+  /// \param voxel_m  edge of a cube
+  Solid(const geometry::VoxelBlock& block, double voxel_m);
+
+  const Shape& shape() const noexcept { return shape_; }  ///< holds all of the solid
+  bool is_hollow() const noexcept { return is_hollow_; }  ///< triangles or cubes within the shape
+  /// Of the sphere about the centre that holds everything.
+  double radius_m() const noexcept { return radius_m_; }
+  /// Of the box about the centre that holds everything.
+  const Eigen::Vector3d& half_extents_m() const noexcept { return half_extents_m_; }
+  /// Spheres that together hold all of the solid closely.
+  const std::vector<CoverSphere>& cover() const noexcept { return *cover_; }
+
   /// Whether two solids share a point, given their poses in one frame.
   friend bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
                     const Eigen::Isometry3d& T_base_b);
 
  private:
+  void bound();  ///< by its shape
   /// Whether the spheres that cover this solid stay clear of the bounding box of `other`.
   bool cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
 
-  double radius_m_ = 0;  // of the sphere about the centre that holds everything
+  Shape shape_;
+  bool is_hollow_ = false;
+  double radius_m_ = 0;
   Eigen::Vector3d half_extents_m_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> cover_centers_m_;  // along the longest axis
   double cover_radius_m_ = 0;
+  std::shared_ptr<const std::vector<CoverSphere>> cover_;
   std::shared_ptr<const fcl::CollisionGeometry<double>> geometry_;  // shared by copies, immutable
 };
 

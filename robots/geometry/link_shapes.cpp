@@ -76,10 +76,15 @@ Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision
   return std::optional<LinkShape>(result);
 }
 
-Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
-                                          const kinematics::Chain& chain,
-                                          const MeshSource& meshes) {
+struct LinksRead {
   std::vector<LinkShape> shapes;
+  std::vector<int> left_out;
+};
+
+Result<LinksRead> read_links(const urdf::ModelInterface& model, const kinematics::Chain& chain,
+                             const MeshSource& meshes) {
+  LinksRead read;
+  std::vector<LinkShape>& shapes = read.shapes;
   for (const auto& [name, link] : model.links_) {
     const int index = chain.find_link(name);
     if (index < 0)
@@ -92,11 +97,15 @@ Result<std::vector<LinkShape>> read_links(const urdf::ModelInterface& model,
         return Error{shape.error().code, "link '" + name + "': " + shape.error().message};
       if (*shape)
         shapes.push_back(**shape);
+      else if (collision->geometry)
+        read.left_out.push_back(index);
     }
   }
   std::stable_sort(shapes.begin(), shapes.end(),
                    [](const LinkShape& a, const LinkShape& b) { return a.link < b.link; });
-  return shapes;
+  std::sort(read.left_out.begin(), read.left_out.end());
+  read.left_out.erase(std::unique(read.left_out.begin(), read.left_out.end()), read.left_out.end());
+  return read;
 }
 
 Error no_such_link(const std::string& first, const std::string& second, const std::string& name) {
@@ -139,13 +148,13 @@ Result<RobotShapes> read_shapes(const RobotDescription& description, const kinem
   // urdfdom goes on without the element that it cannot read: a solid must not vanish like that.
   if (complaints.find("collision element") != std::string::npos)
     return invalid_input("URDF: " + complaints);
-  auto shapes = read_links(**model, chain, meshes);
-  if (!shapes)
-    return shapes.error();
+  auto links = read_links(**model, chain, meshes);
+  if (!links)
+    return links.error();
   auto pairs = read_pairs(description, chain);
   if (!pairs)
     return pairs.error();
-  return RobotShapes{fuse_capsules(*shapes), *std::move(pairs)};
+  return RobotShapes{fuse_capsules(links->shapes), *std::move(pairs), links->left_out};
 }
 
 }  // namespace kinship::geometry

@@ -30,6 +30,7 @@ struct LinkShape {
 struct RobotShapes {
   std::vector<LinkShape> shapes;
   std::vector<std::pair<int, int>> never_colliding;  ///< link indices, first < second
+  std::vector<int> left_out = {};  ///< links of which a mesh was left out, ascending, distinct
 };
 
 /// Where the corners of a mesh come from, by the URI or file name that the URDF gives.

@@ -81,6 +81,39 @@ struct alignas(64) LanePull {
   double distance_m[kLanes];              ///< out: of the marks before the step, root of squares
 };
 
+/// What the elimination of five joint values knows about an arm of six turning joints; see
+/// robots/inverse/elimination.hpp.
+struct LaneElimination {
+  static constexpr int kInvariants = 14;  ///< of the last axis, seen from the second
+  static constexpr int kTerms = 27;       ///< 3 of joint 3 by 3 of joint 4 by 3 of joint 5
+  static constexpr int kPadded = 32;      ///< kTerms, in whole vectors
+  /// Each invariant as a sum over terms: of 1, cos, sin of joint 3, first; of sin^2, sin cos, cos^2
+  /// of half of joint 4, then; of 1, cos, sin of joint 5, last.
+  double terms[kInvariants][kPadded];
+};
+
+/// Tables for functions of an angle that are sums of sines and cosines of its multiples.
+struct LaneHarmonics {
+  static constexpr int kDegree = 8;
+  static constexpr int kCoefficients =
+      2 * kDegree + 1;                    ///< of 1, cos, .. cos 8, then sin, .. sin 8
+  static constexpr int kPadded = 24;      ///< kCoefficients, in whole vectors
+  static constexpr int kSamples = 24;     ///< that coefficients are made of
+  static constexpr int kIntervals = 256;  ///< of a turn that is searched
+  static constexpr int kPoints = 136;  ///< where those of the first half of it meet; whole vectors
+  double cosine[kSamples], sine[kSamples];  ///< of the angles of samples
+  double to_coefficients[kSamples][kPadded];
+  double at_points[kCoefficients][kPoints];
+};
+
+inline constexpr int kLaneBranches = 24;
+
+/// Configurations that the elimination proposes for one pose.
+struct LaneBranches {
+  int count;
+  double q[6][kLaneBranches];  ///< lane's values, any turn; not finite where a step failed
+};
+
 /// The kernels of one instruction set. Pure functions of their arguments: no heap, no state.
 struct SimdKernels {
   /// One iteration of damped Levenberg-Marquardt in every lane.
@@ -95,6 +128,13 @@ struct SimdKernels {
   /// the transfer frame as a heavily weighted part that stays. For chains without sliding joints.
   /// Source: Levenberg, Quarterly of Applied Mathematics 2 (1944).
   void (*pull)(const LaneChain& chain, const LaneMarks& marks, LanePull& pull);
+
+  /// All real branches of an arm of six turning joints, to be polished: the zeros of the resultant
+  /// of six equations in joints 3, 4 and 5. \param target  as LaneBatch::target, of one lane.
+  /// Source: see robots/inverse/simd_elimination_kernel.hpp.
+  void (*eliminate)(const LaneChain& chain, const LaneElimination& arm,
+                    const LaneHarmonics& harmonics, const double (&target)[12],
+                    LaneBranches& branches);
 };
 
 }  // namespace kinship::inverse

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/elimination.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -90,6 +92,9 @@ void Search::find() {
     if (enough() || knows_all(*form))
       return;
   }
+  if (const LaneElimination* arm = solver_.elimination())
+    if (append_eliminated(*arm) && !all_)
+      return;
   const LaneLimits steer = solver_.redundant() ? LaneLimits::Steer : LaneLimits::Ignore;
   const int starts =
       all_ ? kMaxStarts : std::max(kFewestStarts, kStartsPerSolution * static_cast<int>(wanted_));
@@ -145,6 +150,29 @@ void Search::append_branches(const ClosedForm& form) {
   form.exact() ? verify_or_polish() : polish();
 }
 
+bool Search::append_eliminated(const LaneElimination& arm) {
+  double target[12];
+  for (int i = 0; i < 12; ++i)
+    target[i] = batch_.target[i][0];
+  LaneBranches branches;
+  solver_.kernels().eliminate(solver_.lanes(), arm, harmonics(), target, branches);
+  std::array<double, kLaneJoints> q;
+  for (int b = 0; b < branches.count; ++b) {
+    bool finite = true;
+    for (int j = 0; j < solver_.lanes().dof; ++j) {
+      q[static_cast<std::size_t>(j)] = branches.q[j][b] - solver_.lanes().joints[j].offset;
+      finite = finite && std::isfinite(branches.q[j][b]);
+    }
+    if (finite)  // also beyond the limits: what is no branch must not count as one there
+      propose(q.data());
+    else
+      ++lost_;
+  }
+  polish();
+  return branches.count > 0 &&
+         found_.size() + outside_.size() == static_cast<std::size_t>(branches.count);
+}
+
 void Search::propose_exact(const double* q) {
   std::array<double, kLaneJoints> candidate;
   std::copy_n(q, solver_.lanes().dof, candidate.data());
@@ -156,9 +184,12 @@ void Search::propose_exact(const double* q) {
 void Search::propose_near(const double* q) {
   std::array<double, kLaneJoints> candidate;
   std::copy_n(q, solver_.lanes().dof, candidate.data());
-  if (!solver_.space().normalize(candidate.data(), ClosedForm::kNearMargin_rad))
-    return;
-  put(candidate.data(), proposed_);
+  if (solver_.space().normalize(candidate.data(), ClosedForm::kNearMargin_rad))
+    propose(candidate.data());
+}
+
+void Search::propose(const double* q) {
+  put(q, proposed_);
   if (++proposed_ == kLanes)
     polish();
 }
@@ -320,13 +351,17 @@ bool Search::is_known(int lane) const {
          !is_apart(solver_.space(), outside_, q.data(), kKnown);
 }
 
+void Search::leave_out(const double* q) {
+  outside_limits_ = true;
+  if (solver_.redundant() || !is_apart(solver_.space(), outside_, q, kSamePoint))
+    return;
+  outside_.add(q);
+  idle_ = 0;
+}
+
 void Search::hand_over(std::array<double, kLaneJoints> q) {
   if (!solver_.space().normalize(q.data())) {
-    outside_limits_ = true;
-    if (!solver_.redundant() && is_apart(solver_.space(), outside_, q.data(), kSamePoint)) {
-      outside_.add(q.data());
-      idle_ = 0;
-    }
+    leave_out(q.data());
     return;
   }
   if (!is_apart(solver_.space(), found_, q.data(), apart_))

@@ -34,12 +34,16 @@ class Search {
 
   /// Candidates of the closed form.
   void append_branches(const ClosedForm& form);
+  /// Branches of the elimination, polished. \return whether it leaves nothing to be found: there
+  /// are some, and each led to a solution of its own or leaves the limits.
+  bool append_eliminated(const LaneElimination& arm);
   /// Whether the closed form leaves nothing to be found.
   bool knows_all(const ClosedForm& form) const;
   /// A candidate of an exact structure is verified as it is,
   void propose_exact(const double* q);
   /// one of another structure polished first.
   void propose_near(const double* q);
+  void propose(const double* q);
   /// Verifies what was handed over as it is; what is off by more than rounding is polished.
   void verify_or_polish();
   /// Moves the lanes that were proposed to the pose, and verifies what got there.
@@ -54,6 +58,8 @@ class Search {
   std::array<double, kLaneJoints> configuration(int lane) const;  // joint units
   /// Whether a lane is about to end at a branch that was found before.
   bool is_known(int lane) const;
+  /// Remembers a branch that leaves the limits.
+  void leave_out(const double* q);
   /// Hands a configuration over to verification if it is within limits and new.
   void hand_over(std::array<double, kLaneJoints> q);
   bool is_full() const noexcept { return handed_over_ == kLanes; }

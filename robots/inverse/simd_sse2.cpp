@@ -1,9 +1,10 @@
 #define KINSHIP_SIMD_WIDTH 2
+#include "robots/inverse/simd_elimination_kernel.hpp"
 #include "robots/inverse/simd_pull_kernel.hpp"
 #include "robots/inverse/simd_sets.hpp"
 
 namespace kinship::inverse {
 
-SimdKernels sse2_simd_kernels() { return {step, check, pull}; }
+SimdKernels sse2_simd_kernels() { return {step, check, pull, eliminate}; }
 
 }  // namespace kinship::inverse

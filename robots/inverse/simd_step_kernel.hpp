@@ -1,4 +1,5 @@
 // The kernels, for the instruction set that the including unit is compiled for.
+#pragma once
 
 #include "robots/inverse/simd_vector.hpp"
 

@@ -1,5 +1,7 @@
 // Vectors of KINSHIP_SIMD_WIDTH doubles. Included only by the units that are compiled for one
 // instruction set, which define the width: everything has internal linkage.
+#pragma once
+
 #ifndef KINSHIP_SIMD_WIDTH
 #error "define KINSHIP_SIMD_WIDTH"
 #endif
@@ -41,6 +43,22 @@ KINSHIP_SIMD_INLINE Wide root(Wide value) {
   for (int lane = 0; lane < KINSHIP_SIMD_WIDTH; ++lane)
     value[lane] = __builtin_sqrt(value[lane]);
   return value;
+#endif
+}
+
+/// Bit i: the mask is set in lane i.
+KINSHIP_SIMD_INLINE unsigned bits(WideMask mask) {
+#if KINSHIP_SIMD_WIDTH == 8
+  return _mm512_movepi64_mask(__m512i(mask));
+#elif KINSHIP_SIMD_WIDTH == 4
+  return static_cast<unsigned>(_mm256_movemask_pd(__m256d(mask)));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_pd(__m128d(mask)));
+#else
+  unsigned result = 0;
+  for (int lane = 0; lane < KINSHIP_SIMD_WIDTH; ++lane)
+    result |= (mask[lane] != 0 ? 1U : 0U) << lane;
+  return result;
 #endif
 }
 
@@ -92,6 +110,26 @@ KINSHIP_SIMD_INLINE void sine_cosine(Wide angle, Wide& sine, Wide& cosine) {
   const Wide second = odd ? s : c;
   sine = (quarter & 2) != 0 ? -first : first;
   cosine = ((quarter + 1) & 2) != 0 ? -second : second;
+}
+
+/// The angle of a direction in the plane, to 2e-8.
+/// Source: M. Abramowitz and I. Stegun, Handbook of Mathematical Functions (1964), 4.4.49.
+KINSHIP_SIMD_INLINE Wide angle_of(Wide sine, Wide cosine) {
+  const Wide s = absolute(sine), c = absolute(cosine);
+  const WideMask steep = s > c;
+  const Wide t = (steep ? c : s) / (steep ? s : c);
+  const Wide z = t * t;
+  const Wide arc =
+      t + t * z *
+              (-0.3333314528 +
+               z * (0.1999355085 +
+                    z * (-0.1420889944 +
+                         z * (0.1065626393 +
+                              z * (-0.0752896400 +
+                                   z * (0.0429096138 + z * (-0.0161657367 + z * 0.0028662257)))))));
+  const Wide first = steep ? 0.25 * kTurnOf - arc : arc;
+  const Wide half = cosine < 0.0 ? 0.5 * kTurnOf - first : first;
+  return sine < 0.0 ? -half : half;
 }
 
 /// Sines and cosines of all joints: computed side by side, before the poses that wait for each

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "robots/inverse/descent.hpp"
+#include "robots/inverse/elimination.hpp"
 #include "robots/inverse/search.hpp"
 
 namespace kinship::inverse {
@@ -17,6 +18,7 @@ Solver::Solver(const kinematics::Chain& chain, const SimdKernels& kernels, Engin
       space_(chain),
       T_tip_transfer_(chain.T_tip_transfer()),
       reach_m_(inverse::reach_m(chain)),
+      wrist_reach_(WristReach::of(chain)),
       p_base_first_joint_(chain.joints().front().T_previous_joint.translation()) {
   if (engines == Engines::Descents)
     return;
@@ -24,13 +26,16 @@ Solver::Solver(const kinematics::Chain& chain, const SimdKernels& kernels, Engin
   closed_ = std::move(finding.form);
   if (engines == Engines::ClosedForm && !closed_)
     closed_ = std::move(finding.left_out);
+  if (engines == Engines::Best && !closed_)
+    elimination_ = elimination_of(chain, lanes_, kernels_);
 }
 
 bool Solver::beyond_reach(const Eigen::Isometry3d& T_base_transfer) const {
   Eigen::Vector3d p = T_base_transfer.translation() - p_base_first_joint_;
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     p[axis] *= arm_.matters[axis];
-  return p.norm() > reach_m_ + kPoseTolerance;
+  return p.norm() > reach_m_ + kPoseTolerance ||
+         (wrist_reach_ && wrist_reach_->is_beyond(T_base_transfer));
 }
 
 InverseSolutions Solver::solve(const Eigen::Isometry3d& T_base_tip,
@@ -45,7 +50,9 @@ InverseSolutions Solver::solve(const Eigen::Isometry3d& T_base_tip,
 }
 
 std::string Solver::name() const {
-  return closed_ ? "closed form and Levenberg-Marquardt" : "multi-start Levenberg-Marquardt";
+  if (closed_)
+    return "closed form and Levenberg-Marquardt";
+  return elimination_ ? "elimination and Levenberg-Marquardt" : "multi-start Levenberg-Marquardt";
 }
 
 }  // namespace kinship::inverse

@@ -8,6 +8,7 @@
 #include "robots/inverse/inverse.hpp"
 #include "robots/inverse/joint_space.hpp"
 #include "robots/inverse/lane_chain.hpp"
+#include "robots/inverse/wrist_reach.hpp"
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::inverse {
@@ -16,8 +17,8 @@ namespace kinship::inverse {
 /// Immutable, may be shared by threads. `inverse` is the same for one pose.
 class Solver {
  public:
-  /// What candidates come from. Best: the closed form where there is one that is faster, and the
-  /// descents where it leaves gaps.
+  /// What candidates come from. Best: the closed form where there is one that is faster, or the
+  /// elimination where the arm has six turning joints, and the descents where they leave gaps.
   enum class Engines { Best, ClosedForm, Descents };
 
   /// With the fastest instruction set of this machine. The chain is not needed afterwards.
@@ -41,10 +42,13 @@ class Solver {
   const LaneArm& arm() const noexcept { return arm_; }
   const JointSpace& space() const noexcept { return space_; }
   const ClosedForm* closed_form() const noexcept { return closed_ ? &*closed_ : nullptr; }
+  const LaneElimination* elimination() const noexcept {
+    return elimination_ ? &*elimination_ : nullptr;
+  }
   const Eigen::Isometry3d& T_tip_transfer() const noexcept { return T_tip_transfer_; }
   /// Whether the chain has more joints than task axes that matter.
   bool redundant() const noexcept { return lanes_.dof > lanes_.rows; }
-  /// Whether the origin of the transfer frame is too far away for a chain of this length.
+  /// Whether the pose is too far away for a chain of this length.
   bool beyond_reach(const Eigen::Isometry3d& T_base_transfer) const;
 
  private:
@@ -53,8 +57,10 @@ class Solver {
   LaneArm arm_;
   JointSpace space_;
   std::optional<ClosedForm> closed_;
+  std::optional<LaneElimination> elimination_;
   Eigen::Isometry3d T_tip_transfer_;
   double reach_m_;
+  std::optional<WristReach> wrist_reach_;
   Eigen::Vector3d p_base_first_joint_;
 };
 

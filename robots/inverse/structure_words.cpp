@@ -5,6 +5,8 @@
 
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/counter_generator.hpp"
+#include "robots/inverse/elimination.hpp"
+#include "robots/inverse/lane_chain.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/jacobian.hpp"
 
@@ -82,6 +84,8 @@ std::string describe_structure(const kinematics::Chain& chain) {
     text = finding.left_out->structure_name() + deviation_text(*finding.left_out) + "; " +
            lock_text(finding.left_out->locks()) +
            "closed form left out, random locks seldom lead within limits; numeric";
+  else if (elimination_of(chain, lane_chain(chain), instruction_sets().back().kernels))
+    text = "no closed form; elimination and polish, at most 16 branches";
   else
     text = "no closed form; numeric";
   return text + missing_text(chain);

@@ -44,13 +44,27 @@ Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eig
   return T;
 }
 
+Eigen::Isometry3d T_base_transfer(const Chain& chain,
+                                  std::span<const Eigen::Isometry3d> T_base_joints) {
+  Eigen::Isometry3d T = T_base_joints.back();
+  follow(chain.T_last_tip(), T);
+  follow(chain.T_tip_transfer(), T);
+  return T;
+}
+
 std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
                                            const Eigen::Ref<const Eigen::VectorXd>& q) {
   std::vector<Eigen::Isometry3d> poses;
+  joint_poses(chain, q, poses);
+  return poses;
+}
+
+void joint_poses(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
+                 std::vector<Eigen::Isometry3d>& poses) {
+  poses.clear();
   poses.reserve(chain.joints().size());
   visit_joints(chain, q,
                [&](const Eigen::Isometry3d& T_base_joint) { poses.push_back(T_base_joint); });
-  return poses;
 }
 
 std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,

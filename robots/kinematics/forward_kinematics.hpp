@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 #include <vector>
 
 #include "robots/kinematics/chain.hpp"
@@ -14,10 +15,17 @@ Eigen::Isometry3d T_base_tip(const Chain& chain, const Eigen::Ref<const Eigen::V
 
 /// Pose of the transfer frame in the base link.
 Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q);
+/// \param T_base_joints  joint_poses of the configuration.
+Eigen::Isometry3d T_base_transfer(const Chain& chain,
+                                  std::span<const Eigen::Isometry3d> T_base_joints);
 
 /// Pose of each joint's moving frame in the base link: dof poses, from base to tip.
 std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
                                            const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// The same into what there is, so that who asks often needs no heap.
+void joint_poses(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
+                 std::vector<Eigen::Isometry3d>& poses);
 
 /// Pose of every link in the base link, in the order of chain.links().
 std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,

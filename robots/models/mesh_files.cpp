@@ -61,23 +61,37 @@ Result<std::filesystem::path> MeshFiles::find(const std::string& uri) const {
   return urdf_folder_ / uri;
 }
 
-Result<std::optional<Eigen::Matrix3Xd>> MeshFiles::read(const std::string& uri) const {
+template <typename Content>
+Result<Content> MeshFiles::read_file(const std::string& what, const std::string& uri,
+                                     std::size_t max_bytes,
+                                     Result<Content> (*parse)(std::string_view,
+                                                              std::string_view)) const {
   const auto file = find(uri);
   if (!file)
     return file.error();
   const auto named = [&](const Error& error, const std::string& name) {
-    return Error{error.code, "mesh '" + uri + "': " + name + error.message};
+    return Error{error.code, what + " '" + uri + "': " + name + error.message};
   };
   try {
     const std::string ending = file->extension().string();
-    auto corners = geometry::read_mesh(read_text(*file, geometry::kMaxMeshBytes),
-                                       ending.empty() ? ending : ending.substr(1));
-    if (!corners)
-      return named(corners.error(), file->string() + ": ");
-    return std::optional<Eigen::Matrix3Xd>(*std::move(corners));
+    auto content = parse(read_text(*file, max_bytes), ending.empty() ? ending : ending.substr(1));
+    if (!content)
+      return named(content.error(), file->string() + ": ");
+    return content;
   } catch (const Failure& failure) {
     return named(failure.error(), "");
   }
+}
+
+Result<std::optional<Eigen::Matrix3Xd>> MeshFiles::read(const std::string& uri) const {
+  auto corners = read_file("mesh", uri, geometry::kMaxMeshBytes, geometry::read_mesh);
+  if (!corners)
+    return corners.error();
+  return std::optional<Eigen::Matrix3Xd>(*std::move(corners));
+}
+
+Result<geometry::FilePoints> MeshFiles::read_points(const std::string& uri) const {
+  return read_file("point cloud", uri, geometry::kMaxCloudBytes, geometry::read_points);
 }
 
 }  // namespace kinship::models

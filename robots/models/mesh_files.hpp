@@ -5,9 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proto/types/result.hpp"
+#include "robots/geometry/point_file.hpp"
 
 namespace kinship::models {
 
@@ -19,7 +21,7 @@ using PackageFolders = std::map<std::string, std::filesystem::path>;
 ///         or a folder that does not exist.
 Result<PackageFolders> parse_packages(const std::vector<std::string>& arguments);
 
-/// The files of a URDF's meshes.
+/// The files that URDFs and problems name.
 class MeshFiles {
  public:
   /// \param urdf_folder  of the URDF file: relative names start there.
@@ -35,7 +37,16 @@ class MeshFiles {
   /// \return NotFound, InvalidInput or TooLarge with URI, file and limit.
   Result<std::optional<Eigen::Matrix3Xd>> read(const std::string& uri) const;
 
+  /// The points of a point cloud's file.
+  /// \return as read().
+  Result<geometry::FilePoints> read_points(const std::string& uri) const;
+
  private:
+  /// \param parse  makes it of a file's content, by the ending of the file's name.
+  template <typename Content>
+  Result<Content> read_file(const std::string& what, const std::string& uri, std::size_t max_bytes,
+                            Result<Content> (*parse)(std::string_view, std::string_view)) const;
+
   std::filesystem::path urdf_folder_;
   PackageFolders packages_;
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "proto/types/failure.hpp"
@@ -14,25 +15,28 @@
 
 namespace kinship::models {
 
-/// Reads the meshes that problems name. A file is read once for each scale; what was read is kept,
-/// and shared by all scenes that name it.
+/// Reads the meshes and point clouds that problems name. A file is read once for each scale or size
+/// of voxels; what was read is kept, and shared by all scenes that name it.
 class SceneMeshes {
  public:
   /// \param problem_folder  where relative names start.
   SceneMeshes(std::filesystem::path problem_folder, PackageFolders packages)
       : files_(std::move(problem_folder), std::move(packages)) {}
 
-  /// Fills in the triangles of a scene's meshes and of those that are attached.
-  /// \return what MeshFiles::read says, with the object named; nothing if all went well.
+  /// Fills in the triangles of a scene's meshes and of those that are attached, and the voxels of
+  /// its point clouds.
+  /// \return what MeshFiles says, with the object named; nothing if all went well.
   std::optional<Error> read(Scene& scene, std::vector<AttachedObject>& attached);
 
  private:
   using Key = std::tuple<std::string, double, double, double>;  // file and scale
 
   std::optional<Error> read(const std::string& what, Mesh& mesh);
+  std::optional<Error> read(const std::string& what, PointCloud& cloud);
 
   MeshFiles files_;
   std::map<Key, std::shared_ptr<const Eigen::Matrix3Xd>> known_;
+  std::map<std::pair<std::string, double>, std::shared_ptr<const Eigen::Matrix3Xd>> voxels_;
 };
 
 }  // namespace kinship::models

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -11,6 +12,7 @@
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/planning_budget.hpp"
 #include "robots/planning/region_constraint.hpp"
+#include "robots/planning/samples_ahead.hpp"
 #include "robots/planning/tree.hpp"
 
 /// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
@@ -52,9 +54,7 @@ PlanSummary plan_along(const Eigen::VectorXd& start, const Eigen::MatrixXd& goal
 }
 
 /// Two trees, from the start and from every goal, of which the smaller one is extended.
-/// \tparam Steering  goes from a node to a target as far as it can:
-///         `Extension extend(Tree&, Eigen::Index from, const Eigen::VectorXd& target, Aim,
-///         PlanningBudget&)`.
+/// \tparam Steering  goes from a node to a target as far as it can: see steering.hpp.
 template <typename Steering>
 class BidirectionalSearch {
  public:
@@ -64,7 +64,7 @@ class BidirectionalSearch {
         options_(options),
         steering_(steering),
         budget_(budget),
-        generator_(generator) {}
+        samples_(sampler, generator) {}
 
   /// Plants both trees and extends them until they meet or the budget is used up.
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
@@ -115,10 +115,17 @@ class BidirectionalSearch {
 
  private:
   PlanSummary search() {
+    PlanSummary found = search_on();
+    samples_.give_back();
+    return found;
+  }
+
+  PlanSummary search_on() {
     const std::uint64_t begin = budget_.checks();
     while (!budget_.exhausted()) {
-      const Track* const track = next_track(budget_.checks() - begin);
-      auto path = track != nullptr ? follow(*track) : iterate();
+      const std::uint64_t spent = budget_.checks() - begin;
+      const Track* const track = next_track(spent);
+      auto path = track != nullptr ? follow(*track) : iterate(samples_before_track(spent));
       if (path)
         return summary(std::move(path), NoPath::None,
                        track != nullptr ? FoundBy::Track : FoundBy::Search);
@@ -133,9 +140,13 @@ class BidirectionalSearch {
     if (!budget_.is_free(start))
       return budget_.exhausted() ? budget_.reason() : NoPath::StartCollides;
     start_tree_.add(start, -1);
-    for (Eigen::Index i = 0; i < goals.cols(); ++i)
-      if (budget_.is_free(goals.col(i)))
+    for (Eigen::Index first = 0; first < goals.cols() && !budget_.exhausted();) {
+      const Eigen::Index together = std::min(kTogether, goals.cols() - first);
+      const Eigen::Index free = budget_.free_ahead(goals.middleCols(first, together));
+      for (Eigen::Index i = first; i < first + free; ++i)
         goal_tree_.add(goals.col(i), -1);
+      first += std::min(free + 1, together);
+    }
     if (budget_.exhausted())
       return budget_.reason();
     return goal_tree_.size() == 0 ? NoPath::GoalsCollide : NoPath::None;
@@ -175,14 +186,26 @@ class BidirectionalSearch {
 
   /// The track that is followed now. \param checks  that the search has cost. \return null: none.
   const Track* next_track(std::uint64_t checks) {
-    QueryTracks* const tracks = sampler_.tracks();
-    if (tracks == nullptr || options_.track_check_fraction == 0 ||
-        static_cast<double>(track_checks_) >
-            options_.track_check_fraction * static_cast<double>(checks))
+    if (!is_track_due(checks))
       return nullptr;
-    const Track* const track = tracks->track(next_track_);
-    next_track_ += track != nullptr ? 1 : 0;
+    samples_.give_back();  // they come from around the tracks made so far
+    const Track* const track = sampler_.tracks()->track(next_track_);
+    has_tracks_ = track != nullptr;
+    next_track_ += has_tracks_ ? 1 : 0;
     return track;
+  }
+
+  bool is_track_due(std::uint64_t checks) const {
+    return has_tracks_ && static_cast<double>(track_checks_) <=
+                              options_.track_check_fraction * static_cast<double>(checks);
+  }
+
+  /// How many can come to nothing, a check each, before a track is due.
+  Eigen::Index samples_before_track(std::uint64_t checks) const {
+    std::uint64_t count = 1;
+    while (count < SamplesAhead::kAhead && !is_track_due(checks + count))
+      ++count;
+    return static_cast<Eigen::Index>(count);
   }
 
   /// Extends the goal tree along a track until something is in the way, then the start tree towards
@@ -203,39 +226,76 @@ class BidirectionalSearch {
     return met.reached ? std::optional(join(met.node, there.node)) : std::nullopt;
   }
 
-  /// Extends the smaller tree towards a sample, then the other towards where that came. \return the
-  /// path if they met.
-  std::optional<Eigen::MatrixXd> iterate() {
-    ++iterations_;
+  /// Extends the smaller tree towards samples until it comes anywhere, then the other towards where
+  /// that was. \param ahead  at most so many samples. \return the path if they met.
+  std::optional<Eigen::MatrixXd> iterate(Eigen::Index ahead) {
     const bool start_grows = start_tree_.size() <= goal_tree_.size();
     Tree& grown = start_grows ? start_tree_ : goal_tree_;
     Tree& other = start_grows ? goal_tree_ : start_tree_;
-    const Eigen::VectorXd sample = sampler_.sample(generator_, guided_fraction());
-    const Eigen::Index near = grown.nearest(sample);
-    const Extension there =
-        steering_.extend(grown, near, overshoot(grown.node(near), sample), Aim::Sample, budget_);
-    if (there.node == near)  // nothing new to go to
+    const std::optional<Extension> there = grow(grown, start_grows ? 0 : 1, ahead);
+    if (!there)  // nothing new to go to
       return std::nullopt;
-    const Eigen::VectorXd tip = grown.node(there.node);
-    const Extension met = steering_.extend(other, other.nearest(tip), tip, Aim::Node, budget_);
+    tip_ = grown.node(there->node);
+    const Extension met = steering_.extend(other, other.nearest(tip_), tip_, Aim::Node, budget_);
     if (!met.reached)
       return std::nullopt;
-    return join(start_grows ? there.node : met.node, start_grows ? met.node : there.node);
+    return join(start_grows ? there->node : met.node, start_grows ? met.node : there->node);
   }
 
-  /// A query that the mixture has not solved soon may need what it does not cover, and without any
-  /// uniform samples no patience would find that.
-  double guided_fraction() const {
-    constexpr std::uint64_t kPatience = 300;  // samples
-    constexpr double kLateFraction = 0.9;
-    return iterations_ <= kPatience ? sampler_.guided_fraction()
-                                    : std::min(sampler_.guided_fraction(), kLateFraction);
+  /// Extends a tree towards samples until it grows. As long as it does not, the next sample's
+  /// extension begins as if it were the first: so those of several are asked for together.
+  /// \param which  of the samples' nearest nodes is the tree's. \return empty if it did not grow.
+  std::optional<Extension> grow(Tree& tree, std::size_t which, Eigen::Index ahead) {
+    Eigen::Index asked = 0;
+    spent_[0] = steering_.spent();
+    for (Eigen::Index i = 0; i < ahead; ++i) {
+      const Beginning& beginning = begin(tree, which, i);
+      if (beginning.is_any) {
+        firsts_.col(asked) = beginning.first;
+        starts_[static_cast<std::size_t>(asked++)] = i;
+      }
+      spent_[static_cast<std::size_t>(i + 1)] =
+          spent_[static_cast<std::size_t>(i)] + beginning.spent;
+    }
+    const std::uint64_t before = budget_.checks();
+    const auto free = asked == 0 ? std::nullopt : budget_.first_free(firsts_.leftCols(asked));
+    const auto answered = static_cast<Eigen::Index>(budget_.checks() - before);
+    const Eigen::Index used =
+        !free && answered == asked
+            ? ahead
+            : (answered == 0 ? 0 : starts_[static_cast<std::size_t>(answered - 1)] + 1);
+    iterations_ += static_cast<std::uint64_t>(used);
+    steering_.set_spent(spent_[static_cast<std::size_t>(used)]);
+    if (!free) {
+      samples_.use(static_cast<std::uint64_t>(used));
+      return std::nullopt;
+    }
+    const Beginning& beginning =
+        samples_.at(static_cast<std::uint64_t>(used - 1)).beginnings[which];
+    const Extension there =
+        steering_.extend_beyond(tree, beginning.near, beginning.first, beginning.target, budget_);
+    samples_.use(static_cast<std::uint64_t>(used));
+    return there;
   }
 
-  Eigen::VectorXd overshoot(const Eigen::VectorXd& near, const Eigen::VectorXd& sample) const {
-    const Eigen::VectorXd target = near + options_.overshoot * (sample - near);
-    return target.cwiseMax(sampler_.bounds().row(0).transpose())
-        .cwiseMin(sampler_.bounds().row(1).transpose());
+  using Beginning = SamplesAhead::Beginning;
+
+  /// How a tree's extension towards a sample begins: at the nearest node, towards a target beyond
+  /// the sample.
+  const Beginning& begin(const Tree& tree, std::size_t which, Eigen::Index skipped) {
+    SamplesAhead::Sample& sample = samples_.at(static_cast<std::uint64_t>(skipped));
+    const Eigen::Index near = tree.nearest(sample.q, sample.nearest[which]);
+    Beginning& beginning = sample.beginnings[which];
+    if (beginning.near == near)
+      return beginning;
+    beginning.near = near;
+    beginning.target = (tree.node(near) + options_.overshoot * (sample.q - tree.node(near)))
+                           .cwiseMax(lower_)
+                           .cwiseMin(upper_);
+    const std::uint64_t before = steering_.spent();
+    beginning.is_any = steering_.first_of(tree.node(near), beginning.target, beginning.first);
+    beginning.spent = steering_.spent() - before;
+    return beginning;
   }
 
   /// The path over two nodes that hold the same configuration.
@@ -251,12 +311,19 @@ class BidirectionalSearch {
   const BirrtOptions& options_;
   Steering& steering_;
   PlanningBudget& budget_;
-  std::mt19937_64& generator_;
+  SamplesAhead samples_;
+  const Eigen::VectorXd lower_ = sampler_.bounds().row(0), upper_ = sampler_.bounds().row(1);
   Tree start_tree_{sampler_.bounds().cols()};
   Tree goal_tree_{sampler_.bounds().cols()};
+  bool has_tracks_ = sampler_.tracks() != nullptr && options_.track_check_fraction > 0;
   std::uint64_t iterations_ = 0;
   std::size_t next_track_ = 0;
   std::uint64_t track_checks_ = 0;
+  // Of the samples ahead, a column each: kept, so that an iteration allocates nothing.
+  Eigen::MatrixXd firsts_{sampler_.bounds().cols(), SamplesAhead::kAhead};
+  std::array<Eigen::Index, SamplesAhead::kAhead> starts_{};      // those that have a first one
+  std::array<std::uint64_t, SamplesAhead::kAhead + 1> spent_{};  // before each sample, after all
+  Eigen::VectorXd tip_;
 };
 
 }  // namespace kinship::planning

@@ -1,6 +1,8 @@
 #include "robots/planning/configuration_sampler.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +13,13 @@ namespace kinship::planning {
 namespace {
 
 constexpr int kMaxTurnDraws = 100;
+
+/// In [0, 1), as std::uniform_real_distribution draws it, without a division.
+double draw_unit(std::mt19937_64& generator) {
+  static_assert(std::mt19937_64::max() == std::numeric_limits<std::uint64_t>::max());
+  const double drawn = static_cast<double>(generator()) * 0x1p-64;
+  return drawn < 1 ? drawn : std::nextafter(1.0, 0.0);
+}
 
 /// The bounds, but none for turning joints.
 Eigen::Matrix2Xd draw_limits(const Eigen::Matrix2Xd& bounds, const std::vector<bool>& turning) {
@@ -56,17 +65,23 @@ ConfigurationSampler ConfigurationSampler::with_tracks(std::shared_ptr<QueryTrac
 
 Eigen::VectorXd ConfigurationSampler::sample(std::mt19937_64& generator,
                                              double guided_fraction) const {
-  std::uniform_real_distribution<double> unit(0, 1);
-  if (guided_ || tracks_) {
-    const double drawn = unit(generator);
-    if (drawn < guided_fraction)
-      if (auto q = sample_guided(drawn, guided_fraction, generator))
-        return *std::move(q);
-  }
   Eigen::VectorXd q(bounds_.cols());
-  for (Eigen::Index i = 0; i < q.size(); ++i)
-    q[i] = bounds_(0, i) + (bounds_(1, i) - bounds_(0, i)) * unit(generator);
+  draw(generator, guided_fraction, q);
   return q;
+}
+
+void ConfigurationSampler::draw(std::mt19937_64& generator, double guided_fraction,
+                                Eigen::VectorXd& q) const {
+  if (guided_ || tracks_) {
+    const double drawn = draw_unit(generator);
+    if (drawn < guided_fraction)
+      if (auto guided = sample_guided(drawn, guided_fraction, generator)) {
+        q = *std::move(guided);
+        return;
+      }
+  }
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    q[i] = bounds_(0, i) + (bounds_(1, i) - bounds_(0, i)) * draw_unit(generator);
 }
 
 /// Tracks and mixture keep their proportion, whatever the share of both.

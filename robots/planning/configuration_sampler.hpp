@@ -45,6 +45,8 @@ class ConfigurationSampler {
   }
   /// The same with another share of guided samples; a uniform sampler has none.
   Eigen::VectorXd sample(std::mt19937_64& generator, double guided_fraction) const;
+  /// The same into what there is. \param q  dof.
+  void draw(std::mt19937_64& generator, double guided_fraction, Eigen::VectorXd& q) const;
 
   const Eigen::Matrix2Xd& bounds() const noexcept { return bounds_; }
   /// Of all samples; 0 if uniform.

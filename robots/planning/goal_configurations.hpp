@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/planning/is_free.hpp"
 #include "robots/planning/no_path.hpp"
@@ -28,6 +29,13 @@ struct GoalConfigurations {
 /// \param T_base_goal  pose of the transfer frame in the base link, m.
 /// \param bounds       2 x dof (see planning_bounds); solutions are moved by full turns into them.
 GoalConfigurations goal_configurations(const kinematics::Chain& chain,
+                                       const Eigen::Isometry3d& T_base_goal,
+                                       const Eigen::Matrix2Xd& bounds, const IsFree& is_free,
+                                       const GoalOptions& options = {});
+
+/// The same with what inverse kinematics computed of the chain, for whoever asks more than once.
+GoalConfigurations goal_configurations(const kinematics::Chain& chain,
+                                       const inverse::Solver& solver,
                                        const Eigen::Isometry3d& T_base_goal,
                                        const Eigen::Matrix2Xd& bounds, const IsFree& is_free,
                                        const GoalOptions& options = {});

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 namespace kinship::planning {
 namespace {
 
 constexpr double kStepRounding = 1e-9;  // joint units
-
-/// Number of equal parts of at most `step` that a distance is cut into.
-Eigen::Index parts(double distance, double step) {
-  return std::max<Eigen::Index>(
-      1, static_cast<Eigen::Index>(std::ceil((distance - kStepRounding) / step)));
-}
 
 void check_arguments(const Eigen::MatrixXd& waypoints, double step) {
   if (waypoints.cols() < 1 || !(step > 0))
@@ -24,11 +17,12 @@ void check_arguments(const Eigen::MatrixXd& waypoints, double step) {
 /// Whether waypoint `last` continues the even steps from `first` to the one after it.
 bool continues(const Eigen::MatrixXd& waypoints, Eigen::Index first, Eigen::Index last,
                double step) {
-  const Eigen::VectorXd stride = waypoints.col(first + 1) - waypoints.col(first);
-  const Eigen::Index count = last - first;
-  const Eigen::VectorXd expected = waypoints.col(first) + static_cast<double>(count) * stride;
+  const auto count = static_cast<double>(last - first);
   const double distance = (waypoints.col(last) - waypoints.col(first)).norm();
-  return (waypoints.col(last) - expected).norm() <= kStepRounding && parts(distance, step) == count;
+  return (waypoints.col(last) -
+          (waypoints.col(first) + count * (waypoints.col(first + 1) - waypoints.col(first))))
+                 .norm() <= kStepRounding &&
+         count_of_parts(distance, step) == last - first;
 }
 
 Eigen::MatrixXd without_repetitions(const Eigen::MatrixXd& waypoints) {
@@ -42,21 +36,32 @@ Eigen::MatrixXd without_repetitions(const Eigen::MatrixXd& waypoints) {
 
 }  // namespace
 
+Eigen::Index count_of_parts(double distance, double step) {
+  return std::max<Eigen::Index>(
+      1, static_cast<Eigen::Index>(std::ceil((distance - kStepRounding) / step)));
+}
+
 Eigen::MatrixXd densified(const Eigen::MatrixXd& waypoints, double step) {
   check_arguments(waypoints, step);
-  std::vector<Eigen::VectorXd> dense = {waypoints.col(0)};
-  for (Eigen::Index i = 1; i < waypoints.cols(); ++i) {
-    const Eigen::VectorXd from = waypoints.col(i - 1);
-    const Eigen::VectorXd segment = waypoints.col(i) - from;
-    const Eigen::Index count = parts(segment.norm(), step);
+  const Eigen::Index segments = waypoints.cols() - 1;
+  const auto count_of = [&](Eigen::Index i) {
+    return count_of_parts((waypoints.col(i + 1) - waypoints.col(i)).norm(), step);
+  };
+  Eigen::Index total = 1;
+  for (Eigen::Index i = 0; i < segments; ++i)
+    total += count_of(i);
+  Eigen::MatrixXd dense(waypoints.rows(), total);
+  Eigen::Index next = 0;
+  dense.col(next++) = waypoints.col(0);
+  for (Eigen::Index i = 0; i < segments; ++i) {
+    const Eigen::Index count = count_of(i);
     for (Eigen::Index k = 1; k < count; ++k)
-      dense.emplace_back(from + segment * (static_cast<double>(k) / static_cast<double>(count)));
-    dense.emplace_back(waypoints.col(i));
+      dense.col(next++) =
+          waypoints.col(i) + (waypoints.col(i + 1) - waypoints.col(i)) *
+                                 (static_cast<double>(k) / static_cast<double>(count));
+    dense.col(next++) = waypoints.col(i + 1);
   }
-  Eigen::MatrixXd result(waypoints.rows(), static_cast<Eigen::Index>(dense.size()));
-  for (std::size_t i = 0; i < dense.size(); ++i)
-    result.col(static_cast<Eigen::Index>(i)) = dense[i];
-  return result;
+  return dense;
 }
 
 Eigen::MatrixXd sparse_vertices(const Eigen::MatrixXd& waypoints, double step) {
@@ -77,7 +82,33 @@ Eigen::MatrixXd sparse_vertices(const Eigen::MatrixXd& waypoints, double step) {
   return vertices.leftCols(count);
 }
 
-double path_length(const Eigen::MatrixXd& waypoints) {
+MiddlesFirst::MiddlesFirst(Eigen::Index parts) : parts_(parts) {
+  while (stride_ < parts_)
+    stride_ *= 2;
+  stride_ /= 2;
+  next_ = stride_;
+}
+
+Eigen::Index MiddlesFirst::next() {
+  if (stride_ > 0 && next_ >= parts_) {
+    stride_ /= 2;
+    next_ = stride_;
+  }
+  const Eigen::Index current = stride_ > 0 ? next_ : 0;
+  next_ += 2 * stride_;
+  return current;
+}
+
+Eigen::MatrixXd middles_first(const Eigen::MatrixXd& line) {
+  const Eigen::Index parts = line.cols() - 1;
+  Eigen::MatrixXd ordered(line.rows(), std::max<Eigen::Index>(parts - 1, 0));
+  MiddlesFirst middles(parts);
+  for (Eigen::Index i = 0; i < ordered.cols(); ++i)
+    ordered.col(i) = line.col(middles.next());
+  return ordered;
+}
+
+double path_length(const Eigen::Ref<const Eigen::MatrixXd>& waypoints) {
   double length = 0;
   for (Eigen::Index i = 1; i < waypoints.cols(); ++i)
     length += (waypoints.col(i) - waypoints.col(i - 1)).norm();

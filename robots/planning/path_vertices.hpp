@@ -4,6 +4,9 @@
 
 namespace kinship::planning {
 
+/// Number of equal parts of at most `step` that a distance is cut into.
+Eigen::Index count_of_parts(double distance, double step);
+
 /// The configurations to check along a path: each segment cut into the fewest equal parts of at
 /// most `step`.
 /// \param waypoints  dof x n, n >= 1.
@@ -16,7 +19,24 @@ Eigen::MatrixXd densified(const Eigen::MatrixXd& waypoints, double step);
 /// \param waypoints  dof x n, n >= 1, at most `step` apart; repeated ones are dropped.
 Eigen::MatrixXd sparse_vertices(const Eigen::MatrixXd& waypoints, double step);
 
+/// Counts over the configurations between the ends of a line, the middle first, then the middles of
+/// the halves, and so on: what stands in the way is found early.
+class MiddlesFirst {
+ public:
+  /// \param parts  of the line: its ends are 0 and `parts`.
+  explicit MiddlesFirst(Eigen::Index parts);
+
+  /// \return 1 to parts - 1, each once; then 0.
+  Eigen::Index next();
+
+ private:
+  Eigen::Index parts_, stride_ = 1, next_ = 0;
+};
+
+/// The columns of a line but its ends, the middle first.
+Eigen::MatrixXd middles_first(const Eigen::MatrixXd& line);
+
 /// Length of a path, joint units.
-double path_length(const Eigen::MatrixXd& waypoints);
+double path_length(const Eigen::Ref<const Eigen::MatrixXd>& waypoints);
 
 }  // namespace kinship::planning

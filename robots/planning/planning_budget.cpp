@@ -18,6 +18,25 @@ PlanningBudget::PlanningBudget(const IsFree& is_free, std::uint64_t max_checks,
       time_limit_(time_limit),
       thread_begin_s_(planning::thread_time_s()) {}
 
+Eigen::Index PlanningBudget::free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  if (exhausted())
+    return 0;
+  const Eigen::Index left = left_of(qs.cols());
+  const Eigen::Index free = is_free_.ahead(qs.leftCols(left));
+  checks_ += static_cast<std::uint64_t>(std::min(free + 1, left));
+  return free;
+}
+
+std::optional<Eigen::Index> PlanningBudget::first_free(
+    const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+  if (exhausted())
+    return std::nullopt;
+  const Eigen::Index left = left_of(qs.cols());
+  const Eigen::Index blocked = is_free_.blocked_ahead(qs.leftCols(left));
+  checks_ += static_cast<std::uint64_t>(std::min(blocked + 1, left));
+  return blocked < left ? std::optional(blocked) : std::nullopt;
+}
+
 bool PlanningBudget::exhausted() {
   if (reason_ != NoPath::None)
     return true;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "robots/planning/is_free.hpp"
 #include "robots/planning/no_path.hpp"
@@ -28,6 +30,17 @@ class PlanningBudget {
     return is_free_(q);
   }
 
+  /// How many configurations, from the first on, are free before one is not; the check of that one
+  /// counts too. Fewer also if the budget is used up: it ends at the last check, but sees only
+  /// before the first whether its time is over.
+  /// \param qs  dof x n, some kTogether
+  Eigen::Index free_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
+  /// Which configuration is the first that is free; those before it and it are counted. Empty if
+  /// none is, or if the budget is used up before.
+  /// \param qs  dof x n, some kTogether
+  std::optional<Eigen::Index> first_free(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
   bool exhausted();
 
   double thread_time_s() const { return planning::thread_time_s() - thread_begin_s_; }
@@ -36,6 +49,12 @@ class PlanningBudget {
   NoPath reason() const noexcept { return reason_; }
 
  private:
+  /// How many of some configurations may be asked for.
+  Eigen::Index left_of(Eigen::Index wanted) const {
+    return static_cast<Eigen::Index>(
+        std::min<std::uint64_t>(max_checks_ - checks_, static_cast<std::uint64_t>(wanted)));
+  }
+
   using Clock = std::chrono::steady_clock;
 
   const IsFree& is_free_;

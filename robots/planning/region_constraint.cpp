@@ -8,17 +8,15 @@
 #include <stdexcept>
 
 #include "proto/types/turn.hpp"
+#include "robots/planning/region_angles.hpp"
+#include "robots/planning/region_tilt.hpp"
 
 namespace kinship::planning {
 namespace {
 
 using Vector6 = RegionConstraint::Vector6;
 
-constexpr int kMaxIterations = 12;
-constexpr double kAimed = 0.5 * RegionConstraint::kWaypointTolerance;
 constexpr double kMarginOfWidth = 0.05, kMaxMargin = 0.02;  // m or rad
-constexpr double kSquaredDamping = 1e-4;  // of singular values about 1 (m or rad per joint unit)
-constexpr double kMinCosine = 1e-3;       // of the pitch: its derivative is unbounded at 90 degrees
 
 /// Angles without a bound on one side are bounded by half a turn there; those that may go round
 /// by nothing.
@@ -35,21 +33,6 @@ Eigen::Matrix<double, 2, 6> with_angles_in_a_turn(Eigen::Matrix<double, 2, 6> bo
 
 double beyond(double value, double lower, double upper) {
   return value > upper ? value - upper : std::min(value - lower, 0.0);
-}
-
-double angle_beyond(double angle, double lower, double upper) {
-  if (std::isinf(lower))
-    return 0;
-  const double middle = (lower + upper) / 2;
-  return beyond(middle + wrapped(angle - middle), lower, upper);
-}
-
-Eigen::Vector3d angles_beyond(const Eigen::Vector3d& angles,
-                              const Eigen::Matrix<double, 2, 6>& bounds) {
-  Eigen::Vector3d excess;
-  for (Eigen::Index i = 0; i < 3; ++i)
-    excess[i] = angle_beyond(angles[i], bounds(0, 3 + i), bounds(1, 3 + i));
-  return excess;
 }
 
 /// A rotation that takes the z-axis to a unit vector.
@@ -89,12 +72,29 @@ RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpa
   T = T * chain.T_last_tip() * chain.T_tip_transfer() * region.T_region_end.inverse();
   R_end_ = T.linear();
   p_end_ = T.translation();
+  tilt_ = tilt();
+}
+
+std::shared_ptr<const RegionTilt> RegionConstraint::tilt() const {
+  for (const Eigen::Index other : {0, 1, 2, 5})
+    if (!std::isinf(region_bounds_(0, other)) || !std::isinf(region_bounds_(1, other)))
+      return nullptr;
+  std::vector<RegionTilt::Joint> joints;
+  for (const Segment& segment : segments_)
+    joints.push_back({segment.R, segment.prismatic});
+  return std::make_shared<const RegionTilt>(joints, R_end_, region_bounds_.middleCols<2>(3),
+                                            margin_.segment<2>(3).array());
 }
 
 void RegionConstraint::sweep(const Eigen::VectorXd& q, Sweep& along) const {
   const auto count = static_cast<Eigen::Index>(segments_.size());
   along.origins.resize(3, count);
   along.axes.resize(3, count);
+  alignas(16) double angles[kMaxDof];
+  angles[count - 1 + count % 2] = 0;
+  std::copy_n(q.data(), count, angles);
+  JointTurns turns;
+  turn_joints(angles, count, turns);
   Eigen::Matrix3d R = segments_.front().R;
   Eigen::Vector3d p = segments_.front().p;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -109,7 +109,7 @@ void RegionConstraint::sweep(const Eigen::VectorXd& q, Sweep& along) const {
       p += q[i] * R.col(2);
       continue;
     }
-    const double c = std::cos(q[i]), s = std::sin(q[i]);
+    const double c = turns.cosine[i], s = turns.sine[i];
     const Eigen::Vector3d x = R.col(0);
     R.col(0) = c * x + s * R.col(1);
     R.col(1) = c * R.col(1) - s * x;
@@ -125,21 +125,19 @@ Vector6 RegionConstraint::excess(const Sweep& along, bool& flipped) const {
   const Eigen::Matrix3d& R = along.R;
   const double roll = std::atan2(R(2, 1), R(2, 2));
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const Eigen::Vector3d one = angles_beyond({roll, pitch, yaw}, region_bounds_);
-  result.tail<3>() = one;
-  flipped = false;
-  if (one.squaredNorm() == 0)
-    return result;
-  const Eigen::Vector3d other =
-      angles_beyond({roll + M_PI, M_PI - pitch, yaw + M_PI}, region_bounds_);
-  flipped = other.squaredNorm() < one.squaredNorm();
-  if (flipped)
-    result.tail<3>() = other;
+  const double yaw = std::isinf(region_bounds_(0, 5)) ? 0 : std::atan2(R(1, 0), R(0, 0));
+  const AngleExcess angles = angle_excess({roll, pitch, yaw}, region_bounds_.rightCols<3>());
+  result.tail<3>() = angles.beyond;
+  flipped = angles.is_flipped;
   return result;
 }
 
 Vector6 RegionConstraint::excess(const Eigen::VectorXd& q) const {
+  if (tilt_) {
+    Vector6 result = Vector6::Zero();
+    result.segment<2>(3) = tilt_->excess(q);
+    return result;
+  }
   Sweep along;
   sweep(q, along);
   bool flipped = false;
@@ -181,6 +179,8 @@ RegionConstraint::Matrix6 RegionConstraint::derivative(const Eigen::VectorXd& q)
 
 bool RegionConstraint::project(Eigen::VectorXd& q) {
   ++projections_;
+  if (tilt_)
+    return tilt_->project(bounds_, q);
   Sweep along;
   Matrix6 J;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxJoints> active;

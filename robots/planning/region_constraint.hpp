@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "proto/types/limits.hpp"
@@ -10,6 +11,8 @@
 #include "robots/kinematics/chain.hpp"
 
 namespace kinship::planning {
+
+class RegionTilt;
 
 /// Carrying upright with a hand that points down: the transfer frame anywhere, its approach
 /// direction within `tilt_rad` of straight down (roll and pitch each).
@@ -54,6 +57,8 @@ class RegionConstraint {
   bool project(Eigen::VectorXd& q);
 
   std::uint64_t projections() const noexcept { return projections_; }
+  /// For who makes some ahead and counts only what was needed.
+  void set_projections(std::uint64_t projections) noexcept { projections_ = projections; }
 
  private:
   static constexpr int kMaxJoints = static_cast<int>(kMaxDof);
@@ -73,6 +78,8 @@ class RegionConstraint {
     Eigen::Vector3d p;
   };
 
+  /// Where nothing but roll and pitch is bounded; else null.
+  std::shared_ptr<const RegionTilt> tilt() const;
   void sweep(const Eigen::VectorXd& q, Sweep& along) const;
   /// \param flipped  whether the rotation counts as (roll + pi, pi - pitch, yaw + pi).
   Vector6 excess(const Sweep& along, bool& flipped) const;
@@ -85,6 +92,7 @@ class RegionConstraint {
   Eigen::Matrix<double, 2, 6> region_bounds_;
   Vector6 margin_;  // how far inside its bounds a coordinate is aimed at
   Eigen::Matrix2Xd bounds_;
+  std::shared_ptr<const RegionTilt> tilt_;  // what copies share: it never changes
   std::uint64_t projections_ = 0;
 };
 

@@ -7,29 +7,12 @@
 #include <utility>
 
 #include "robots/planning/component_links.hpp"
+#include "robots/planning/path_vertices.hpp"
 
 namespace kinship::planning {
 namespace {
 
 constexpr int kMaxDraws = 10;  // per vertex, until one lies within the bounds
-
-/// 0 .. count-1 from the middle outwards: the middle of the widest gap first.
-std::vector<Eigen::Index> middle_first(Eigen::Index count) {
-  std::vector<Eigen::Index> order;
-  std::queue<std::pair<Eigen::Index, Eigen::Index>> ranges;
-  ranges.emplace(0, count);
-  while (!ranges.empty()) {
-    const auto [begin, end] = ranges.front();
-    ranges.pop();
-    if (begin >= end)
-      continue;
-    const Eigen::Index middle = (begin + end) / 2;
-    order.push_back(middle);
-    ranges.emplace(begin, middle);
-    ranges.emplace(middle + 1, end);
-  }
-  return order;
-}
 
 }  // namespace
 
@@ -187,9 +170,9 @@ bool RoadmapGraph::check_edge(Edge& edge, PlanningBudget& budget) const {
   edge.state = State::Blocked;
   if (!way)
     return false;
-  for (const Eigen::Index i : middle_first(way->cols() - 2))  // its ends are free
-    if (!budget.is_free(way->col(i + 1)))
-      return false;
+  const Eigen::MatrixXd asked = middles_first(*way);  // its ends are free
+  if (budget.free_ahead(asked) < asked.cols())
+    return false;
   edge.state = State::Free;
   edge.way = *std::move(way);
   return true;

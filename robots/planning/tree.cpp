@@ -8,7 +8,7 @@ Tree::Tree(Eigen::Index dof) : nodes_(dof, kFirstCapacity), nearest_(dof) {
   parents_.reserve(kFirstCapacity);
 }
 
-Eigen::Index Tree::add(const Eigen::VectorXd& q, Eigen::Index parent) {
+Eigen::Index Tree::add(const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index parent) {
   const Eigen::Index index = size();
   if (index == nodes_.cols())
     nodes_.conservativeResize(Eigen::NoChange, 2 * index);

@@ -14,20 +14,28 @@ class Tree {
 
   /// \param parent  index of a node, or -1 for a root.
   /// \return        index of the new node.
-  Eigen::Index add(const Eigen::VectorXd& q, Eigen::Index parent);
+  Eigen::Index add(const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index parent);
 
   /// Index of the node nearest to q (Euclidean, joint units; the first of equals), to single
   /// precision.
-  Eigen::Index nearest(const Eigen::VectorXd& q) const { return nearest_.find(q); }
+  Eigen::Index nearest(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    return nearest_.find(q);
+  }
+  /// The same where the nearest of the first nodes is known.
+  Eigen::Index nearest(const Eigen::Ref<const Eigen::VectorXd>& q, NearestNode& known) const {
+    nearest_.update(q, known);
+    return known.index;
+  }
 
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }
-  Eigen::VectorXd node(Eigen::Index index) const { return nodes_.col(index); }
+  /// Valid until the next node is added.
+  Eigen::MatrixXd::ConstColXpr node(Eigen::Index index) const { return nodes_.col(index); }
 
   /// From a node to its root: dof x n.
   Eigen::MatrixXd branch(Eigen::Index index) const;
 
  private:
-  static constexpr Eigen::Index kFirstCapacity = 1024;
+  static constexpr Eigen::Index kFirstCapacity = 128;
 
   Eigen::MatrixXd nodes_;  // dof x capacity
   NearestNodes nearest_;

@@ -1,18 +1,13 @@
 #include "server/app/join.hpp"
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <netinet/in.h>
-
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "proto/codec/conversation.hpp"
+#include "proto/dds/network_interface.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/failure.hpp"
@@ -27,19 +22,9 @@ constexpr std::chrono::seconds kPatience{3};
 
 /// IPv4 address of a network interface; empty if it has none, or does not exist.
 std::string address_of(const std::string& network_interface) {
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0)
-    return {};
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
-  for (const ifaddrs* entry = all; entry; entry = entry->ifa_next) {
-    if (entry->ifa_name != network_interface || !entry->ifa_addr ||
-        entry->ifa_addr->sa_family != AF_INET)
-      continue;
-    sockaddr_in address{};
-    std::memcpy(&address, entry->ifa_addr, sizeof address);
-    char text[INET_ADDRSTRLEN] = {};
-    return inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-  }
+  for (const dds::NetworkInterface& each : dds::network_interfaces())
+    if (each.name == network_interface && !each.addresses.empty())
+      return each.addresses.front();
   return {};
 }
 

@@ -94,16 +94,19 @@ int repair(const OfflineOptions& options, const store::Progress& progress, std::
     if (table.name == "robot" || table.name == "path" || table.name == "attempt" ||
         table.name == "scene")
       out << "kept: " << table.rows << " rows of table " << table.name << '\n';
-  if (repaired.lost.empty())
+  for (const std::string& problem : repaired.check.messages)
+    out << "still wrong: " << problem << '\n';
+  const bool is_whole = repaired.check.problems == 0;
+  if (repaired.lost.empty() && is_whole)
     out << "nothing was lost\n";
   else
-    out << "clients offer again what they still have; each robot that was lost needs 'kinship "
-           "robots register' or the next start of its planner\n";
+    out << "clients offer again what they still have; each robot that was lost or is wrong needs "
+           "'kinship robots register' or the next start of its planner\n";
   out << "mixtures are fitted again when they are asked for\n"
       << "the damaged store is now '" << repaired.restored.replaced.string() << "'\n";
   for (const std::filesystem::path& leftover : repaired.restored.leftovers)
-    out << "left by an earlier restore: '" << leftover.string() << "'\n";
-  return kDone;
+    out << "left by an earlier repair or restore: '" << leftover.string() << "'\n";
+  return is_whole ? kDone : kFailed;
 }
 
 int migrate(const OfflineOptions& options, std::ostream& out) {

@@ -72,6 +72,30 @@ void add_disk_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
+/// What is kept of what the fleet reports and of what is made of it.
+void add_retention_options(CLI::App& app, ServerOptions& options) {
+  constexpr std::uint64_t kMaxPaths = 1'000'000'000;
+  constexpr std::uint64_t kMaxMegabytes = std::uint64_t{1} << 24U;
+  app.add_option("--max-paths-per-pair", options.max_paths_per_pair,
+                 "Paths that a robot and task keep: of more, a random sample; their attempts stay "
+                 "recorded; 0: all")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxPaths))
+      ->capture_default_str();
+  app.add_option("--stored-distributions-mb", options.stored_distributions_mb,
+                 "Distributions that the store keeps; those not used for longest go first; 0: all")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxMegabytes))
+      ->capture_default_str();
+  app.add_option("--distribution-memory-mb", options.distribution_memory_mb,
+                 "Distributions in memory; those not used for longest go first")
+      ->check(CLI::Range(std::uint64_t{1}, kMaxMegabytes))
+      ->capture_default_str();
+  app.add_option("--path-memory-mb", options.path_memory_mb,
+                 "Ways of paths in memory, for the experience of tasks; the task not asked for "
+                 "longest goes first")
+      ->check(CLI::Range(std::uint64_t{1}, kMaxMegabytes))
+      ->capture_default_str();
+}
+
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
@@ -107,6 +131,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->check(is_number_up_to(1))
       ->capture_default_str();
   add_disk_options(app, options);
+  add_retention_options(app, options);
   app.add_option("--scrub-mb-per-s", options.scrub_mb_per_s,
                  "How fast the store is read through, again and again, in search of damage, MB a "
                  "second; 0: not at all")

@@ -25,7 +25,12 @@ struct ServerOptions {
   double rehearsal_fraction = 0.1;
   std::uint64_t free_space_watermark_mb = 64;  ///< with less free, no report is taken; 0: no limit
   std::uint64_t ballast_mb = 16;               ///< kept beside the store for a full disk; 0: none
-  std::uint64_t max_wal_mb = 512;              ///< with more kept by readings, no report is taken
+  /// Paths that a robot and task keep; 0: all.
+  std::uint64_t max_paths_per_pair = 20'000;
+  std::uint64_t stored_distributions_mb = 1024;  ///< distributions that the store keeps; 0: all
+  std::size_t distribution_memory_mb = 128;      ///< distributions in memory
+  std::size_t path_memory_mb = 64;               ///< ways of paths in memory
+  std::uint64_t max_wal_mb = 512;                ///< with more kept by readings, no report is taken
   /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
   double scrub_mb_per_s = 4;
   std::string log_level = "info";

@@ -45,6 +45,8 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service.fit_memory_bytes = options.fit_memory_mb << 20U;
   service.fit_niceness = options.fit_niceness;
   service.rehearsal_fraction = options.rehearsal_fraction;
+  service.catalog.memory.bytes = options.distribution_memory_mb << 20U;
+  service.experience.paths.bytes = options.path_memory_mb << 20U;
   return service;
 }
 
@@ -55,6 +57,8 @@ store::SqliteOptions store_options(const ServerOptions& options) {
   store.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
   store.ballast_bytes = options.ballast_mb * kMega;
   store.max_wal_bytes = options.max_wal_mb * kMega;
+  store.max_paths_per_pair = options.max_paths_per_pair;
+  store.max_distribution_bytes = options.stored_distributions_mb * kMega;
   store.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
   store.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
   return store;

@@ -66,6 +66,8 @@ void Catalog::change(Change change) {
 
 void Catalog::finish(const Afterwards& after) const {
   give(after.answers);
+  for (const Digest& id : after.used)
+    parts_.store.note_use(id);
   for (const Digest& id : after.unfollowed)
     options_.on_unfollowed(id);
   if (after.wake)
@@ -74,7 +76,8 @@ void Catalog::finish(const Afterwards& after) const {
 
 void Catalog::fetch(const FetchRequest& request, const std::string& waiter, FetchDone done) {
   ++fetches_;
-  const Result<fitting::DistributionKey> key = fitting::make_key(request);
+  const Result<fitting::DistributionKey> key =
+      fitting::make_key(request, parts_.robots.geometry_revision(request.robot));
   if (!key)
     return done(without_distribution(FetchStatus::Refused, key.error().message));
   const Digest id = identify(*key);
@@ -140,7 +143,10 @@ std::size_t Catalog::followed() const {
 
 CatalogUse Catalog::use() const {
   const std::lock_guard lock(mutex_);
-  return {.waiters = state_.waiters(), .holds = state_.holds()};
+  return {.waiters = state_.waiters(),
+          .holds = state_.holds(),
+          .memory_bytes = state_.memory_bytes(),
+          .fit_memory_bytes = maker_.memory_bytes()};
 }
 
 std::string Catalog::trouble_of(const Digest& id) const {

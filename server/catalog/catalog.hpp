@@ -24,8 +24,10 @@ namespace kinship::catalog {
 
 /// How much of what is bounded there is in a catalog.
 struct CatalogUse {
-  std::size_t waiters = 0;  ///< fetches that wait
-  std::size_t holds = 0;    ///< on leases
+  std::size_t waiters = 0;           ///< fetches that wait
+  std::size_t holds = 0;             ///< on leases
+  std::size_t memory_bytes = 0;      ///< of distributions in memory, about
+  std::size_t fit_memory_bytes = 0;  ///< that fits left behind for the next ones, about
 };
 
 /// Answers fetches: from memory, from the store, or by a fit, of which there is at most one per

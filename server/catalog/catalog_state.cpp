@@ -14,6 +14,7 @@ using Stage = PendingFit::Stage;
 constexpr std::chrono::milliseconds kLookUpRetry(50);  // after there was no room for one
 /// Reports that come one by one are not each a reason to ask the store about what is followed.
 constexpr std::chrono::milliseconds kLookUpSpacing(1000);
+constexpr std::chrono::hours kBetweenNotes(1);  // of the uses of a distribution, to the store
 
 }  // namespace
 
@@ -30,7 +31,7 @@ AdvisedReply CatalogState::fetch(const Digest& id, const fitting::DistributionKe
   if (follow_until && !follow(id, key, *follow_until, std::string(client_of(waiter.key))))
     return {over_quota("follows " + std::to_string(limits_.client_leases) + " distributions",
                        limits_.client_leases)};
-  AdvisedReply known = find(id, key, waiter.minimum_generation);
+  AdvisedReply known = find(id, key, waiter.minimum_generation, after);
   if (!known.reply) {
     FetchDone done = waiter.done;
     if (SharedReply reply = join(id, key, std::move(waiter)))
@@ -65,13 +66,18 @@ SharedReply CatalogState::over_quota(const std::string& what, std::size_t limit)
 
 /// What memory holds, if that is an answer. Has it fitted again behind if it is time for that.
 AdvisedReply CatalogState::find(const Digest& id, const fitting::DistributionKey& key,
-                                std::uint64_t generation) {
+                                std::uint64_t generation, Afterwards& after) {
   if (stopping_)
     return {shared(work_.busy("the server is stopping"))};
-  const DistributionCache::Entry* entry = memory_.find(id);
+  DistributionCache::Entry* entry = memory_.find(id);
   const ExperienceVersion version = versions_.of(key.task);
   if (entry == nullptr || entry->version.retirements != version.retirements)
     return {};
+  const TimePoint now = clock_.now();
+  if (entry->noted == TimePoint() || now - entry->noted > kBetweenNotes) {
+    entry->noted = now;
+    after.used.push_back(id);
+  }
   const AdvisedReply reply = entry->reply;
   const bool due = (entry->behind || entry->version != version) &&
                    may_refit(*reply.reply->distribution, clock_.unix_ms()) &&

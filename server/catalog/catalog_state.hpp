@@ -51,7 +51,8 @@ class CatalogState {
   struct Afterwards {
     Answers answers;
     std::vector<Digest> unfollowed;
-    bool wake = false;  ///< next_deadline() is earlier than it was
+    std::vector<Digest> used;  ///< the store is to be told
+    bool wake = false;         ///< next_deadline() is earlier than it was
   };
 
   /// \param clock  outlives it.
@@ -104,13 +105,14 @@ class CatalogState {
   /// Why the last fit made nothing; empty: it did.
   std::string trouble_of(const Digest& id) const;
 
+  std::size_t memory_bytes() const { return memory_.bytes(); }
   std::size_t waiters() const { return pending_.waiters(); }
   std::size_t holds() const { return leases_.holds(); }
   std::size_t followed() const { return leases_.count(clock_.now()); }
 
  private:
-  AdvisedReply find(const Digest& id, const fitting::DistributionKey& key,
-                    std::uint64_t generation);
+  AdvisedReply find(const Digest& id, const fitting::DistributionKey& key, std::uint64_t generation,
+                    Afterwards& after);
   SharedReply join(const Digest& id, const fitting::DistributionKey& key, Waiter waiter);
   bool follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
               const std::string& client);

@@ -5,15 +5,20 @@
 namespace kinship::catalog {
 namespace {
 
-/// About what a reply occupies: the numbers of its mixture, and a page for the rest.
+/// About what a reply occupies: the numbers of its mixture, its sources, and a page for the rest.
 std::size_t size_of(const FetchReply& reply) {
-  constexpr std::size_t kRest = 4096;
-  if (!reply.distribution || !reply.distribution->mixture)
-    return kRest;
+  constexpr std::size_t kPage = 4096;
+  if (!reply.distribution)
+    return kPage;
+  std::size_t rest = kPage;
+  for (const Source& source : reply.distribution->sources)
+    rest += sizeof(Source) + source.label.size();
+  if (!reply.distribution->mixture)
+    return rest;
   const Mixture& mixture = *reply.distribution->mixture;
   const auto k = static_cast<std::size_t>(mixture.size());
   const auto d = static_cast<std::size_t>(mixture.dimension());
-  return kRest + sizeof(double) * (k * (1 + d) + mixture.covariances().size() * d * d);
+  return rest + sizeof(double) * (k * (1 + d) + mixture.covariances().size() * d * d);
 }
 
 }  // namespace

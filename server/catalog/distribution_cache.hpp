@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 
 #include "proto/types/conversations.hpp"
@@ -26,6 +27,7 @@ class DistributionCache {
     /// found to be behind.
     ExperienceVersion version = {};
     bool behind = false;
+    std::chrono::steady_clock::time_point noted = {};  ///< when the store was told of a use
   };
 
   explicit DistributionCache(const Limits& limits) : limits_(limits) {}
@@ -42,7 +44,7 @@ class DistributionCache {
   void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);
 
   std::size_t size() const noexcept { return replies_.size(); }
-  std::size_t bytes() const noexcept { return replies_.bytes(); }  ///< of the mixtures, about
+  std::size_t bytes() const noexcept { return replies_.bytes(); }  ///< of the replies, about
 
  private:
   Limits limits_;

@@ -40,7 +40,8 @@ DistributionMaker::DistributionMaker(const Parts& parts, Fit fit)
                                             .clock = parts_.clock,
                                             .fit_threads = fit_threads(),
                                             .before = memory_.find(identify(key)),
-                                            .memory = parts_.memory},
+                                            .memory = parts_.memory,
+                                            .targets = &targets_},
                                            stop);
                  }) {}
 

@@ -48,6 +48,7 @@ class DistributionMaker {
 
   /// The next fit of this distribution begins anew.
   void forget(const Digest& id) const { memory_.erase(id); }
+  std::size_t memory_bytes() const { return memory_.bytes(); }  ///< what fits left behind, about
 
  private:
   void evict_old_dated(const Distribution& kept) const;
@@ -56,6 +57,7 @@ class DistributionMaker {
 
   const Parts parts_;
   mutable fitting::FitMemory memory_;
+  mutable fitting::TargetMemory targets_;
   const Fit fit_;
 };
 

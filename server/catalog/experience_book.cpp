@@ -9,12 +9,21 @@ namespace {
 
 constexpr std::size_t kMaxQueuedChoices = 256;
 
+/// About what a choice keeps in memory, shared with others or not.
+std::size_t size_of(const SharedChoice& choice) {
+  std::size_t bytes = 0;
+  if (choice)
+    for (const fitting::SharedPosePath& path : choice->paths)
+      bytes += sizeof(PosePath) + path->poses.capacity() * sizeof(Eigen::Isometry3d);
+  return bytes;
+}
+
 }  // namespace
 
 ExperienceBook::ExperienceBook(const store::Store& store, runtime::RobotRegistry& robots,
                                const Limits& limits)
     : limits_(limits),
-      memory_(store, robots),
+      memory_(store, robots, limits.paths),
       pool_({.threads = 1, .queue_limit = kMaxQueuedChoices, .niceness = 0}) {}
 
 SharedChoice ExperienceBook::find(const ExperienceKey& key) {
@@ -120,7 +129,11 @@ void ExperienceBook::let_go(Entry& entry, std::uint64_t chosen_at, const SharedC
 
 /// Forgets choices that were not asked for longest.
 void ExperienceBook::make_room() {
-  while (entries_.size() > limits_.max_choices) {
+  std::size_t bytes = 0;
+  for (const auto& [key, entry] : entries_)
+    bytes += size_of(entry.choice);
+  while (entries_.size() > limits_.max_choices ||
+         (bytes > limits_.paths.bytes && entries_.size() > 1)) {
     auto oldest = entries_.end();
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
       if (!entry->second.is_working &&
@@ -128,6 +141,7 @@ void ExperienceBook::make_room() {
         oldest = entry;
     if (oldest == entries_.end())
       return;
+    bytes -= size_of(oldest->second.choice);
     entries_.erase(oldest);
   }
 }

@@ -42,7 +42,9 @@ using SharedChoice = std::shared_ptr<const fitting::ExperienceChoice>;
 class ExperienceBook {
  public:
   struct Limits {
-    std::size_t max_choices = 64;  ///< in memory
+    /// In memory. All of them together take no more bytes than paths may, but the newest stays.
+    std::size_t max_choices = 64;
+    fitting::PosePathMemory::Limits paths = {};
     std::size_t max_waiters = 4096;
   };
   /// Called once, with nothing if the store cannot be read, too many wait or the server stops.
@@ -64,6 +66,8 @@ class ExperienceBook {
 
   void new_experience(std::string_view task);  ///< there are new paths
   void forget(std::string_view task);          ///< paths were retired
+
+  std::size_t bytes_of_paths() const noexcept { return memory_.bytes(); }  ///< in memory, about
 
   /// Answers everybody with nothing, now and from now on, and ends the thread. Not to be called
   /// from a `done`. A second call returns at once.

@@ -10,17 +10,42 @@ namespace {
 constexpr std::uint64_t kGrowthPaths = 5;
 constexpr std::uint64_t kGrowthDivisor = 20;  // 5 %
 
+/// Paths that took the place of others, at least: each generation since brought one, and those that
+/// are more than there were took nobody's.
+std::uint64_t replaced_paths(const Source& then, const store::ExperienceSummary& now) {
+  if (now.dropped == 0 || now.generation <= then.generation)
+    return 0;
+  const std::uint64_t brought = now.generation - then.generation;
+  const std::uint64_t more = now.paths > then.paths ? now.paths - then.paths : 0;
+  return brought > more ? brought - more : 0;
+}
+
+/// Paths of a source that new ones are compared with: where a lowered cap has dropped most of them
+/// those that are left, or no growth would ever count again.
+std::uint64_t paths_to_outgrow(const Source& then,
+                               const std::vector<store::ExperienceSummary>& experience) {
+  for (const store::ExperienceSummary& now : experience)
+    if (now.robot == then.robot && now.dropped > 0)
+      return std::min(then.paths, now.paths);
+  return then.paths;
+}
+
 }  // namespace
 
 bool has_grown(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience) {
   std::uint64_t then = 0, used = 0;
   for (const Source& source : distribution.sources) {
-    then += source.paths;
+    then += paths_to_outgrow(source, experience);
     used += source.paths_used;
   }
+  std::uint64_t now = fitting::count_paths(experience);
+  for (const Source& source : distribution.sources)
+    for (const store::ExperienceSummary& other : experience)
+      if (other.robot == source.robot)
+        now += replaced_paths(source, other);
   const std::uint64_t base = distribution.selection.since_ms > 0 ? used : then;
-  return fitting::count_paths(experience) >= then + std::max(kGrowthPaths, base / kGrowthDivisor);
+  return now >= then + std::max(kGrowthPaths, base / kGrowthDivisor);
 }
 
 bool has_changed(const Distribution& distribution,

@@ -16,7 +16,8 @@ inline constexpr std::chrono::milliseconds kRefitInterval{10'000};
 // `experience` is that of the distribution's selection (selected_experience) unless it says other.
 
 /// Whether the paths grew by max(5, 5 %) since the distribution was fitted. The 5 % are of the
-/// paths that it could use: of those since its date, if it has one.
+/// paths that it could use: of those since its date, if it has one. Where a source has as many
+/// paths as it may, those that took the place of others count as growth.
 bool has_grown(const Distribution& distribution,
                const std::vector<store::ExperienceSummary>& experience);
 

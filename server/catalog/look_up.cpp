@@ -39,8 +39,10 @@ LookUp look_up(const Digest& id, const fitting::DistributionKey& key, const Shar
     return found;
   found.known = in_memory;
   if (!found.known)
-    if (std::optional<Distribution> stored = store.find_distribution(id))
+    if (std::optional<Distribution> stored = store.find_distribution(id)) {
       found.known = with_distribution(std::move(*stored));
+      store.note_use(id);
+    }
   // After the distribution: what was retired before this is known here.
   const std::vector<store::ExperienceSummary> all = store.experience(key.task);
   if (found.known && is_retired(*found.known->distribution, all))

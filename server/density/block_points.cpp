@@ -129,13 +129,13 @@ Eigen::VectorXd mean_of(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
 }
 
 BlockPoints thinned(const BlockPoints& points, Eigen::Index count) {
-  const Eigen::Index step = (points.size() - 1) / count + 1;
-  Eigen::MatrixXd sample(points.dimension(), (points.size() - 1) / step + 1);
+  Eigen::MatrixXd sample(points.dimension(), std::min(count, points.size()));
   DistinctPoints chosen;
   for (Eigen::Index i = 0; i < sample.cols(); ++i) {
-    sample.col(i) = points.point(i * step) + points.offset();
+    const Eigen::Index index = i * points.size() / sample.cols();
+    sample.col(i) = points.point(index) + points.offset();
     chosen.columns.push_back(static_cast<std::uint32_t>(i));
-    chosen.weights.push_back(points.weight(i * step));
+    chosen.weights.push_back(points.weight(index));
   }
   const double total = std::accumulate(chosen.weights.begin(), chosen.weights.end(), 0.0);
   for (double& weight : chosen.weights)

@@ -52,8 +52,8 @@ class BlockPoints {
 Eigen::VectorXd mean_of(const Eigen::Ref<const Eigen::MatrixXd>& configurations,
                         const DistinctPoints& distinct);
 
-/// At most `count` of the points, one of every so many in block order, which is a fair sample of
-/// space; their weights have the mean 1.
+/// So many of the points, or all if they are fewer, spread evenly over the block order, which is a
+/// fair sample of space; their weights have the mean 1.
 BlockPoints thinned(const BlockPoints& points, Eigen::Index count);
 
 }  // namespace kinship::density

@@ -9,7 +9,7 @@
 namespace kinship::density {
 namespace {
 
-constexpr int kLloydIterations = 10;
+constexpr int kLloydIterations = 3;
 
 /// Per point, nats, but for a constant.
 double log_prior(const Mixture& mixture, const BlockPoints& points, const EmOptions& options) {
@@ -19,6 +19,29 @@ double log_prior(const Mixture& mixture, const BlockPoints& points, const EmOpti
   for (Eigen::Index k = 0; k < mixture.size(); ++k)
     sum -= 0.5 * mixture.covariance(k).llt().solve(options.prior_scatter).trace();
   return sum / points.total_weight();
+}
+
+enum class LastStep { Judged, AsItIs };
+
+/// \param current  of `start`.
+/// \param last     whether the likelihood after the last iteration that there may be is asked for.
+EmRun iterate(Mixture start, Expectation current, const BlockPoints& points,
+              const EmOptions& options, LastStep last) {
+  EmRun run{std::move(start), {}};
+  double posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    run.mixture = maximisation(current.moments, points.offset(), options.floors,
+                               options.prior_scatter, options.least_mass_share);
+    if (last == LastStep::AsItIs && iteration + 1 == options.max_iterations)
+      break;
+    const double before = posterior;
+    current = expectation(run.mixture, points, options.computation);
+    run.log_likelihoods.push_back(current.mean_log_likelihood);
+    posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
+    if (posterior - before < options.tolerance)
+      break;
+  }
+  return run;
 }
 
 }  // namespace
@@ -38,20 +61,13 @@ Mixture start_mixture(const BlockPoints& all_points, Eigen::Index components, st
 }
 
 EmRun run_em(Mixture start, const BlockPoints& points, const EmOptions& options) {
-  EmRun run{std::move(start), {}};
-  Expectation current = expectation(run.mixture, points, options.computation);
-  double posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    run.mixture =
-        maximisation(current.moments, points.offset(), options.floors, options.prior_scatter);
-    const double before = posterior;
-    current = expectation(run.mixture, points, options.computation);
-    run.log_likelihoods.push_back(current.mean_log_likelihood);
-    posterior = current.mean_log_likelihood + log_prior(run.mixture, points, options);
-    if (posterior - before < options.tolerance)
-      break;
-  }
-  return run;
+  Expectation first = expectation(start, points, options.computation);
+  return iterate(std::move(start), std::move(first), points, options, LastStep::Judged);
+}
+
+Mixture run_em_from(Mixture start, Expectation first, const BlockPoints& points,
+                    const EmOptions& options) {
+  return iterate(std::move(start), std::move(first), points, options, LastStep::AsItIs).mixture;
 }
 
 }  // namespace kinship::density

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "proto/types/stopped.hpp"
@@ -47,6 +48,7 @@ class BlockPosterior {
   AlignedNumbers bounds_;  // 3 x stride: upper, lower, at the centre
   AlignedNumbers terms_;   // K x kBlockPoints
   std::vector<int> candidates_;
+  std::vector<std::pair<double, int>> order_;  // of candidates: what they are sorted by
   double best_lower_bound_ = 0;
   int count_ = 0;
   std::vector<double> peaks_;
@@ -70,12 +72,13 @@ void BlockPosterior::choose_candidates(const BlockPoints& points, int block) {
   const double* lower = bounds_.data() + mixture_.stride();
   const double* at_centre = lower + mixture_.stride();
   best_lower_bound_ = *std::max_element(lower, lower + mixture_.size());
+  order_.clear();
   for (int k = 0; k < mixture_.size(); ++k)
     if (upper_bound(k) >= best_lower_bound_ - kNegligible)
-      candidates_.push_back(k);
-  std::sort(candidates_.begin(), candidates_.end(), [at_centre](int a, int b) {
-    return at_centre[a] != at_centre[b] ? at_centre[a] > at_centre[b] : a < b;
-  });
+      order_.emplace_back(-at_centre[k], k);
+  std::sort(order_.begin(), order_.end());
+  for (const auto& [key, k] : order_)
+    candidates_.push_back(k);
 }
 
 void BlockPosterior::evaluate(const BlockPoints& points, int block) {
@@ -219,10 +222,11 @@ Eigen::VectorXd log_densities(const Mixture& mixture, const BlockPoints& points,
 }
 
 Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
-                     const Eigen::VectorXd& floors, const Eigen::MatrixXd& prior_scatter) {
+                     const Eigen::VectorXd& floors, const Eigen::MatrixXd& prior_scatter,
+                     double least_mass_share) {
   const Eigen::Index dimension = moments.dimension;
-  const double least_mass =
-      std::min(static_cast<double>(dimension + 1), moments.sums.row(0).maxCoeff());
+  const double least_mass = std::min(least_mass_share * static_cast<double>(dimension + 1),
+                                     moments.sums.row(0).maxCoeff());
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < moments.components(); ++k)
     if (moments.mass(k) >= least_mass)

@@ -58,12 +58,16 @@ Eigen::VectorXd log_densities(const Mixture& mixture, const BlockPoints& points,
 /// variance, or, with a prior, the one that is likeliest: (W + prior_scatter) / mass is the
 /// covariance of a component of scatter W, the wider the less mass it has. Components whose mass is
 /// below d + 1 average points have lost their data and are left out; the heaviest stays in any
-/// case. \param offset  d: of the points. \param floors  d, squared joint units. \param
-/// prior_scatter  d x d, squared joint units times points; empty: no prior. Source: Bishop, Pattern
-/// Recognition and Machine Learning (2006), eq. 9.24 to 9.27; with a prior Fraley and Raftery,
-/// Bayesian regularization for normal mixture estimation (2007), section 3.2, of whose degrees of
-/// freedom as many are taken as leave the mass alone in the denominator.
+/// case.
+/// \param offset            d: of the points.
+/// \param floors            d, squared joint units.
+/// \param prior_scatter     d x d, squared joint units times points; empty: no prior.
+/// \param least_mass_share  of d + 1 points, where each point stands for several.
+/// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 9.24 to 9.27; with a prior
+/// Fraley and Raftery, Bayesian regularization for normal mixture estimation (2007), section 3.2,
+/// of whose degrees of freedom as many are taken as leave the mass alone in the denominator.
 Mixture maximisation(const Moments& moments, const Eigen::VectorXd& offset,
-                     const Eigen::VectorXd& floors, const Eigen::MatrixXd& prior_scatter = {});
+                     const Eigen::VectorXd& floors, const Eigen::MatrixXd& prior_scatter = {},
+                     double least_mass_share = 1);
 
 }  // namespace kinship::density

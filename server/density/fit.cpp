@@ -10,6 +10,7 @@
 #include "server/density/em_run.hpp"
 #include "server/density/fit_input.hpp"
 #include "server/density/merge.hpp"
+#include "server/density/parallel.hpp"
 #include "server/density/prior_search.hpp"
 
 namespace kinship::density {
@@ -70,7 +71,7 @@ Eigen::Index sample_size(Eigen::Index components) {
 }
 
 bool is_large(const BlockPoints& points, Eigen::Index components) {
-  return points.size() > 4 * sample_size(components);
+  return 2 * points.size() > 3 * sample_size(components);
 }
 
 /// All points, or a sample if they are many.
@@ -131,10 +132,13 @@ class Fit {
   };
 
   FitSummary run_fixed(DistinctPoints all, int wanted) const {
-    const Prior prior = find_prior(wanted);
     const Eigen::Index components = components_for(all, configurations_.rows(), wanted);
-    const BlockPoints points = data_.blocks_of(std::move(all));
-    Mixture start = start_mixture(points, components, options_.seed, em_);
+    std::optional<BlockPoints> blocks;
+    auto [prior, start] = prior_and_start(wanted, [&] {
+      blocks = data_.blocks_of(std::move(all));
+      return start_mixture(*blocks, components, options_.seed, em_);
+    });
+    const BlockPoints& points = *blocks;
     const EmOptions em = with_prior(prior, start);
     if (is_large(points, components)) {
       const BlockPoints sample = thinned(points, sample_size(components));
@@ -148,12 +152,12 @@ class Fit {
 
   /// With as many components as score best on the paths held out.
   FitSummary run_searched(DistinctPoints all, WeightedConfigurations::Split split) const {
-    const Prior prior = find_prior(kMaxTriedComponents);
     const Eigen::Index most =
         components_for(split.training, configurations_.rows(), kMaxTriedComponents);
     const BlockPoints training = data_.blocks_of(std::move(split.training));
     const BlockPoints sample = sample_of(training, most);
-    Mixture start = start_mixture(sample, most, options_.seed, em_);
+    auto [prior, start] = prior_and_start(
+        kMaxTriedComponents, [&] { return start_mixture(sample, most, options_.seed, em_); });
     const EmOptions em = with_prior(prior, start);
     const ComponentSearch search = prune_components(
         std::move(start), sample, sample_of(data_.blocks_of(std::move(split.held_out)), most),
@@ -163,6 +167,21 @@ class Fit {
     summary.held_out_score = search.best_score;
     summary.prior = prior.value;
     return summary;
+  }
+
+  /// Side by side: neither needs the other. \param wanted  components of a fit.
+  template <typename MakeStart>
+  std::pair<Prior, Mixture> prior_and_start(Eigen::Index wanted,
+                                            const MakeStart& make_start) const {
+    Prior prior;
+    std::optional<Mixture> start;
+    for_each_part(em_.computation.threads, 2, [&](int part) {
+      if (part == 0)
+        prior = find_prior(wanted);
+      else
+        start = make_start();
+    });
+    return {prior, *std::move(start)};
   }
 
   EmOptions with_prior(const Prior& prior, const Mixture& clusters) const {
@@ -223,11 +242,14 @@ class Fit {
     EmOptions few = em_;
     if (start.size() > components) {
       few.max_iterations = std::min(em_.max_iterations, kIterationsBeforeMerging);
-      const BlockPoints sample = thinned(points, sample_size(components));
-      start = run_em(std::move(start), sample, for_share(few, share_of(sample, points))).mixture;
+      const BlockPoints sample = thinned(points, kWarmSamplePoints);
+      const double share = share_of(sample, points);
+      EmOptions settling = for_share(few, share);
+      settling.least_mass_share = share;
+      start = run_em(std::move(start), sample, settling).mixture;
       start = merged(start, components, em_.computation.stop);
     }
-    few.max_iterations = points.size() > sample_size(components)
+    few.max_iterations = points.size() > kWarmSamplePoints
                              ? std::min(em_.max_iterations, kWarmPasses)
                              : em_.max_iterations;
     return summary_of(run_em(std::move(start), points, few), few);

@@ -26,7 +26,7 @@ struct FitOptions {
   /// of paths.
   double prior = 0;
   int max_iterations = 50;  ///< 0: the start as it is
-  double tolerance = 1e-3;  ///< stop when the mean log-likelihood gains less, nats
+  double tolerance = 1e-2;  ///< stop when the mean log-likelihood gains less, nats
   std::uint64_t seed = 0;
   Computation computation = {};
   /// N, counted from 0 without gaps: which path each configuration comes from. Needed to choose K
@@ -70,10 +70,10 @@ struct FitSummary {
 /// curve and held_out_score empty.
 ///
 /// K is lowered so that each component can have 2 (d + 1) distinct configurations, and components
-/// that lose their data on the way are left out. With more than four times kSamplePoints or
-/// kSamplePointsPerComponent K configurations EM sees such a sample first, and then all of them at
-/// most kFullPasses times. Deterministic: equal input, equal bytes, whatever the number of threads.
-/// Neither the order of the configurations nor repetition instead of weight matters beyond
+/// that lose their data on the way are left out. With more than one and a half times kSamplePoints
+/// or kSamplePointsPerComponent K configurations EM sees such a sample first, and then all of them
+/// at most kFullPasses times. Deterministic: equal input, equal bytes, whatever the number of
+/// threads. Neither the order of the configurations nor repetition instead of weight matters beyond
 /// rounding.
 /// \param configurations  d x N, at most 1e6 in magnitude, joint units.
 /// \param weights         N, non-negative, positive sum.
@@ -95,6 +95,6 @@ inline constexpr int kFullPasses = 6;
 int components_of_few_paths(std::uint32_t paths);
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
-inline constexpr int kDensityVersion = 4;
+inline constexpr int kDensityVersion = 5;
 
 }  // namespace kinship::density

@@ -122,6 +122,18 @@ Eigen::Index draw_point(const BlockPoints& points, std::mt19937_64& generator) {
   return index;
 }
 
+/// \param visit  called with each point: its index in block order, and where joint 0 of it is; the
+///               next joint is kBlockPoints further on.
+template <typename Visit>
+void visit_points(const BlockPoints& points, const Visit& visit) {
+  for (int block = 0; block < points.blocks(); ++block) {
+    const Eigen::Index first = Eigen::Index{block} * kBlockPoints;
+    const Eigen::Index count = std::min<Eigen::Index>(kBlockPoints, points.size() - first);
+    for (Eigen::Index i = 0; i < count; ++i)
+      visit(first + i, points.points(block) + i);
+  }
+}
+
 /// The centres that can be nearest to a point of the block.
 void find_candidates(const BlockPoints& points, int block,
                      const Eigen::Ref<const Eigen::MatrixXd>& centres, std::vector<int>& found) {
@@ -194,11 +206,13 @@ Eigen::MatrixXd move_centres(const BlockPoints& points, Eigen::MatrixXd centres,
       break;
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(centres.rows(), centres.cols());
     Eigen::VectorXd masses = Eigen::VectorXd::Zero(centres.cols());
-    for (Eigen::Index i = 0; i < points.size(); ++i) {
+    visit_points(points, [&](Eigen::Index i, const double* point) {
       const int k = nearest[static_cast<std::size_t>(i)];
-      sums.col(k) += points.weight(i) * points.point(i);
+      double* const sum = sums.col(k).data();
+      for (int joint = 0; joint < points.dimension(); ++joint)
+        sum[joint] += points.weight(i) * point[joint * kBlockPoints];
       masses[k] += points.weight(i);
-    }
+    });
     for (Eigen::Index k = 0; k < centres.cols(); ++k)
       if (masses[k] > 0)
         centres.col(k) = sums.col(k) / masses[k];
@@ -211,19 +225,18 @@ Moments moments_of_clusters(const BlockPoints& points, const std::vector<int>& c
                             Eigen::Index components) {
   const int dimension = points.dimension();
   Moments moments{Eigen::MatrixXd::Zero(packed_size(dimension), components), dimension};
-  for (Eigen::Index i = 0; i < points.size(); ++i) {
-    Eigen::Ref<Eigen::VectorXd> sums =
-        moments.sums.col(component_of_point[static_cast<std::size_t>(i)]);
-    const Eigen::VectorXd point = points.point(i);
-    const Eigen::VectorXd weighted = points.weight(i) * point;
-    sums[0] += points.weight(i);
-    sums.segment(1, dimension) += weighted;
-    Eigen::Index entry = 1 + dimension;
-    for (Eigen::Index row = 0; row < dimension; ++row) {
-      sums.segment(entry, dimension - row) += weighted[row] * point.tail(dimension - row);
-      entry += dimension - row;
+  visit_points(points, [&](Eigen::Index i, const double* point) {
+    double* sum = moments.sums.col(component_of_point[static_cast<std::size_t>(i)]).data();
+    const double weight = points.weight(i);
+    *sum++ += weight;
+    for (int row = 0; row < dimension; ++row)
+      *sum++ += weight * point[row * kBlockPoints];
+    for (int row = 0; row < dimension; ++row) {
+      const double weighted = weight * point[row * kBlockPoints];
+      for (int column = row; column < dimension; ++column)
+        *sum++ += weighted * point[column * kBlockPoints];
     }
-  }
+  });
   return moments;
 }
 

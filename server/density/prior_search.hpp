@@ -30,8 +30,9 @@ struct PriorChoice {
 /// \return d x d, or empty for a prior of 0.
 Eigen::MatrixXd prior_scatter(const Mixture& clusters, double prior);
 
-/// Chooses the prior by mean score over the folds: from a strong one down, each with a few
-/// iterations of EM from the same k-means clusters; ends where scores fall.
+/// Chooses the prior by mean score over the folds: from a middle one to weaker ones as long as
+/// scores rise, or to stronger ones if they do not; each with a few iterations of EM from the same
+/// k-means clusters.
 /// \param folds        at least one.
 /// \param log_uniform  the score's background, see mean_log_density.
 PriorChoice choose_prior(const std::vector<PriorFold>& folds, double log_uniform,

@@ -2,6 +2,8 @@
 // instruction set and has defined kLanes; nothing here may have a name outside that source, nor
 // call a function that has: it would be shared with code for machines without the instructions.
 
+#include <utility>
+
 namespace kinship::density {
 namespace {
 
@@ -27,19 +29,50 @@ inline Vector lesser(Vector a, Vector b) { return a < b ? a : b; }
 
 inline Vector magnitude(Vector a) { return a < 0 ? -a : a; }
 
-inline double sum_of(Vector value) {
-  double sum = 0;
-  for (int lane = 0; lane < kLanes; ++lane)
-    sum += value[lane];
-  return sum;
+/// Where the lanes of two vectors go that become one: of `kStep` lanes each in turn, the first or
+/// the second ones.
+template <int kStep, bool kSecond>
+constexpr int source_of(int lane) {
+  const int within = lane % (2 * kStep), group = lane - within;
+  return within < kStep ? group + within + (kSecond ? kStep : 0)
+                        : kLanes + group + within - (kSecond ? 0 : kStep);
 }
 
-inline double greatest_of(Vector value) {
-  double greatest = value[0];
-  for (int lane = 1; lane < kLanes; ++lane)
-    greatest = value[lane] > greatest ? value[lane] : greatest;
-  return greatest;
+template <int kStep, bool kSecond, int... kLane>
+inline Vector taken(Vector a, Vector b, std::integer_sequence<int, kLane...>) {
+  return __builtin_shufflevector(a, b, source_of<kStep, kSecond>(kLane)...);
 }
+
+/// The sums of so many vectors in a row, each in a lane of its own if they are kLanes; of fewer in
+/// parts, which are repeated.
+template <int kCount>
+inline Vector sums_of(const Vector* vectors) {
+  if constexpr (kCount == 1) {
+    return vectors[0];
+  } else {
+    constexpr int kStep = kCount / 2;
+    const Vector a = sums_of<kStep>(vectors), b = sums_of<kStep>(vectors + kStep);
+    constexpr auto kAll = std::make_integer_sequence<int, kLanes>();
+    return taken<kStep, false>(a, b, kAll) + taken<kStep, true>(a, b, kAll);
+  }
+}
+
+/// What is left of a vector when each lane had to do with one `kStep` further.
+template <int kStep = kLanes / 2, typename Choose>
+inline double folded(Vector value, const Choose& choose) {
+  if constexpr (kStep == 0) {
+    return value[0];
+  } else {
+    constexpr auto kAll = std::make_integer_sequence<int, kLanes>();
+    return folded<kStep / 2>(choose(value, taken<kStep, true>(value, value, kAll)), choose);
+  }
+}
+
+inline double sum_of(Vector value) {
+  return folded(value, [](Vector a, Vector b) { return a + b; });
+}
+
+inline double greatest_of(Vector value) { return folded(value, greater); }
 
 /// exp of numbers that are not positive, to 2e-16 relative: powers of two times the Taylor series
 /// on [-ln 2 / 2, ln 2 / 2]. Below -300 it is exp(-300): nothing beside 1, but no subnormal number,
@@ -250,7 +283,8 @@ void add_moment_rows(const double* points, const double* responsibilities, const
                      double* sums) {
   constexpr int kFirst = kBegin * (kDimension + 1) - kBegin * (kBegin - 1) / 2;
   constexpr int kCount = kEnd * (kDimension + 1) - kEnd * (kEnd - 1) / 2 - kFirst;
-  Vector sum[static_cast<unsigned>(kCount)]{};
+  constexpr int kPadded = (kCount + kLanes - 1) / kLanes * kLanes;
+  Vector sum[static_cast<unsigned>(kPadded)]{};
   for (int point = 0; point < kBlockPoints; point += kLanes) {
     const Vector mass = load(responsibilities + point) * load(weights + point);
     int entry = 0;
@@ -265,8 +299,16 @@ void add_moment_rows(const double* points, const double* responsibilities, const
         sum[entry++] += factor * load(points + (column - 1) * kBlockPoints + point);
     }
   }
-  for (int entry = 0; entry < kCount; ++entry)
-    sums[kFirst + entry] += sum_of(sum[entry]);
+  constexpr int kWhole = kCount / kLanes * kLanes;
+#pragma GCC unroll 8
+  for (int entry = 0; entry < kWhole; entry += kLanes)
+    store(sums + kFirst + entry, load(sums + kFirst + entry) + sums_of<kLanes>(sum + entry));
+  if constexpr (kWhole < kCount) {
+    const Vector rest = sums_of<kLanes>(sum + kWhole);
+#pragma GCC unroll 8
+    for (int entry = kWhole; entry < kCount; ++entry)
+      sums[kFirst + entry] += rest[entry - kWhole];
+  }
 }
 
 /// Where a group of rows that begins here ends, so that its sums fit the registers.

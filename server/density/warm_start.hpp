@@ -30,10 +30,11 @@ Mixture with_components_for_new(const Eigen::Ref<const Eigen::MatrixXd>& configu
 /// Most clusters that are added.
 inline constexpr Eigen::Index kMaxNewComponents = 16;
 
-/// EM with them on a sample, before components are merged down again.
-inline constexpr int kIterationsBeforeMerging = 10;
+/// EM with them on so many of the points, before components are merged down again.
+inline constexpr Eigen::Index kWarmSamplePoints = 5'000;
+inline constexpr int kIterationsBeforeMerging = 4;
 
-/// EM over all points after that, where they are more than a sample.
-inline constexpr int kWarmPasses = 4;
+/// EM over all points after that, where they are more.
+inline constexpr int kWarmPasses = 2;
 
 }  // namespace kinship::density

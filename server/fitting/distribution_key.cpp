@@ -18,7 +18,7 @@ std::uint64_t bits(int value) { return static_cast<std::uint64_t>(std::int64_t{v
 
 }  // namespace
 
-Result<DistributionKey> make_key(const FetchRequest& request) {
+Result<DistributionKey> make_key(const FetchRequest& request, std::uint64_t geometry_revision) {
   const Result<Profile> profile = profile_from_text(request.profile);
   if (!profile)
     return profile.error();
@@ -34,6 +34,9 @@ Result<DistributionKey> make_key(const FetchRequest& request) {
   key.sources.erase(std::unique(key.sources.begin(), key.sources.end()), key.sources.end());
   if (request.T_task_base)
     key.T_task_base = snapped(*request.T_task_base);
+  const TransferParameters& transfer = key.profile.transfer;
+  if (transfer.avoid_self_collision || transfer.avoid_recorded_scene)
+    key.geometry_revision = geometry_revision;
   return key;
 }
 
@@ -54,6 +57,8 @@ Digest identify(const DistributionKey& key) {
   sha.add(static_cast<std::uint64_t>(key.since_ms)).add(bits(kPoolVersion));
   sha.add(bits(transfer::kTransferVersion)).add(bits(inverse::kInverseVersion));
   sha.add(bits(density::kDensityVersion));
+  if (key.geometry_revision > 0)  // ids of robots that keep their geometry stay what they were
+    sha.add(std::string_view("geometry")).add(key.geometry_revision);
   return sha.finish();
 }
 

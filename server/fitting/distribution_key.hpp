@@ -22,11 +22,14 @@ struct DistributionKey {
   Profile profile;
   std::vector<Digest> sources = {};  ///< whose experience, ascending and distinct; empty: all
   std::int64_t since_ms = 0;         ///< paths received at or after, Unix time, UTC; 0: all
+  /// That of the target: how often better geometry was taken over. 0 where no filter is wanted.
+  std::uint64_t geometry_revision = 0;
 };
 
 /// What a request asks for that breaks no rule of the contract.
+/// \param geometry_revision  of the request's robot; 0: nothing better was ever taken over.
 /// \return the key, or InvalidInput if there is no such profile.
-Result<DistributionKey> make_key(const FetchRequest& request);
+Result<DistributionKey> make_key(const FetchRequest& request, std::uint64_t geometry_revision = 0);
 
 /// The id of the distribution: a digest of the key and of the versions of the code that makes it.
 Digest identify(const DistributionKey& key);

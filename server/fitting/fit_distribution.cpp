@@ -13,6 +13,7 @@
 #include "server/density/fit.hpp"
 #include "server/density/kernel_density.hpp"
 #include "server/fitting/branch_cuts.hpp"
+#include "server/fitting/describe_filters.hpp"
 #include "server/fitting/describe_sources.hpp"
 #include "server/fitting/pooled_configurations.hpp"
 #include "server/fitting/profile_advice.hpp"
@@ -103,7 +104,8 @@ class Fit {
                   {.known = known_of(context.before),
                    .threads = context.fit_threads,
                    .leaves_out = context.leaves_out,
-                   .memory = context.memory}) {}
+                   .memory = context.memory,
+                   .targets = context.targets}) {}
 
   /// \throws Stopped.
   FitOutcome run();
@@ -145,6 +147,7 @@ FitOutcome Fit::run() {
   for (const SourceSummary& summary : sources_)
     distribution.sources.push_back(summary.source);
   distribution.transfer_time_s = seconds_since(begin);
+  distribution.filters = describe_filters(key_.profile.transfer, *target_, sources_);
   auto warm_state = std::make_shared<WarmState>();
   warm_state->paths = transfer_.used();
   fit(distribution, *warm_state);

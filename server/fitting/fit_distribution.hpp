@@ -10,6 +10,7 @@
 #include "server/fitting/distribution_key.hpp"
 #include "server/fitting/fit_memory.hpp"
 #include "server/fitting/memory_ceiling.hpp"
+#include "server/fitting/target_memory.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/store.hpp"
@@ -32,6 +33,7 @@ struct FitContext {
   /// not told: such a distribution is for comparisons.
   std::function<bool(const Uuid& report)> leaves_out = {};
   MemoryCeiling* memory = nullptr;  ///< of all fits together; null: there is no limit
+  TargetMemory* targets = nullptr;  ///< of robots prepared before; null: each fit prepares its own
 };
 
 /// A distribution is thin if fewer of its sources' poses were solved, each source counted by its

@@ -10,7 +10,7 @@
 namespace kinship::fitting {
 namespace {
 
-constexpr std::uint64_t kPathsOfAGroup = 16;  // that one thread transfers at a time
+constexpr std::uint64_t kPathsUnderWay = 32;  // that one thread may transfer at a time
 constexpr double kBytesOfANumber = 8;
 
 std::uint64_t max_poses(const TransferParameters& transfer) {
@@ -39,7 +39,7 @@ double bytes_under_way(const FitNeed& need, const FitSize& size) {
   const double per_path =
       static_cast<double>(need.longest) * per_pose + starts * transfer.track_candidates * numbers;
   const std::uint64_t paths =
-      std::min(need.paths, kPathsOfAGroup * static_cast<std::uint64_t>(std::max(size.threads, 1)));
+      std::min(need.paths, kPathsUnderWay * static_cast<std::uint64_t>(std::max(size.threads, 1)));
   return static_cast<double>(paths) * per_path;
 }
 

@@ -15,7 +15,8 @@ namespace kinship::fitting {
 struct KnownPath {
   Uuid report;  ///< that brought it
   std::shared_ptr<const transfer::TransferredPath> path;
-  bool has_scene = false;     ///< it was filtered by one
+  bool has_scene = false;              ///< it was filtered by one
+  bool has_approximate_scene = false;  ///< by one with solids around meshes
   bool lacks_scene = false;   ///< it should have been, but its scene is damaged; it may come back
   std::string scene_problem;  ///< what was not looked at in it
 };

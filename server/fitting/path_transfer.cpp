@@ -1,8 +1,8 @@
 #include "server/fitting/path_transfer.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
+#include <list>
 #include <new>
 #include <utility>
 
@@ -15,8 +15,6 @@
 
 namespace kinship::fitting {
 namespace {
-
-constexpr std::size_t kMaxGroup = 16;  // paths that keep the kernels of inverse kinematics busy
 
 /// Pose of the source's base in the target's; exactly the identity if both stand at the same
 /// place up to snapping, so that paths of the same arm are taken over.
@@ -47,20 +45,123 @@ void rethrow_if_passing() {
 
 }  // namespace
 
+/// What one thread transfers: paths that it takes one after the other, several under way at a time.
+class PathTransfer::Share {
+ public:
+  /// The arguments outlive it.
+  Share(const PathTransfer& of, Queue& queue, const transfer::ArmPair& pair, Lane& lane,
+        const std::stop_token& stop)
+      : of_(of), queue_(queue), pair_(pair), lane_(lane), stop_(stop) {}
+
+  void transfer() {
+    try {
+      while (!try_stream())
+        for (; !under_way_.empty(); under_way_.pop_front())
+          transfer_alone(under_way_.front());
+    } catch (const Stopped&) {
+    }
+  }
+
+ private:
+  struct UnderWay {
+    UnderWay(const PathTransfer& of, const store::StoredPath& stored, Prepared of_it)
+        : prepared(std::move(of_it)),
+          path{stored.path, T_target_source(of.key_.T_task_base, stored.T_task_base),
+               prepared.filters} {}
+
+    Prepared prepared;
+    transfer::PathToTransfer path;  // points to the filters
+  };
+
+  /// \return whether all are done; otherwise one of those under way is to blame.
+  bool try_stream() {
+    try {
+      transfer::transfer_stream(
+          {.next = [this] { return next(); },
+           .done =
+               [this](const transfer::PathToTransfer& path, transfer::TransferredPath transferred) {
+                 finish(path, std::move(transferred));
+               }},
+          pair_, of_.key_.profile.transfer, of_.key_.profile.seed, stop_);
+      return true;
+    } catch (const Stopped&) {
+      throw;
+    } catch (const std::exception&) {
+      rethrow_if_passing();
+      if (under_way_.empty())
+        throw;
+      return false;
+    }
+  }
+
+  /// The next path that can be transferred at all.
+  const transfer::PathToTransfer* next() {
+    for (std::size_t i = queue_.next++; i < queue_.unknown.size(); i = queue_.next++) {
+      throw_if_stopped(stop_);
+      const std::size_t index = queue_.unknown[i];
+      const store::StoredPath& stored = queue_.paths[index];
+      try {
+        under_way_.emplace_back(of_, stored, of_.prepare(stored, index, pair_, lane_));
+        return &under_way_.back().path;
+      } catch (const std::exception& exception) {
+        rethrow_if_passing();
+        queue_.outcomes[index] = {std::nullopt, false, exception.what()};
+      }
+    }
+    return nullptr;
+  }
+
+  void finish(const transfer::PathToTransfer& path, transfer::TransferredPath transferred) {
+    const auto done = std::ranges::find_if(
+        under_way_, [&path](const UnderWay& one) { return &one.path == &path; });
+    keep(done->prepared, std::move(transferred));
+    under_way_.erase(done);
+  }
+
+  void keep(Prepared& prepared, transfer::TransferredPath transferred) {
+    prepared.known.path = std::make_shared<const transfer::TransferredPath>(std::move(transferred));
+    queue_.outcomes[prepared.index] = {std::move(prepared.known), false, {}};
+  }
+
+  void transfer_alone(UnderWay& one) {
+    try {
+      keep(one.prepared,
+           std::move(transfer::transfer_paths({&one.path, 1}, pair_, of_.key_.profile.transfer,
+                                              of_.key_.profile.seed, stop_)
+                         .front()));
+    } catch (const Stopped&) {
+      throw;
+    } catch (const std::exception& exception) {
+      rethrow_if_passing();
+      queue_.outcomes[one.prepared.index] = {std::nullopt, false, exception.what()};
+    }
+  }
+
+  const PathTransfer& of_;
+  Queue& queue_;
+  const transfer::ArmPair& pair_;
+  Lane& lane_;
+  const std::stop_token& stop_;
+  std::list<UnderWay> under_way_;
+};
+
 PathTransfer::PathTransfer(const store::Store& store, const DistributionKey& key,
-                           const runtime::Robot& target, const KnownPaths* known, int threads)
+                           const runtime::Robot& target, const transfer::TargetRobot& prepared,
+                           const KnownPaths* known, int threads)
     : store_(store),
       key_(key),
       target_(target),
+      prepared_target_(prepared),
       known_(known),
       lanes_(static_cast<std::size_t>(std::max(threads, 1))) {}
 
 PathTransfer::Lane& PathTransfer::lane(std::size_t index) {
   std::unique_ptr<Lane>& lane = lanes_[index];
   if (!lane) {
-    lane = std::make_unique<Lane>(Lane{{}, SceneFilters(store_, key_, target_)});
+    lane = std::make_unique<Lane>(
+        Lane{{}, SceneFilters(store_, key_, target_, prepared_target_.solids)});
     if (key_.profile.transfer.avoid_self_collision)
-      lane->self = transfer::collision_filter(target_.chain, target_.shapes);
+      lane->self = transfer::collision_filter(prepared_target_.solids);
   }
   return *lane;
 }
@@ -68,28 +169,19 @@ PathTransfer::Lane& PathTransfer::lane(std::size_t index) {
 std::vector<PathOutcome> PathTransfer::transfer(std::span<const store::StoredPath> paths,
                                                 const transfer::ArmPair& pair,
                                                 const std::stop_token& stop) {
-  std::vector<PathOutcome> outcomes(paths.size());
-  std::vector<std::size_t> unknown;
+  Queue queue;
+  queue.paths = paths;
+  queue.outcomes.resize(paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (const KnownPath* const known = find_known(paths[i]))
-      outcomes[i] = {*known, true, {}};
+      queue.outcomes[i] = {*known, true, {}};
     else
-      unknown.push_back(i);
-  // Few paths, as a refit has, are shared out; what comes of them does not depend on it.
-  const std::size_t share = (unknown.size() + lanes_.size() - 1) / lanes_.size();
-  const std::size_t size = std::clamp(share, std::size_t{1}, kMaxGroup);
-  const std::size_t groups = (unknown.size() + size - 1) / size;
-  const std::size_t lanes = std::min(lanes_.size(), groups);
-  std::atomic<std::size_t> next = 0;
+      queue.unknown.push_back(i);
+  const std::size_t lanes = std::min(lanes_.size(), queue.unknown.size());
   density::for_each_part(static_cast<int>(lanes), static_cast<int>(lanes), [&](int part) {
-    Lane& own = lane(static_cast<std::size_t>(part));
-    for (std::size_t i = next++; i < groups && !stop.stop_requested(); i = next++) {
-      const std::size_t first = i * size;
-      const std::size_t count = std::min(size, unknown.size() - first);
-      transfer_group(paths, std::span(unknown).subspan(first, count), pair, own, stop, outcomes);
-    }
+    Share(*this, queue, pair, lane(static_cast<std::size_t>(part)), stop).transfer();
   });
-  return outcomes;
+  return std::move(queue.outcomes);
 }
 
 const KnownPath* PathTransfer::find_known(const store::StoredPath& stored) const {
@@ -101,37 +193,6 @@ const KnownPath* PathTransfer::find_known(const store::StoredPath& stored) const
   return holds ? &found->second : nullptr;
 }
 
-void PathTransfer::transfer_group(std::span<const store::StoredPath> paths,
-                                  std::span<const std::size_t> group, const transfer::ArmPair& pair,
-                                  Lane& lane, const std::stop_token& stop,
-                                  std::vector<PathOutcome>& outcomes) const {
-  std::vector<Prepared> prepared;
-  for (const std::size_t i : group) {
-    try {
-      prepared.push_back(prepare(paths[i], i, pair, lane));
-    } catch (const std::exception& exception) {
-      rethrow_if_passing();
-      outcomes[i] = {std::nullopt, false, exception.what()};
-    }
-  }
-  try {
-    transfer_all(paths, prepared, pair, stop, outcomes);
-  } catch (const Stopped&) {
-    return;
-  } catch (const std::exception&) {  // one by one, the one that is to blame is found
-    for (const Prepared& one : prepared) {
-      try {
-        transfer_all(paths, {&one, 1}, pair, stop, outcomes);
-      } catch (const Stopped&) {
-        return;
-      } catch (const std::exception& exception) {
-        rethrow_if_passing();
-        outcomes[one.index] = {std::nullopt, false, exception.what()};
-      }
-    }
-  }
-}
-
 PathTransfer::Prepared PathTransfer::prepare(const store::StoredPath& stored, std::size_t index,
                                              const transfer::ArmPair& pair, Lane& lane) const {
   if (stored.path.dof() != pair.source().dof())
@@ -141,28 +202,10 @@ PathTransfer::Prepared PathTransfer::prepare(const store::StoredPath& stored, st
   Prepared prepared{index, {lane.self, scene.keep}, {}};
   prepared.known.report = stored.report_uuid;
   prepared.known.has_scene = static_cast<bool>(scene.keep);
+  prepared.known.has_approximate_scene = scene.is_approximate;
   prepared.known.lacks_scene = scene.is_damaged;
   prepared.known.scene_problem = scene.ignored;
   return prepared;
-}
-
-void PathTransfer::transfer_all(std::span<const store::StoredPath> paths,
-                                std::span<const Prepared> prepared, const transfer::ArmPair& pair,
-                                const std::stop_token& stop,
-                                std::vector<PathOutcome>& outcomes) const {
-  std::vector<transfer::PathToTransfer> group;
-  for (const Prepared& one : prepared) {
-    const store::StoredPath& stored = paths[one.index];
-    group.push_back(
-        {stored.path, T_target_source(key_.T_task_base, stored.T_task_base), one.filters});
-  }
-  std::vector<transfer::TransferredPath> transferred =
-      transfer::transfer_paths(group, pair, key_.profile.transfer, key_.profile.seed, stop);
-  for (std::size_t i = 0; i < prepared.size(); ++i) {
-    KnownPath known = prepared[i].known;
-    known.path = std::make_shared<const transfer::TransferredPath>(std::move(transferred[i]));
-    outcomes[prepared[i].index] = {std::move(known), false, {}};
-  }
 }
 
 }  // namespace kinship::fitting

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -28,11 +29,12 @@ struct PathOutcome {
 /// Transfers paths to one target, several at a time; the others' results do not depend on that.
 class PathTransfer {
  public:
-  /// \param store, key, target  outlive it.
-  /// \param known    of an earlier fit of the same key; outlives it, may be null.
-  /// \param threads  at least 1.
+  /// \param store, key, target, prepared  outlive it.
+  /// \param prepared  the target, for transfers.
+  /// \param known     of an earlier fit of the same key; outlives it, may be null.
+  /// \param threads   at least 1.
   PathTransfer(const store::Store& store, const DistributionKey& key, const runtime::Robot& target,
-               const KnownPaths* known, int threads);
+               const transfer::TargetRobot& prepared, const KnownPaths* known, int threads);
 
   /// \param pair  of the paths' robot and the target.
   /// \param stop  looked at all the time: those that are left have neither path nor problem.
@@ -46,27 +48,30 @@ class PathTransfer {
     transfer::ConfigurationFilter self;
     SceneFilters scenes;
   };
-  /// A path that can be transferred, and what is known of it before.
+  /// A path on its way, and what is known of it before.
   struct Prepared {
     std::size_t index = 0;
     transfer::Filters filters;
     KnownPath known;
   };
+  /// The paths of a call, and the next that no thread has taken.
+  struct Queue {
+    std::span<const store::StoredPath> paths;
+    std::vector<std::size_t> unknown;  // indices of paths
+    std::atomic<std::size_t> next = 0;
+    std::vector<PathOutcome> outcomes;  // one per path, each written by one thread
+  };
+  class Share;
+
   Lane& lane(std::size_t index);
   const KnownPath* find_known(const store::StoredPath& stored) const;
-  /// \param group  indices of paths.
-  void transfer_group(std::span<const store::StoredPath> paths, std::span<const std::size_t> group,
-                      const transfer::ArmPair& pair, Lane& lane, const std::stop_token& stop,
-                      std::vector<PathOutcome>& outcomes) const;
   Prepared prepare(const store::StoredPath& stored, std::size_t index,
                    const transfer::ArmPair& pair, Lane& lane) const;
-  void transfer_all(std::span<const store::StoredPath> paths, std::span<const Prepared> prepared,
-                    const transfer::ArmPair& pair, const std::stop_token& stop,
-                    std::vector<PathOutcome>& outcomes) const;
 
   const store::Store& store_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
+  const transfer::TargetRobot& prepared_target_;
   const KnownPaths* const known_;
   std::vector<std::unique_ptr<Lane>> lanes_;  // made when they are first used
 };

@@ -49,7 +49,7 @@ void PosePathMemory::update(TaskPaths& known, const std::string& task,
   counts.reserve(experience.size());
   for (const store::ExperienceSummary& source : experience)
     counts.push_back(source.paths);
-  const std::vector<std::uint64_t> shares = share_paths(counts, max_paths_, Weighting::Sources);
+  const std::vector<std::uint64_t> shares = share_paths(counts, limits_.paths, Weighting::Sources);
   for (std::size_t i = 0; i < experience.size() && !stop.stop_requested(); ++i)
     update(known.sources[experience[i].robot], experience[i], task, shares[i], stop);
 }
@@ -61,6 +61,16 @@ void PosePathMemory::update(SourcePaths& known, const store::ExperienceSummary& 
     known = {};
   if (now.generation != known.generation && !read_new(known, now, task, most, stop))
     return;
+  if (now.dropped != known.dropped) {
+    forget_dropped(known, now, task);
+    // Only the newest were computed, but a cap keeps paths of any age.
+    if (known.is_cut && 2 * known.paths.size() < std::min<std::uint64_t>(most, now.paths)) {
+      known = {};
+      known.dropped = now.dropped;
+      if (!read_new(known, now, task, most, stop))
+        return;
+    }
+  }
   if (known.paths.size() > most) {
     known.is_cut = true;
     known.paths.erase(known.paths.begin(), known.paths.end() - static_cast<std::ptrdiff_t>(most));
@@ -107,26 +117,42 @@ void PosePathMemory::add(SourcePaths& known, const store::StoredPath& stored,
         {stored.id, stored.received_ms, std::make_shared<const PosePath>(*std::move(path))});
 }
 
+/// Those beyond the store's cap may be of any age.
+void PosePathMemory::forget_dropped(SourcePaths& known, const store::ExperienceSummary& now,
+                                    const std::string& task) const {
+  const std::vector<std::int64_t> ids = store_.path_ids(now.robot, task);
+  std::erase_if(known.paths, [&ids](const KnownPath& path) {
+    return !std::binary_search(ids.begin(), ids.end(), path.id);
+  });
+  known.dropped = now.dropped;
+}
+
+std::size_t PosePathMemory::size_of(const TaskPaths& known) {
+  constexpr std::size_t kNode = 64;  // of a map, and of what a pointer shares, about
+  std::size_t bytes = kNode + sizeof(TaskPaths);
+  for (const auto& [robot, source] : known.sources) {
+    bytes += kNode + sizeof(SourcePaths) + source.paths.capacity() * sizeof(KnownPath);
+    for (const KnownPath& path : source.paths)
+      bytes += kNode + sizeof(PosePath) + path.path->poses.capacity() * sizeof(Eigen::Isometry3d);
+  }
+  return bytes;
+}
+
 /// Forgets tasks that were not asked for longest, but not this one.
 void PosePathMemory::make_room(std::string_view task) {
-  const auto size_of = [](const TaskPaths& known) {
-    std::size_t size = 0;
-    for (const auto& [robot, source] : known.sources)
-      size += source.paths.size();
-    return size;
-  };
-  std::size_t size = 0;
+  std::size_t bytes = 0;
   for (const auto& [name, known] : tasks_)
-    size += size_of(known);
-  while (size > max_paths_ && tasks_.size() > 1) {
+    bytes += size_of(known);
+  while (bytes > limits_.bytes && tasks_.size() > 1) {
     const auto oldest =
         std::min_element(tasks_.begin(), tasks_.end(), [&](const auto& a, const auto& b) {
           return std::pair(a.first == task, a.second.last_used) <
                  std::pair(b.first == task, b.second.last_used);
         });
-    size -= size_of(oldest->second);
+    bytes -= size_of(oldest->second);
     tasks_.erase(oldest);
   }
+  bytes_ = bytes;
 }
 
 }  // namespace kinship::fitting

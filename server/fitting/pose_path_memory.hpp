@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -16,18 +17,23 @@
 namespace kinship::fitting {
 
 /// The stored paths of tasks as pose paths, kept up with the store: what is known already is not
-/// read and computed again, unless paths of its robot were retired. Not shared between threads.
+/// read and computed again, unless paths of its robot were retired. Not shared between threads, but
+/// for bytes().
 class PosePathMemory {
  public:
-  /// Of a task, and of all tasks in memory: about 50 MB. The task not asked for longest goes.
-  static constexpr std::size_t kMaxPaths = 8192;
+  struct Limits {
+    std::size_t paths = 8192;  ///< of a task: about 45 MB
+    /// Of all tasks. The one not asked for longest goes; the one that is asked for stays.
+    std::size_t bytes = std::size_t{64} << 20U;
+  };
 
   /// \param store, robots  outlive it.
-  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots,
-                 std::size_t max_paths = kMaxPaths)
-      : store_(store), robots_(robots), max_paths_(max_paths) {}
+  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots)
+      : PosePathMemory(store, robots, Limits{}) {}
+  PosePathMemory(const store::Store& store, runtime::RobotRegistry& robots, const Limits& limits)
+      : store_(store), robots_(robots), limits_(limits) {}
 
-  /// The usable paths of a task now, in the order of arrival; of more than `max_paths` the newest,
+  /// The usable paths of a task now, in the order of arrival; of more than the limit the newest,
   /// as many of each robot. Robots and paths that cannot be read are left out.
   /// \param sources   ascending; empty: all.
   /// \param since_ms  received at or after, Unix time, UTC; 0: all.
@@ -37,6 +43,7 @@ class PosePathMemory {
                                    std::int64_t since_ms, const std::stop_token& stop);
 
   std::uint64_t computed() const noexcept { return computed_; }  ///< paths, since construction
+  std::size_t bytes() const noexcept { return bytes_; }  ///< in memory, about; from any thread
 
  private:
   struct KnownPath {
@@ -45,7 +52,7 @@ class PosePathMemory {
     SharedPosePath path;
   };
   struct SourcePaths {
-    std::uint64_t generation = 0, retired_generation = 0;
+    std::uint64_t generation = 0, retired_generation = 0, dropped = 0;
     std::int64_t last_id = 0;      ///< read, usable or not
     std::size_t most = 0;          ///< that were kept of them
     bool is_cut = false;           ///< there were more
@@ -62,11 +69,15 @@ class PosePathMemory {
   bool read_new(SourcePaths& known, const store::ExperienceSummary& now, const std::string& task,
                 std::size_t most, const std::stop_token& stop);
   void add(SourcePaths& known, const store::StoredPath& stored, const runtime::Robot& robot);
+  void forget_dropped(SourcePaths& known, const store::ExperienceSummary& now,
+                      const std::string& task) const;
+  static std::size_t size_of(const TaskPaths& known);
   void make_room(std::string_view task);
 
   const store::Store& store_;
   runtime::RobotRegistry& robots_;
-  const std::size_t max_paths_;
+  const Limits limits_;
+  std::atomic<std::size_t> bytes_ = 0;
   std::map<std::string, TaskPaths, std::less<>> tasks_;
   std::uint64_t uses_ = 0, computed_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "server/fitting/scene_filters.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -24,9 +25,10 @@ PathScene SceneFilters::read(std::int64_t scene_id) const {
   result.is_damaged = !scene;
   if (!scene)
     return result;
-  transfer::SceneFilter filter =
-      transfer::scene_filter(target_.chain, target_.shapes, *scene,
-                             key_.T_task_base.value_or(Eigen::Isometry3d::Identity()));
+  transfer::SceneFilter filter = transfer::scene_filter(
+      solids_, *scene, key_.T_task_base.value_or(Eigen::Isometry3d::Identity()));
+  result.is_approximate = std::ranges::any_of(scene->objects, &SceneObject::approximate) ||
+                          std::ranges::any_of(scene->held, &HeldObject::approximate);
   result.ignored = ignored_of(filter);
   result.keep = std::move(filter.keep);
   return result;

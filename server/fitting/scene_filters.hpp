@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "server/fitting/distribution_key.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -19,7 +20,8 @@ struct PathScene {
   /// looked at, in words; empty if there is none. (That a base touches the table it stands on is no
   /// news.)
   std::string ignored;
-  bool is_damaged = false;  ///< it could not be read; a report may bring it anew
+  bool is_approximate = false;  ///< some of its things are solids around meshes
+  bool is_damaged = false;      ///< it could not be read; a report may bring it anew
 };
 
 /// The recorded scenes of one fit as filters for its target at its placement, one for each content.
@@ -27,8 +29,10 @@ struct PathScene {
 class SceneFilters {
  public:
   /// \param store, key, target  outlive it.
-  SceneFilters(const store::Store& store, const DistributionKey& key, const runtime::Robot& target)
-      : store_(store), key_(key), target_(target) {}
+  /// \param solids  of the target.
+  SceneFilters(const store::Store& store, const DistributionKey& key, const runtime::Robot& target,
+               collision::RobotSolids solids)
+      : store_(store), key_(key), target_(target), solids_(std::move(solids)) {}
 
   /// That of a path; without a filter if the profile wants none, the path came without a scene or
   /// its scene is damaged, or the target has no shapes. Valid until the next call.
@@ -45,6 +49,7 @@ class SceneFilters {
   const store::Store& store_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
+  const collision::RobotSolids solids_;
   std::map<std::int64_t, PathScene> scenes_;  // by scene id
 };
 

@@ -65,10 +65,12 @@ SourceTransfer::SourceTransfer(const store::Store& store, runtime::RobotRegistry
       robots_(robots),
       key_(key),
       target_(target),
+      prepared_target_(options.targets != nullptr ? options.targets->find(target)
+                                                  : TargetMemory().find(target)),
       leaves_out_(options.leaves_out),
       threads_(options.threads),
       memory_(options.memory),
-      transfer_(store, key, target, options.known, options.threads),
+      transfer_(store, key, target, *prepared_target_, options.known, options.threads),
       pool_(target.chain.dof()) {}
 
 std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& experience,
@@ -117,7 +119,7 @@ SourceSummary SourceTransfer::add(const store::ExperienceSummary& experience,
 
 void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted,
                                const std::stop_token& stop, SourceSummary& summary) {
-  const transfer::ArmPair pair(robot.chain, target_.chain);
+  const transfer::ArmPair pair(robot.chain, prepared_target_->arm);
   summary.source.relation = relation_of(pair);
   const std::uint64_t count = summary.paths_selected;
   std::uint64_t index = 0;
@@ -163,6 +165,7 @@ void SourceTransfer::count_scene(const KnownPath& path, SourceSummary& summary) 
   if (!path.has_scene || transferred.filter_checks == 0)
     return;  // nothing was asked: waypoints that were taken over were free on their robot
   ++summary.source.paths_with_scene;
+  summary.paths_with_approximate_scene += path.has_approximate_scene ? 1 : 0;
   if (transferred.configurations == 0 && transferred.scene_collisions > 0)
     ++summary.paths_blocked;
   if (summary.scene_problem.empty())

@@ -12,6 +12,7 @@
 #include "server/fitting/memory_ceiling.hpp"
 #include "server/fitting/path_transfer.hpp"
 #include "server/fitting/pooled_configurations.hpp"
+#include "server/fitting/target_memory.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/store.hpp"
 #include "server/transfer/transferred_path.hpp"
@@ -25,7 +26,8 @@ struct SourceSummary {
   std::uint64_t paths_left_out = 0;  ///< bad data
   std::string problem;               ///< with the robot or the first path left out
   std::uint64_t paths_blocked = 0;   ///< their recorded scene left nothing of them
-  std::string scene_problem;         ///< what was not looked at in the recorded scenes
+  std::uint64_t paths_with_approximate_scene = 0;  ///< with solids around meshes in it
+  std::string scene_problem;  ///< what was not looked at in the recorded scenes
   bool has_placed = false, has_unplaced = false;
 };
 
@@ -42,6 +44,7 @@ class SourceTransfer {
     int threads = 1;  ///< that transfer; what comes out does not depend on them
     std::function<bool(const Uuid& report)> leaves_out = {};  ///< see FitContext
     MemoryCeiling* memory = nullptr;  ///< outlives the transfer; null: there is no limit
+    TargetMemory* targets = nullptr;  ///< for the target; null: it is prepared anew
   };
 
   /// \param robots, store, key, target  outlive it.
@@ -84,6 +87,7 @@ class SourceTransfer {
   runtime::RobotRegistry& robots_;
   const DistributionKey& key_;
   const runtime::Robot& target_;
+  const TargetMemory::Target prepared_target_;
   const std::function<bool(const Uuid& report)> leaves_out_;
   const int threads_;
   MemoryCeiling* const memory_;

@@ -29,17 +29,14 @@ std::optional<PosedQuery> pose_query(const runtime::Robot& robot,
                                      const Eigen::Isometry3d& T_task_base,
                                      const RecordedQuery& recorded) {
   PosedQuery posed;
+  const collision::RobotSolids solids(robot.chain, robot.shapes);
   posed.world = std::make_unique<collision::CollisionWorld>(
-      robot.chain, robot.shapes,
-      recorded.scene
-          ? transfer::recorded_surroundings(robot.chain, robot.shapes, *recorded.scene, T_task_base)
-          : collision::Surroundings{T_task_base, {}, {}, {}});
+      solids, recorded.scene ? transfer::recorded_surroundings(solids, *recorded.scene, T_task_base)
+                             : collision::Surroundings{T_task_base, {}, {}, {}});
   const Eigen::Isometry3d T_base_task = T_task_base.inverse();
   const std::optional<TaskSpaceRegion> region =
       recorded.scene ? recorded.scene->constraint : std::nullopt;
-  const planning::IsFree is_free = [&posed](const Eigen::VectorXd& q) {
-    return !posed.world->collides(q);
-  };
+  const planning::IsFree is_free = planning::free_in(*posed.world);
   const std::optional<Eigen::VectorXd> start =
       recorded.start ? recorded.start
                      : find_start(robot, T_base_task * recorded.T_task_start, is_free);

@@ -207,8 +207,9 @@ Result<Subject> RehearsalBook::subject_of(const RehearsalKey& key) {
     return robot.error();
   subject.robot = *robot;
   if (subject.robot->shapes.shapes.empty())
-    return Error{ErrorCode::InvalidInput,
-                 "the server knows no shapes of robot '" + subject.robot->label + "'"};
+    return Error{ErrorCode::InvalidInput, "the server knows no shapes of robot '" +
+                                              subject.robot->label +
+                                              "': " + subject.robot->geometry};
   subject.T_task_base = key.distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
   subject.recorded =
       read_queries(parts_.store, parts_.robots, key.distribution, options_.max_queries, stop);
@@ -232,6 +233,11 @@ void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
   Rehearsal result;
   result.is_complete = true;
   if (Result<Subject> subject = subject_of(key)) {
+    // A longer way round than the robot needs, or a shorter one.
+    const std::string shapes =
+        subject.value().robot->grade == GeometryGrade::Exact
+            ? std::string()
+            : "with the shapes that the server knows: " + subject.value().robot->geometry;
     RehearsalOptions plan = options_.plan;
     plan.stop = stop_source_.get_token();
     Rehearsing rehearsing(*std::move(subject), plan);
@@ -252,6 +258,8 @@ void RehearsalBook::rehearse(const Digest& id, const RehearsalKey& key) {
     if (stop_source_.stop_requested())
       return;
     result = rehearsing.result();
+    if (result.message.empty())
+      result.message = shapes;
   } else {
     result.message = "not rehearsed: " + subject.error().message;
   }

@@ -98,6 +98,9 @@ class RehearsalBook {
   /// What is known of a distribution, by its id; begins nothing.
   SharedRehearsal find(const Digest& distribution) const;
   RehearsalTotals totals() const;
+  std::uint64_t geometry_revision(const Digest& robot) const {
+    return parts_.robots.geometry_revision(robot);
+  }
 
   /// Answers everybody with what is known and ends the thread. A second call returns at once.
   void stop();

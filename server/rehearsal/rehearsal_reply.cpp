@@ -21,7 +21,8 @@ void send(FetchReply reply, const SharedRehearsal& known, const catalog::FetchDo
 
 catalog::FetchDone with_rehearsal(RehearsalBook& book, const FetchRequest& request,
                                   RehearsalBook::TimePoint now, catalog::FetchDone done) {
-  const Result<fitting::DistributionKey> distribution = fitting::make_key(request);
+  const Result<fitting::DistributionKey> distribution =
+      fitting::make_key(request, book.geometry_revision(request.robot));
   if (!distribution)
     return done;  // it will be refused
   return [&book, key = RehearsalKey{*distribution, request.experience_bytes},

@@ -92,10 +92,8 @@ void Rehearsing::plan(PosedQuery& posed, std::uint64_t seed, Tried& tried) const
   const planning::GuidedSampler guided =
       planning::guided_sampler(subject_.robot->chain, posed.query, mixture ? &*mixture : nullptr,
                                subject_.experience, {.guide = tried.guide});
-  const planning::IsFree is_free = [this, &posed](const Eigen::VectorXd& q) {
-    throw_if_stopped(options_.stop);
-    return !posed.world->collides(q);
-  };
+  const planning::IsFree is_free =
+      planning::free_in(*posed.world, [this] { throw_if_stopped(options_.stop); });
   planning::BirrtOptions options;
   options.step = subject_.recorded.steps.step;
   options.overshoot = subject_.recorded.steps.overshoot;

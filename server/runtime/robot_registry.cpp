@@ -6,12 +6,15 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
+#include "robots/geometry/known_shapes.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/same_arm.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::runtime {
 namespace {
+
+constexpr std::size_t kMaxGeometryBytes = 1024;  // of words, with room for more in a message
 
 RegisterReply refused(const Error& error) {
   RegisterReply reply;
@@ -23,13 +26,26 @@ RegisterReply refused(const Error& error) {
 /// A robot whose geometry cannot be read is a robot all the same: nothing is filtered then.
 Robot robot_of(const RobotDescription& description, kinematics::Chain chain) {
   Robot robot{chain.digest(), description.label, std::move(chain)};
-  if (Result<geometry::RobotShapes> shapes =
-          geometry::read_shapes(description, robot.chain, geometry::leave_out_mesh))
-    robot.shapes = std::move(shapes).value();
+  if (Result<geometry::KnownShapes> known = geometry::read_known_shapes(description, robot.chain)) {
+    robot.geometry = geometry::describe(*known);
+    robot.grade = known->grade;
+    robot.shapes = std::move(known).value().shapes;
+  } else {
+    robot.geometry = cut_text("cannot be read: " + known.error().message, kMaxGeometryBytes);
+  }
   return robot;
 }
 
 }  // namespace
+
+RobotRegistry::RobotRegistry(store::Store& store, Options options)
+    : store_(store), options_(std::move(options)) {
+  try {
+    geometry_revisions_ = store.geometry_revisions();
+  } catch (const Failure& failure) {  // damage: robots are read one by one all the same
+    options_.on_unreadable(std::string("revisions of geometry: ") + failure.what());
+  }
+}
 
 RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
                                             std::int64_t now_ms) {
@@ -53,12 +69,36 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   reply.same_arms = same_arms(reply.robot, *chain);
 
   if (reply.status == RegisterStatus::Registered) {
-    keep(robot_of(description, std::move(chain).value()));
-  } else if (const auto known = find(reply.robot);
-             known && known.value()->label != description.label) {
-    reply.message = "known already, as '" + known.value()->label + "'";
+    const std::lock_guard lock(mutex_);
+    robots_.erase(reply.robot);  // of a row that was damaged, and is written anew
+  } else {
+    take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+  }
+  if (const Result<RobotPointer> known = find(reply.robot)) {
+    reply.geometry_grade = known.value()->grade;
+    reply.geometry = known.value()->geometry;
+    if (known.value()->label != description.label)
+      reply.message = "known already, as '" + known.value()->label + "'";
   }
   return reply;
+}
+
+/// Of a robot that is known. Whoever comes second with the same finds the first's.
+void RobotRegistry::take_geometry(Robot better, const RobotDescription& description,
+                                  std::int64_t now_ms, RegisterReply& reply) {
+  const Result<RobotPointer> known = find(reply.robot);
+  if (!known || known.value()->grade >= better.grade)
+    return;
+  better.label = known.value()->label;
+  better.geometry_revision = known.value()->geometry_revision + 1;
+  reply.took_geometry = store_.replace_geometry({.digest = reply.robot,
+                                                 .description = description,
+                                                 .dof = reply.dof,
+                                                 .registered_ms = now_ms,
+                                                 .geometry_revision = better.geometry_revision,
+                                                 .geometry_ms = now_ms});
+  if (reply.took_geometry)
+    keep(std::move(better));
 }
 
 std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
@@ -101,7 +141,9 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
   std::optional<store::RobotRecord> record;
   try {
     record = store_.find_robot(robot);
-  } catch (const Failure& failure) {  // one damaged row must not cost the other robots
+    if (record && record->geometry_revision < geometry_revision(robot))
+      record = store_.find_robot(robot);  // better geometry was taken over meanwhile
+  } catch (const Failure& failure) {      // one damaged row must not cost the other robots
     return failure.error();
   }
   if (!record)
@@ -114,7 +156,9 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
   if (chain->digest() != robot)
     return Error{ErrorCode::Storage,
                  name + " now reads as another robot, " + chain->digest().short_hex()};
-  return keep(robot_of(record->description, std::move(chain).value()));
+  Robot known = robot_of(record->description, std::move(chain).value());
+  known.geometry_revision = record->geometry_revision;
+  return keep(std::move(known));
 }
 
 RobotRegistry::RobotPointer RobotRegistry::find_in_memory(const Digest& robot) const {
@@ -131,12 +175,20 @@ std::size_t RobotRegistry::in_memory() const {
   return robots_.size();
 }
 
+std::uint64_t RobotRegistry::geometry_revision(const Digest& robot) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = geometry_revisions_.find(robot);
+  return found == geometry_revisions_.end() ? 0 : found->second;
+}
+
 RobotRegistry::RobotPointer RobotRegistry::keep(Robot robot) {
   const auto pointer = std::make_shared<const Robot>(std::move(robot));
   const std::lock_guard lock(mutex_);
   Known& known = robots_[pointer->digest];
-  if (!known.robot)
+  if (!known.robot || known.robot->geometry_revision < pointer->geometry_revision)
     known.robot = pointer;
+  if (known.robot->geometry_revision > 0)
+    geometry_revisions_[pointer->digest] = known.robot->geometry_revision;
   known.last_used = ++uses_;
   RobotPointer kept = known.robot;
   if (robots_.size() > options_.max_robots)

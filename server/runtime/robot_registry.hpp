@@ -13,6 +13,7 @@
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/mesh_solids.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
@@ -26,8 +27,12 @@ struct Robot {
   Digest digest;
   std::string label;
   kinematics::Chain chain;
-  /// Without the URDF's meshes; nothing if the URDF's geometry cannot be read.
+  /// Of the URDF's meshes the solids that a client fitted around them, if one did; nothing if the
+  /// geometry cannot be read.
   geometry::RobotShapes shapes = {};
+  GeometryGrade grade = GeometryGrade::None;
+  std::string geometry = {};            ///< what the shapes are, in words
+  std::uint64_t geometry_revision = 0;  ///< how often better geometry was taken over
 };
 
 /// Knows the robots of a store and keeps those that were used last parsed in memory. May be
@@ -45,12 +50,15 @@ class RobotRegistry {
 
   /// \param store  outlives the registry.
   explicit RobotRegistry(store::Store& store) : RobotRegistry(store, Options{}) {}
-  RobotRegistry(store::Store& store, Options options)
-      : store_(store), options_(std::move(options)) {}
+  RobotRegistry(store::Store& store, Options options);
 
   /// Parses, identifies and stores a robot, and tells which other robots of the store are the same
   /// arm: at most kMaxSameArms labels, in their order, none if the store cannot tell. Refused, with
   /// the reason, if the description breaks a rule or its label belongs to another robot.
+  ///
+  /// A known robot's description takes the place of the one before, but for its label, if its
+  /// geometry is better: exact shapes before solids around meshes before those of some links only
+  /// before none; of equals the first stays.
   ///
   /// It is compared with robots of as many joints, the first kMaxSameArms of them; those that are
   /// not in memory are read.
@@ -70,6 +78,10 @@ class RobotRegistry {
   RobotPointer find_in_memory(const Digest& robot) const;
   std::size_t in_memory() const;
 
+  /// How often better geometry of a robot was taken over: what was made for it before is of another
+  /// geometry. From memory; 0 also for robots that are not known.
+  std::uint64_t geometry_revision(const Digest& robot) const;
+
   /// Comparing with other robots ends: whoever registers is told of those found until then.
   void stop() noexcept { is_stopping_ = true; }
 
@@ -81,6 +93,8 @@ class RobotRegistry {
 
   Result<RobotPointer> read(const Digest& robot);
   RobotPointer keep(Robot robot);
+  void take_geometry(Robot better, const RobotDescription& description, std::int64_t now_ms,
+                     RegisterReply& reply);
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
 
   store::Store& store_;
@@ -89,6 +103,7 @@ class RobotRegistry {
   mutable std::mutex mutex_;  // guards what follows
   mutable std::map<Digest, Known> robots_;
   mutable std::uint64_t uses_ = 0;
+  std::map<Digest, std::uint64_t> geometry_revisions_;  // those above 0
 };
 
 }  // namespace kinship::runtime

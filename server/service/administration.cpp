@@ -245,6 +245,8 @@ Distribution Administration::find_distribution(const std::string& prefix) const 
 void Administration::name_solver(RobotSummary& summary) {
   const Result<runtime::RobotRegistry::RobotPointer> robot = parts_.robots.find(summary.robot);
   summary.solver = robot ? inverse::solver_name(robot.value()->chain) : robot.error().message;
+  if (robot)
+    summary.geometry = robot.value()->geometry;
 }
 
 }  // namespace kinship::service

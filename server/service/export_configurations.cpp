@@ -26,14 +26,17 @@ FetchRequest request_of(const Distribution& distribution) {
   return request;
 }
 
-Result<fitting::DistributionKey> key_of(const Distribution& distribution) {
-  Result<fitting::DistributionKey> key = fitting::make_key(request_of(distribution));
+Result<fitting::DistributionKey> key_of(const Distribution& distribution,
+                                        const runtime::RobotRegistry& robots) {
+  Result<fitting::DistributionKey> key =
+      fitting::make_key(request_of(distribution), robots.geometry_revision(distribution.robot));
   if (key && identify(*key) == distribution.id)
     return key;
   return Error{ErrorCode::Conflict, "distribution " + distribution.id.short_hex() +
                                         " was made by other code (" + distribution.engines +
                                         ") than this server's (" + fitting::engines() +
-                                        "): fetch it anew"};
+                                        "), or with geometry of its robot that was replaced since: "
+                                        "fetch it anew"};
 }
 
 /// The experience as the fit saw it: what came later has higher ids, and is not reached.
@@ -128,7 +131,7 @@ bool run_export(const fitting::FitContext& context, const fitting::DistributionK
 Result<Jobs::Task> export_configurations_job(const fitting::FitContext& context,
                                              Distribution distribution,
                                              const std::string& request_key) {
-  const Result<fitting::DistributionKey> key = key_of(distribution);
+  const Result<fitting::DistributionKey> key = key_of(distribution, context.robots);
   if (!key)
     return key.error();
   if (distribution.configurations == 0)

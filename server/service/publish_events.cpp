@@ -106,7 +106,8 @@ void publish_registered(EventFeed& feed, const RobotDescription& description,
                      [&] { return "registration refused: " + reply.message; });
   feed.tell(EventKind::Registered, {}, description.label, [&] {
     return (reply.status == RegisterStatus::Known ? "known as " : "new, ") +
-           reply.robot.short_hex() + ", " + std::to_string(reply.dof) + " joints, " + reply.solver;
+           reply.robot.short_hex() + ", " + std::to_string(reply.dof) + " joints, " + reply.solver +
+           (reply.took_geometry ? "; better geometry: " + reply.geometry : "");
   });
 }
 

@@ -35,7 +35,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
                             [this](const std::string& message) {
                               troubles_.add(Trouble::RobotUnreadable, message);
                             }}),
-      experience_(*store_, robots_),
+      experience_(*store_, robots_, options_.experience),
       events_(options_.clock, options_.on_event),
       short_task_pool_({.threads = 1,
                         .queue_limit = options_.short_task_queue,
@@ -191,7 +191,8 @@ RegisterReply Service::registered(const RobotDescription& description) {
   else
     options_.log("register '" + description.label +
                  "': " + (reply.status == RegisterStatus::Known ? "known as robot " : "robot ") +
-                 reply.robot.short_hex());
+                 reply.robot.short_hex() + "; geometry" +
+                 (reply.took_geometry ? ", better than before: " : ": ") + reply.geometry);
   publish_registered(events_, description, reply);
   return reply;
 }
@@ -347,20 +348,35 @@ ServerStatus Service::status() const {
   status.queued_rehearsals = rehearsals.queued;
   status.rehearsal_time_s = rehearsals.processor_time_s;
   status.troubles = troubles_.counts();
-  status.bounds = bounds();
+  status.dropped_paths = store.dropped_paths;
+  status.bounds = bounds(store);
   return status;
 }
 
-std::vector<BoundUse> Service::bounds() const {
+std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
   const catalog::CatalogUse use = catalog_.use();
-  return {{"reports on their way", ingest_.queued(), options_.max_queued_attempts},
-          {"fits that wait", fitters_.queued(), options_.fit_queue},
-          {"MB of memory of fits", memory_.reserved() >> 20U, options_.fit_memory_bytes >> 20U},
-          {"fetches that wait", use.waiters, options_.catalog.max_waiters},
-          {"leases", use.holds, options_.catalog.max_leases},
-          {"short tasks that wait", short_task_pool_.queued(), options_.short_task_queue},
-          {"jobs", jobs_.active(), options_.jobs.queued + 1},
-          {"robots in memory", robots_.in_memory(), options_.max_robots}};
+  std::vector<BoundUse> bounds = {
+      {"reports on their way", ingest_.queued(), options_.max_queued_attempts},
+      {"fits that wait", fitters_.queued(), options_.fit_queue},
+      {"MB of memory of fits", memory_.reserved() >> 20U, options_.fit_memory_bytes >> 20U},
+      {"fetches that wait", use.waiters, options_.catalog.max_waiters},
+      {"leases", use.holds, options_.catalog.max_leases},
+      {"short tasks that wait", short_task_pool_.queued(), options_.short_task_queue},
+      {"jobs", jobs_.active(), options_.jobs.queued + 1},
+      {"robots in memory", robots_.in_memory(), options_.max_robots},
+      {"MB of distributions in memory", use.memory_bytes >> 20U,
+       options_.catalog.memory.bytes >> 20U},
+      {"MB of ways of paths in memory", experience_.bytes_of_paths() >> 20U,
+       options_.experience.paths.bytes >> 20U},
+      {"MB that fits keep for the next ones", use.fit_memory_bytes >> 20U,
+       fitting::FitMemory::kDefaultBytes >> 20U}};
+  if (store.max_distribution_bytes > 0)
+    bounds.push_back({"MB of distributions in the store", store.distribution_bytes >> 20U,
+                      store.max_distribution_bytes >> 20U});
+  if (store.max_paths_per_pair > 0)
+    bounds.push_back({"paths, of the robot and task with most", store.most_paths_of_pair,
+                      store.max_paths_per_pair});
+  return bounds;
 }
 
 void Service::count_refused(const std::vector<Receipt>& receipts) {

@@ -41,6 +41,7 @@ struct ServiceOptions {
   std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
+  catalog::ExperienceBook::Limits experience;
   BackupPlace backups;
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
@@ -107,7 +108,7 @@ class Service {
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);
   void count_admin(const AdminPage& page);
-  std::vector<BoundUse> bounds() const;
+  std::vector<BoundUse> bounds(const store::StoreStatus& store) const;
   void log_fit(const Distribution& distribution) const;
 
   const ServiceOptions options_;

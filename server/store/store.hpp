@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -24,6 +25,8 @@ struct RobotRecord {
   RobotDescription description;
   std::uint32_t dof = 0;
   std::int64_t registered_ms = 0;
+  std::uint64_t geometry_revision = 0;  ///< how often better geometry was taken over
+  std::int64_t geometry_ms = 0;         ///< when last; 0: never
 };
 
 /// A path with what a transfer needs to know about it.
@@ -46,9 +49,10 @@ struct PathRange {
 /// One (robot, task) pair that has, or had, paths.
 struct ExperienceSummary {
   Digest robot;
-  std::uint64_t paths = 0;  ///< without retired and damaged ones
+  std::uint64_t paths = 0;  ///< without retired, dropped and damaged ones
   std::uint64_t generation = 0;
   std::uint64_t retired_generation = 0;  ///< when a path was retired last; 0: never
+  std::uint64_t dropped = 0;             ///< paths that were beyond the cap, since ever
 };
 
 /// What the attempts of one arm sum up to; the sums from which a ratio's interval follows.
@@ -91,7 +95,12 @@ struct StoreStatus {
   Uuid epoch;
   std::uint32_t schema_version = 0;
   std::uint64_t robots = 0, tasks = 0, paths = 0, attempts = 0, distributions = 0;
+  std::uint64_t dropped_paths = 0;       ///< were beyond the cap of their robot and task
+  std::uint64_t most_paths_of_pair = 0;  ///< that a robot and task have
+  std::uint64_t max_paths_per_pair = 0;  ///< 0: no cap
   std::uint64_t bytes = 0;
+  std::uint64_t distribution_bytes = 0;      ///< of them, about
+  std::uint64_t max_distribution_bytes = 0;  ///< 0: no limit
   std::uint64_t queued = 0;
   bool writable = true;
   std::int64_t scrubbed_ms =
@@ -129,6 +138,14 @@ class Store {
   /// A damaged row of this digest is written anew from `robot` and keeps its paths: Registered.
   /// \return Conflict if another robot has the label; InvalidInput if a value cannot be kept.
   virtual Result<RegisterStatus> register_robot(const RobotRecord& robot) = 0;
+  /// Takes over a known robot's description with better geometry; its label and when it was
+  /// registered stay. Durable on return.
+  /// \param robot  its geometry_revision is one more than that of the robot as it is known.
+  /// \return false, and nothing changes, if it is not: somebody else was first; or if the row is
+  ///         damaged or not there.
+  virtual bool replace_geometry(const RobotRecord& robot) = 0;
+  /// Of robots whose geometry was ever taken over anew.
+  virtual std::map<Digest, std::uint64_t> geometry_revisions() const = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
   /// By label. A robot whose row is damaged is left out and counted in status().message;
   /// find_robot() throws for it.
@@ -144,6 +161,12 @@ class Store {
   /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content (waypoints
   /// and snapped placement, or none) the (robot, task) has already is recorded as an attempt and
   /// answered Duplicate.
+  ///
+  /// Where a robot and task have as many paths as they may (an option of the engine), those with
+  /// the smallest content digests are kept. A path that is none of them is answered Recorded, and
+  /// why; one that was Stored may make another one drop, which is in no reading from then on and
+  /// raises the generation, but not retired_generation: what was fitted with it is as good as
+  /// before. Its attempt and UUID stay, its waypoints do not.
   virtual void commit_reports(std::vector<Attempt> attempts, ReportsDone done) = 0;
 
   /// The robots that have, or had, paths of a task, by digest.
@@ -151,9 +174,13 @@ class Store {
   virtual std::uint64_t generation(const Digest& robot, std::string_view task) const = 0;
 
   /// Paths of one robot and task in the order of ids. A path whose blob fails its CRC is set aside
-  /// (kept, marked damaged, counted in status().message) and left out; retired ones are left out.
+  /// (kept, marked damaged, counted in status().message) and left out; retired and dropped ones are
+  /// left out.
   virtual std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                              const PathRange& range) const = 0;
+
+  /// The ids of these paths, ascending, without a look at the paths themselves.
+  virtual std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const = 0;
 
   /// The scene of a path: equal ids, equal scenes. Nothing if it is not there or damaged; one whose
   /// blob fails its CRC is set aside (kept, marked damaged, counted in status().message) until a
@@ -175,13 +202,16 @@ class Store {
 
   virtual AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const = 0;
 
-  /// Stores a distribution under its id with the next revision, durable on return.
-  /// \return the revision given.
-  /// \throws Failure(NotFound) if its robot is not registered, Failure(InvalidInput) if a part
+  /// Stores a distribution under its id with the next revision, durable on return. Where all of
+  /// them take more than they may (an option of the engine), those not used for longest are
+  /// forgotten. \return the revision given, greater than any that this id had. \throws
+  /// Failure(NotFound) if its robot is not registered, Failure(InvalidInput) if a part
   ///         exceeds its limit.
   virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
   /// The newest revision; nothing if its payload fails its CRC.
   virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;
+  /// Says that a distribution was served; precise to the hour, lost in a crash. Returns at once.
+  virtual void note_use(const Digest& id) const = 0;
   /// Forgets the mixture of a distribution, durable on return; its next fit gets the next revision.
   /// \return whether it was there.
   virtual bool evict_distribution(const Digest& id) = 0;
@@ -192,15 +222,15 @@ class Store {
   virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
-  /// By task, robot and arrival, retired ones too. Empty robot or task: all.
+  /// By task, robot and arrival, retired and dropped ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
-  /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path or
-  /// scene if that one is damaged.
+  /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path if
+  /// that one is damaged or dropped, without its scene if that one is damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
-  /// Attempts with their paths and scenes for export, oldest first; without retired and damaged
-  /// paths' attempts. A page ends early once its waypoints and scenes (as scene_bytes() counts)
-  /// exceed `max_bytes`, but holds one at least.
+  /// Attempts with their paths and scenes for export, oldest first; without the
+  /// attempts of retired, dropped and damaged paths. A page ends early once its waypoints and
+  /// scenes (as scene_bytes() counts) exceed `max_bytes`, but holds one at least.
   virtual Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                         std::string_view cursor, std::size_t limit,
                                         std::size_t max_bytes) const = 0;

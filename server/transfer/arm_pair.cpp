@@ -1,6 +1,6 @@
 #include "server/transfer/arm_pair.hpp"
 
-#include "server/transfer/arm_shape.hpp"
+#include <utility>
 
 namespace kinship::transfer {
 namespace {
@@ -9,13 +9,13 @@ constexpr double kSamePlacement = 1e-9;  // m and rad
 
 }  // namespace
 
-ArmPair::ArmPair(const kinematics::Chain& source, const kinematics::Chain& target)
+ArmPair::ArmPair(const kinematics::Chain& source, std::shared_ptr<const TargetArm> target)
     : source_(source),
-      target_(target),
-      likeness_(kinematics::compare_arms(source, target)),
-      target_descent_(target),
-      target_solver_(target),
-      target_marks_(shape_marks(target)) {}
+      target_(std::move(target)),
+      likeness_(kinematics::compare_arms(source, target_->chain())) {}
+
+ArmPair::ArmPair(const kinematics::Chain& source, const kinematics::Chain& target)
+    : ArmPair(source, std::make_shared<const TargetArm>(target)) {}
 
 bool ArmPair::takes_over(const Eigen::Isometry3d& T_target_source) const {
   const double difference =

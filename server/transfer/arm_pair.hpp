@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 
-#include "robots/inverse/descent.hpp"
-#include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
 #include "robots/kinematics/same_arm.hpp"
+#include "server/transfer/target_robot.hpp"
 
 namespace kinship::transfer {
 
@@ -14,17 +14,21 @@ namespace kinship::transfer {
 /// shared between threads.
 class ArmPair {
  public:
-  /// \param source, target  outlive the pair.
+  /// \param source  outlives the pair.
+  ArmPair(const kinematics::Chain& source, std::shared_ptr<const TargetArm> target);
+  /// The same for a target that nothing else comes to.
   ArmPair(const kinematics::Chain& source, const kinematics::Chain& target);
 
   const kinematics::Chain& source() const noexcept { return source_; }
-  const kinematics::Chain& target() const noexcept { return target_; }
+  const kinematics::Chain& target() const noexcept { return target_->chain(); }
   kinematics::ArmLikeness likeness() const noexcept { return likeness_; }
-  const inverse::Solver& target_solver() const noexcept { return target_solver_; }
-  const inverse::Descent& target_descent() const noexcept { return target_descent_; }
+  const inverse::Solver& target_solver() const noexcept { return target_->solver(); }
+  const inverse::Descent& target_descent() const noexcept { return target_->descent(); }
 
   /// Where the target's shape is looked at; see shape_marks.
-  const std::optional<inverse::LaneMarks>& target_marks() const noexcept { return target_marks_; }
+  const std::optional<inverse::LaneMarks>& target_marks() const noexcept {
+    return target_->marks();
+  }
 
   /// Whether waypoints are taken over between robots whose bases stand like this: the same arm at
   /// the same place (within 1e-9 m and rad).
@@ -32,11 +36,8 @@ class ArmPair {
 
  private:
   const kinematics::Chain& source_;
-  const kinematics::Chain& target_;
+  std::shared_ptr<const TargetArm> target_;  // shared by the pairs of all sources
   kinematics::ArmLikeness likeness_;
-  inverse::Descent target_descent_;
-  inverse::Solver target_solver_;
-  std::optional<inverse::LaneMarks> target_marks_;
 };
 
 }  // namespace kinship::transfer

@@ -1,5 +1,6 @@
 #include "server/transfer/arm_shape.hpp"
 
+#include <span>
 #include <vector>
 
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -15,11 +16,11 @@ struct ShapePoint {
 };
 
 using ShapePoints = std::array<ShapePoint, kShapeShares.size()>;
+using Corners = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, static_cast<int>(kMaxDof) + 1>;
 
 /// Corners of the line along the arm.
-Eigen::Matrix3Xd corners(const kinematics::Chain& arm,
-                         const std::vector<Eigen::Isometry3d>& T_base_joints) {
-  Eigen::Matrix3Xd points(3, arm.dof() + 1);
+Corners corners(const kinematics::Chain& arm, std::span<const Eigen::Isometry3d> T_base_joints) {
+  Corners points(3, arm.dof() + 1);
   for (Eigen::Index j = 0; j < arm.dof(); ++j)
     points.col(j) = T_base_joints[static_cast<std::size_t>(j)].translation();
   points.col(arm.dof()) =
@@ -27,7 +28,7 @@ Eigen::Matrix3Xd corners(const kinematics::Chain& arm,
   return points;
 }
 
-ShapePoints shape_points(const Eigen::Matrix3Xd& points) {
+ShapePoints shape_points(const Corners& points) {
   const Eigen::Index last = points.cols() - 1;
   const Eigen::VectorXd lengths =
       (points.rightCols(last) - points.leftCols(last)).colwise().norm().transpose();
@@ -56,7 +57,11 @@ ArmShape shape_of(const ShapePoints& points) {
 }  // namespace
 
 ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q) {
-  return shape_of(shape_points(corners(arm, kinematics::joint_poses(arm, q))));
+  return arm_shape(arm, kinematics::joint_poses(arm, q));
+}
+
+ArmShape arm_shape(const kinematics::Chain& arm, std::span<const Eigen::Isometry3d> T_base_joints) {
+  return shape_of(shape_points(corners(arm, T_base_joints)));
 }
 
 std::optional<inverse::LaneMarks> shape_marks(const kinematics::Chain& arm) {
@@ -77,7 +82,7 @@ std::optional<inverse::LaneMarks> shape_marks(const kinematics::Chain& arm) {
 ArmShapeMotion arm_shape_motion(const kinematics::Chain& arm,
                                 const Eigen::Ref<const Eigen::VectorXd>& q) {
   const std::vector<Eigen::Isometry3d> T_base_joints = kinematics::joint_poses(arm, q);
-  const Eigen::Matrix3Xd line = corners(arm, T_base_joints);
+  const Corners line = corners(arm, T_base_joints);
   const ShapePoints points = shape_points(line);
   ArmShapeMotion motion;
   motion.shape = shape_of(points);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "proto/types/limits.hpp"
 #include "robots/inverse/lanes.hpp"
@@ -21,6 +22,8 @@ using ArmShape = Eigen::Matrix<double, 3, static_cast<int>(kShapeShares.size())>
 /// and different lengths have shapes that can be compared.
 /// \param q  dof, joint units.
 ArmShape arm_shape(const kinematics::Chain& arm, const Eigen::Ref<const Eigen::VectorXd>& q);
+/// \param T_base_joints  kinematics::joint_poses of the configuration.
+ArmShape arm_shape(const kinematics::Chain& arm, std::span<const Eigen::Isometry3d> T_base_joints);
 
 /// Where the points of a shape lie on an arm, for the kernels; none for an arm with sliding joints,
 /// along which they wander.

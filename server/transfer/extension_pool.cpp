@@ -12,13 +12,11 @@ ExtensionPool::ExtensionPool(const ArmPair& pair)
       space_(pair.target()),
       found_(Eigen::MatrixXd::Zero(pair.target().dof(), ShapeLanes::kCount)) {}
 
-void ExtensionPool::run(const std::vector<ShapeTracker*>& trackers, const std::stop_token& stop) {
-  for (ShapeTracker* tracker : trackers) {
-    throw_if_stopped(stop);
-    enqueue(*tracker, tracker->begin_round());
-  }
+void ExtensionPool::run(const Trackers& trackers, const std::stop_token& stop) {
+  trackers_ = &trackers;
+  stop_ = stop;
   for (fill(); lanes_.run(); fill()) {
-    throw_if_stopped(stop);
+    throw_if_stopped(stop_);
     hand_over();
   }
 }
@@ -26,11 +24,24 @@ void ExtensionPool::run(const std::vector<ShapeTracker*>& trackers, const std::s
 void ExtensionPool::enqueue(ShapeTracker& tracker, std::vector<TrackExtension> extensions) {
   for (TrackExtension& extension : extensions)
     waiting_.push_back({&tracker, std::move(extension)});
+  if (tracker.is_idle())
+    trackers_->done(tracker);
+}
+
+bool ExtensionPool::has_waiting() {
+  while (waiting_.empty()) {
+    throw_if_stopped(stop_);
+    ShapeTracker* const tracker = trackers_->next();
+    if (tracker == nullptr)
+      return false;
+    enqueue(*tracker, tracker->begin_round());
+  }
+  return true;
 }
 
 void ExtensionPool::fill() {
   for (int lane = 0; lane < ShapeLanes::kCount; ++lane)
-    while (lanes_.is_idle(lane) && !waiting_.empty()) {
+    while (lanes_.is_idle(lane) && has_waiting()) {
       errand(lane) = std::move(waiting_.front());
       waiting_.pop_front();
       if (!go_on(lane))

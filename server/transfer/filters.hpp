@@ -6,14 +6,15 @@
 
 namespace kinship::transfer {
 
-/// Whether a configuration of the target robot (dof, joint units, within limits) may be used. The
-/// answer may depend on the configuration only.
-using ConfigurationFilter = std::function<bool(const Eigen::Ref<const Eigen::VectorXd>& q)>;
+/// How many of some configurations of the target robot (dof x n, joint units, within limits), from
+/// the first on, may be used before one may not. Whether one may depends on that one only.
+using ConfigurationFilter =
+    std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
 
 /// What the configurations of a path have to pass, in this order. An empty one passes everything.
 struct Filters {
-  ConfigurationFilter self;   ///< false: the target touches itself
-  ConfigurationFilter scene;  ///< false: it touches the scene that was recorded with this path
+  ConfigurationFilter self;   ///< ends where the target touches itself
+  ConfigurationFilter scene;  ///< where it touches the scene that was recorded with this path
 };
 
 /// Filters, how often they were asked, and how often they said no.
@@ -23,8 +24,9 @@ class CountedFilters {
   explicit CountedFilters(const Filters& filters) : filters_(filters) {}
   explicit CountedFilters(Filters&&) = delete;  // would not outlive it
 
-  /// Whether every filter keeps `q`.
-  bool keep(const Eigen::Ref<const Eigen::VectorXd>& q);
+  /// How many configurations (dof x n), from the first on, every filter keeps before one is left
+  /// out. Counts as if they had been asked about one after the other, up to that one.
+  Eigen::Index keep_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
 
   std::uint64_t checks() const noexcept { return checks_; }  ///< 0 without filters
   std::uint64_t self_collisions() const noexcept { return self_collisions_; }

@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "proto/types/recorded_scene.hpp"
-#include "robots/collision/collision_world.hpp"
-#include "robots/geometry/link_shapes.hpp"
-#include "robots/kinematics/chain.hpp"
+#include "robots/collision/robot_solids.hpp"
 #include "server/transfer/filters.hpp"
 
 namespace kinship::transfer {
 
 /// What surrounds a robot that stands among recorded objects and holds in its transfer frame what
 /// was held. Pairs that touch in at least 38 of 40 random configurations within the limits may
-/// touch, as a base and the table below it (seeded: equal input, equal answers). \param scene keeps
-/// the rules of check_scene().
-collision::Surroundings recorded_surroundings(const kinematics::Chain& robot,
-                                              const geometry::RobotShapes& shapes,
+/// touch, as a base and the table below it (seeded: equal input, equal answers); of two links that
+/// is not asked. \param scene keeps the rules of check_scene().
+collision::Surroundings recorded_surroundings(const collision::RobotSolids& robot,
                                               const RecordedScene& scene,
                                               const Eigen::Isometry3d& T_task_base);
 
@@ -37,10 +34,10 @@ struct SceneFilter {
 /// constraint is ignored.
 ///
 /// Pairs that touch in at least 38 of 40 random configurations within the limits are left out
-/// (seeded: equal input, equal answers). Not shared between threads; everything is copied.
+/// (seeded: equal input, equal answers). Not shared between threads.
 /// \param scene        keeps the rules of check_scene().
 /// \param T_task_base  placement of the robot; identity if it is missing.
-SceneFilter scene_filter(const kinematics::Chain& robot, const geometry::RobotShapes& shapes,
-                         const RecordedScene& scene, const Eigen::Isometry3d& T_task_base);
+SceneFilter scene_filter(const collision::RobotSolids& robot, const RecordedScene& scene,
+                         const Eigen::Isometry3d& T_task_base);
 
 }  // namespace kinship::transfer

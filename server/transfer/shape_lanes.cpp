@@ -15,48 +15,67 @@ constexpr int kEndedShare = 3;      // of the lanes at work, one in so many
 constexpr int kMeasuringShare = 2;  // so many for each that descends: a pull costs three descents
 
 /// Values of the joints as the kernels have them.
-template <typename Rows>
-void write(const inverse::LaneChain& chain, const inverse::JointVector& q, int lane, Rows& rows) {
+inverse::JointVector raw_of(const inverse::LaneChain& chain, const inverse::JointVector& q) {
+  inverse::JointVector raw(chain.dof);
   for (int j = 0; j < chain.dof; ++j)
-    rows[j][lane] = q[j] * chain.joints[j].scale + chain.joints[j].offset;
+    raw[j] = q[j] * chain.joints[j].scale + chain.joints[j].offset;
+  return raw;
 }
 
-template <typename Rows>
-inverse::JointVector read(const inverse::LaneChain& chain, const Rows& rows, int lane) {
+inverse::JointVector joints_of(const inverse::LaneChain& chain, const inverse::JointVector& raw) {
   inverse::JointVector q(chain.dof);
   for (int j = 0; j < chain.dof; ++j)
-    q[j] = (rows[j][lane] - chain.joints[j].offset) / chain.joints[j].scale;
+    q[j] = (raw[j] - chain.joints[j].offset) / chain.joints[j].scale;
   return q;
 }
 
+/// Into, and out of, a kernel's columns.
 template <typename Rows>
-void copy_lane(const inverse::LaneChain& chain, int lane, const Rows& from, Rows& to) {
-  for (int j = 0; j < chain.dof; ++j)
-    to[j][lane] = from[j][lane];
+void write(const inverse::JointVector& raw, int seat, Rows& rows) {
+  for (Eigen::Index j = 0; j < raw.size(); ++j)
+    rows[j][seat] = raw[j];
+}
+
+template <typename Rows>
+void read(const Rows& rows, int seat, inverse::JointVector& raw) {
+  for (Eigen::Index j = 0; j < raw.size(); ++j)
+    raw[j] = rows[j][seat];
+}
+
+/// \param unit_m  of lengths.
+template <typename Rows>
+void write_pose(const Eigen::Isometry3d& T, double unit_m, int seat, Rows& rows) {
+  for (int i = 0; i < 9; ++i)
+    rows[i][seat] = T(i / 3, i % 3);
+  for (int i = 0; i < 3; ++i)
+    rows[9 + i][seat] = T(i, 3) / unit_m;
 }
 
 }  // namespace
 
 ShapeLanes::ShapeLanes(const ArmPair& pair) : pair_(pair), solver_(pair.target_solver()) {
   const Eigen::VectorXd middle = 0.5 * (pair.target().lower() + pair.target().upper());
+  const inverse::JointVector raw = raw_of(solver_.lanes(), middle);
+  seats_.fill(kEmpty);
   for (int lane = 0; lane < kCount; ++lane) {
     aim(lane, Eigen::Isometry3d::Identity(), ArmShape::Zero());
     put(lane, middle);
-    write(solver_.lanes(), middle, lane, batch_.q);
-    write(solver_.lanes(), middle, lane, pull_.q);
+    work(lane).raw = raw;
+  }
+  for (int seat = 0; seat < kSeats; ++seat) {  // what nobody has written is computed with too
+    write_pose(Eigen::Isometry3d::Identity(), 1, seat, batch_.target);
+    write_pose(Eigen::Isometry3d::Identity(), 1, seat, check_.target);
+    write(raw, seat, batch_.q);
+    write(raw, seat, pull_.q);
+    write(middle, seat, check_.q);
+    for (auto& wanted : pull_.wanted)
+      wanted[seat] = 0;
   }
 }
 
 void ShapeLanes::aim(int lane, const Eigen::Isometry3d& T_base_transfer, const ArmShape& wanted) {
   T_base_transfer_[static_cast<std::size_t>(lane)] = T_base_transfer;
   wanted_[static_cast<std::size_t>(lane)] = wanted;
-  for (int i = 0; i < 12; ++i) {
-    const double value = i < 9 ? T_base_transfer(i / 3, i % 3) : T_base_transfer(i - 9, 3);
-    check_.target[i][lane] = value;
-    batch_.target[i][lane] = i < 9 ? value : value / solver_.lanes().length_m;
-  }
-  for (int i = 0; i < ArmShapeMotion::kRows; ++i)
-    pull_.wanted[i][lane] = wanted.reshaped()[i];
 }
 
 void ShapeLanes::put(int lane, const inverse::JointVector& q) {
@@ -67,10 +86,9 @@ void ShapeLanes::begin_step(int lane, double most_motion, int steps) {
   Work& now = work(lane);
   now.most_motion = most_motion;
   now.start = at(lane);
-  now.iterations = 0;
   now.steps_left = steps;
-  write(solver_.lanes(), at(lane), lane, batch_.q);
-  set(lane, State::Reaching);
+  now.raw = raw_of(solver_.lanes(), at(lane));
+  begin_descent(lane, State::Reaching);
 }
 
 void ShapeLanes::begin_pull(int lane, int steps) {
@@ -91,7 +109,18 @@ void ShapeLanes::start_pull(int lane, int steps) {
   work_[i].steps_left = steps;
   work_[i].distance_m = std::numeric_limits<double>::infinity();  // not measured yet
   work_[i].settled = at(lane);
-  write(solver_.lanes(), at(lane), lane, pull_.q);
+  work_[i].raw = raw_of(solver_.lanes(), at(lane));
+  begin_measuring(lane);
+}
+
+void ShapeLanes::begin_descent(int lane, State state) {
+  work(lane).iterations = 0;
+  to_descend_.push(lane);
+  set(lane, state);
+}
+
+void ShapeLanes::begin_measuring(int lane) {
+  to_measure_.push(lane);
   set(lane, State::Measuring);
 }
 
@@ -100,26 +129,45 @@ bool ShapeLanes::run() {
     const int descending = count(State::Reaching) + count(State::Settling);
     const int measuring = count(State::Measuring);
     const int ended = count(State::Arrived) + count(State::Failed);
-    if (kEndedShare * ended >= descending + measuring)
+    if (measuring >= kSeats)
+      measure();
+    else if (descending >= kSeats)
+      descend();
+    else if (kEndedShare * ended >= descending + measuring)
       return ended > 0;
-    if (measuring >= kMeasuringShare * descending)
+    else if (measuring >= kMeasuringShare * descending)
       measure();
     else
       descend();
   }
 }
 
-/// All lanes of the batch move, those that do not descend for nothing.
-void ShapeLanes::descend() {
-  solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
-  for (int lane = 0; lane < kCount; ++lane) {
-    const bool reaching = state(lane) == State::Reaching;
-    if (!reaching && state(lane) != State::Settling)
+void ShapeLanes::seat() {
+  for (int seat = 0; seat < kSeats && to_descend_.size() > 0; ++seat) {
+    int& lane = seats_[static_cast<std::size_t>(seat)];
+    if (lane != kEmpty)
       continue;
-    const bool arrived = batch_.squared[lane] < kArrived;
+    lane = to_descend_.pop();
+    write(work(lane).raw, seat, batch_.q);
+    write_pose(T_base_transfer_[static_cast<std::size_t>(lane)], solver_.lanes().length_m, seat,
+               batch_.target);
+  }
+}
+
+/// Seats without a lane move for nothing.
+void ShapeLanes::descend() {
+  seat();
+  solver_.kernels().step(solver_.lanes(), inverse::LaneLimits::Hold, batch_);
+  for (int seat = 0; seat < kSeats; ++seat) {
+    const int lane = seats_[static_cast<std::size_t>(seat)];
+    if (lane == kEmpty)
+      continue;
+    const bool arrived = batch_.squared[seat] < kArrived;
     if (!arrived && ++work(lane).iterations <= kDescentIterations)
       continue;
-    if (reaching)
+    seats_[static_cast<std::size_t>(seat)] = kEmpty;
+    read(batch_.q, seat, work(lane).raw);
+    if (state(lane) == State::Reaching)
       arrived ? reached(lane) : set(lane, State::Failed);
     else
       arrived ? settled(lane) : end_pull(lane);
@@ -128,7 +176,7 @@ void ShapeLanes::descend() {
 
 void ShapeLanes::reached(int lane) {
   Work& now = work(lane);
-  now.reached = read(solver_.lanes(), batch_.q, lane);
+  now.reached = joints_of(solver_.lanes(), now.raw);
   if (!((now.reached - now.start).norm() <= now.most_motion)) {
     set(lane, State::Failed);
     return;
@@ -138,32 +186,39 @@ void ShapeLanes::reached(int lane) {
 }
 
 void ShapeLanes::settled(int lane) {
-  work(lane).settled = read(solver_.lanes(), batch_.q, lane);
-  copy_lane(solver_.lanes(), lane, batch_.q, pull_.q);
-  set(lane, State::Measuring);
+  work(lane).settled = joints_of(solver_.lanes(), work(lane).raw);
+  begin_measuring(lane);
 }
 
 void ShapeLanes::measure() {
-  solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), pull_);
-  for (int lane = 0; lane < kCount; ++lane) {
-    if (state(lane) != State::Measuring)
-      continue;
-    Work& now = work(lane);
-    const double reached_m = pull_.distance_m[lane];
-    const bool gains = reached_m <= now.distance_m * (1 - kMinGain);
-    if (reached_m < now.distance_m) {
-      put(lane, now.settled);
-      now.distance_m = reached_m;
-    }
-    if (!gains || now.steps_left == 0) {
-      end_pull(lane);
-      continue;
-    }
-    --now.steps_left;
-    now.iterations = 0;
-    copy_lane(solver_.lanes(), lane, pull_.q, batch_.q);
-    set(lane, State::Settling);
+  std::array<int, kSeats> lanes{};
+  const int taken = std::min(to_measure_.size(), kSeats);
+  for (int seat = 0; seat < taken; ++seat) {
+    const int lane = lanes[static_cast<std::size_t>(seat)] = to_measure_.pop();
+    write(work(lane).raw, seat, pull_.q);
+    for (int i = 0; i < ArmShapeMotion::kRows; ++i)
+      pull_.wanted[i][seat] = wanted_[static_cast<std::size_t>(lane)].reshaped()[i];
   }
+  solver_.kernels().pull(solver_.lanes(), *pair_.target_marks(), pull_);
+  for (int seat = 0; seat < taken; ++seat)
+    measured(lanes[static_cast<std::size_t>(seat)], seat);
+}
+
+void ShapeLanes::measured(int lane, int seat) {
+  Work& now = work(lane);
+  const double reached_m = pull_.distance_m[seat];
+  const bool gains = reached_m <= now.distance_m * (1 - kMinGain);
+  if (reached_m < now.distance_m) {
+    put(lane, now.settled);
+    now.distance_m = reached_m;
+  }
+  if (!gains || now.steps_left == 0) {
+    end_pull(lane);
+    return;
+  }
+  --now.steps_left;
+  read(pull_.q, seat, now.raw);
+  begin_descent(lane, State::Settling);
 }
 
 void ShapeLanes::end_pull(int lane) {
@@ -173,14 +228,29 @@ void ShapeLanes::end_pull(int lane) {
 }
 
 std::array<bool, ShapeLanes::kCount> ShapeLanes::verified(const Eigen::MatrixXd& configurations) {
-  for (int lane = 0; lane < kCount; ++lane)
-    for (int j = 0; j < solver_.lanes().dof; ++j)
-      check_.q[j][lane] = configurations(j, lane);
-  solver_.kernels().check(solver_.arm(), check_);
   std::array<bool, kCount> right{};
-  for (int lane = 0; lane < kCount; ++lane)
-    right[static_cast<std::size_t>(lane)] = check_.distance_m[lane] <= inverse::kPoseTolerance &&
-                                            check_.angle_rad[lane] <= inverse::kPoseTolerance;
+  std::array<int, kSeats> lanes{};
+  int taken = 0;
+  const auto check = [&] {
+    solver_.kernels().check(solver_.arm(), check_);
+    for (int seat = 0; seat < taken; ++seat)
+      right[static_cast<std::size_t>(lanes[static_cast<std::size_t>(seat)])] =
+          check_.distance_m[seat] <= inverse::kPoseTolerance &&
+          check_.angle_rad[seat] <= inverse::kPoseTolerance;
+    taken = 0;
+  };
+  for (int lane = 0; lane < kCount; ++lane) {
+    if (state(lane) != State::Arrived && !is_idle(lane))
+      continue;
+    for (int j = 0; j < solver_.lanes().dof; ++j)
+      check_.q[j][taken] = configurations(j, lane);
+    write_pose(T_base_transfer_[static_cast<std::size_t>(lane)], 1, taken, check_.target);
+    lanes[static_cast<std::size_t>(taken)] = lane;
+    if (++taken == kSeats)
+      check();
+  }
+  if (taken > 0)
+    check();
   return right;
 }
 
@@ -201,7 +271,8 @@ Eigen::VectorXd shape_distances_m(const ArmPair& pair, const Eigen::MatrixXd& co
   for (Eigen::Index first = 0; first < count; first += kCount) {
     const Eigen::Index many = std::min<Eigen::Index>(kCount, count - first);
     for (int lane = 0; lane < kCount; ++lane)
-      write(solver.lanes(), configurations.col(first + std::min<Eigen::Index>(lane, many - 1)),
+      write(raw_of(solver.lanes(),
+                   configurations.col(first + std::min<Eigen::Index>(lane, many - 1))),
             lane, measured.q);
     solver.kernels().pull(solver.lanes(), *pair.target_marks(), measured);
     std::copy_n(measured.distance_m, many, distances.data() + first);

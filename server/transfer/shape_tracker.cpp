@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "robots/inverse/solver.hpp"
 #include "server/transfer/shape_lanes.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kCandidateDistance = 0.3;  // joint units
 constexpr int kStartShapeSteps = 4;         // times as many at the start as at each further pose
+constexpr int kAskedTogether = 8;           // poses: as many as a filter answers at once
 
 inverse::CounterGenerator generator_of(const PathPoses& poses, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -83,18 +85,35 @@ ShapeTracker::Try ShapeTracker::make_try() {
 
 bool ShapeTracker::take(TrackExtension& extension, const inverse::JointVector& q,
                         const Eigen::Ref<const Eigen::VectorXd>& found) {
-  if (!filters_.keep(found))
+  if (extension.direction == 0 && filters_.keep_ahead(found) == 0)
     return false;
-  Try& made = round_[extension.of_round];
   extension.q = q;
   extension.pose += extension.direction;
-  made.along.col(extension.pose) = found;
-  made.first = std::min(made.first, extension.pose);
-  made.last = std::max(made.last, extension.pose);
-  return true;
+  round_[extension.of_round].along.col(extension.pose) = found;
+  if (extension.direction == 0)
+    return true;
+  ++extension.unasked;
+  return extension.unasked < kAskedTogether || ask(extension);
 }
 
-std::vector<TrackExtension> ShapeTracker::end(const TrackExtension& extension) {
+bool ShapeTracker::ask(TrackExtension& extension) {
+  Try& made = round_[extension.of_round];
+  const int count = std::exchange(extension.unasked, 0);
+  const Eigen::Index first = extension.pose - extension.direction * (count - 1);
+  Eigen::MatrixXd asked(made.along.rows(), count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    asked.col(i) = made.along.col(first + extension.direction * i);
+  const Eigen::Index kept = filters_.keep_ahead(asked);
+  if (kept > 0) {
+    const Eigen::Index last = first + extension.direction * (kept - 1);
+    made.first = std::min(made.first, last);
+    made.last = std::max(made.last, last);
+  }
+  return kept == count;
+}
+
+std::vector<TrackExtension> ShapeTracker::end(TrackExtension& extension) {
+  ask(extension);
   --extensions_left_;
   if (extension.direction == 0) {
     const Try& made = round_[extension.of_round];

@@ -26,6 +26,7 @@ struct TrackExtension {
   Eigen::Index direction = 0;  ///< 1 or -1: to an end of the path; 0: the pull at the start
   Eigen::Index pose = 0;       ///< where it is
   inverse::JointVector q;      ///< there, as the lanes have it: a joint may be turns away
+  int unasked = 0;             ///< so many of its last poses filters have not been asked about
 };
 
 /// Follows a path of the source robot with the target robot: a random pose of the path, there the
@@ -63,14 +64,16 @@ class ShapeTracker {
 
   /// The extensions with which the next tries begin. None: there is nothing left to try.
   std::vector<TrackExtension> begin_round();
-  /// Moves an extension on to where it found `found` (`q` as the lanes have it), unless filters say
-  /// no.
+  /// Moves an extension on to where it found `found` (`q` as the lanes have it). Filters are asked
+  /// about some poses together: what lies behind the first that they leave out was found in vain.
+  /// \return whether it may go on: filters have not said no.
   bool take(TrackExtension& extension, const inverse::JointVector& q,
             const Eigen::Ref<const Eigen::VectorXd>& found);
   /// \return what is to be extended because this extension has ended: both ways from where a try
-  /// starts,
-  ///         or the next round.
-  std::vector<TrackExtension> end(const TrackExtension& extension);
+  ///         starts, or the next round.
+  std::vector<TrackExtension> end(TrackExtension& extension);
+  /// Whether nothing of what was begun is under way: after end() that nothing is left to try.
+  bool is_idle() const noexcept { return extensions_left_ == 0; }
   const PathPoses& poses() const noexcept { return poses_; }
   /// How far the target may move on the next step of an extension.
   double most_motion(const TrackExtension& extension) const;
@@ -91,6 +94,9 @@ class ShapeTracker {
   };
 
   Try make_try();
+  /// Asks filters about the poses of an extension that they were not asked about.
+  /// \return whether they keep all of them.
+  bool ask(TrackExtension& extension);
   /// Keeps the tracks of the round that are long enough.
   void judge();
   const Candidates& candidates(Eigen::Index pose);

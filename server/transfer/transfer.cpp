@@ -1,7 +1,8 @@
 #include "server/transfer/transfer.hpp"
 
+#include <algorithm>
 #include <cstddef>
-#include <deque>
+#include <list>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,12 +41,21 @@ class PathSolutions {
   PathSolutions(Eigen::Index dof, Eigen::Index poses)
       : dof_(dof), of_pose_(static_cast<std::size_t>(poses), Eigen::MatrixXd(dof, 0)) {}
 
-  void add(const Track& track) {
-    for (Eigen::Index i = 0; i < track.configurations.cols(); ++i) {
-      Eigen::MatrixXd& solutions = of_pose_[static_cast<std::size_t>(track.first_pose + i)];
-      solutions.conservativeResize(Eigen::NoChange, solutions.cols() + 1);
-      solutions.rightCols(1) = track.configurations.col(i);
-    }
+  void add(const std::vector<Track>& tracks) {
+    std::vector<Eigen::Index> left(of_pose_.size(), 0);
+    const auto at = [](const Track& track, Eigen::Index i) {
+      return static_cast<std::size_t>(track.first_pose + i);
+    };
+    for (const Track& track : tracks)
+      for (Eigen::Index i = 0; i < track.configurations.cols(); ++i)
+        ++left[at(track, i)];
+    for (std::size_t pose = 0; pose < of_pose_.size(); ++pose)
+      of_pose_[pose].resize(dof_, left[pose]);
+    for (const Track& track : tracks)
+      for (Eigen::Index i = 0; i < track.configurations.cols(); ++i) {
+        Eigen::MatrixXd& solutions = of_pose_[at(track, i)];
+        solutions.col(solutions.cols() - left[at(track, i)]--) = track.configurations.col(i);
+      }
   }
 
   Eigen::MatrixXd& operator[](std::size_t pose) { return of_pose_[pose]; }
@@ -86,14 +96,14 @@ TransferredPath PathSolutions::stacked(const TransferCounts& summary) const {
 
 /// A path on its way through inverse kinematics.
 struct PathUnderWay {
-  PathUnderWay(std::size_t place, const Eigen::MatrixXd& waypoints, const PathToTransfer& path,
+  PathUnderWay(const PathToTransfer& the_path, const Eigen::MatrixXd& waypoints,
                const ArmPair& pair, const TransferParameters& parameters, std::uint64_t seed)
-      : index(place),
+      : path(the_path),
         poses(path_poses(waypoints, pair, path.T_target_source)),
         counted(path.filters),
         tracker(pair, poses, parameters, seed, counted) {}
 
-  const std::size_t index;  // of the group
+  const PathToTransfer& path;
   const PathPoses poses;
   CountedFilters counted;
   ShapeTracker tracker;  // of the poses
@@ -104,10 +114,8 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
                                       const TransferParameters& parameters, const Search& search) {
   PathSolutions solutions(pair.target().dof(), path.poses.size());
   TransferCounts summary;
-  for (const Track& track : path.tracker.tracks()) {
-    solutions.add(track);
-    ++summary.tracks_kept;
-  }
+  solutions.add(path.tracker.tracks());
+  summary.tracks_kept = path.tracker.tracks().size();
   summary.tracks_tried = path.tracker.tried();
   summary.tracks_through = path.tracker.came_through();
   const std::vector<bool> covered = solutions.covered();
@@ -126,33 +134,74 @@ TransferredPath with_random_solutions(PathUnderWay& path, const ArmPair& pair,
   return solutions.stacked(summary);
 }
 
+/// One stream of paths. The arguments outlive it.
+class Transfer {
+ public:
+  Transfer(const PathStream& paths, const ArmPair& pair, const TransferParameters& parameters,
+           Search search)
+      : paths_(paths), pair_(pair), parameters_(parameters), search_(std::move(search)) {}
+
+  void run() {
+    ExtensionPool(pair_).run(
+        {.next = [this] { return next(); }, .done = [this](ShapeTracker& t) { finish(t); }},
+        search_.stop);
+  }
+
+ private:
+  /// The tracker of the next path that is not taken over.
+  ShapeTracker* next() {
+    while (const PathToTransfer* const path = paths_.next()) {
+      if (path->path.dof() != pair_.source().dof())
+        throw std::invalid_argument("transfer: a path of " + std::to_string(path->path.dof()) +
+                                    " joints for a source robot of " +
+                                    std::to_string(pair_.source().dof()));
+      const Eigen::MatrixXd waypoints = resample(path->path, parameters_);
+      if (parameters_.take_over && pair_.takes_over(path->T_target_source)) {
+        paths_.done(*path, take_over(waypoints, pair_));
+        continue;
+      }
+      under_way_.emplace_back(*path, waypoints, pair_, parameters_, search_.seed);
+      return &under_way_.back().tracker;
+    }
+    return nullptr;
+  }
+
+  void finish(const ShapeTracker& tracker) {
+    const auto path = std::ranges::find_if(
+        under_way_, [&](const PathUnderWay& one) { return &one.tracker == &tracker; });
+    paths_.done(path->path, with_random_solutions(*path, pair_, parameters_, search_));
+    under_way_.erase(path);
+  }
+
+  const PathStream& paths_;
+  const ArmPair& pair_;
+  const TransferParameters& parameters_;
+  const Search search_;
+  std::list<PathUnderWay> under_way_;  // trackers stay where they are
+};
+
 }  // namespace
+
+void transfer_stream(const PathStream& paths, const ArmPair& pair,
+                     const TransferParameters& parameters, std::uint64_t seed,
+                     const std::stop_token& stop) {
+  check_tracking(parameters);
+  Transfer(paths, pair, parameters, {seed, stop}).run();
+}
 
 std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> paths,
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,
                                             std::uint64_t seed, const std::stop_token& stop) {
-  check_tracking(parameters);
   std::vector<TransferredPath> results(paths.size());
-  std::deque<PathUnderWay> under_way;  // trackers stay where they are
-  std::vector<ShapeTracker*> trackers;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    const Path& path = paths[i].path;
-    if (path.dof() != pair.source().dof())
-      throw std::invalid_argument("transfer: a path of " + std::to_string(path.dof()) +
-                                  " joints for a source robot of " +
-                                  std::to_string(pair.source().dof()));
-    const Eigen::MatrixXd waypoints = resample(path, parameters);
-    if (parameters.take_over && pair.takes_over(paths[i].T_target_source)) {
-      results[i] = take_over(waypoints, pair);
-      continue;
-    }
-    under_way.emplace_back(i, waypoints, paths[i], pair, parameters, seed);
-    trackers.push_back(&under_way.back().tracker);
-  }
-  ExtensionPool(pair).run(trackers, stop);
-  for (PathUnderWay& path : under_way)
-    results[path.index] = with_random_solutions(path, pair, parameters, {seed, stop});
+  std::size_t next = 0;
+  transfer_stream({.next = [&] { return next < paths.size() ? &paths[next++] : nullptr; },
+                   .done =
+                       [&](const PathToTransfer& path, TransferredPath transferred) {
+                         results[static_cast<std::size_t>(&path - paths.data())] =
+                             std::move(transferred);
+                       }},
+                  pair, parameters, seed, stop);
   return results;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -14,7 +15,7 @@
 
 namespace kinship::transfer {
 
-/// One of a group of paths of a source robot.
+/// One of the paths of a source robot.
 struct PathToTransfer {
   const Path& path;
   /// Pose of the source robot's base in the target robot's base: T_task_target^-1 * T_task_source.
@@ -31,7 +32,7 @@ struct PathToTransfer {
 /// The task axes that matter are the target robot's.
 ///
 /// Each path becomes what it becomes alone, but sooner: the kernels of inverse kinematics work on
-/// several paths at once. A group of 16 keeps them busy.
+/// several paths at once, and take the next where one has ended.
 /// \param seed  equal input and seed: equal bytes. A pose's solutions depend on the seed and that
 ///              pose only; whether it is searched with patience depends on the poses beside it
 ///              (uncovered_poses.hpp).
@@ -43,6 +44,20 @@ std::vector<TransferredPath> transfer_paths(std::span<const PathToTransfer> path
                                             const ArmPair& pair,
                                             const TransferParameters& parameters,
                                             std::uint64_t seed, const std::stop_token& stop = {});
+
+/// Where transfers get their paths from, and who is given what they became.
+struct PathStream {
+  /// Valid until it is done; null: there are no more.
+  std::function<const PathToTransfer*()> next;
+  std::function<void(const PathToTransfer& path, TransferredPath transferred)> done;
+};
+
+/// The same of as many paths as there are, each done when it is; so that several threads may share
+/// them out as they go.
+/// \throws as above, and what the functions throw: those under way are not done then.
+void transfer_stream(const PathStream& paths, const ArmPair& pair,
+                     const TransferParameters& parameters, std::uint64_t seed,
+                     const std::stop_token& stop = {});
 
 /// Version of this code; part of a distribution's key. Raised when its output changes.
 inline constexpr int kTransferVersion = 10;

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 /// Who may use whom. A new edge is decided here first, then in the code.
 namespace kinship::architecture {
@@ -17,13 +18,14 @@ struct AllowedEdges {
 inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
     {"libcrypto", {"openssl/"}},
+    {"Boost.Random", {"boost/random/"}},
     {"Cyclone DDS", {"dds/"}},
     {"nlohmann-json", {"nlohmann/"}},
     {"urdfdom",
      {"urdf_parser/", "urdf_model/", "urdf_world/", "urdf_exception/", "console_bridge/"}},
     {"toml", {"toml.hpp", "toml/", "toml++/"}},
     {"FCL", {"fcl/"}},
-    {"nanoflann", {"nanoflann.hpp"}},
+    {"OctoMap", {"octomap/"}},
     {"OMPL", {"ompl/"}},
     {"SQLite", {"sqlite3.h"}},
     {"zstd", {"zstd.h", "zstd_errors.h"}},
@@ -68,7 +70,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
-      {mixture, {{types}, {"Eigen"}}},
+      {mixture, {{types}, {"Eigen", "Boost.Random"}}},
       {evidence, {{types}, {}}},
       {codec, {{types, idl}, {"Eigen"}}},
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
@@ -77,9 +79,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {models, {{geometry, kinematics, types}, {"Eigen", "toml"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
-      {collision, {{geometry, kinematics, types}, {"Eigen", "FCL"}}},
-      {planning,
-       {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen", "nanoflann"}}},
+      {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
+      {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -97,11 +98,16 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, inverse, geometry, kinematics, models, mixture, json, types},
+       {{link, arguments, files, inverse, collision, geometry, kinematics, models, mixture, json,
+         types},
         {"Eigen", "CLI11"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };
 }();
+
+/// Rooms of server/store/sqlite: each may include what stands before it, and the folder itself all.
+inline const std::vector<std::string> kStoreRooms = {"files", "database", "rows", "opening",
+                                                     "upkeep"};
 
 }  // namespace kinship::architecture

@@ -93,6 +93,26 @@ TEST(Architecture, ExternalLibrariesStayInTheirRooms) {
   }
 }
 
+/// The place of a path's room in kStoreRooms; their number for the folder itself, -1 elsewhere.
+int place_in_store(const std::string& path) {
+  const std::string folder = "server/store/sqlite/";
+  if (!path.starts_with(folder))
+    return -1;
+  const std::string room =
+      path.substr(folder.size(), path.find('/', folder.size()) - folder.size());
+  return static_cast<int>(std::ranges::find(kStoreRooms, room) - kStoreRooms.begin());
+}
+
+TEST(Architecture, RoomsOfTheStoreLeanOnThoseBeforeThem) {
+  for (const Include& include : all_includes()) {
+    const int from = place_in_store(include.file);
+    if (from < 0)
+      continue;
+    EXPECT_LE(place_in_store(include.target), from)
+        << include.file << " includes " << include.target;
+  }
+}
+
 TEST(Architecture, FilesStayReadable) {
   constexpr std::ptrdiff_t kMaxLines = 500;
   std::vector<std::string> roofs = kRoofs;

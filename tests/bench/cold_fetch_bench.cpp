@@ -2,10 +2,11 @@
 // loopback, the learning sets of the study `cobots` (500 queries of each of five robots), default
 // profile with poses so dense that as many configurations come out as the budgets speak of.
 //
-//   cold_fetch_bench
+//   cold_fetch_bench [500] [2000] [placement] [refit]      (nothing named: all of them)
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 
 #include "client/link/client.hpp"
@@ -26,17 +27,18 @@ constexpr auto kDenseOfAll = "default,max_poses_per_path=0,pose_spacing=0.07";  
 
 std::string text_of(double time_s) {
   std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << time_s << " s";
+  text << std::fixed << std::setprecision(3) << time_s << " s";
   return text.str();
 }
 
-std::string description(const Distribution& distribution) {
+/// \param cpu_s  of the server, all of its threads.
+std::string description(const Distribution& distribution, double cpu_s) {
   std::uint64_t paths = 0;
   for (const Source& source : distribution.sources)
     paths += source.paths_used;
   return std::to_string(paths) + " paths, " + std::to_string(distribution.configurations) +
          " configurations, transfer " + text_of(distribution.transfer_time_s) + ", fit " +
-         text_of(distribution.fit_time_s);
+         text_of(distribution.fit_time_s) + ", CPU " + text_of(cpu_s);
 }
 
 double server_time_s(const Distribution& distribution) {
@@ -93,6 +95,14 @@ class Fleet {
 
   link::Client& client() { return client_; }
 
+  /// What the server has taken of processors until now, s.
+  double cpu_s() const {
+    clockid_t clock = 0;
+    if (clock_getcpuclockid(server_.pid(), &clock) != 0)
+      throw std::runtime_error("no clock of kinshipd");
+    return clock_s(clock);
+  }
+
  private:
   const test::ReservedDomain domain_;
   const test::TemporaryDirectory directory_{test::disk_root()};
@@ -103,26 +113,27 @@ class Fleet {
   int placements_ = 0;
 };
 
-void cold_fetches(Fleet& fleet) {
+/// \param of_all  with the paths of all others; otherwise of one.
+void cold_fetches(Fleet& fleet, bool of_all) {
+  const std::string task = of_all ? "cobots" : "cobots_of_one";
   for (const std::string& robot : cobots())
-    fleet.report(robot, "cobots", 0, 500);
-  for (const bool of_all : {false, true})
-    for (const std::string& target : cobots()) {
-      std::vector<std::string> sources = {target == "panda" ? "iiwa14" : "panda"};
-      if (of_all) {
-        sources = cobots();
-        std::erase(sources, target);
-      }
-      const FetchRequest request =
-          fleet.request(target, "cobots", of_all ? kDenseOfAll : kDense, sources);
-      const double start_s = wall_s();
-      const Distribution distribution = fleet.fetch(request);
-      print({.name = (of_all ? "2000 paths for " : "500 paths for ") + target,
-             .value = wall_s() - start_s,
-             .unit = "s",
-             .budget = of_all ? 2.5 : 0.25,
-             .note = description(distribution)});
+    fleet.report(robot, task, 0, 500);
+  for (const std::string& target : cobots()) {
+    std::vector<std::string> sources = {target == "panda" ? "iiwa14" : "panda"};
+    if (of_all) {
+      sources = cobots();
+      std::erase(sources, target);
     }
+    const FetchRequest request =
+        fleet.request(target, task, of_all ? kDenseOfAll : kDense, sources);
+    const double start_s = wall_s(), start_cpu_s = fleet.cpu_s();
+    const Distribution distribution = fleet.fetch(request);
+    print({.name = (of_all ? "2000 paths for " : "500 paths for ") + target,
+           .value = wall_s() - start_s,
+           .unit = "s",
+           .budget = of_all ? 2.5 : 0.25,
+           .note = description(distribution, fleet.cpu_s() - start_cpu_s)});
+  }
 }
 
 /// 100 paths with the scenes they were planned in, which the server has transferred before.
@@ -130,19 +141,20 @@ void new_placement(Fleet& fleet) {
   fleet.report("panda", "placements", 0, 100);
   const auto request = [&] { return fleet.request("iiwa14", "placements", "default", {"panda"}); };
   fleet.fetch(request());
-  std::vector<double> times_s;
+  std::vector<double> times_s, cpu_s;
   Distribution distribution;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 9; ++i) {
     const FetchRequest anew = request();
-    const double start_s = wall_s();
+    const double start_s = wall_s(), start_cpu_s = fleet.cpu_s();
     distribution = fleet.fetch(anew);
     times_s.push_back(wall_s() - start_s);
+    cpu_s.push_back(fleet.cpu_s() - start_cpu_s);
   }
   print({.name = "new placement of 100 paths with scenes",
          .value = 1e3 * median(times_s),
          .unit = "ms",
          .budget = 30,
-         .note = description(distribution)});
+         .note = description(distribution, median(cpu_s))});
 }
 
 /// 20 paths more than 380: what the follower gets against what is made anew of all of them.
@@ -152,24 +164,33 @@ void refit(Fleet& fleet) {
   const auto follower = fleet.client().follow(request);
   const auto deadline = std::chrono::steady_clock::now() + seconds(120);
   const auto first = follower->wait_for_newer(nullptr, deadline);
+  const double start_cpu_s = fleet.cpu_s();
   fleet.report("panda", "refit", 380, 400);
   const auto second = follower->wait_for_newer(first, deadline);
   if (!second || second == first || second->fit.value().from_revision == 0)
     throw std::runtime_error("no refit from the mixture before");
+  const double refit_cpu_s = fleet.cpu_s() - start_cpu_s;
   const Distribution anew = fleet.fetch(fleet.request("iiwa14", "refit", kDense, {"panda"}));
   print({.name = "refit with 5 % new paths",
          .value = server_time_s(*second),
          .unit = "s",
          .reference = Reference{"made anew", server_time_s(anew)},
-         .note = description(*second)});
+         .note = description(*second, refit_cpu_s)});
 }
 
 }  // namespace
 }  // namespace kinship::bench
 
-int main() {
+int main(int argc, char** argv) {
+  const std::set<std::string> named(argv + 1, argv + argc);
+  const auto is_wanted = [&](const char* name) { return named.empty() || named.count(name) > 0; };
   kinship::bench::Fleet fleet;
-  kinship::bench::cold_fetches(fleet);
-  kinship::bench::new_placement(fleet);
-  kinship::bench::refit(fleet);
+  if (is_wanted("500"))
+    kinship::bench::cold_fetches(fleet, false);
+  if (is_wanted("2000"))
+    kinship::bench::cold_fetches(fleet, true);
+  if (is_wanted("placement"))
+    kinship::bench::new_placement(fleet);
+  if (is_wanted("refit"))
+    kinship::bench::refit(fleet);
 }

@@ -1,10 +1,11 @@
 // Inverse kinematics at reachable poses, all robots of robots/models and arms of general structure:
-// configurations per second of CPU time, chosen (L = 8, d = 0.2) and verified; beside KDL at the
-// same poses. One thread.
+// configurations per second of CPU time, chosen (L = 8, d = 0.2) and verified; beside KDL, and EAIK
+// where it was built, at the same poses. One thread.
 //
 //   inverse_bench [--no-references]
 
 #include <algorithm>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ std::vector<Subject> subjects() {
   std::mt19937_64 generator(6);
   for (int i = 1; i <= 3; ++i)
     result.push_back(
-        {"general 6R, " + std::to_string(i), test::random_chain({}, generator), 150e3, false});
+        {"general 6R, " + std::to_string(i), test::random_chain({}, generator), 400e3, false});
   return result;
 }
 
@@ -59,6 +60,25 @@ Run solve_all(const Subject& subject, const inverse::Solver& solver,
     run.missed += found.configurations.cols() == 0 ? 1 : 0;
   }
   return run;
+}
+
+/// Beside EAIK, if the build was pointed to it and it can decompose the arm.
+void print_to_eaik(Figure figure) {
+  const std::string program = beside_this_program("reference_eaik");
+  if (!std::filesystem::exists(program))
+    return;
+  const std::vector<double> eaik = run_reference({program, figure.name, std::to_string(kPoses)}, 3);
+  if (eaik[0] == 0)
+    return;
+  figure.name += ", to EAIK";
+  figure.budget.reset();
+  figure.reference = Reference{"EAIK", eaik[0]};
+  const int lock = static_cast<int>(eaik[2]);
+  figure.note =
+      "EAIK: counted as ours, chosen outside its time; " +
+      (lock == 0 ? "" : "joint " + std::to_string(lock) + " locked, drawn anew a pose; ") +
+      std::to_string(static_cast<int>(eaik[1])) + " of " + std::to_string(kPoses) + " poses missed";
+  print(figure);
 }
 
 void measure(bool has_references) {
@@ -83,6 +103,8 @@ void measure(bool has_references) {
       poses_for_kdl += kPosesForKdl;
     }
     print(figure);
+    if (has_references && subject.is_cobot)
+      print_to_eaik(figure);
     missed += run.missed;
     poses += kPoses;
   }

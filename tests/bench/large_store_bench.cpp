@@ -1,133 +1,338 @@
-// A store of 1 000 000 paths, in the current directory: how fast it fills, opens and answers for
-// one of its tasks, and what a backup takes.
+// A store of many paths in many (robot, task) pairs, in the current directory: how it fills and
+// opens, what reading and listing one pair costs beside a store that has that pair alone, reports
+// to a pair that has as many paths as it may, and backups beside a writer.
 //
-//   large_store_bench
+//   large_store_bench PATHS PAIRS      1000000 200: 4 GB, a quarter of an hour
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdlib>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <memory>
-#include <random>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/bench/figure.hpp"
+#include "tests/bench/filled_store.hpp"
 #include "tests/bench/measure.hpp"
-#include "tests/support/store_values.hpp"
 
-namespace kinship::store {
+namespace kinship::bench {
 namespace {
 
-constexpr Eigen::Index kDof = 7;
-constexpr Eigen::Index kWaypoints = 12;  // of a shortened path
-constexpr std::uint64_t kPaths = 1'000'000;
-constexpr std::uint64_t kPathsOfTask = 500;
 constexpr double kMB = 1e6;
+constexpr std::size_t kPathsOfAPage = 128;  // as a fit reads them
 
-/// A file in the current directory, gone with what SQLite lays beside it.
-class StoreFile {
- public:
-  explicit StoreFile(const std::string& name)
-      : path_("large_store_bench-" + std::to_string(getpid()) + "-" + name) {}
-  StoreFile(const StoreFile&) = delete;
-  StoreFile& operator=(const StoreFile&) = delete;
-  ~StoreFile() {
-    std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", ".lock", ".witness"})
-      std::filesystem::remove(path_.string() + suffix, ignored);
-  }
-  const std::filesystem::path& path() const noexcept { return path_; }
-  double wal_bytes() const {
-    std::error_code missing;
-    const auto bytes = std::filesystem::file_size(path_.string() + "-wal", missing);
-    return missing ? 0 : static_cast<double>(bytes);
-  }
+/// Beyond the paths that any pair was filled with.
+constexpr std::uint64_t kFirstLater = 1'000'000'000;
 
- private:
-  std::filesystem::path path_;
+/// As a server opens it before it serves, ms.
+double open_ms(const StoreFile& file, std::unique_ptr<store::Store>& store) {
+  store.reset();
+  const double start_s = wall_s();
+  store = store::open_sqlite_store(file.path());
+  static_cast<void>(store->robots());
+  static_cast<void>(store->status());
+  return 1e3 * (wall_s() - start_s);
+}
+
+/// The file is on the disk and nowhere in memory.
+void drop_from_memory(const StoreFile& file) {
+  const int descriptor = open(file.path().c_str(), O_RDONLY | O_CLOEXEC);
+  fsync(descriptor);
+  posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
+  close(descriptor);
+}
+
+void measure_opening(const StoreFile& file, std::unique_ptr<store::Store>& store) {
+  constexpr int kRounds = 7;
+  std::vector<double> warm, cold;
+  for (int i = 0; i < kRounds; ++i)
+    warm.push_back(open_ms(file, store));
+  for (int i = 0; i < kRounds; ++i) {
+    store.reset();
+    drop_from_memory(file);
+    cold.push_back(open_ms(file, store));
+  }
+  print({.name = "open", .value = median(warm), .unit = "ms", .budget = 50});
+  print({.name = "open, nothing of it in memory", .value = median(cold), .unit = "ms"});
+}
+
+/// What a server asks a store of one pair, by name.
+struct Question {
+  std::string name;
+  std::function<void(const store::Store&)> ask;
 };
 
-std::unique_ptr<Store> make_store(const StoreFile& file, RobotRecord robot) {
-  robot.dof = kDof;
-  auto store = open_sqlite_store(file.path());
-  static_cast<void>(store->register_robot(robot).value_or_throw());
-  return store;
-}
-
-/// Reports `count` paths, kPathsOfTask of each task, and looks at the WAL after every batch.
-/// \return the largest WAL, bytes.
-double fill(Store& store, const StoreFile& file, const Digest& robot, std::uint64_t count) {
-  constexpr std::uint64_t kBatch = 250;
-  static_assert(kPathsOfTask % kBatch == 0);
-  double largest = 0;
-  for (std::uint64_t first = 0; first < count; first += kBatch) {
-    const std::string task = "task " + std::to_string(first / kPathsOfTask);
-    std::vector<Attempt> attempts;
-    for (std::uint64_t i = first; i < first + kBatch; ++i) {
-      Attempt attempt = test::make_attempt(robot, task, i + 1);
-      attempt.path = test::make_path(i + 1, kDof, kWaypoints);
-      attempts.push_back(std::move(attempt));
-    }
-    for (const Receipt& receipt : test::report(store, std::move(attempts)))
-      if (receipt.status != ReceiptStatus::Stored)
-        throw std::runtime_error("a report was not stored");
-    largest = std::max(largest, file.wal_bytes());
-    if (first % 100'000 == 0)
-      std::cerr << first << " of " << count << " paths\n";
+void read_all_paths(const store::Store& store, const Pair& pair, std::uint64_t wanted) {
+  static_cast<void>(store.experience(pair.task));
+  std::uint64_t read = 0;
+  for (std::int64_t last = 0;;) {
+    const auto page = store.read_paths(pair.robot, pair.task,
+                                       {.after_id = last, .limit = kPathsOfAPage, .since_ms = 0});
+    if (page.empty())
+      break;
+    read += page.size();
+    last = page.back().id;
   }
-  return largest;
+  if (read != wanted)
+    throw std::runtime_error("paths are missing");
 }
 
-/// What a cold fetch reads of one task, ms.
-double read_task_ms(const Store& store, const Digest& robot) {
-  const double taken_s = bench::least_s(20, bench::wall_s, [&] {
-    static_cast<void>(store.experience("task 0"));
-    if (store.read_paths(robot, "task 0", {.limit = kPathsOfTask}).size() != kPathsOfTask)
-      throw std::runtime_error("paths are missing");
+/// \param wanted  rows
+template <typename Page>
+void need(const Page& page, std::size_t wanted) {
+  if (page.rows.size() != wanted)
+    throw std::runtime_error("rows are missing");
+}
+
+std::vector<Question> questions(const Fleet& fleet, const FillPlan& plan) {
+  const Pair pair = fleet.pairs()[0];
+  const Uuid report = fleet.attempt(0, plan.paths_of_pair() / 2).report_uuid;
+  const Digest distribution = test::id_from<Digest>(Fleet::distribution_number(0, 3));
+  constexpr std::size_t kRows = 100;
+  std::vector<Question> asked;
+  const auto add = [&asked](std::string name, std::function<void(const store::Store&)> ask) {
+    asked.push_back({std::move(name), std::move(ask)});
+  };
+  add("generation", [=](const store::Store& store) {
+    static_cast<void>(store.generation(pair.robot, pair.task));
   });
-  return 1e3 * taken_s;
+  add("experience of the task",
+      [=](const store::Store& store) { static_cast<void>(store.experience(pair.task)); });
+  add("all paths of the pair", [=, wanted = plan.paths_of_pair()](const store::Store& store) {
+    read_all_paths(store, pair, wanted);
+  });
+  add("ids of its paths",
+      [=](const store::Store& store) { static_cast<void>(store.path_ids(pair.robot, pair.task)); });
+  add("what its attempts cost", [=](const store::Store& store) {
+    static_cast<void>(store.attempt_totals(pair.robot, pair.task));
+  });
+  add("a stored distribution", [=](const store::Store& store) {
+    if (!store.find_distribution(distribution))
+      throw std::runtime_error("a distribution is missing");
+  });
+  add("an attempt",
+      [=](const store::Store& store) { static_cast<void>(store.find_attempt(report).value()); });
+  add("list: a robot", [=](const store::Store& store) { need(store.list_robots("zz", 1), 1); });
+  add("list: a task", [=](const store::Store& store) { need(store.list_tasks("", 1), 1); });
+  add("show: the task",
+      [=](const store::Store& store) { static_cast<void>(store.find_task(pair.task).value()); });
+  add("list: 100 of its paths", [=](const store::Store& store) {
+    need(store.list_paths(pair.robot, pair.task, "", kRows), kRows);
+  });
+  add("list: its distributions", [=](const store::Store& store) {
+    need(store.list_distributions(pair.robot, pair.task, "", kRows), 10);
+  });
+  add("export: 100 of its attempts", [=](const store::Store& store) {
+    need(store.export_attempts(pair.robot, pair.task, "", kRows, std::size_t{1} << 30U), kRows);
+  });
+  return asked;
 }
 
-void run() {
-  const RobotRecord robot = test::make_robot("bench", 1);
-  const StoreFile small_file("small"), file("large"), copy("copy");
-  const auto small = make_store(small_file, robot);
-  fill(*small, small_file, robot.digest, kPathsOfTask);
-  auto store = make_store(file, robot);
-  const double start_s = bench::wall_s();
-  const double largest_wal = fill(*store, file, robot.digest, kPaths);
-  bench::print({.name = "paths stored, batches of 250",
-                .value = static_cast<double>(kPaths) / (bench::wall_s() - start_s),
-                .unit = "paths/s",
-                .better = bench::Better::Higher});
-  bench::print(
-      {.name = "largest WAL meanwhile", .value = largest_wal / kMB, .unit = "MB", .budget = 64});
-  std::vector<double> open_ms;
-  for (int i = 0; i < 5; ++i) {
-    store.reset();
-    const double open_s = bench::wall_s();
-    store = open_sqlite_store(file.path());
-    open_ms.push_back(1e3 * (bench::wall_s() - open_s));
+/// Each question in turn to both stores, so that the machine's other work meets both.
+void measure_questions(const std::vector<Question>& asked, const store::Store& large,
+                       const store::Store& alone) {
+  constexpr int kRounds = 40;
+  for (const Question& question : asked) {
+    std::vector<double> of_large, of_alone;
+    for (int round = 0; round < kRounds; ++round) {
+      of_large.push_back(least_s(1, wall_s, [&] { question.ask(large); }));
+      of_alone.push_back(least_s(1, wall_s, [&] { question.ask(alone); }));
+    }
+    print({.name = question.name,
+           .value = 1e3 * median(of_large),
+           .unit = "ms",
+           .reference = Reference{"the pair alone", 1e3 * median(of_alone)},
+           .ratio_budget = 1.5});
   }
-  bench::print({.name = "open", .value = bench::median(open_ms), .unit = "ms", .budget = 50});
-  bench::print({.name = "experience of one task read, 500 paths",
-                .value = read_task_ms(*store, robot.digest),
-                .unit = "ms",
-                .reference = bench::Reference{"no other task", read_task_ms(*small, robot.digest)},
-                .ratio_budget = 1.5});
-  const double backup_s = bench::wall_s();
-  static_cast<void>(store->backup(copy.path(), [](double) { return true; }).value_or_throw());
-  bench::print(
-      {.name = "backup",
-       .value = bench::wall_s() - backup_s,
-       .unit = "s",
-       .note = std::to_string(std::filesystem::file_size(copy.path()) / 1'000'000) + " MB"});
+  std::vector<double> status;
+  for (int round = 0; round < kRounds; ++round)
+    status.push_back(least_s(1, wall_s, [&] { static_cast<void>(large.status()); }));
+  print({.name = "status of the store", .value = 1e3 * median(status), .unit = "ms"});
+}
+
+std::string latencies(const std::vector<double>& ms) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "p50 " << median(ms) << " ms, p99 "
+       << percentile(ms, 0.99) << " ms, max " << percentile(ms, 1) << " ms";
+  return text.str();
+}
+
+/// A client that reports batches without a pause, on a thread of its own.
+class BusyClient {
+ public:
+  static constexpr std::uint64_t kBatch = 16;
+
+  BusyClient(store::Store& store, const Fleet& fleet, std::uint64_t first)
+      : store_(&store), fleet_(&fleet), next_(first), thread_([this] { run(); }) {}
+  ~BusyClient() {
+    if (thread_.joinable())
+      stop();
+  }
+  BusyClient(const BusyClient&) = delete;
+  BusyClient& operator=(const BusyClient&) = delete;
+
+  /// \return what each batch waited for its receipts, ms.
+  const std::vector<double>& stop() {
+    stopping_ = true;
+    thread_.join();
+    return waits_ms_;
+  }
+  double reports_per_s() const { return static_cast<double>(kBatch * waits_ms_.size()) / seconds_; }
+  std::uint64_t next() const { return next_; }
+
+ private:
+  void run() {
+    const double begin_s = wall_s();
+    const std::uint64_t pairs = fleet_->pairs().size();
+    while (!stopping_) {
+      std::vector<Attempt> attempts;
+      for (std::uint64_t i = 0; i < kBatch; ++i, ++next_)
+        attempts.push_back(fleet_->attempt(next_ % pairs, kFirstLater + next_));
+      const double start_s = wall_s();
+      static_cast<void>(test::report(*store_, std::move(attempts)));
+      waits_ms_.push_back(1e3 * (wall_s() - start_s));
+    }
+    seconds_ = wall_s() - begin_s;
+  }
+
+  store::Store* store_;
+  const Fleet* fleet_;
+  std::uint64_t next_;
+  std::atomic<bool> stopping_ = false;
+  std::vector<double> waits_ms_;
+  double seconds_ = 0;
+  std::thread thread_;  // last: it uses all of the above
+};
+
+/// As many bytes copied by hand, MB/s: what the disk gives in this minute.
+double copy_rate(const StoreFile& from, const StoreFile& to) {
+  const double start_s = wall_s();
+  std::filesystem::copy_file(from.path(), to.path());
+  const int descriptor = open(to.path().c_str(), O_RDONLY | O_CLOEXEC);
+  fsync(descriptor);
+  close(descriptor);
+  return to.bytes() / kMB / (wall_s() - start_s);
+}
+
+double backup_rate(const store::Store& store, const StoreFile& to) {
+  const double start_s = wall_s();
+  static_cast<void>(store.backup(to.path(), [](double) { return true; }).value_or_throw());
+  return to.bytes() / kMB / (wall_s() - start_s);
+}
+
+void measure_backups(store::Store& store, const StoreFile& file, const Fleet& fleet) {
+  const StoreFile copy("copy"), plain("plain"), idle("idle");
+  BusyClient before(store, fleet, 0);
+  std::this_thread::sleep_for(std::chrono::seconds(5));  // how long is measured
+  const std::vector<double> alone_ms = before.stop();
+  BusyClient beside(store, fleet, before.next());
+  const double rate = backup_rate(store, copy);
+  const std::vector<double> beside_ms = beside.stop();
+  const double disk = copy_rate(file, plain);
+  print({.name = "backup beside a client that reports without a pause",
+         .value = rate,
+         .unit = "MB/s",
+         .better = Better::Higher,
+         .reference = Reference{"the file copied and synced", disk},
+         .budget = 50,
+         .note = std::to_string(static_cast<int>(copy.bytes() / kMB)) + " MB"});
+  print({.name = "its reports meanwhile, batches of 16",
+         .value = beside.reports_per_s(),
+         .unit = "reports/s",
+         .better = Better::Higher,
+         .reference = Reference{"without a backup", before.reports_per_s()},
+         .note = latencies(beside_ms) + "; without: " + latencies(alone_ms)});
+  print({.name = "what a batch waits meanwhile, p99",
+         .value = percentile(beside_ms, 0.99),
+         .unit = "ms",
+         .reference = Reference{"without a backup", percentile(alone_ms, 0.99)}});
+  print({.name = "backup while nobody reports",
+         .value = backup_rate(store, idle),
+         .unit = "MB/s",
+         .better = Better::Higher});
+}
+
+/// Reports to one pair, a second, with and without a cap that it has reached.
+void measure_cap(const StoreFile& file, std::unique_ptr<store::Store>& alone, const Fleet& fleet,
+                 const FillPlan& plan) {
+  constexpr std::uint64_t kReports = 4000;
+  const auto rate = [&](std::uint64_t cap, std::uint64_t first) {
+    alone.reset();
+    alone = store::open_sqlite_store(file.path(), {.max_paths_per_pair = cap});
+    std::vector<Attempt> attempts;
+    for (std::uint64_t i = 0; i < kReports; ++i)
+      attempts.push_back(fleet.attempt(0, kFirstLater + first + i));
+    const double start_s = wall_s();
+    for (std::uint64_t i = 0; i < kReports; i += BusyClient::kBatch) {
+      const auto begin = attempts.begin() + static_cast<std::ptrdiff_t>(i);
+      static_cast<void>(test::report(
+          *alone,
+          std::vector<Attempt>(begin, begin + static_cast<std::ptrdiff_t>(BusyClient::kBatch))));
+    }
+    return static_cast<double>(kReports) / (wall_s() - start_s);
+  };
+  const double capped = rate(plan.paths_of_pair(), 0);
+  const std::uint64_t dropped = alone->status().dropped_paths;
+  const double without = rate(0, kReports);
+  print({.name = "reports to a pair that has as many paths as it may, batches of 16",
+         .value = capped,
+         .unit = "reports/s",
+         .better = Better::Higher,
+         .reference = Reference{"without a cap", without},
+         .note = std::to_string(dropped) + " of " + std::to_string(kReports) + " paths dropped"});
+}
+
+void run(const FillPlan& plan) {
+  const Fleet fleet(plan);
+  const StoreFile alone_file("alone"), file("large");
+  auto alone = store::open_sqlite_store(alone_file.path());
+  fleet.fill(*alone, 1, [](std::uint64_t) {});
+  auto store = store::open_sqlite_store(file.path());
+  double largest_wal = 0, most_in_use = 0;
+  const double start_s = wall_s();
+  fleet.fill(*store, plan.pairs, [&](std::uint64_t reported) {
+    largest_wal = std::max(largest_wal, file.bytes("-wal"));
+    if (reported % 50'000 == 0)
+      std::cerr << reported << " of " << plan.paths << " paths, " << file.bytes() / kMB << " MB, "
+                << wall_s() - start_s << " s\n";
+  });
+  print({.name = "paths stored, batches of 250",
+         .value = static_cast<double>(plan.paths) / (wall_s() - start_s),
+         .unit = "paths/s",
+         .better = Better::Higher,
+         .note = std::to_string(static_cast<int>(file.bytes() / kMB)) + " MB in all"});
+  most_in_use = file.bytes("-wal");
+  print({.name = "largest WAL meanwhile", .value = largest_wal / kMB, .unit = "MB", .budget = 64});
+  print({.name = "WAL afterwards", .value = most_in_use / kMB, .unit = "MB", .budget = 64});
+  measure_opening(file, store);
+  measure_questions(questions(fleet, plan), *store, *alone);
+  measure_cap(alone_file, alone, fleet, plan);
+  measure_backups(*store, file, fleet);
 }
 
 }  // namespace
-}  // namespace kinship::store
+}  // namespace kinship::bench
 
-int main() { kinship::store::run(); }
+int main(int count, char** arguments) {
+  kinship::bench::FillPlan plan;
+  if (count >= 3) {
+    plan.paths = std::strtoull(arguments[1], nullptr, 10);
+    plan.pairs = std::strtoull(arguments[2], nullptr, 10);
+  }
+  constexpr std::uint64_t kLeastPathsOfPair = 500;
+  if (plan.pairs < 2 || plan.paths_of_pair() < kLeastPathsOfPair) {
+    std::cerr << "usage: large_store_bench PATHS PAIRS, at least 2 pairs of " << kLeastPathsOfPair
+              << " paths\n";
+    return 2;
+  }
+  kinship::bench::run(plan);
+}

@@ -6,7 +6,6 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -16,29 +15,20 @@
 
 #include "client/link/client.hpp"
 #include "tests/bench/figure.hpp"
+#include "tests/bench/load_clients.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/support/child_process.hpp"
-#include "tests/support/panda_experience.hpp"
+#include "tests/support/process_figures.hpp"
 #include "tests/support/reserved_domain.hpp"
-#include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace {
 
 using namespace kinship;
-using std::chrono::seconds;
 
 constexpr int kProcesses = 10;
 constexpr int kClientsOfProcess = 100;
-
-FetchRequest request_for(const Digest& robot) {
-  FetchRequest request;
-  request.task = "sweep";
-  request.robot = robot;
-  request.deadline = seconds(60);
-  return request;
-}
 
 /// Fetches with every client until each has an answer.
 void fetch_with_all(const std::vector<std::unique_ptr<link::Client>>& clients,
@@ -46,7 +36,7 @@ void fetch_with_all(const std::vector<std::unique_ptr<link::Client>>& clients,
   std::vector<std::jthread> threads;
   for (const auto& client : clients)
     threads.emplace_back([&client, &robot] {
-      if (client->fetch(request_for(robot)).value_or_throw().status != FetchStatus::Ready)
+      if (client->fetch(bench::request_for(robot)).value_or_throw().status != FetchStatus::Ready)
         std::exit(1);
     });
 }
@@ -64,8 +54,7 @@ int run_clients(std::uint32_t domain, const Digest& robot) {
   sigprocmask(SIG_BLOCK, &signals, nullptr);  // threads inherit it
   std::vector<std::unique_ptr<link::Client>> clients;
   for (int i = 0; i < kClientsOfProcess; ++i)
-    clients.push_back(std::make_unique<link::Client>(
-        link::ClientOptions{.domain = domain, .outbox = {}, .has_outbox = false}));
+    clients.push_back(std::make_unique<link::Client>(bench::without_outbox(domain)));
   fetch_with_all(clients, robot);
   std::cout << "connected" << std::endl;
   int received = 0;
@@ -84,32 +73,17 @@ void expect(const Processes& processes, const std::string& line) {
       throw std::runtime_error("a process of clients has ended before '" + line + "'");
 }
 
-double resident_mb(pid_t process) {
-  std::ifstream status("/proc/" + std::to_string(process) + "/status");
-  for (std::string word; status >> word;)
-    if (double kilobytes = 0; word == "VmRSS:" && status >> kilobytes)
-      return kilobytes / 1000;
-  throw std::runtime_error("no resident size of the server");
-}
-
-Digest teach(std::uint32_t domain, const std::filesystem::path& outbox) {
-  link::Client client({.domain = domain, .outbox = outbox});
-  const Digest panda =
-      client.register_robot(test::model_description("panda")).value_or_throw().robot;
-  for (std::uint64_t i = 0; i < 100; ++i)
-    client.report(test::panda_attempt(panda, "sweep", i));
-  client.flush(seconds(60));
-  client.fetch(request_for(panda)).value_or_throw();
-  return panda;
-}
-
 void run() {
   const test::ReservedDomain domain;
   const test::TemporaryDirectory directory{test::disk_root()};
   const test::ServerProcess::Options options{
       .store = directory / "fleet.db", .domain = domain.number(), .arguments = {}};
   auto server = std::make_unique<test::ServerProcess>(options);
-  const Digest panda = teach(domain.number(), directory / "outbox");
+  Digest panda;
+  {
+    link::Client client(bench::without_outbox(domain.number()));
+    panda = bench::teach(client, 100);
+  }
   Processes processes;
   double start_s = bench::wall_s();
   for (int i = 0; i < kProcesses; ++i)
@@ -131,7 +105,7 @@ void run() {
                 .unit = "s",
                 .budget = 3});
   bench::print({.name = "resident size of the server",
-                .value = resident_mb(server->pid()),
+                .value = test::figures_of(server->pid()).resident_mb,
                 .unit = "MB",
                 .budget = 200});
 }

@@ -49,6 +49,7 @@ class RestartedSolver {
  public:
   explicit RestartedSolver(const kinematics::Chain& arm)
       : arm_(arm),
+        space_(arm),
         chain_(to_kdl(arm)),
         solver_(chain_, kPrecision / 10),
         found_(dof()),
@@ -61,7 +62,7 @@ class RestartedSolver {
       if (solver_.CartToJnt(start_, wanted, found_) < 0)
         continue;
       Eigen::VectorXd q = found_.data;
-      if (inverse::normalize(arm_, q) &&
+      if (space_.normalize(q.data()) &&
           kinematics::T_base_transfer(arm_, q).isApprox(T_base_transfer, kPrecision))
         return true;
     }
@@ -72,6 +73,7 @@ class RestartedSolver {
   unsigned dof() const { return static_cast<unsigned>(arm_.dof()); }
 
   const kinematics::Chain& arm_;
+  inverse::JointSpace space_;
   KDL::Chain chain_;  // before the solver, which keeps a reference to it
   KDL::ChainIkSolverPos_LMA solver_;
   KDL::JntArray found_, start_;

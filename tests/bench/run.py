@@ -43,8 +43,11 @@ BENCHES = [
     bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
     bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1),
     bench("command", "command_bench", "One-shot commands against a local server"),
-    bench("large-store", "large_store_bench", "A store of 1 000 000 paths", repeats=1, minutes=60, is_long=True),
+    bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1),
+    bench("large-store", "large_store_bench", "A store of 1 000 000 paths of 200 robots and tasks", ["1000000", "200"],
+          repeats=1, minutes=60, is_long=True),
     bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True),
+    bench("soak", "soak_bench", "20 minutes of reports, fits, fetches and short-lived clients", repeats=1, minutes=30, is_long=True),
 ]
 
 
@@ -54,6 +57,7 @@ def parse_arguments():
     parser.add_argument("--repeat", type=int, metavar="N")
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--no-references", action="store_true")
+    parser.add_argument("--eaik", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--write-results", action="store_true")
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
@@ -63,6 +67,8 @@ def parse_arguments():
             parser.error(f"no benchmark '{name}'; there are: {' '.join(known)}")
     if options.repeat is not None and options.repeat < 1:
         parser.error(f"--repeat {options.repeat}: at least 1")
+    if options.eaik and not (options.eaik.is_absolute() and options.eaik.is_dir()):
+        parser.error(f"--eaik {options.eaik}: no absolute path of a folder")
     if options.write_results and options.names:
         parser.error("--write-results needs all benchmarks, so no names")
     return options
@@ -77,10 +83,11 @@ def run_quietly(command, log):
         sys.exit(f"bench: {' '.join(map(str, command))} failed; see {log}")
 
 
-def build(benches):
+def build(benches, eaik):
+    """eaik: where EAIK is, or None."""
     programs = sorted({b.program for b in benches})
     print(f"Building {' '.join(programs)}", flush=True)
-    run_quietly(["cmake", "--preset", "bench"], BUILD / "configure.log")
+    run_quietly(["cmake", "--preset", "bench", f"-DKINSHIP_EAIK_ROOT={eaik or ''}"], BUILD / "configure.log")
     run_quietly(["cmake", "--build", BUILD, "--target", *programs], BUILD / "build.log")
 
 
@@ -208,7 +215,7 @@ def main():
             print(f"{b.name:18}{b.title} ({b.repeats} run{'s' if b.repeats > 1 else ''}{', --long' if b.is_long else ''})")
         return 0
     benches = [b for b in BENCHES if (b.name in options.names if options.names else options.long or not b.is_long)]
-    build(benches)
+    build(benches, options.eaik)
     scratch = BUILD / "scratch"
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir()

@@ -24,7 +24,7 @@ std::uint64_t rounds(std::uint64_t short_run) {
 }
 
 std::string golden(std::uint64_t number) {
-  return std::string(KINSHIP_SOURCE_DIR) + "/tests/golden/store-" + std::to_string(1 + number % 3) +
+  return std::string(KINSHIP_SOURCE_DIR) + "/tests/golden/store-" + std::to_string(1 + number % 5) +
          ".db";
 }
 
@@ -49,7 +49,7 @@ class StorePowerLoss : public testing::Test {
 
 TEST_F(StorePowerLoss, LosesNothingWhileItServesAndCloses) {
   for (std::uint64_t round = 0; round < rounds(3); ++round) {
-    StoreSession session(kSeed + round, 40);
+    StoreSession session(kSeed + round, 15);
     for (int life = 0; life < 2; ++life) {
       const auto store = session.open();
       session.register_robots(*store);
@@ -64,7 +64,7 @@ TEST_F(StorePowerLoss, LosesNothingWhileItServesAndCloses) {
 }
 
 TEST_F(StorePowerLoss, LosesNothingWhileAnOldStoreIsMigrated) {
-  for (std::uint64_t round = 0; round < rounds(3); ++round) {
+  for (std::uint64_t round = 0; round < rounds(5); ++round) {
     StoreSession session(kSeed + round, 15, golden(round));
     {
       const auto store = session.open();
@@ -78,7 +78,7 @@ TEST_F(StorePowerLoss, LosesNothingWhileAnOldStoreIsMigrated) {
 
 TEST_F(StorePowerLoss, ABackupIsWholeOrNotThere) {
   for (std::uint64_t round = 0; round < rounds(3); ++round) {
-    StoreSession session(kSeed + round, 40);
+    StoreSession session(kSeed + round, 15);
     {
       const auto store = session.open();
       session.register_robots(*store);
@@ -120,7 +120,7 @@ TEST_F(StorePowerLoss, ARestoreLeavesOneWholeStore) {
 /// that hole.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSync) {
   for (std::uint64_t round = 0; round < rounds(6); ++round) {
-    StoreSession session(kSeed + round, 60);
+    StoreSession session(kSeed + round, 25);
     session.cut_often_after_failures();
     {
       const auto store = session.open();
@@ -183,7 +183,7 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedCheckpoint) {
 /// page cache too.
 TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
   for (std::uint64_t round = 0; round < rounds(6); ++round) {
-    StoreSession session(kSeed + round, 60);
+    StoreSession session(kSeed + round, 25);
     session.cut_often_after_failures();
     {
       auto options = StoreSession::small_options();
@@ -207,7 +207,7 @@ TEST_F(StorePowerLoss, LosesNothingAfterAFailedSyncAndARestart) {
 // The harness itself: each of these must be found.
 
 TEST_F(StorePowerLoss, TheHarnessFindsADiskThatLies) {
-  StoreSession session(kSeed, 40);
+  StoreSession session(kSeed, 15);
   session.disk().lie(true);
   {
     const auto store = session.open();
@@ -242,7 +242,7 @@ class WithoutSync {
 };
 
 TEST_F(StorePowerLoss, TheHarnessFindsACommitWithoutASync) {
-  StoreSession session(kSeed, 40);
+  StoreSession session(kSeed, 15);
   {
     const WithoutSync relaxed;
     const auto store = session.open();
@@ -254,7 +254,7 @@ TEST_F(StorePowerLoss, TheHarnessFindsACommitWithoutASync) {
 }
 
 TEST_F(StorePowerLoss, TheHarnessFindsAReceiptBeforeTheCommit) {
-  StoreSession session(kSeed, 40);
+  StoreSession session(kSeed, 15);
   {
     const auto store = session.open();
     session.register_robots(*store);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "server/store/sqlite/connection.hpp"
-#include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
 #include "tests/faults/store_session.hpp"
 
 /// A disk without room, a database file that cannot be synced, a WAL that a reading pins.
@@ -83,10 +83,11 @@ TEST_F(StoreRoom, OnAFullDiskTheBallastIsRoomToGoOn) {
   ASSERT_TRUE(has_ballast());
   leave_free(0);
 
-  const std::uint64_t refused = report_until_refused();  // the WAL has no room to grow
-  ASSERT_LT(refused, kLast);
-  EXPECT_EQ(test::report_until_answered(*store_, session_.ledger(), {refused}), 0U);
-  EXPECT_FALSE(has_ballast());
+  // Sooner or later the WAL, or the file in a checkpoint, has no room to grow.
+  for (std::uint64_t number = kFirst; has_ballast(); ++number) {
+    ASSERT_LT(number, kLast);
+    EXPECT_EQ(test::report_until_answered(*store_, session_.ledger(), {number}), 0U);
+  }
   session_.retire(*store_, 0);
   EXPECT_NE(store_->status().message.find("ballast of 2 MB"), std::string::npos);
 

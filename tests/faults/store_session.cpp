@@ -51,7 +51,7 @@ void StoreSession::cut(std::uint64_t change) {
 store::SqliteOptions StoreSession::small_options() {
   store::SqliteOptions options;
   options.retry_after = std::chrono::milliseconds(1);
-  options.checkpoint_pages = 60;
+  options.checkpoint_bytes = 250'000;
   return options;
 }
 

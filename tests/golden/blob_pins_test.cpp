@@ -6,17 +6,17 @@
 
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "server/store/sqlite/compression.hpp"
-#include "server/store/sqlite/distribution_blob.hpp"
-#include "server/store/sqlite/scene_blob.hpp"
-#include "server/store/sqlite/waypoint_blob.hpp"
+#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/sqlite/rows/distribution_blob.hpp"
+#include "server/store/sqlite/rows/scene_blob.hpp"
+#include "server/store/sqlite/rows/waypoint_blob.hpp"
 #include "tests/golden/every_value.hpp"
 #include "tests/golden/pins.hpp"
 
 namespace kinship::store::blob_pins_test {
 namespace {
 
-constexpr int kFormat = 8;  // of today
+constexpr int kFormat = 9;  // of today
 
 std::string blob_name(int format) { return "blob/distribution-" + std::to_string(format) + ".hex"; }
 
@@ -52,6 +52,12 @@ TEST(BlobPins, ScenesAreWrittenAsPinned) {
   EXPECT_TRUE(check_scene_pin("blob/scene.hex", unconstrained));
   const auto scene = check_scene_pin("blob/scene-constrained.hex", test::every_recorded_scene());
   ASSERT_TRUE(scene);
+  RecordedScene approximate = test::every_recorded_scene();
+  approximate.objects[1].approximate = approximate.held[0].approximate = true;
+  const auto read = check_scene_pin("blob/scene-approximate.hex", approximate);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(content_digest(*read), content_digest(approximate));
+  EXPECT_NE(content_digest(*read), content_digest(*scene));
   Attempt attempt = test::every_attempt();
   attempt.scene = scene;
   test::expect_pinned("json/attempt.json", json::to_json(attempt) + "\n");

@@ -19,6 +19,7 @@ Problem problem_without_goal(Distinct& next) {
       {next.name("capsule"), CapsuleShape{next.share(), next.share()}, next.pose()}};
   problem.scene.objects[2].T_task_object.translation() << 1, 2, 3;
   problem.scene.meshes = {{next.name("mesh"), {next.text("file"), {1, 2, -3}}, next.pose()}};
+  problem.scene.clouds = {{next.name("cloud"), {next.text("file"), next.share()}, next.pose()}};
   problem.attached = {{next.name("held"),
                        next.name("link"),
                        CylinderShape{next.share(), next.share()},
@@ -55,6 +56,8 @@ RobotSummary every_robot_summary() {
   robot.paths = next.count();
   robot.attempts = next.count();
   robot.registered_ms = next.time_ms();
+  robot.geometry = next.text("geometry");
+  robot.geometry_ms = next.time_ms();
   return robot;
 }
 
@@ -73,6 +76,9 @@ TaskSummary every_task_summary() {
     robot.generation = next.count();
     task.robots.push_back(robot);
   }
+  task.dropped = next.count();
+  for (TaskRobotSummary& robot : task.robots)
+    robot.dropped = next.count();
   return task;
 }
 
@@ -90,6 +96,7 @@ PathSummary every_path_summary() {
   path.length = next.real();
   path.received_ms = next.time_ms();
   path.retired_ms = next.time_ms();
+  path.dropped = true;
   return path;
 }
 
@@ -198,6 +205,7 @@ ServerStatus every_status() {
     bound.limit = next.count();
     status.bounds.push_back(bound);
   }
+  status.dropped_paths = next.count();
   return status;
 }
 

@@ -108,6 +108,10 @@ RobotDescription every_robot_description() {
   robot.held_joints = {{next.name("joint"), next.real()}, {next.name("joint"), -next.real()}};
   robot.never_colliding = {{next.name("link"), next.name("link")},
                            {next.name("link"), next.name("link")}};
+  robot.mesh_solids.solids = {
+      {next.name("link"), BoxShape{{next.real(), next.real(), next.real()}}, next.pose()},
+      {next.name("link"), CapsuleShape{next.real(), next.real()}, next.pose()}};
+  robot.mesh_solids.unfiltered = {{next.name("link"), next.name("link")}};
   return robot;
 }
 
@@ -198,6 +202,7 @@ Distribution every_distribution() {
                                .new_paths = 25,
                                .transferred = 26,
                                .reason = next.text("reason")};
+  distribution.filters = next.text("filters");
   return distribution;
 }
 
@@ -260,6 +265,9 @@ RegisterReply every_register_reply() {
   reply.solver = next.text("solver");
   reply.message = next.text("message");
   reply.same_arms = {next.name("label"), next.name("label")};
+  reply.geometry_grade = GeometryGrade::Approximate;
+  reply.took_geometry = true;
+  reply.geometry = next.text("geometry");
   return reply;
 }
 

@@ -50,6 +50,21 @@ inline std::vector<Attempt> golden_attempts_with_scene() {
   return attempts;
 }
 
+/// In stores of schema 5 and later; the only ones of their task, which kept two of them.
+inline std::vector<Attempt> golden_capped_attempts() {
+  std::vector<Attempt> attempts;
+  for (std::uint64_t number = 30; number < 35; ++number)
+    attempts.push_back(make_attempt(golden_robots()[0].digest, "tray", number));
+  return attempts;
+}
+inline constexpr std::uint64_t kGoldenCap = 2;
+
+/// Taken over for robot 0 in stores of schema 5 and later.
+inline MeshSolids golden_mesh_solids() {
+  return {{{"hand", BoxShape{{0.1, 0.2, 0.05}}, make_pose()}, {"arm", CapsuleShape{0.06, 0.4}}},
+          {{"arm", "hand"}}};
+}
+
 /// Evicted after one fit in stores of schema 2 and later.
 inline Distribution golden_evicted_distribution() {
   return make_distribution(golden_robots()[1].digest, "bin", 101);

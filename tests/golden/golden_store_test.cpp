@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 
 #include "server/store/sqlite/sqlite_store.hpp"
@@ -9,6 +10,10 @@
 
 namespace kinship::golden_store_test {
 namespace {
+
+// Of schema 1, 2 ...
+constexpr std::array<std::uint64_t, 5> kAttempts = {8, 9, 11, 11, 16};
+constexpr std::array<std::uint64_t, 5> kPaths = {7, 7, 9, 9, 11};
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -47,8 +52,8 @@ TEST_P(GoldenStore, StillHasEveryAttemptAndPath) {
     ASSERT_EQ(found->path.has_value(), wanted.path.has_value());
     EXPECT_TRUE(!wanted.path || found->path->waypoints() == wanted.path->waypoints());
   }
-  EXPECT_EQ(store_->status().attempts, GetParam() < 2 ? 8U : GetParam() < 3 ? 9U : 11U);
-  EXPECT_EQ(store_->status().paths, GetParam() < 3 ? 7U : 9U);
+  EXPECT_EQ(store_->status().attempts, kAttempts[static_cast<std::size_t>(GetParam() - 1)]);
+  EXPECT_EQ(store_->status().paths, kPaths[static_cast<std::size_t>(GetParam() - 1)]);
   EXPECT_EQ(store_->generation(test::golden_robots()[0].digest, "bin"), 1U);
 }
 
@@ -87,12 +92,15 @@ TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
 
 TEST_P(GoldenStore, RetiresExportsAndEvictsWhatItHad) {
   const std::size_t with_scene = GetParam() < 3 ? 0 : 2;
-  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 8U + with_scene);
+  const std::size_t capped = GetParam() < 5 ? 0 : test::kGoldenCap;
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(),
+            8U + with_scene + capped);
   const Attempt bad = test::golden_attempts()[6];
   EXPECT_EQ(store_->retire_path(bad.report_uuid)->paths, 1U);
   EXPECT_EQ(store_->reset_task("shelf")->paths, 5U);
-  EXPECT_EQ(store_->status().paths, 1U + with_scene);
-  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(), 2U + with_scene);
+  EXPECT_EQ(store_->status().paths, 1U + with_scene + capped);
+  EXPECT_EQ(store_->export_attempts({}, "", "", 100, 1'000'000).rows.size(),
+            2U + with_scene + capped);
   const Distribution distribution = test::golden_distribution();
   EXPECT_TRUE(store_->evict_distribution(distribution.id));
   EXPECT_EQ(store_->put_distribution(distribution), 3U);
@@ -127,6 +135,32 @@ TEST_P(GoldenStore, StillHasItsScenesOnce) {
   EXPECT_EQ(test::report(*store_, {wanted})[0].status, ReceiptStatus::Duplicate);
 }
 
+TEST_P(GoldenStore, StillKnowsWhatWasBeyondItsCap) {
+  if (GetParam() < 5)
+    GTEST_SKIP() << "there was no cap then";
+  const std::vector<Attempt> attempts = test::golden_capped_attempts();
+  EXPECT_EQ(store_->read_paths(test::golden_robots()[0].digest, "tray", {.after_id = 0, .limit = 9})
+                .size(),
+            test::kGoldenCap);
+  EXPECT_EQ(store_->status().dropped_paths, attempts.size() - test::kGoldenCap);
+  for (const Receipt& receipt : test::report(*store_, attempts))
+    EXPECT_EQ(receipt.status, ReceiptStatus::Duplicate) << receipt.message;
+}
+
+TEST_P(GoldenStore, StillKnowsTheSolidsAroundItsMeshes) {
+  if (GetParam() < 5)
+    GTEST_SKIP() << "nothing was known of meshes then";
+  const auto robot = store_->find_robot(test::golden_robots()[0].digest);
+  ASSERT_TRUE(robot);
+  EXPECT_EQ(robot->geometry_revision, 1U);
+  const MeshSolids &found = robot->description.mesh_solids, wanted = test::golden_mesh_solids();
+  ASSERT_EQ(found.solids.size(), wanted.solids.size());
+  EXPECT_EQ(found.solids[0].link, "hand");
+  EXPECT_EQ(std::get<BoxShape>(found.solids[0].shape).size,
+            std::get<BoxShape>(wanted.solids[0].shape).size);
+  EXPECT_EQ(found.unfiltered, wanted.unfiltered);
+}
+
 TEST_P(GoldenStore, TakesASceneWithItsReport) {
   Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1001);
   fresh.scene = test::golden_attempts_with_scene()[0].scene;
@@ -141,7 +175,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "server/store/sqlite/database.hpp"
-#include "server/store/sqlite/seal_store.hpp"
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/golden/golden_store.hpp"
 
@@ -30,6 +30,15 @@ int make(const std::filesystem::path& file) {
         store->retire_path(test::golden_retired_attempt().report_uuid).value_or_throw());
     store->put_distribution(test::golden_evicted_distribution());
     store->evict_distribution(test::golden_evicted_distribution().id);
+    store::RobotRecord robot = test::golden_robots()[0];
+    robot.description.mesh_solids = test::golden_mesh_solids();
+    ++robot.geometry_revision;
+    static_cast<void>(store->replace_geometry(robot));
+  }
+  {
+    const std::unique_ptr<store::Store> store =
+        store::open_sqlite_store(file, {.max_paths_per_pair = test::kGoldenCap});
+    test::report(*store, test::golden_capped_attempts());
   }
   const std::filesystem::path small = file.string() + ".small";
   {

@@ -192,7 +192,7 @@ std::vector<Case> scene_cases() {
          char* const name = arena.text(std::string(100, 'n'));
          arena.resize(scene_of(a).objects, 2000);
          for (std::size_t i = 0; i < 2000; ++i)
-           scene_of(a).objects._buffer[i] = {name, 0, {1, 1, 1}, {0, 0, 0, 0, 0, 0, 1}};
+           scene_of(a).objects._buffer[i] = {name, 0, {1, 1, 1}, {0, 0, 0, 0, 0, 0, 1}, false};
        },
        {"scenes of a batch", "392", "262144"}},
   };

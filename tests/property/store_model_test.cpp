@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -28,23 +29,48 @@ struct Body {
   auto operator<=>(const Body&) const = default;
 };
 
+/// The order in which a capped store keeps contents: by the digest of the path, at the placement
+/// that all attempts here have.
+Digest rank_of(std::uint64_t content) {
+  Attempt attempt = test::make_attempt(Digest(), kTasks[0], 1);
+  attempt.path = test::make_path(content);
+  return prepare(std::move(attempt)).value().path->content;
+}
+
 class Model {
  public:
+  /// \param cap  of paths per robot and task; 0: none.
+  explicit Model(std::size_t cap) : cap_(cap) {}
+
   ReceiptStatus add(std::uint64_t uuid, const Body& body) {
     if (const auto earlier = attempts_.find(uuid); earlier != attempts_.end())
       return earlier->second == body ? ReceiptStatus::Duplicate : ReceiptStatus::Refused;
     attempts_.emplace(uuid, body);
     if (body.content == 0)
       return ReceiptStatus::Recorded;
-    if (!paths_[{body.robot, body.task}].insert(body.content).second)
+    std::set<std::uint64_t>& kept = paths_[{body.robot, body.task}];
+    if (kept.contains(body.content))
       return ReceiptStatus::Duplicate;  // of the path that is in use
+    if (cap_ > 0 && kept.size() == cap_) {
+      const std::uint64_t last = *std::ranges::max_element(kept, {}, rank_of);
+      ++dropped_;
+      if (rank_of(last) < rank_of(body.content)) {
+        never_kept_.insert(uuid);
+        return ReceiptStatus::Recorded;
+      }
+      kept.erase(last);
+      for (const auto& [other, other_body] : attempts_)
+        if (other_body == Body{body.robot, body.task, last})
+          retired_reports_.insert(other);
+    }
+    kept.insert(body.content);
     changed_.emplace(body.robot, body.task);
     return ReceiptStatus::Stored;
   }
   /// \return how many paths it retires; nothing if the report is unknown or brought none.
   std::optional<std::size_t> retire(std::uint64_t uuid) {
     const auto found = attempts_.find(uuid);
-    if (found == attempts_.end() || found->second.content == 0)
+    if (found == attempts_.end() || found->second.content == 0 || never_kept_.contains(uuid))
       return std::nullopt;
     // A report stands for the path of its content that was in use when it came.
     const Body& body = found->second;
@@ -86,12 +112,16 @@ class Model {
     return paths_[{robot, task}];
   }
   std::size_t attempts() const { return attempts_.size(); }
+  std::size_t dropped() const { return dropped_; }
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;
 
   void raise_retired(const Pair& pair) { retired_generations_[pair] = ++generations_[pair]; }
 
+  std::size_t cap_;
+  std::size_t dropped_ = 0;             // paths, in all
+  std::set<std::uint64_t> never_kept_;  // reports beyond the cap
   std::map<std::uint64_t, Body> attempts_;
   std::map<Pair, std::set<std::uint64_t>> paths_;
   std::map<Pair, std::uint64_t> generations_;
@@ -100,11 +130,12 @@ class Model {
   std::set<Pair> changed_;
 };
 
-class StoreModel : public testing::Test {
+/// The parameter is the cap of paths per robot and task; 0: none.
+class StoreModel : public testing::TestWithParam<std::size_t> {
  protected:
   void open() {
     store_.reset();
-    store_ = open_sqlite_store(directory_ / "s.db");
+    store_ = open_sqlite_store(directory_ / "s.db", {.max_paths_per_pair = GetParam()});
   }
   Body random_body() {
     return {generator_() % robots_.size(), generator_() % kTasks.size(), generator_() % kContents};
@@ -119,6 +150,7 @@ class StoreModel : public testing::Test {
   }
   void check_all() {
     EXPECT_EQ(store_->status().attempts, model_.attempts());
+    EXPECT_EQ(store_->status().dropped_paths, model_.dropped());
     for (std::size_t robot = 0; robot < robots_.size(); ++robot)
       for (std::size_t task = 0; task < kTasks.size(); ++task) {
         const Digest& digest = robots_[robot].digest;
@@ -156,10 +188,12 @@ class StoreModel : public testing::Test {
   const std::vector<RobotRecord> robots_ = {test::make_robot("panda", 1),
                                             test::make_robot("iiwa", 2)};
   std::unique_ptr<Store> store_;
-  Model model_;
+  Model model_{GetParam()};
 };
 
-TEST_F(StoreModel, EveryReceiptAndEveryReadingIsAsTheContractSays) {
+INSTANTIATE_TEST_SUITE_P(WithCaps, StoreModel, testing::Values(0, 1, 3));
+
+TEST_P(StoreModel, EveryReceiptAndEveryReadingIsAsTheContractSays) {
   open();
   for (const RobotRecord& robot : robots_)
     ASSERT_TRUE(store_->register_robot(robot));

@@ -133,7 +133,7 @@ class Recording {
     const planner::Reporter reporter{member_.digest, "experiments", study_.name};
     Attempt attempt = planner::make_attempt(reporter, problem, planned, settings);
     attempt.report_uuid = uuid_of(study_.name, member_.label(), index);
-    attempt.scene = planner::record_scene(member_.robot.chain, problem).value_or_throw();
+    attempt.scene = planner::SceneRecords().record(member_.robot.chain, problem).value_or_throw();
     if (attempt.path)
       attempt.path = rounded(*attempt.path, member_.robot.chain);
     return attempt;

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "server/store/sqlite/attempt_rows.hpp"
-#include "server/store/sqlite/sqlite_error.hpp"
-#include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/rows/attempt_rows.hpp"
 
 namespace kinship::store {
 namespace {
@@ -14,13 +14,17 @@ std::string in_words(const Uuid& report_uuid, const std::string& what) {
          "; 'kinship status' tells what to do";
 }
 
-Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedReports& damaged) {
+/// \param is_only_one  nothing else is written by its item.
+Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedReports& damaged,
+                     std::uint64_t max_paths, bool is_only_one) {
   const Uuid& uuid = prepared.attempt.report_uuid;
   if (const std::optional<std::string> why = damaged.find(uuid))
     return {uuid, ReceiptStatus::TryAgain, *why};  // in a second try of its batch
+  if (batch.is_undone_whole() && is_only_one)
+    return insert_attempt(batch, prepared, max_paths);
   Savepoint savepoint(batch.database());
   try {
-    Receipt receipt = insert_attempt(batch, prepared);
+    Receipt receipt = insert_attempt(batch, prepared, max_paths);
     savepoint.keep();
     return receipt;
   } catch (const SqliteError& error) {
@@ -39,8 +43,8 @@ Receipt insert_alone(Batch& batch, const PreparedAttempt& prepared, DamagedRepor
 }  // namespace
 
 ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
-                       Store::ReportsDone done)
-    : history_(history), damaged_(damaged), done_(std::move(done)) {
+                       Store::ReportsDone done, std::uint64_t max_paths)
+    : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
     if (const std::optional<std::string> why = damaged.find(uuid)) {
@@ -76,7 +80,8 @@ std::unique_ptr<ReportItem> ReportItem::declined(History& history, DamagedReport
 void ReportItem::apply(Batch& batch) {
   for (std::size_t i = 0; i < prepared_.size(); ++i)
     if (prepared_[i])
-      receipts_[i] = insert_alone(batch, *prepared_[i], damaged_);
+      receipts_[i] =
+          insert_alone(batch, *prepared_[i], damaged_, max_paths_, prepared_.size() == 1);
   history_.write_run(batch.database());
   position_ = position_of(batch.database());
 }

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "server/store/sqlite/damaged_reports.hpp"
-#include "server/store/sqlite/history.hpp"
-#include "server/store/sqlite/prepared_attempt.hpp"
-#include "server/store/sqlite/writer.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/opening/history.hpp"
+#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::store {
@@ -19,8 +20,9 @@ class ReportItem : public WriteItem {
   /// Encodes and hashes on the caller's thread, which spares the writer's.
   /// \param history  told how far the item brought it, before `done` is called.
   /// \param damaged  where reports that damage keeps out are remembered. Both outlive the item.
+  /// \param max_paths  of a robot and task (retention.hpp); 0: no cap.
   ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
-             Store::ReportsDone done);
+             Store::ReportsDone done, std::uint64_t max_paths = 0);
 
   /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
   static std::unique_ptr<ReportItem> declined(History& history, DamagedReports& damaged,
@@ -39,6 +41,7 @@ class ReportItem : public WriteItem {
   std::vector<std::optional<PreparedAttempt>> prepared_;  // empty: answered already
   std::vector<Receipt> receipts_;
   std::size_t bytes_ = 0;
+  std::uint64_t max_paths_ = 0;
   Store::ReportsDone done_;
 };
 

@@ -8,31 +8,33 @@
 #include <type_traits>
 #include <utility>
 
-#include "server/store/sqlite/attempt_rows.hpp"
-#include "server/store/sqlite/call_item.hpp"
-#include "server/store/sqlite/checked_vfs.hpp"
-#include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/damaged_reports.hpp"
-#include "server/store/sqlite/disk_space.hpp"
-#include "server/store/sqlite/distribution_rows.hpp"
-#include "server/store/sqlite/experience_rows.hpp"
-#include "server/store/sqlite/export_rows.hpp"
-#include "server/store/sqlite/history.hpp"
-#include "server/store/sqlite/listings.hpp"
-#include "server/store/sqlite/lock_file.hpp"
-#include "server/store/sqlite/path_rows.hpp"
-#include "server/store/sqlite/reader_pool.hpp"
+#include "server/store/sqlite/database/call_item.hpp"
+#include "server/store/sqlite/database/checked_vfs.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/files/disk_space.hpp"
+#include "server/store/sqlite/files/file_system.hpp"
+#include "server/store/sqlite/files/library_version.hpp"
+#include "server/store/sqlite/files/lock_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/history.hpp"
+#include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
-#include "server/store/sqlite/retirement.hpp"
-#include "server/store/sqlite/robot_rows.hpp"
-#include "server/store/sqlite/scene_rows.hpp"
-#include "server/store/sqlite/scrub.hpp"
-#include "server/store/sqlite/set_aside_rows.hpp"
-#include "server/store/sqlite/sqlite_error.hpp"
-#include "server/store/sqlite/store_backup.hpp"
-#include "server/store/sqlite/store_file.hpp"
-#include "server/store/sqlite/transaction.hpp"
-#include "server/store/sqlite/writer.hpp"
+#include "server/store/sqlite/rows/attempt_rows.hpp"
+#include "server/store/sqlite/rows/distribution_rows.hpp"
+#include "server/store/sqlite/rows/experience_rows.hpp"
+#include "server/store/sqlite/rows/export_rows.hpp"
+#include "server/store/sqlite/rows/listings.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/retirement.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
+#include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/upkeep/scrub.hpp"
+#include "server/store/sqlite/upkeep/store_backup.hpp"
 
 namespace kinship::store {
 namespace {
@@ -57,11 +59,20 @@ class DamageItem : public WriteItem {
   std::vector<std::int64_t> rows_;
 };
 
+/// Where the store is that a server is to open.
+std::filesystem::path locate_servable(const std::filesystem::path& file) {
+  require_library(sqlite3_libversion_number());
+  std::filesystem::path located = locate_store(file);
+  require_writable(file, located);
+  require_local_filesystem(file, located.parent_path());
+  return located;
+}
+
 class SqliteStore : public Store {
  public:
   SqliteStore(const std::filesystem::path& file, const SqliteOptions& options)
       : options_(options),
-        file_(locate_store(file)),
+        file_(locate_servable(file)),
         lock_(file_),
         history_(file_),
         readers_(file_),
@@ -72,7 +83,7 @@ class SqliteStore : public Store {
     writer_ = std::make_unique<Writer>(
         std::move(database), [this] { return reopen(); },
         WriterOptions{.retry_after = options.retry_after,
-                      .checkpoint_pages = options.checkpoint_pages,
+                      .checkpoint_bytes = options.checkpoint_bytes,
                       .max_wal_bytes = options.max_wal_bytes});
     scrub_ = std::make_unique<Scrub>(readers_, *writer_, std::move(damage),
                                      ScrubOptions{options.scrub_bytes_per_s, options.log});
@@ -100,6 +111,8 @@ class SqliteStore : public Store {
     status.epoch = history_.epoch();
     status.rollbacks = history_.rollbacks();
     status.queued = writer_->queued();
+    status.max_paths_per_pair = options_.max_paths_per_pair;
+    status.max_distribution_bytes = options_.max_distribution_bytes;
     describe_disk(status);
     if (status.rollbacks > 0)
       status.message +=
@@ -114,10 +127,8 @@ class SqliteStore : public Store {
                         "'kinshipd repair' of the stopped server the rest; ";
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
-    constexpr int kFixed = 3'051'003;
-    if (sqlite3_libversion_number() < kFixed)
-      status.message += std::string("SQLite ") + sqlite3_libversion() +
-                        " is older than 3.51.3: no other program may write to the store; ";
+    if (const std::string advice = library_advice(sqlite3_libversion_number()); !advice.empty())
+      status.message += advice + "; ";
     if (!status.message.empty())
       status.message.resize(status.message.size() - 2);
     return status;
@@ -129,6 +140,15 @@ class SqliteStore : public Store {
     if (damaged_robots_ > 0)
       static_cast<void>(robots());  // counts again: this may have been one of them
     return result;
+  }
+
+  bool replace_geometry(const RobotRecord& robot) override {
+    return write([&](Batch& batch) { return update_robot(batch.database(), robot); });
+  }
+
+  std::map<Digest, std::uint64_t> geometry_revisions() const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return select_geometry_revisions(*reader);
   }
 
   std::optional<RobotRecord> find_robot(const Digest& robot) const override {
@@ -153,7 +173,7 @@ class SqliteStore : public Store {
       return;
     }
     writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(attempts),
-                                                 std::move(done)));
+                                                 std::move(done), options_.max_paths_per_pair));
     if (space_.may_take_ballast())
       take_ballast_later();
   }
@@ -177,6 +197,12 @@ class SqliteStore : public Store {
     constexpr std::size_t kMaxPaths = 1'000'000;
     return undamaged(select_paths(
         *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
+  }
+
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
+    return key ? select_path_ids(*reader, *key) : std::vector<std::int64_t>();
   }
 
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
@@ -210,7 +236,17 @@ class SqliteStore : public Store {
   }
 
   std::uint64_t put_distribution(const Distribution& distribution) override {
-    return write([&](Batch& batch) { return upsert_distribution(batch.database(), distribution); });
+    return write([&](Batch& batch) {
+      return upsert_distribution(batch.database(), distribution, options_.max_distribution_bytes);
+    });
+  }
+
+  void note_use(const Digest& id) const override {
+    const auto note = [id](Batch& batch) {
+      store::note_use(batch.database(), id);
+      return true;
+    };
+    writer_->submit(std::make_unique<CallItem<decltype(note)>>(note));
   }
 
   bool evict_distribution(const Digest& id) override {
@@ -398,6 +434,12 @@ std::unique_ptr<Store> open_sqlite_store(const std::filesystem::path& file,
   const std::string prefix = "store '";
   try {
     return std::make_unique<SqliteStore>(file, options);
+  } catch (const SqliteError& error) {
+    const std::string advice =
+        error.is_damage() ? "; 'kinshipd repair' writes anew what can be read, 'kinshipd restore' "
+                            "puts a backup in its place"
+                          : "";
+    throw Failure(error.code(), prefix + file.string() + "': " + error.what() + advice);
   } catch (const Failure& failure) {
     const Error& error = failure.error();
     if (error.message.starts_with(prefix))

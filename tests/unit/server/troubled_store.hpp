@@ -5,7 +5,7 @@
 #include <new>
 #include <utility>
 
-#include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::store {
@@ -41,6 +41,12 @@ class TroubledStore final : public store::Store {
   Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
     return store_.register_robot(robot);
   }
+  bool replace_geometry(const store::RobotRecord& robot) override {
+    return store_.replace_geometry(robot);
+  }
+  std::map<Digest, std::uint64_t> geometry_revisions() const override {
+    return store_.geometry_revisions();
+  }
   std::optional<store::RobotRecord> find_robot(const Digest& robot) const override {
     return store_.find_robot(robot);
   }
@@ -61,6 +67,9 @@ class TroubledStore final : public store::Store {
     on_paths_read_();
     return paths;
   }
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
+    return store_.path_ids(robot, task);
+  }
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     return store_.read_scene(scene_id);
   }
@@ -75,6 +84,11 @@ class TroubledStore final : public store::Store {
   }
   store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
     return store_.attempt_totals(robot, task);
+  }
+  mutable std::atomic<int> uses_noted = 0;
+  void note_use(const Digest& id) const override {
+    ++uses_noted;
+    store_.note_use(id);
   }
   bool evict_distribution(const Digest& id) override { return store_.evict_distribution(id); }
   store::Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,

@@ -247,6 +247,21 @@ TEST_F(OutboxTest, KeepsTheLatestDescriptionOfARobot) {
             std::string::npos);
 }
 
+TEST_F(OutboxTest, SolidsAroundMeshesAreKeptUntilAnotherUrdfComes) {
+  const Digest robot = values.digest();
+  RobotDescription description = values.robot_description();
+  description.mesh_solids = {{{"arm", SphereShape{0.1}}}, {}};
+  outbox.keep_robot(robot, description);
+  description.mesh_solids = {};
+  description.label = "renamed";
+  outbox.keep_robot(robot, description);
+  EXPECT_EQ(outbox.robot(robot)->mesh_solids.solids.size(), 1U);
+  EXPECT_EQ(outbox.robot(robot)->label, "renamed");
+  description.urdf += " ";
+  outbox.keep_robot(robot, description);
+  EXPECT_TRUE(outbox.robot(robot)->mesh_solids.solids.empty());
+}
+
 TEST_F(OutboxTest, OneHolderOfTheSenderLockAtATime) {
   auto lock = SenderLock::try_acquire(folder.path());
   ASSERT_TRUE(lock);

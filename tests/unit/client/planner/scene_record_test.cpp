@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "tests/support/box_mesh.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
 
 namespace kinship::planner::scene_record_test {
@@ -67,16 +68,61 @@ TEST(SceneRecord, TooLargeASceneIsAnError) {
   EXPECT_EQ(record_scene(chain(), problem).error().message, "scene: 3000 objects exceed 2048");
 }
 
-TEST(SceneRecord, AMeshIsNotSent) {
+TEST(SceneRecord, MeshesAreSolidsAroundThemThatHaveTheirNames) {
+  const auto rock =
+      std::make_shared<const Eigen::Matrix3Xd>(kinship::test::BoxMesh({1, 2, 3}).triangles());
+  Problem problem = test::wall_problem();
+  const Eigen::Isometry3d T_task_rock(Eigen::Translation3d(5, 0, 0));
+  problem.scene.meshes = {{"rock", {.file = "rock.stl", .triangles = rock}, T_task_rock}};
+  problem.attached = {can_on("l4")};
+  problem.attached[0].mesh = Mesh{.file = "can.stl", .triangles = rock};
+  problem.allowed_collisions = {{"can", "rock"}};
+  SceneRecords records;
+  const RecordedScene scene = records.record(chain(), problem).value_or_throw();
+  ASSERT_EQ(scene.objects.size(), 2U);
+  EXPECT_FALSE(scene.objects[0].approximate) << "the wall";
+  EXPECT_TRUE(scene.objects[1].approximate);
+  EXPECT_EQ(scene.objects[1].name, "rock");
+  EXPECT_NEAR(std::get<BoxShape>(scene.objects[1].shape).size.prod(), 6, 1e-6);
+  EXPECT_TRUE(
+      scene.objects[1].T_task_object.translation().isApprox(Eigen::Vector3d(5.5, 1, 1.5), 1e-6));
+  ASSERT_EQ(scene.held.size(), 1U);
+  EXPECT_TRUE(scene.held[0].approximate);
+  EXPECT_TRUE(
+      scene.held[0].T_transfer_object.translation().isApprox(Eigen::Vector3d(0.6, 1, 1.5), 1e-6));
+  EXPECT_EQ(scene.allowed_collisions.size(), 1U);
+  EXPECT_EQ(content_digest(records.record(chain(), problem).value_or_throw()),
+            content_digest(scene));
+}
+
+TEST(SceneRecord, APointCloudIsBoxesAroundItsVoxels) {
+  constexpr double kVoxel_m = 0.1;
+  Eigen::Matrix3Xd row(3, 4);  // of four voxels along x
+  row << 0.05, 0.15, 0.25, 0.35, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05;
+  Problem problem = test::wall_problem();
+  const Eigen::Isometry3d T_task_cloud(Eigen::Translation3d(5, 0, 0));
+  problem.scene.clouds = {{"table", {"table.pcd", kVoxel_m}, T_task_cloud}};
+  EXPECT_EQ(record_scene(chain(), problem).error().message,
+            "'table' is a point cloud that was not read");
+  problem.scene.clouds[0].cloud.voxels = std::make_shared<const Eigen::Matrix3Xd>(row);
+  const RecordedScene scene = record_scene(chain(), problem).value_or_throw();
+  ASSERT_EQ(scene.objects.size(), 5U);  // the wall, and a box a voxel of so few
+  double least_x = 10;
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    EXPECT_EQ(scene.objects[i].name, "table");
+    EXPECT_TRUE(scene.objects[i].approximate);
+    const auto& box = std::get<BoxShape>(scene.objects[i].shape);
+    EXPECT_GE(box.size.minCoeff(), kVoxel_m - 1e-9);
+    least_x =
+        std::min(least_x, scene.objects[i].T_task_object.translation().x() - box.size.x() / 2);
+  }
+  EXPECT_LE(least_x, 5 + 1e-9);
+}
+
+TEST(SceneRecord, AMeshThatWasNotReadIsAnError) {
   Problem problem = test::wall_problem();
   problem.scene.meshes = {{"rock", {.file = "rock.stl"}}};
-  EXPECT_EQ(record_scene(chain(), problem).error().message,
-            "'rock' is a mesh, and the server keeps scenes of shapes only");
-  problem.scene.meshes.clear();
-  problem.attached = {can_on("l4")};
-  problem.attached[0].mesh = Mesh{.file = "can.stl"};
-  EXPECT_EQ(record_scene(chain(), problem).error().message,
-            "'can' is a mesh, and the server keeps scenes of shapes only");
+  EXPECT_EQ(record_scene(chain(), problem).error().message, "'rock' is a mesh that was not read");
 }
 
 }  // namespace

@@ -60,16 +60,51 @@ TEST(RegisterCodec, JointHeldTwiceIsRefused) {
   EXPECT_EQ(decode(message.wire).error().message, "held joint 'a': is there twice");
 }
 
+TEST(RegisterCodec, MeshSolidsComeBack) {
+  RobotDescription written = robot();
+  written.mesh_solids.solids = {{"arm", CapsuleShape{0.1, 0.2}},
+                                {"arm", BoxShape{{0.1, 0.2, 0.3}}},
+                                {"hand", SphereShape{0.4}}};
+  written.mesh_solids.solids[1].T_link_shape.translation() << 1, 2, 3;
+  written.mesh_solids.unfiltered = {{"arm", "hand"}};
+  const RobotDescription read = decode(encode({}, written)->wire).value_or_throw();
+  ASSERT_EQ(read.mesh_solids.solids.size(), 3U);
+  EXPECT_EQ(std::get<CapsuleShape>(read.mesh_solids.solids[0].shape).length_m, 0.2);
+  EXPECT_EQ(read.mesh_solids.solids[1].T_link_shape.matrix(),
+            written.mesh_solids.solids[1].T_link_shape.matrix());
+  EXPECT_EQ(read.mesh_solids.solids[2].link, "hand");
+  EXPECT_EQ(read.mesh_solids.unfiltered, written.mesh_solids.unfiltered);
+}
+
+TEST(RegisterCodec, MeshSolidsThatAreNoneAreRefused) {
+  RobotDescription bad = robot();
+  bad.mesh_solids.solids = {{"arm", SphereShape{0}}};
+  EXPECT_EQ(complaint(bad), "mesh_solids: 'arm': size 0 m is not above 0 and at most 1000 m");
+  bad.mesh_solids.solids = {{"", SphereShape{1}}};
+  EXPECT_EQ(complaint(bad), "mesh_solids: a link's name is empty");
+  bad.mesh_solids.solids.assign(1025, {"arm", SphereShape{1}});
+  EXPECT_EQ(complaint(bad), "mesh_solids: 1025 solids exceed 1024");
+  bad.mesh_solids.solids.resize(1);
+  auto message = encode({}, bad).value_or_throw();
+  message.wire.mesh_solids._buffer[0].shape = 4;
+  EXPECT_FALSE(decode(message.wire));
+  message.wire.mesh_solids._buffer = nullptr;  // what a shorter message leaves
+  EXPECT_TRUE(decode(message.wire).value_or_throw().mesh_solids.solids.empty());
+}
+
 TEST(RegisterCodec, ReplyComesBack) {
   const RegisterReply written{
-      RegisterStatus::Known, test::RandomValues(kSeed).digest(), 7, "numeric", "",
-      {"ur10e_1", "ur10e_2"}};
+      RegisterStatus::Known,  test::RandomValues(kSeed).digest(), 7,    "numeric", "",
+      {"ur10e_1", "ur10e_2"}, GeometryGrade::Approximate,         true, "2 links"};
   const auto read = decode(encode({}, written)->wire).value_or_throw();
   EXPECT_EQ(read.status, written.status);
   EXPECT_EQ(read.robot, written.robot);
   EXPECT_EQ(read.dof, 7U);
   EXPECT_EQ(read.solver, "numeric");
   EXPECT_EQ(read.same_arms, written.same_arms);
+  EXPECT_EQ(read.geometry_grade, GeometryGrade::Approximate);
+  EXPECT_TRUE(read.took_geometry);
+  EXPECT_EQ(read.geometry, "2 links");
 }
 
 TEST(RegisterCodec, SameArmsAreLimited) {

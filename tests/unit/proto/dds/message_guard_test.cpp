@@ -70,6 +70,22 @@ TEST(MessageGuard, LetsEveryMessagePass) {
   }
 }
 
+TEST(MessageGuard, KnowsShortRequestsThatAreLong) {
+  EXPECT_FALSE(is_too_long(kMaxShortRequestBytes, "kinship::wire::FetchRequest"));
+  EXPECT_TRUE(is_too_long(kMaxShortRequestBytes + 1, "kinship::wire::FetchRequest"));
+  EXPECT_TRUE(is_too_long(kMaxShortRequestBytes + 1, "kinship::wire::AdminRequest"));
+  EXPECT_FALSE(is_too_long(1'200'000, "kinship::wire::ReportRequest"));
+}
+
+TEST(MessageGuard, LetsSomeLongRequestsInASecond) {
+  LongRequests requests;
+  const auto now = std::chrono::steady_clock::now();
+  for (int i = 0; i < LongRequests::kMaxPerSecond; ++i)
+    EXPECT_TRUE(requests.admit(now));
+  EXPECT_FALSE(requests.admit(now + std::chrono::milliseconds(999)));
+  EXPECT_TRUE(requests.admit(now + std::chrono::seconds(1)));
+}
+
 /// As an older client sends it.
 TEST(MessageGuard, LetsAMessagePassThatEndsAfterAMember) {
   std::vector<std::uint8_t> bytes(4 + 16 + 8);  // size, client, sequence number

@@ -98,6 +98,15 @@ TEST(AttemptJson, PathIsThereExactlyIfSolved) {
             "waypoints: 2 waypoints of 0 joints, must be at least 2 of 1");
 }
 
+TEST(AttemptJson, AStoreMayHaveDroppedAPath) {
+  const std::string dropped = replaced(solved_line(), "[[0.1,0.2],[0.3,0.4],[0.5,0.6]]", "null");
+  const auto named = stored_attempt_from_json(dropped);
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_FALSE(named->attempt.path);
+  EXPECT_EQ(named->attempt.record.outcome, Outcome::Solved);
+  EXPECT_EQ(stored_attempt_from_json(solved_line())->attempt.path->size(), 3);
+}
+
 TEST(AttemptJson, RefusalNamesFieldValueAndLimit) {
   EXPECT_EQ(message_of(replaced(solved_line(), "bin_to_shelf", "bin to shelf")),
             "task: byte 4 is not one of A-Z a-z 0-9 _ . : -");

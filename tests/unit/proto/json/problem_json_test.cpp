@@ -89,6 +89,29 @@ TEST(ProblemJson, MeshesAreReadAndWrittenAsNamesOfFiles) {
   }
 }
 
+TEST(ProblemJson, PointCloudsAreReadAndWrittenAsNamesOfFiles) {
+  const std::string cloud =
+      R"({"name": "c", "file": "c.pcd", "pose": [0, 0, 1, 0, 0, 0, 1], "voxel": 0.05})";
+  const auto with = [](const std::string& entry) {
+    return changed("\"meshes\": []", "\"clouds\": [" + entry + "]");
+  };
+  const auto first = problem_from_json(with(cloud));
+  ASSERT_TRUE(first) << first.error().message;
+  const auto again = problem_from_json(to_json(*first));
+  ASSERT_TRUE(again) << again.error().message;
+  for (const Problem& problem : {*first, *again}) {
+    ASSERT_EQ(problem.scene.clouds.size(), 1U);
+    EXPECT_EQ(problem.scene.clouds[0].name, "c");
+    EXPECT_EQ(problem.scene.clouds[0].cloud.file, "c.pcd");
+    EXPECT_EQ(problem.scene.clouds[0].cloud.voxel_m, 0.05);
+    EXPECT_EQ(problem.scene.clouds[0].T_task_cloud.translation(), Eigen::Vector3d(0, 0, 1));
+    EXPECT_EQ(problem.scene.clouds[0].cloud.voxels, nullptr);
+  }
+  std::string flat = cloud;
+  flat.replace(flat.find("0.05"), 4, "0.0001");
+  EXPECT_EQ(message_of(with(flat)).find("scene.clouds[0].voxel: "), 0U) << message_of(with(flat));
+}
+
 TEST(ProblemJson, AMeshThatCannotBeIsRefusedByName) {
   const auto with = [](const std::string& from, const std::string& to) {
     std::string meshes = kMeshes;

@@ -33,6 +33,19 @@ TEST(RobotDescriptionJson, IsReadBack) {
   EXPECT_EQ(back->never_colliding, written.never_colliding);
 }
 
+TEST(RobotDescriptionJson, MeshSolidsAreReadBackAndLeftOutWhereThereAreNone) {
+  RobotDescription written = planar_arm();
+  EXPECT_EQ(to_json(written).find("mesh_solids"), std::string::npos);
+  written.mesh_solids.solids = {{"a", CylinderShape{0.1, 0.2}}, {"b", SphereShape{0.4}}};
+  written.mesh_solids.unfiltered = {{"a", "b"}};
+  const auto back = robot_description_from_json(to_json(written));
+  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_EQ(back->mesh_solids.solids.size(), 2U);
+  EXPECT_EQ(back->mesh_solids.solids[0].link, "a");
+  EXPECT_EQ(std::get<CylinderShape>(back->mesh_solids.solids[0].shape).length_m, 0.2);
+  EXPECT_EQ(back->mesh_solids.unfiltered, written.mesh_solids.unfiltered);
+}
+
 TEST(RobotDescriptionJson, AxesAreWrittenByName) {
   EXPECT_NE(to_json(planar_arm()).find(R"("task_axes":["x","y","yaw"])"), std::string::npos);
   const auto refused = robot_description_from_json(

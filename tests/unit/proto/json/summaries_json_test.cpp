@@ -28,10 +28,11 @@ Digest digest_of(std::uint8_t byte) {
 TEST(SummariesJson, RobotIsReadBack) {
   const RobotSummary robot{digest_of(1), "panda", "base", "hand",       7,
                            "numeric",    60,      64,     1234567890123};
-  EXPECT_EQ(to_json(robot),
-            R"({"robot":")" + digest_of(1).hex() +
-                R"(","label":"panda","base_link":"base","tip_link":"hand","dof":7,)"
-                R"("solver":"numeric","paths":60,"attempts":64,"registered_ms":1234567890123})");
+  EXPECT_EQ(
+      to_json(robot),
+      R"({"robot":")" + digest_of(1).hex() +
+          R"(","label":"panda","base_link":"base","tip_link":"hand","dof":7,)"
+          R"("solver":"numeric","paths":60,"attempts":64,"registered_ms":1234567890123,"geometry":"","geometry_ms":0})");
   expect_same_text_again(robot, robot_summary_from_json);
 }
 
@@ -108,10 +109,14 @@ TEST(SummariesJson, RegisteredRobotNamesTheSameArms) {
   reply.dof = 6;
   reply.solver = "closed form";
   reply.same_arms = {"ur10e_1", "ur10e_2"};
+  reply.geometry_grade = GeometryGrade::Exact;
+  reply.took_geometry = true;
+  reply.geometry = "3 links by exact shapes";
   EXPECT_EQ(to_json(reply, "ur10e_3"),
             R"({"robot":")" + digest_of(8).hex() +
                 R"(","label":"ur10e_3","known":true,"dof":6,"solver":"closed form",)"
-                R"("same_arms":["ur10e_1","ur10e_2"]})");
+                R"("same_arms":["ur10e_1","ur10e_2"],"geometry":"3 links by exact shapes",)"
+                R"("geometry_grade":"exact","took_geometry":true})");
 }
 
 TEST(SummariesJson, RowOfAnotherKindIsRefusedByItsMissingMember) {

@@ -110,7 +110,47 @@ TEST(Sampler, TruncatedDrawsMatchARejectionReference) {
 
 TEST(Sampler, MixtureOutsideTheLimitsGivesNothing) {
   std::mt19937_64 generator(kSeed);
-  EXPECT_FALSE(Sampler(tilted_2d(), limits_of(50, 60, 2)).sample(generator));
+  const Sampler sampler(tilted_2d(), limits_of(50, 60, 2));
+  EXPECT_FALSE(sampler.sample(generator));
+  EXPECT_EQ(sampler.sample(generator, 10).cols(), 0);
+}
+
+/// How many samples lie in each of 6 x 6 equal bins of the square of 1.5.
+Eigen::ArrayXXd counts_in_bins(const Eigen::MatrixXd& samples) {
+  constexpr double kBinsPerUnit = 2;
+  Eigen::ArrayXXd counts = Eigen::ArrayXXd::Zero(6, 6);
+  for (const auto& q : samples.colwise())
+    ++counts(static_cast<Eigen::Index>((q[0] + 1.5) * kBinsPerUnit),
+             static_cast<Eigen::Index>((q[1] + 1.5) * kBinsPerUnit));
+  return counts;
+}
+
+/// Two samples of one law: chi-squared of the 36 bins is below 66.6 in 999 of 1000 pairs.
+TEST(Sampler, ManyAtOnceFollowTheSameLaw) {
+  const Sampler sampler(tilted_2d(), limits_of(-1.499, 1.499, 2));
+  const Eigen::MatrixXd one_by_one = draw(sampler, 200'000);
+  std::mt19937_64 generator(kSeed + 1);
+  const Eigen::MatrixXd at_once = sampler.sample(generator, one_by_one.cols());
+  ASSERT_EQ(at_once.cols(), one_by_one.cols());
+  EXPECT_LE(at_once.cwiseAbs().maxCoeff(), 1.499);
+  const Eigen::ArrayXXd a = counts_in_bins(one_by_one), b = counts_in_bins(at_once);
+  EXPECT_LT(((a - b).square() / (a + b).max(1)).sum(), 66.6);
+  EXPECT_LT((covariance_of(at_once) - covariance_of(one_by_one)).cwiseAbs().maxCoeff(), 0.01);
+}
+
+/// Five and nine joints end in the middle of a block of rows.
+TEST(Sampler, EveryJointHasItsVariance) {
+  for (const Eigen::Index dimension : {1, 4, 5, 9}) {
+    Eigen::MatrixXd factor = Eigen::MatrixXd::Identity(dimension, dimension);
+    factor.col(0).setConstant(0.5);  // all follow the first
+    const Mixture mixture(Eigen::VectorXd::Ones(1), Eigen::MatrixXd::Zero(dimension, 1),
+                          {factor * factor.transpose()});
+    std::mt19937_64 generator(kSeed);
+    const Eigen::MatrixXd samples =
+        Sampler(mixture, limits_of(-100, 100, dimension)).sample(generator, 100'000);
+    EXPECT_LT((covariance_of(samples) - mixture.covariance(0)).cwiseAbs().maxCoeff(), 0.03)
+        << dimension;
+  }
 }
 
 TEST(Sampler, JointWithEqualLimitsIsMetOnlyByChance) {
@@ -124,6 +164,9 @@ TEST(Sampler, SameSeedSameBytes) {
   const Sampler sampler(tilted_2d(), limits_of(-3, 3, 2));
   const Eigen::MatrixXd first = draw(sampler, 1000);
   EXPECT_EQ(first, draw(Sampler(tilted_2d(), limits_of(-3, 3, 2)), 1000));
+  std::mt19937_64 one(kSeed), other(kSeed);
+  EXPECT_EQ(sampler.sample(one, 1000), sampler.sample(other, 1000));
+  EXPECT_NE(sampler.sample(one, 1000), first);
 }
 
 TEST(Sampler, ComponentWithoutWeightIsNeverDrawn) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "proto/types/failure.hpp"
 #include "tests/support/box_mesh.hpp"
@@ -45,6 +47,71 @@ TEST(CollisionWorld, AnArmTouchesWhatLiesInItsWay) {
   EXPECT_EQ(world.find_contact(kTurned), std::nullopt);
 }
 
+/// The first joint turns from `first` by `stride` a column.
+Eigen::MatrixXd sweep(double first, double stride, Eigen::Index count) {
+  Eigen::MatrixXd qs = Eigen::MatrixXd::Zero(kJoints, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    qs(0, i) = first + stride * static_cast<double>(i);
+  return qs;
+}
+
+TEST(CollisionWorld, SeveralAtOnceAreAnsweredAsIfOneAfterTheOther) {
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
+  for (const Eigen::Index count : {1, 5, 8, 9, 16, 17, 50})
+    for (const double first : {-1.0, -0.5, -0.1, 0.0, 0.5}) {
+      const Eigen::MatrixXd qs = sweep(first, 0.02, count);
+      Eigen::Index free = 0;
+      while (free < count && !world.collides(qs.col(free)))
+        ++free;
+      const std::uint64_t before = world.checks();
+      EXPECT_EQ(world.free_ahead(qs), free) << count << " from " << first;
+      EXPECT_EQ(world.checks() - before, static_cast<std::uint64_t>(std::min(free + 1, count)));
+    }
+}
+
+TEST(CollisionWorld, TheFirstFreeOneOfSeveralIsFoundAsIfOneAfterTheOther) {
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
+  for (const Eigen::Index count : {1, 5, 8, 9, 16, 17, 50})
+    for (const double first : {-0.5, -0.08, -0.02, 0.0, 0.05}) {
+      const Eigen::MatrixXd qs = sweep(first, 0.007, count);
+      Eigen::Index colliding = 0;
+      while (colliding < count && world.collides(qs.col(colliding)))
+        ++colliding;
+      const std::uint64_t before = world.checks();
+      EXPECT_EQ(world.colliding_ahead(qs), colliding) << count << " from " << first;
+      EXPECT_EQ(world.checks() - before,
+                static_cast<std::uint64_t>(std::min(colliding + 1, count)));
+    }
+}
+
+TEST(CollisionWorld, AnglesOfManyTurnsAreAnsweredLikeTheSameWithoutTurns) {
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
+  for (const double turns : {1.0, -3.0, 1e4, 3e5, 1e7}) {
+    const Eigen::VectorXd turned = Eigen::VectorXd::Unit(kJoints, 0) * turns * 2 * M_PI;
+    EXPECT_TRUE(world.collides(kStraight + turned)) << turns;
+    EXPECT_FALSE(world.collides(kTurned + turned)) << turns;
+  }
+}
+
+TEST(CollisionWorld, ASweepStopsAtTheObstacle) {
+  CollisionWorld world = make_world(with_object(box_at("post", 1.2, 0)));
+  const Eigen::Index free = world.free_ahead(sweep(-1, 0.01, 200));
+  EXPECT_GT(free, 80);  // the post reaches 0.05 m to the side at 1.2 m, the arm as far
+  EXPECT_LT(free, 100);
+  EXPECT_EQ(world.free_ahead(sweep(0.5, 0.01, 200)), 200);
+}
+
+TEST(CollisionWorld, SeveralAtOnceMustFitTheRobot) {
+  CollisionWorld world = make_world({});
+  EXPECT_THROW(world.free_ahead(Eigen::MatrixXd::Zero(kJoints + 1, 2)), std::invalid_argument);
+  Eigen::MatrixXd qs = sweep(0, 0.1, 20);
+  qs(1, 19) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(world.free_ahead(qs), std::invalid_argument);
+  qs(1, 19) = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(world.colliding_ahead(qs), std::invalid_argument);
+  EXPECT_EQ(world.free_ahead(Eigen::MatrixXd(kJoints, 0)), 0);
+}
+
 Mesh read_box(const Eigen::Vector3d& size) {
   return {"box.stl", Eigen::Vector3d::Ones(),
           std::make_shared<const Eigen::Matrix3Xd>(test::BoxMesh(size).triangles())};
@@ -63,6 +130,31 @@ TEST(CollisionWorld, AMeshOfASceneIsTouchedWhereItsTrianglesAre) {
 
   surroundings.scene.meshes[0].T_task_mesh.translation().y() = 0.2;
   EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+}
+
+TEST(CollisionWorld, APointCloudIsTouchedWhereItsVoxelsAre) {
+  // Of the same plate only a grid of points 5 cm apart.
+  constexpr double kVoxel_m = 0.02;
+  Eigen::Matrix3Xd points(3, 3 * 13 * 21);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Index column = i / 3, row = column / 13;
+    points.col(i) << 0.05 * static_cast<double>(i % 3), 0.05 * static_cast<double>(column % 13),
+        0.05 * static_cast<double>(row);
+  }
+  const auto voxels = std::make_shared<const Eigen::Matrix3Xd>(
+      geometry::voxels_of(points, kVoxel_m).value_or_throw());
+  Surroundings surroundings;
+  surroundings.scene.clouds = {{"plate", {"plate.pcd", kVoxel_m, voxels}, shift(1.2, -0.05)}};
+  surroundings.scene.clouds[0].T_task_cloud.translation().z() = -0.5;
+  CollisionWorld world = make_world(surroundings);
+  EXPECT_TRUE(world.collides(kStraight));
+  EXPECT_FALSE(world.collides(kTurned));
+  EXPECT_EQ(world.find_contact(kStraight), (Names{"link3", "plate"}));
+
+  surroundings.scene.clouds[0].T_task_cloud.translation().y() = 0.2;
+  EXPECT_FALSE(make_world(surroundings).collides(kStraight));
+  surroundings.scene.clouds[0].cloud.voxels = nullptr;
+  EXPECT_THROW(make_world(surroundings), Failure);
 }
 
 TEST(CollisionWorld, AHeldMeshMovesWithItsLink) {

@@ -44,6 +44,36 @@ TEST_F(SceneMeshesTest, ReadsWhatIsHeldToo) {
   EXPECT_EQ(attached[1].mesh->triangles->cols(), 36);
 }
 
+TEST_F(SceneMeshesTest, ReadsAPointCloudOnceForEachSizeOfVoxels) {
+  std::ofstream(folder_ / "table.xyz") << "0.01 0.01 0\n0.012 0.011 0\n0.31 0.01 0\n";
+  Scene scene;
+  scene.clouds = {
+      {"a", {"table.xyz", 0.02}}, {"b", {"table.xyz", 0.5}}, {"c", {"table.xyz", 0.02}}};
+  ASSERT_FALSE(meshes_.read(scene, none_));
+  EXPECT_EQ(scene.clouds[0].cloud.voxels->cols(), 2);
+  EXPECT_EQ(scene.clouds[1].cloud.voxels->cols(), 1);
+  EXPECT_EQ(scene.clouds[2].cloud.voxels, scene.clouds[0].cloud.voxels);
+  scene.clouds = {{"d", {"lost.pcd"}}};
+  EXPECT_EQ(meshes_.read(scene, none_)->message.find("scene object 'd': point cloud 'lost.pcd': "),
+            0U);
+  std::ofstream(folder_ / "empty.xyz") << "# nothing\n";
+  scene.clouds = {{"e", {"empty.xyz"}}};
+  EXPECT_EQ(meshes_.read(scene, none_)->message,
+            "scene object 'e': point cloud 'empty.xyz': holds no point");
+}
+
+TEST_F(SceneMeshesTest, VoxelsFinerThanTheCubesOfAMapAreRefused) {
+  std::ofstream(folder_ / "seen.ot") << "# Octomap OcTree file\nid OcTree\nres 0.05\ndata\n";
+  Scene scene;
+  scene.clouds = {{"a", {"seen.ot", 0.02}}};
+  EXPECT_EQ(meshes_.read(scene, none_)->message,
+            "scene object 'a': point cloud 'seen.ot': a map of cubes of 0.05 m, but voxels of 0.02 "
+            "m: give \"voxel\": 0.05, or a larger one");
+  scene.clouds = {{"a", {"seen.ot", 0.05}}};
+  EXPECT_EQ(meshes_.read(scene, none_)->message,
+            "scene object 'a': point cloud 'seen.ot': holds no point");
+}
+
 TEST_F(SceneMeshesTest, NamesTheObjectWhoseFileCannotBeRead) {
   Scene scene;
   scene.meshes = {{"a", {.file = "lost.stl"}}};

@@ -213,5 +213,39 @@ TEST(Birrt, RefusesWhatDoesNotFit) {
   EXPECT_THROW(plan(world, kGoal, 0, wrong), std::invalid_argument);
 }
 
+TEST(Birrt, PlansTheSameWhetherItAsksForOneOrForSeveralAtOnce) {
+  WallWorld world;
+  std::uint64_t asked = 0;
+  const IsFree one_by_one = world.is_free();
+  const IsFree together([&](const Eigen::VectorXd& q) { return one_by_one(q); },
+                        [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+                          ++asked;
+                          return one_by_one.ahead(qs);
+                        });
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const PlanSummary expected = plan(world, kGoal, seed);
+    std::mt19937_64 generator(seed);
+    const PlanSummary summary = plan_birrt(
+        kStart, kGoal, together, ConfigurationSampler(square_bounds()), options(), generator);
+    ASSERT_TRUE(summary.waypoints && expected.waypoints);
+    EXPECT_EQ(*summary.waypoints, *expected.waypoints);
+    EXPECT_EQ(summary.collision_checks, expected.collision_checks);
+    EXPECT_LT(asked, summary.collision_checks);
+    asked = 0;
+  }
+}
+
+TEST(Birrt, EndsAtTheLastCheckInTheMiddleOfSeveral) {
+  WallWorld world;
+  for (const std::uint64_t most : {3U, 7U, 40U}) {
+    BirrtOptions few = options();
+    few.max_checks = most;
+    const PlanSummary summary = plan(world, kGoal, 1, few);
+    EXPECT_FALSE(summary.waypoints);
+    EXPECT_EQ(summary.reason, NoPath::MaxChecks);
+    EXPECT_EQ(summary.collision_checks, most);
+  }
+}
+
 }  // namespace
 }  // namespace kinship::planning::birrt_test

@@ -44,6 +44,22 @@ TEST_F(Options, WithoutArgumentsItServesTheStoreOfTheUser) {
   EXPECT_EQ(options.free_space_watermark_mb, 64U);
   EXPECT_EQ(options.ballast_mb, 16U);
   EXPECT_EQ(options.max_wal_mb, 512U);
+  EXPECT_EQ(options.max_paths_per_pair, 20'000U);
+  EXPECT_EQ(options.stored_distributions_mb, 1024U);
+  EXPECT_EQ(options.distribution_memory_mb, 128U);
+  EXPECT_EQ(options.path_memory_mb, 64U);
+}
+
+TEST_F(Options, WhatIsKeptHasLimitsOrNone) {
+  const ServerOptions options = good({"--max-paths-per-pair", "0", "--stored-distributions-mb", "0",
+                                      "--distribution-memory-mb", "1", "--path-memory-mb", "2"});
+  EXPECT_EQ(options.max_paths_per_pair, 0U);
+  EXPECT_EQ(options.stored_distributions_mb, 0U);
+  EXPECT_EQ(options.distribution_memory_mb, 1U);
+  EXPECT_EQ(options.path_memory_mb, 2U);
+  EXPECT_EQ(code({"--distribution-memory-mb", "0"}), kWrongUsage);
+  EXPECT_EQ(code({"--max-paths-per-pair", "-1"}), kWrongUsage);
+  EXPECT_EQ(code({"--max-paths-per-pair", "many"}), kWrongUsage);
 }
 
 TEST_F(Options, WhatTheStoreMayTakeOfItsDiskIsInMegabytes) {

@@ -62,6 +62,19 @@ TEST_F(Books, HoldOneChoiceForAllWhoAsk) {
   EXPECT_TRUE(book.find(key(5000)));
 }
 
+TEST_F(Books, HoldNoMoreBytesThanPathsMayTake) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  constexpr std::size_t kOfAChoice = 3 * kExperiencePoses * sizeof(Eigen::Isometry3d);
+  for (const std::size_t choices : {1U, 2U}) {
+    ExperienceBook book(*store_, registry_, {.paths = {.bytes = choices * kOfAChoice * 5 / 4}});
+    EXPECT_TRUE(ask(book, key()).get());
+    EXPECT_TRUE(ask(book, key(5000)).get());
+    EXPECT_EQ(book.find(key()) != nullptr, choices == 2);
+    EXPECT_TRUE(book.find(key(5000)));
+    EXPECT_GT(book.bytes_of_paths(), kOfAChoice);
+  }
+}
+
 TEST_F(Books, AnswerWhoWaitsWhenTheyStop) {
   report(fleet::solved(teacher_, "shelf", 3, 1));
   std::promise<void> begun, end;

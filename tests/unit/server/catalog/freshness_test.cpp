@@ -40,6 +40,31 @@ TEST(Freshness, PathsOfANewRobotCount) {
   EXPECT_TRUE(has_grown(fitted(10, 10), {{robot(1), 10, 3}, {robot(2), 10, 7}, {robot(3), 5, 1}}));
 }
 
+TEST(Freshness, WhatTakesThePlaceOfOthersBeyondTheCapCounts) {
+  const Distribution distribution = fitted(1000, 10);  // at generations 3 and 7
+  const auto full = [](std::uint64_t generation, std::uint64_t paths, std::uint64_t dropped) {
+    return std::vector<store::ExperienceSummary>{
+        {.robot = robot(1), .paths = paths, .generation = generation, .dropped = dropped},
+        {.robot = robot(2), .paths = 10, .generation = 7}};
+  };
+  EXPECT_FALSE(has_grown(distribution, full(52, 1000, 400)));
+  EXPECT_TRUE(has_grown(distribution, full(53, 1000, 400)));
+  EXPECT_FALSE(has_grown(distribution, full(53, 1000, 0))) << "not at a cap";
+  EXPECT_FALSE(has_grown(distribution, full(52, 1049, 1))) << "all of it was growth";
+  EXPECT_TRUE(has_grown(distribution, full(53, 1049, 1)));
+}
+
+TEST(Freshness, AfterACapWasLoweredWhatIsLeftIsToBeOutgrown) {
+  const Distribution distribution = fitted(100'000, 10);  // at generations 3 and 7
+  const auto at_cap = [](std::uint64_t generation) {
+    return std::vector<store::ExperienceSummary>{
+        {.robot = robot(1), .paths = 200, .generation = generation, .dropped = 99'800},
+        {.robot = robot(2), .paths = 10, .generation = 7}};
+  };
+  EXPECT_FALSE(has_grown(distribution, at_cap(3 + 9)));
+  EXPECT_TRUE(has_grown(distribution, at_cap(3 + 10)));
+}
+
 TEST(Freshness, AnyOtherGenerationOrRobotIsAChange) {
   const Distribution distribution = fitted(10, 10);
   EXPECT_FALSE(has_changed(distribution, {{robot(1), 10, 3}, {robot(2), 10, 7}}));

@@ -81,6 +81,7 @@ inline FitOptions fit_options(Way way, const Sample& sample, const Computation& 
   options.components = way == Way::GivenComponents || way == Way::ChosenPrior ? kComponents : 0;
   options.prior = way == Way::ChosenPrior ? kChosenPrior : 0;
   options.covariance_floor = kFloor;
+  options.tolerance = 1e-3;  // rounding grows until EM is near its end
   options.computation = computation;
   if (way == Way::ChosenComponents || way == Way::ChosenPrior)
     options.path_of_configuration = sample.path_of;

@@ -178,6 +178,21 @@ TEST(ExpectationMaximisation, EqualsScikitLearns) {
   }
 }
 
+TEST(ExpectationMaximisation, FromAKnownExpectationTheMixtureIsTheSame) {
+  const Example example = random_points(3, 900);
+  const Mixture start = start_of(3, 6);
+  for (const double prior : {0.0, 20.0})
+    for (const int iterations : {0, 1, 4, 50}) {
+      EmOptions options{Eigen::VectorXd::Constant(3, 1e-4), iterations};
+      options.prior_scatter = prior * Eigen::MatrixXd::Identity(3, 3);
+      const EmRun run = run_em(start, example.points, options);
+      const Mixture same =
+          run_em_from(start, expectation(start, example.points, {}), example.points, options);
+      EXPECT_EQ(same.means(), run.mixture.means()) << iterations;
+      EXPECT_EQ(same.covariances(), run.mixture.covariances()) << iterations;
+    }
+}
+
 TEST(Maximisation, OfOneComponentIsWeightedMeanAndCovariance) {
   const Example example = random_points(3, 300);
   const Mixture mixture = next_of(start_of(3, 1), example, 0);
@@ -223,6 +238,21 @@ TEST(Maximisation, ComponentThatLostItsDataIsLeftOut) {
   const Mixture next = next_of(start, example, 1e-4);
   EXPECT_EQ(next.size(), 2);
   EXPECT_NEAR(next.weights().sum(), 1, 1e-15);
+}
+
+/// A component of 40 points has lost nothing where one of twenty is looked at.
+TEST(Maximisation, OfASampleLeavesOutWhatAllPointsWould) {
+  const Example example = random_points(2, 200);
+  Moments moments = expectation(start_of(2, 3), example.points, {}).moments;
+  moments.sums.col(1) *= 2 / moments.mass(1);
+  const auto size_of = [&](double share) {
+    return maximisation(moments, example.points.offset(), Eigen::Vector2d::Constant(1e-4), {},
+                        share)
+        .size();
+  };
+  EXPECT_EQ(size_of(1), 2);
+  EXPECT_EQ(size_of(0.7), 2);
+  EXPECT_EQ(size_of(0.05), 3);
 }
 
 TEST(Maximisation, FloorOfEachJointIsAddedToItsVariance) {

@@ -38,6 +38,8 @@ TEST(DistributionKey, EveryPartOfTheKeyMakesAnotherId) {
       [](DistributionKey& k) { k.profile.transfer.avoid_self_collision = false; },
       [](DistributionKey& k) { k.profile.transfer.avoid_recorded_scene = false; },
       [](DistributionKey& k) { k.profile.transfer.take_over = false; },
+      [](DistributionKey& k) { k.geometry_revision = 1; },
+      [](DistributionKey& k) { k.geometry_revision = 2; },
       [](DistributionKey& k) { k.profile.thin_share = 0.6; },
       [](DistributionKey& k) { k.profile.density.components = 7; },
       [](DistributionKey& k) { k.profile.density.covariance_floor = 1e-3; },
@@ -111,6 +113,15 @@ TEST(DistributionKey, RequestsOfAnUnknownProfileAreRefused) {
   bad.profile = "best";
   EXPECT_EQ(make_key(bad).error().message,
             "profile 'best': it does not begin with default or paper");
+}
+
+TEST(DistributionKey, GeometryCountsWhereAFilterIsWanted) {
+  EXPECT_EQ(make_key(request(), 3)->geometry_revision, 3U);
+  FetchRequest unfiltered = request();
+  unfiltered.profile = "default,avoid_self_collision=0,avoid_recorded_scene=0";
+  EXPECT_EQ(make_key(unfiltered, 3)->geometry_revision, 0U);
+  unfiltered.profile = "default,avoid_self_collision=0";
+  EXPECT_EQ(make_key(unfiltered, 3)->geometry_revision, 3U);
 }
 
 }  // namespace

@@ -104,6 +104,31 @@ TEST_F(PosePaths, ThatWereRetiredAreGone) {
   EXPECT_EQ(read(memory).size(), 0U);
 }
 
+TEST_F(PosePaths, ThatTheStoreDroppedAreGoneAndTheOthersAreNotMadeAgain) {
+  constexpr std::uint64_t kCap = 6;
+  const std::unique_ptr<store::Store> store =
+      store::open_sqlite_store(directory_ / "capped.db", {.max_paths_per_pair = kCap});
+  runtime::RobotRegistry registry(*store);
+  registry.register_robot(fleet::teacher(), 1);
+  const auto report_one = [&](std::uint64_t number) {
+    std::promise<void> done;
+    store->commit_reports({fleet::solved(teacher_, "shelf", number)},
+                          [&](const std::vector<Receipt>&) { done.set_value(); });
+    done.get_future().wait();
+  };
+  PosePathMemory memory(*store, registry);
+  for (std::uint64_t number = 1; number < 40; ++number) {
+    report_one(number);
+    std::vector<Uuid> kept;
+    for (const store::StoredPath& path :
+         store->read_paths(teacher_.digest, "shelf", {.after_id = 0, .limit = 100}))
+      kept.push_back(path.report_uuid);
+    EXPECT_EQ(uuids_of(read(memory)), kept);
+  }
+  EXPECT_EQ(memory.computed(), store->generation(teacher_.digest, "shelf")) << "each once";
+  EXPECT_GT(memory.computed(), kCap);
+}
+
 TEST_F(PosePaths, AreTheNewestOfEachRobotIfThereAreTooMany) {
   const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 300, 1);
   report(attempts);
@@ -112,7 +137,7 @@ TEST_F(PosePaths, AreTheNewestOfEachRobotIfThereAreTooMany) {
   const auto last = [&](std::ptrdiff_t count) {
     return uuids_of(std::vector<Attempt>(attempts.end() - count, attempts.end()));
   };
-  PosePathMemory memory(*store_, registry_, 10);
+  PosePathMemory memory(*store_, registry_, {.paths = 10});
   EXPECT_EQ(uuids_of(read(memory, {teacher_.digest})), last(8));
   EXPECT_EQ(read(memory).size(), 10U);
   EXPECT_EQ(memory.computed(), 10U);
@@ -127,7 +152,11 @@ TEST_F(PosePaths, AreTheNewestOfEachRobotIfThereAreTooMany) {
 TEST_F(PosePaths, OfOtherTasksMakeRoom) {
   report(fleet::solved(teacher_, "shelf", 6, 1));
   report(fleet::solved(teacher_, "other", 6, 100));
-  PosePathMemory memory(*store_, registry_, 8);
+  PosePathMemory small(*store_, registry_);
+  read(small);
+  EXPECT_GT(small.bytes(), 6 * kExperiencePoses * sizeof(Eigen::Isometry3d));
+  const std::size_t most = small.bytes() * 3 / 2;
+  PosePathMemory memory(*store_, registry_, {.bytes = most});
   read(memory);
   EXPECT_EQ(memory.read("other", {}, 0, std::stop_token()).size(), 6U);
   EXPECT_EQ(memory.computed(), 12U);
@@ -135,6 +164,7 @@ TEST_F(PosePaths, OfOtherTasksMakeRoom) {
   EXPECT_EQ(memory.computed(), 12U);
   EXPECT_EQ(read(memory).size(), 6U);
   EXPECT_EQ(memory.computed(), 18U) << "it had to go";
+  EXPECT_LE(memory.bytes(), most);
 }
 
 }  // namespace

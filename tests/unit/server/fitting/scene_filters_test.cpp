@@ -68,8 +68,8 @@ class FitAmongScenes : public testing::Test {
     const runtime::RobotRegistry::RobotPointer target = registry_.find(ur10e_).value_or_throw();
     SourceTransfer transfer(*store_, registry_, key, *target);
     transfer_sources(transfer, key, store_->experience(key.task), kPaths, {});
-    const transfer::SceneFilter filter =
-        transfer::scene_filter(target->chain, target->shapes, scene, Eigen::Isometry3d::Identity());
+    const transfer::SceneFilter filter = transfer::scene_filter(
+        {target->chain, target->shapes}, scene, Eigen::Isometry3d::Identity());
     const Eigen::MatrixXd configurations = transfer.pool().configurations();
     std::size_t touching = 0;
     for (const auto& q : configurations.colwise())
@@ -130,6 +130,25 @@ TEST_F(FitAmongScenes, WhatAMovingLinkAlwaysTouchesIsToldAndNotLookedAt) {
   EXPECT_NE(distribution.reason.find("touches 'flood' of a recorded scene wherever it goes"),
             std::string::npos)
       << distribution.reason;
+}
+
+TEST_F(FitAmongScenes, ADistributionSaysWhatItWasFilteredWith) {
+  const auto tells = [&](const std::string& words, bool avoid = true) {
+    const std::string filters = fit(avoid).filters;
+    EXPECT_NE(filters.find(words), std::string::npos) << filters;
+  };
+  report(std::nullopt);
+  tells("recorded scenes: not filtered, as no path that was transferred came with one");
+  tells("self-collision: 10 links by exact shapes; left out ");
+  tells("recorded scenes: not filtered, as the profile says", false);
+  first_seed_ = kPaths;
+  report(RecordedScene{{kCeiling}, {}, {}});
+  tells("recorded scenes: those of 4 of 8 paths; left out ");
+  first_seed_ = 2 * kPaths;
+  SceneObject rock = kCeiling;
+  rock.approximate = true;
+  report(RecordedScene{{rock}, {}, {}});
+  tells("recorded scenes: those of 8 of 12 paths, 4 of them with solids around meshes");
 }
 
 TEST_F(FitAmongScenes, ThreadsMakeNoDifference) {

@@ -111,6 +111,77 @@ TEST_F(Registry, CollisionMeshesThatItCannotReadDoNotKeepARobotOut) {
   EXPECT_EQ(registry_.register_robot(description, 1).status, RegisterStatus::Registered);
 }
 
+constexpr const char* kLink = "<link name='link1'/>";
+
+/// The teacher with a shape on its first link, as the element of the URDF.
+RobotDescription shaped(const std::string& geometry) {
+  RobotDescription description = fleet::teacher();
+  description.urdf.replace(
+      description.urdf.find(kLink), std::string(kLink).size(),
+      "<link name='link1'><collision><geometry>" + geometry + "</geometry></collision></link>");
+  return description;
+}
+RobotDescription with_mesh() { return shaped("<mesh filename='package://nowhere/l1.stl'/>"); }
+RobotDescription with_mesh_solids(double radius_m) {
+  RobotDescription description = with_mesh();
+  description.mesh_solids.solids = {{"link1", SphereShape{radius_m}}};
+  return description;
+}
+RobotDescription with_sphere() { return shaped("<sphere radius='0.05'/>"); }
+
+TEST_F(Registry, BetterGeometryOfAKnownRobotIsTakenOver) {
+  const RegisterReply none = registry_.register_robot(with_mesh(), 1);
+  EXPECT_EQ(none.geometry_grade, GeometryGrade::None);
+  EXPECT_EQ(none.geometry, "1 link unknown, with meshes that only its clients have");
+  EXPECT_EQ(registry_.geometry_revision(none.robot), 0U);
+
+  RobotDescription again = with_mesh_solids(0.1);
+  again.label = "other";
+  const RegisterReply solids = registry_.register_robot(again, 2);
+  EXPECT_EQ(solids.robot, none.robot) << "geometry is no part of who a robot is";
+  EXPECT_EQ(solids.status, RegisterStatus::Known);
+  EXPECT_TRUE(solids.took_geometry);
+  EXPECT_EQ(solids.geometry_grade, GeometryGrade::Approximate);
+  EXPECT_EQ(solids.geometry, "1 link by 1 solid around meshes (approximate)");
+  EXPECT_EQ(registry_.geometry_revision(none.robot), 1U);
+  EXPECT_EQ(registry_.find(none.robot).value()->shapes.shapes.size(), 1U);
+  EXPECT_EQ(registry_.find(none.robot).value()->label, "teacher");
+
+  const RegisterReply exact = registry_.register_robot(with_sphere(), 3);
+  EXPECT_TRUE(exact.took_geometry);
+  EXPECT_EQ(exact.geometry, "1 link by exact shapes");
+  EXPECT_EQ(registry_.geometry_revision(none.robot), 2U);
+  EXPECT_EQ(store_->find_robot(none.robot)->registered_ms, 1);
+  EXPECT_EQ(store_->find_robot(none.robot)->geometry_ms, 3);
+
+  RobotRegistry next(*store_);
+  EXPECT_EQ(next.geometry_revision(none.robot), 2U) << "known before anybody asks for the robot";
+  EXPECT_EQ(next.find(none.robot).value()->grade, GeometryGrade::Exact);
+}
+
+TEST_F(Registry, GeometryThatIsNoBetterChangesNothing) {
+  const Digest robot = registry_.register_robot(with_mesh_solids(0.1), 1).robot;
+  for (const RobotDescription& other : {with_mesh_solids(0.2), with_mesh(), fleet::teacher()}) {
+    const RegisterReply reply = registry_.register_robot(other, 2);
+    EXPECT_EQ(reply.status, RegisterStatus::Known);
+    EXPECT_FALSE(reply.took_geometry);
+    EXPECT_EQ(reply.geometry_grade, GeometryGrade::Approximate);
+  }
+  EXPECT_EQ(registry_.geometry_revision(robot), 0U);
+  const std::vector<LinkSolid> solids = store_->find_robot(robot)->description.mesh_solids.solids;
+  EXPECT_EQ(std::get<SphereShape>(solids.at(0).shape).radius_m, 0.1) << "the first stays";
+}
+
+TEST_F(Registry, SolidsThatMakeNoSenseAreNoGeometryAndAreToldOf) {
+  RobotDescription description = with_mesh();
+  description.mesh_solids.solids = {{"nose", SphereShape{0.1}}};
+  const RegisterReply reply = registry_.register_robot(description, 1);
+  EXPECT_EQ(reply.status, RegisterStatus::Registered);
+  EXPECT_EQ(reply.geometry_grade, GeometryGrade::None);
+  EXPECT_EQ(reply.geometry, "cannot be read: mesh_solids: no link named 'nose'");
+  EXPECT_TRUE(registry_.register_robot(with_mesh_solids(0.1), 2).took_geometry);
+}
+
 TEST_F(Registry, UnknownRobotsAreNotFound) {
   const auto found = registry_.find(Digest{});
   ASSERT_FALSE(found);

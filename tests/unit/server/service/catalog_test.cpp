@@ -105,6 +105,24 @@ TEST_F(CatalogTest, DistributionsSurviveARestartWithoutAFit) {
   EXPECT_EQ(gate_.calls(), 1);
 }
 
+TEST_F(CatalogTest, TheStoreHearsOfUsesOncePerHourAlsoOfThoseFromMemory) {
+  may_trouble_store_ = true;
+  start();
+  teach(6);
+  fetch(request_for(teacher_));  // fitted and stored now
+  for (int i = 0; i < 3; ++i)
+    fetch(request_for(teacher_));
+  EXPECT_EQ(troubled_->uses_noted, 1);
+  advance(std::chrono::minutes(61));
+  for (int i = 0; i < 3; ++i)
+    fetch(request_for(teacher_));
+  EXPECT_EQ(troubled_->uses_noted, 2);
+  start();
+  fetch(request_for(teacher_));
+  EXPECT_EQ(troubled_->uses_noted, 1) << "read from the store";
+  EXPECT_EQ(gate_.calls(), 1);
+}
+
 TEST_F(CatalogTest, AGrownExperienceIsServedAsItWasAndFittedBehind) {
   teach(6);
   fetch(request_for(teacher_));

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/checked_vfs.hpp"
+#include "server/store/sqlite/database/checked_vfs.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -7,15 +7,17 @@
 
 #include <array>
 #include <fstream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
-#include "server/store/sqlite/connection.hpp"
-#include "server/store/sqlite/online_backup.hpp"
-#include "server/store/sqlite/page_seal.hpp"
-#include "server/store/sqlite/seal_store.hpp"
-#include "server/store/sqlite/sqlite_error.hpp"
-#include "server/store/sqlite/store_file.hpp"
-#include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/database/online_backup.hpp"
+#include "server/store/sqlite/database/page_seal.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::checked_vfs_test {
@@ -223,6 +225,62 @@ TEST(SealStore, AnOlderStoreIsSealedWhenItIsMigrated) {
   Database kept(file.string() + ".backup-3", Access::ReadOnly);
   EXPECT_FALSE(is_sealed(kept.connection()));
   EXPECT_EQ(kept.integer("SELECT count(*) FROM attempt"), 11);
+}
+
+/// Calls that wrote something, of this process so far.
+std::uint64_t write_calls() {
+  std::ifstream io("/proc/self/io");
+  for (std::string word; io >> word;)
+    if (std::uint64_t count = 0; word == "syscw:" && io >> count)
+      return count;
+  throw std::runtime_error("no /proc/self/io");
+}
+
+class GatheredWal : public CheckedVfs {
+ protected:
+  GatheredWal() {
+    database_.execute("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0");
+    fill(database_, 1);  // the WAL has its header
+  }
+  std::uint64_t write_calls_of(int rows) {
+    const std::uint64_t before = write_calls();
+    fill(database_, rows);
+    return write_calls() - before;
+  }
+  std::int64_t rows_for_others() const {
+    Database other(file_, Access::ReadOnly);
+    return other.integer("SELECT count(*) FROM t WHERE length(b) = 1000");
+  }
+  Database database_{file_, Access::ReadWrite};
+};
+
+TEST_F(GatheredWal, IsWrittenInOneCallACommit) {
+  EXPECT_GT(write_calls_of(100), 50U);
+  gather_wal_writes(database_.connection());
+  EXPECT_LE(write_calls_of(100), 3U);
+  EXPECT_EQ(rows_for_others(), 401);
+}
+
+TEST_F(GatheredWal, IsNotGatheredByWhoDoesNotSync) {
+  database_.execute("PRAGMA synchronous = NORMAL");
+  gather_wal_writes(database_.connection());
+  EXPECT_GT(write_calls_of(100), 50U);
+  EXPECT_EQ(rows_for_others(), 301);
+}
+
+TEST_F(GatheredWal, IsReadBackByATransactionThatOutgrowsItsCache) {
+  database_.execute("PRAGMA cache_size = 10");
+  gather_wal_writes(database_.connection());
+  {
+    Transaction transaction(database_, Transaction::Kind::Write);
+    database_.execute("UPDATE t SET b = zeroblob(1000); UPDATE t SET b = zeroblob(1001)");
+    EXPECT_EQ(database_.integer("SELECT sum(length(b)) FROM t"), 201 * 1001);
+    EXPECT_EQ(rows_for_others(), 201);
+  }  // undone
+  EXPECT_EQ(database_.integer("SELECT sum(length(b)) FROM t"), 201 * 1000);
+  fill(database_, 5);
+  EXPECT_EQ(rows_for_others(), 206);
+  EXPECT_EQ(database_.integer("SELECT integrity_check = 'ok' FROM pragma_integrity_check"), 1);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/database/database.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "server/store/sqlite/sqlite_error.hpp"
-#include "server/store/sqlite/transaction.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::database_test {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"

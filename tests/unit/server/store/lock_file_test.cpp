@@ -1,4 +1,4 @@
-#include "server/store/sqlite/lock_file.hpp"
+#include "server/store/sqlite/files/lock_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "server/store/sqlite/database.hpp"
-#include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -104,7 +104,11 @@ TEST_F(Maintenance, ACheckFindsDamageOfEveryKindAndNamesTheRow) {
       {"UPDATE path SET received_ms = 5 WHERE id = 1", "path 1: arrived at another time"},
       {"DELETE FROM attempt WHERE path_id = 1", "path 1: no attempt has its UUID"},
       {"UPDATE attempt SET path_id = NULL WHERE path_id = 1", "path 1: its attempt does not name"},
-      {"UPDATE attempt SET path_id = NULL WHERE path_id = 1", "its path is missing"},
+      {"UPDATE attempt SET path_id = NULL WHERE path_id = 1", "says 0 dropped paths, has 1"},
+      {"UPDATE path SET retired_ms = 1, encoding = 2, waypoints = x'00' WHERE id = 1",
+       "path: 1: damaged"},
+      {"DELETE FROM distribution_use", "nothing says when it was used"},
+      {"UPDATE distribution_use SET id = 99", "used, but not there"},
       {"UPDATE attempt SET path_id = 999 WHERE path_id = 1", "names a path that is not there"},
       {"UPDATE experience SET paths = paths + 1", "says 4 paths, has 3"},
       {"UPDATE experience SET attempts = 3", "says 3 attempts, has 8"},
@@ -145,10 +149,10 @@ TEST_F(Maintenance, ACheckReadsEveryPage) {
   std::size_t found = 0;
   std::size_t pages = 0;
   fs::copy_file(file_, copy_);
-  for (std::uintmax_t page = 1; page < size / 8192; ++page, ++pages) {
+  for (std::uintmax_t page = 1; page < size / 4096; ++page, ++pages) {
     std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
-        .seekp(static_cast<std::streamoff>(page * 8192))
-        .write(std::string(8192, 'x').data(), 8192);
+        .seekp(static_cast<std::streamoff>(page * 4096))
+        .write(std::string(4096, 'x').data(), 4096);
     if (refusal([&] {
           if (check_store(file_, ignore).problems > 0)
             throw Failure(ErrorCode::Storage, "found");

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/migrations.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <string>
 
 #include "proto/types/failure.hpp"
-#include "server/store/sqlite/seal_store.hpp"
-#include "server/store/sqlite/sqlite_error.hpp"
-#include "server/store/sqlite/store_file.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::migrations_test {

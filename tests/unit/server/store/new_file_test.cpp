@@ -1,4 +1,4 @@
-#include "server/store/sqlite/new_file.hpp"
+#include "server/store/sqlite/files/new_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/page_seal.hpp"
+#include "server/store/sqlite/database/page_seal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/reader_pool.hpp"
+#include "server/store/sqlite/opening/reader_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::reader_pool_test {

@@ -1,8 +1,8 @@
-#include "server/store/sqlite/run_log.hpp"
+#include "server/store/sqlite/opening/run_log.hpp"
 
 #include <gtest/gtest.h>
 
-#include "server/store/sqlite/history_seal.hpp"
+#include "server/store/sqlite/opening/history_seal.hpp"
 
 namespace kinship::store::run_log_test {
 namespace {

@@ -7,19 +7,27 @@
 #include <fstream>
 #include <future>
 
-#include "server/store/sqlite/connection.hpp"
-#include "server/store/sqlite/database.hpp"
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
 
 namespace kinship::store::sqlite_store_test {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance,
-                         testing::Values(Engine{"Sqlite",
-                                                [](const std::filesystem::path& directory) {
-                                                  return open_sqlite_store(directory / "store.db");
-                                                }}),
-                         [](const auto& engine) { return engine.param.name; });
+Engine sqlite_engine() {
+  return {"Sqlite", [](const std::filesystem::path& directory, const EngineLimits& limits) {
+            SqliteOptions options;
+            options.max_paths_per_pair = limits.paths_per_pair;
+            options.max_distribution_bytes = limits.distribution_bytes;
+            return open_sqlite_store(directory / "store.db", options);
+          }};
+}
+std::string name_of_engine(const testing::TestParamInfo<Engine>& engine) {
+  return engine.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(sqlite_engine()),
+                         name_of_engine);
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreRetention, testing::Values(sqlite_engine()), name_of_engine);
 
 /// What only a store in an SQLite file can show.
 class SqliteStoreTest : public testing::Test {
@@ -55,6 +63,22 @@ class SqliteStoreTest : public testing::Test {
   const RobotRecord robot_ = test::make_robot("panda", 1);
   std::unique_ptr<Store> store_;
 };
+
+TEST_F(SqliteStoreTest, ADistributionThatIsUsedOutlivesNewerOnesThatAreNot) {
+  store_ = open_sqlite_store(file_, {.max_distribution_bytes = 6000});
+  static_cast<void>(store_->register_robot(robot_));
+  const auto put = [&](std::uint64_t number) {
+    store_->put_distribution(test::make_distribution(robot_.digest, "shelf", number));
+  };
+  put(1);
+  put(2);
+  damage("UPDATE distribution_use SET used_ms = used_ms - 7200000");  // two hours ago
+  store_ = open_sqlite_store(file_, {.max_distribution_bytes = 6000});
+  store_->note_use(test::id_from<Digest>(1));
+  for (std::uint64_t number = 3; store_->find_distribution(test::id_from<Digest>(2)); ++number)
+    put(number);
+  EXPECT_TRUE(store_->find_distribution(test::id_from<Digest>(1)));
+}
 
 constexpr const char* kFlipByte =
     "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 50) || x'A5' ||"
@@ -272,7 +296,7 @@ TEST_F(SqliteStoreTest, RefusesWhatCannotBeAStoreBeforeItMakesALock) {
   for (const std::string& text :
        {std::string("root:x:0:0:root:/root:/bin/sh\n"), std::string("x")}) {
     std::ofstream(file_) << text;
-    EXPECT_EQ(refusal(), name + "is no SQLite database");
+    EXPECT_EQ(refusal().find(name + "is no SQLite database; "), 0U) << refusal();
     EXPECT_FALSE(std::filesystem::exists(lock));
   }
   std::filesystem::remove(file_);
@@ -344,12 +368,12 @@ TEST_F(SqliteStoreTest, LeavesOneFileTheLockAndTheWitnessBehind) {
   EXPECT_EQ(names, (std::vector<std::string>{"store.db", "store.db.lock", "store.db.witness"}));
 }
 
-TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf8KbAndTheRulesOfItsSchema) {
+TEST_F(SqliteStoreTest, WritesInWalModeWithPagesOf4KbAndTheRulesOfItsSchema) {
   open();
   test::report(*store_, {attempt(1), test::make_unsolved(robot_.digest, "shelf", 2)});
   store_.reset();
   Database database(file_, Access::ReadOnly);
-  EXPECT_EQ(database.integer("PRAGMA page_size"), 8192);
+  EXPECT_EQ(database.integer("PRAGMA page_size"), 4096);
   EXPECT_EQ(database.integer("SELECT journal_mode = 'wal' FROM pragma_journal_mode"), 1);
   EXPECT_EQ(database.integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
   EXPECT_EQ(database.integer("SELECT integrity_check = 'ok' FROM pragma_integrity_check"), 1);

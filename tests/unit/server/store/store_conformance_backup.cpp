@@ -18,6 +18,21 @@ std::size_t files_in(const test::TemporaryDirectory& directory) {
   return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
+constexpr std::uint64_t kManyPaths = 2000;
+
+/// 10 MB, which no engine copies at once.
+void report_many(Store& store, const Digest& robot) {
+  constexpr std::uint64_t kBatch = 200;
+  for (std::uint64_t first = 0; first < kManyPaths; first += kBatch) {
+    std::vector<Attempt> attempts;
+    for (std::uint64_t number = first; number < first + kBatch; ++number) {
+      attempts.push_back(test::make_attempt(robot, "shelf", number));
+      attempts.back().path = test::make_path(number, test::kDof, 200);
+    }
+    test::report(store, std::move(attempts));
+  }
+}
+
 TEST_P(StoreConformance, ABackupIsAStoreWithAllThatWasThere) {
   test::report(*store_, {solved(1), solved(2), test::make_unsolved(iiwa_.digest, "table", 3)});
   const Distribution distribution = test::make_distribution(iiwa_.digest, "shelf", 3);
@@ -34,7 +49,7 @@ TEST_P(StoreConformance, ABackupIsAStoreWithAllThatWasThere) {
   EXPECT_EQ(last, 1);
   EXPECT_EQ(files_in(elsewhere), 1U);
   report(solved(4));  // not in the copy
-  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path());
+  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path(), {});
   EXPECT_EQ(copy->status().paths, 2U);
   EXPECT_EQ(copy->status().attempts, 3U);
   EXPECT_EQ(copy->robots().size(), 2U);
@@ -93,27 +108,24 @@ TEST_P(StoreConformance, ABackupThatCannotBeMadeNamesTheFile) {
 }
 
 TEST_P(StoreConformance, OnlyOneBackupIsMadeAtATime) {
+  report_many(*store_, panda_.digest);
   const test::TemporaryDirectory elsewhere;
+  int tried = 0;
   EXPECT_TRUE(*store_->backup(copy_in(elsewhere), [&](double progress) {
     if (progress == 1)
       return true;  // the copying is over
+    ++tried;
     const Result<bool> second = store_->backup(elsewhere / "second.db", kGoOn);
     EXPECT_FALSE(second);
     EXPECT_EQ(second.error().code, ErrorCode::Unavailable);
     return true;
   }));
+  EXPECT_GT(tried, 0);
   EXPECT_EQ(files_in(elsewhere), 1U);
 }
 
 TEST_P(StoreConformance, ReportsGoOnDuringABackupThatIsOfOneInstant) {
-  for (std::uint64_t batch = 0; batch < 10; ++batch) {
-    std::vector<Attempt> attempts;
-    for (std::uint64_t i = 0; i < 200; ++i) {
-      attempts.push_back(solved(1000 * batch + i));
-      attempts.back().path = test::make_path(1000 * batch + i, test::kDof, 200);
-    }
-    test::report(*store_, std::move(attempts));
-  }
+  report_many(*store_, panda_.digest);
   constexpr std::uint64_t kFirst = 1'000'000;
   std::uint64_t number = kFirst;
   std::uint64_t acknowledged_at_end = 0;
@@ -127,12 +139,12 @@ TEST_P(StoreConformance, ReportsGoOnDuringABackupThatIsOfOneInstant) {
     number += 2;
     return true;
   }));
-  EXPECT_GT(acknowledged_at_end, 10U);  // it was in steps
-  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path());
-  EXPECT_EQ(copy->status().paths, 2000 + acknowledged_at_end);
+  EXPECT_GT(acknowledged_at_end, 2U);  // it was in steps
+  const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path(), {});
+  EXPECT_EQ(copy->status().paths, kManyPaths + acknowledged_at_end);
   EXPECT_EQ(copy->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 10'000}).size(),
-            2000 + acknowledged_at_end);
-  EXPECT_EQ(store_->status().paths, 2000 + number - kFirst);
+            kManyPaths + acknowledged_at_end);
+  EXPECT_EQ(store_->status().paths, kManyPaths + number - kFirst);
 }
 
 }  // namespace

@@ -38,6 +38,76 @@ TEST_P(StoreConformance, GivesARobotBackAsItWas) {
   EXPECT_FALSE(store_->find_robot(test::id_from<Digest>(9)));
 }
 
+RobotRecord with_solids(RobotRecord robot) {
+  robot.description.mesh_solids.solids = {{"arm", CapsuleShape{0.1, 0.2}, test::make_pose()},
+                                          {"hand", SphereShape{0.3}}};
+  robot.description.mesh_solids.unfiltered = {{"arm", "hand"}};
+  return robot;
+}
+
+TEST_P(StoreConformance, GivesMeshSolidsBackAsTheyWere) {
+  const RobotRecord robot = with_solids(test::make_robot("mesh", 3));
+  ASSERT_EQ(store_->register_robot(robot).value_or_throw(), RegisterStatus::Registered);
+  reopen();
+  const RobotRecord after = store_->find_robot(robot.digest).value();
+  const MeshSolids &is = after.description.mesh_solids, &was = robot.description.mesh_solids;
+  ASSERT_EQ(is.solids.size(), 2U);
+  EXPECT_EQ(std::get<CapsuleShape>(is.solids[0].shape).length_m, 0.2);
+  EXPECT_TRUE(is.solids[0].T_link_shape.isApprox(was.solids[0].T_link_shape, 1e-15));
+  EXPECT_EQ(is.solids[1].link, "hand");
+  EXPECT_EQ(is.unfiltered, was.unfiltered);
+  EXPECT_EQ(after.geometry_revision, 0U);
+  EXPECT_TRUE(store_->geometry_revisions().empty());
+}
+
+TEST_P(StoreConformance, TakesBetterGeometryOfAKnownRobotOnce) {
+  RobotRecord better = with_solids(panda_);
+  better.description.label = "another";
+  better.description.urdf += "<!-- better -->";
+  better.registered_ms = better.geometry_ms = panda_.registered_ms + 5;
+  better.geometry_revision = 1;
+  EXPECT_TRUE(store_->replace_geometry(better));
+  EXPECT_FALSE(store_->replace_geometry(better)) << "somebody was first";
+  reopen();
+  const RobotRecord after = store_->find_robot(panda_.digest).value();
+  EXPECT_EQ(after.description.label, "panda");
+  EXPECT_EQ(after.registered_ms, panda_.registered_ms);
+  EXPECT_EQ(after.description.urdf, better.description.urdf);
+  EXPECT_EQ(after.description.mesh_solids.solids.size(), 2U);
+  EXPECT_EQ(after.geometry_revision, 1U);
+  EXPECT_EQ(after.geometry_ms, better.geometry_ms);
+  EXPECT_EQ(store_->geometry_revisions(), (std::map<Digest, std::uint64_t>{{panda_.digest, 1}}));
+  for (const RobotSummary& row : store_->list_robots("", 10).rows)
+    EXPECT_EQ(row.geometry_ms, row.robot == panda_.digest ? better.geometry_ms : 0);
+  RobotRecord exact = panda_;
+  exact.geometry_revision = 2;
+  EXPECT_TRUE(store_->replace_geometry(exact));
+  EXPECT_TRUE(store_->find_robot(panda_.digest)->description.mesh_solids.solids.empty());
+  EXPECT_EQ(store_->geometry_revisions().at(panda_.digest), 2U);
+  EXPECT_EQ(*store_->register_robot(better), RegisterStatus::Known);
+  RobotRecord nobody = test::make_robot("nobody", 9);
+  nobody.geometry_revision = 1;
+  EXPECT_FALSE(store_->replace_geometry(nobody));
+}
+
+TEST_P(StoreConformance, ASceneKeepsWhatOfItIsApproximate) {
+  Attempt attempt = solved(60);
+  attempt.scene = RecordedScene{{{"rock", BoxShape{{1, 2, 3}}}, {"table", BoxShape{{2, 2, 1}}}},
+                                {{"can", SphereShape{0.1}}},
+                                {}};
+  attempt.scene->objects[0].approximate = attempt.scene->held[0].approximate = true;
+  Attempt exact = solved(61);
+  exact.scene = attempt.scene;
+  exact.scene->objects[0].approximate = exact.scene->held[0].approximate = false;
+  EXPECT_EQ(report(attempt), ReceiptStatus::Stored);
+  EXPECT_EQ(report(exact), ReceiptStatus::Stored);
+  const RecordedScene after = store_->find_attempt(attempt.report_uuid)->scene.value();
+  EXPECT_TRUE(after.objects[0].approximate);
+  EXPECT_FALSE(after.objects[1].approximate);
+  EXPECT_TRUE(after.held[0].approximate);
+  EXPECT_FALSE(store_->find_attempt(exact.report_uuid)->scene->objects[0].approximate);
+}
+
 TEST_P(StoreConformance, NamesTheRobotsWithPathsOfATask) {
   report(solved(1));
   report(test::make_unsolved(iiwa_.digest, "shelf", 2));

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "server/store/maintenance.hpp"
-#include "server/store/sqlite/page_scan.hpp"
+#include "server/store/sqlite/database/page_scan.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kPageSize = 8192;
+constexpr std::uint64_t kPageSize = 4096;
 constexpr const char* kFlipWaypoints =
     "UPDATE path SET waypoints = CAST (substr(waypoints, 1, 50) || x'A5' ||"
     " substr(waypoints, 52) AS BLOB) WHERE id = 2";
@@ -154,6 +154,58 @@ TEST_F(StoreDamage, AResetTakesDamagedPathsToo) {
 
 // A damaged page.
 
+TEST_F(StoreDamage, UnderACapWhatIsResentIsKeptIfItWouldHaveBeen) {
+  constexpr std::uint64_t kCap = 8;
+  const SqliteOptions capped{.max_paths_per_pair = kCap};
+  open(capped);
+  std::uint64_t number = 1;
+  while (number <= 40)
+    report(attempt(number++));
+  std::size_t stored = 0, recorded = 0;
+  for (std::size_t round = 0; round < 2 * kCap; ++round) {
+    const StoredPath path = paths().at(round % kCap);
+    edit("UPDATE path SET T_task_base = NULL WHERE id = " + std::to_string(path.id));
+    open(capped);
+    EXPECT_EQ(paths().size(), kCap - 1);
+    drain();  // it is set aside
+    EXPECT_EQ(report(attempt(number++)).status, ReceiptStatus::Stored) << "there is room";
+    for (int i = 0; i < 20; ++i)
+      report(attempt(number++));
+    std::uint64_t its = 1;
+    while (attempt(its).report_uuid != path.report_uuid)
+      ++its;
+    const Receipt receipt = report(attempt(its));
+    (receipt.status == ReceiptStatus::Stored ? stored : recorded) += 1;
+    EXPECT_EQ(receipt.status == ReceiptStatus::Recorded, !receipt.message.empty());
+    EXPECT_EQ(paths().size(), kCap);
+    EXPECT_EQ(report(attempt(its)).status, ReceiptStatus::Duplicate);
+  }
+  EXPECT_GT(stored, 0U);
+  EXPECT_GT(recorded, 0U);
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+}
+
+TEST_F(StoreDamage, ARepairKeepsWhatIsKeptAndKnowsWhatIsNot) {
+  constexpr std::uint64_t kCap = 8, kReports = 60;
+  const SqliteOptions capped{.max_paths_per_pair = kCap};
+  open(capped);
+  for (std::uint64_t number = 1; number <= kReports; ++number)
+    report(attempt(number));
+  const std::vector<std::int64_t> kept = store_->path_ids(robot_.digest, "shelf");
+  store_.reset();
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+  static_cast<void>(repair_store(file_, [](double) {}));
+  EXPECT_EQ(check().problems, 0U) << testing::PrintToString(check().messages);
+  open(capped);
+  EXPECT_EQ(store_->path_ids(robot_.digest, "shelf"), kept);
+  EXPECT_EQ(store_->status().dropped_paths, kReports - kCap);
+  for (std::uint64_t number = 1; number <= kReports; ++number)
+    EXPECT_EQ(report(attempt(number)).status, ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->status().message.find("set aside"), std::string::npos)
+      << store_->status().message;
+}
+
 TEST_F(StoreDamage, APageOfPathsIsSetAsideNamedAndMendedByAResend) {
   std::vector<Attempt> attempts;
   for (std::uint64_t number = 0; number < 200; ++number)
@@ -284,6 +336,38 @@ TEST_F(StoreDamage, TheScrubFindsAPageThatNobodyReadsAndNamesIt) {
   const StoreStatus status = store_->status();
   EXPECT_NE(status.message.find("kinshipd repair"), std::string::npos) << status.message;
   store_.reset();
+}
+
+TEST_F(StoreDamage, TheCheckNamesADamagedPageOnceInWords) {
+  for (std::uint64_t number = 0; number < 200; ++number)
+    test::report(*store_, {attempt(number, 60)});
+  store_.reset();
+  const std::uint64_t page = pages_of("table path").at(5);
+  flip(page);
+  const StoreCheck found = check();
+  std::size_t named = 0;
+  for (const std::string& message : found.messages) {
+    named += message.find("page " + std::to_string(page) + " ") != std::string::npos ? 1U : 0U;
+    EXPECT_EQ(message.find("SELECT"), std::string::npos) << message;
+    EXPECT_EQ(message.find("error code"), std::string::npos) << message;
+  }
+  EXPECT_EQ(named, 1U) << testing::PrintToString(found.messages);
+}
+
+TEST_F(StoreDamage, TheCheckOfAStoreWithoutItsFirstPageNamesThatPage) {
+  store_.reset();
+  flip(1);
+  const StoreCheck found = check();
+  EXPECT_EQ(found.problems, 2U);
+  ASSERT_EQ(found.messages.size(), 2U);
+  EXPECT_TRUE(found.messages.at(1).starts_with("page 1 is damaged")) << found.messages.at(1);
+  try {
+    store_ = open_sqlite_store(file_);
+    FAIL() << "opened";
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("'kinshipd repair'"), std::string::npos)
+        << failure.what();
+  }
 }
 
 TEST_F(StoreDamage, ARepairSaysWhatIsLost) {

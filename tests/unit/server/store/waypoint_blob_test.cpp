@@ -1,4 +1,4 @@
-#include "server/store/sqlite/waypoint_blob.hpp"
+#include "server/store/sqlite/rows/waypoint_blob.hpp"
 
 #include <gtest/gtest.h>
 

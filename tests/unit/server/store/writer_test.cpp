@@ -1,4 +1,4 @@
-#include "server/store/sqlite/writer.hpp"
+#include "server/store/sqlite/database/writer.hpp"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -7,7 +7,7 @@
 #include <future>
 #include <optional>
 
-#include "server/store/sqlite/sqlite_error.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::writer_test {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/transfer/transfer.hpp"
+#include "tests/support/one_by_one.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/transfer_path.hpp"
 
@@ -33,11 +34,13 @@ struct Group {
             middle + 0.1 * (1 + i) * (test::random_configuration(source, generator) - middle) / 2;
       paths.emplace_back(waypoints);
       const double most = 0.3 * i;
-      filters.push_back({i % 3 == 1
-                             ? ConfigurationFilter([most](const auto& q) { return q[1] < most; })
-                             : ConfigurationFilter(),
-                         i % 4 == 2 ? ConfigurationFilter([](const auto& q) { return q[2] > -0.5; })
-                                    : ConfigurationFilter()});
+      filters.push_back(
+          {i % 3 == 1 ? ConfigurationFilter(
+                            test::one_by_one([most](const auto& q) { return q[1] < most; }))
+                      : ConfigurationFilter(),
+           i % 4 == 2
+               ? ConfigurationFilter(test::one_by_one([](const auto& q) { return q[2] > -0.5; }))
+               : ConfigurationFilter()});
     }
   }
 

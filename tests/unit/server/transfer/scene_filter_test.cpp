@@ -35,7 +35,7 @@ struct Beam {
   }
   SceneFilter filter(const RecordedScene& scene,
                      const Eigen::Isometry3d& T_task_base = Eigen::Isometry3d::Identity()) const {
-    return scene_filter(*chain, shapes, scene, T_task_base);
+    return scene_filter({*chain, shapes}, scene, T_task_base);
   }
 
   std::optional<kinematics::Chain> chain;
@@ -113,7 +113,7 @@ TEST(SceneFilter, WithoutShapesOrObjectsThereIsNone) {
   const Beam beam;
   EXPECT_FALSE(beam.filter({}).keep);
   EXPECT_FALSE(
-      scene_filter(*beam.chain, {}, {{kPost}, {}, {}}, Eigen::Isometry3d::Identity()).keep);
+      scene_filter({*beam.chain, {}}, {{kPost}, {}, {}}, Eigen::Isometry3d::Identity()).keep);
 }
 
 }  // namespace

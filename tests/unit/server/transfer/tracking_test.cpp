@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "robots/kinematics/forward_kinematics.hpp"
@@ -10,6 +11,7 @@
 #include "server/transfer/shape_tracker.hpp"
 #include "server/transfer/transfer.hpp"
 #include "tests/support/joint_distance.hpp"
+#include "tests/support/one_by_one.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/transfer_path.hpp"
 
@@ -41,7 +43,9 @@ Path bent_path() {
 
 /// The tracks of one path alone.
 const std::vector<Track>& found_tracks(const ArmPair& pair, ShapeTracker& tracker) {
-  ExtensionPool(pair).run({&tracker});
+  ShapeTracker* next = &tracker;
+  ExtensionPool(pair).run(
+      {.next = [&] { return std::exchange(next, nullptr); }, .done = [](ShapeTracker&) {}});
   return tracker.tracks();
 }
 
@@ -150,7 +154,8 @@ TEST(ShapeTracker, TakesAPostureLikeTheSources) {
 }
 
 TEST(ShapeTracker, EndsWhereAFilterSaysNo) {
-  const Filters filters{.self = [](const auto& q) { return q[0] > 1; }, .scene = {}};
+  const Filters filters{.self = test::one_by_one([](const auto& q) { return q[0] > 1; }),
+                        .scene = {}};
   const Tracking all(kSource, kTarget, {.least_coverage = 0});
   const Tracking some(kSource, kTarget, {.least_coverage = 0}, filters);
   const auto lowest = [](const Tracking& run) {
@@ -163,6 +168,28 @@ TEST(ShapeTracker, EndsWhereAFilterSaysNo) {
   EXPECT_GT(lowest(some), 1);
   EXPECT_GT(some.counted.self_collisions(), 0U);
   EXPECT_EQ(some.counted.scene_collisions(), 0U);
+}
+
+/// Filters are asked about several poses of an extension at once, whichever way it goes.
+TEST(ShapeTracker, NoTrackHoldsWhatAFilterRejects) {
+  const Tracking all(kSource, kTarget, {.least_coverage = 0});
+  ASSERT_FALSE(all.tracks.empty());
+  const Eigen::MatrixXd& found = all.tracks.front().configurations;
+  std::size_t cut = 0;
+  for (Eigen::Index joint = 0; joint < found.rows(); ++joint)
+    for (Eigen::Index pose = 0; pose < found.cols(); ++pose)
+      for (const double sign : {1.0, -1.0}) {
+        const double most = sign * found(joint, pose);
+        const auto keeps = [=](const auto& q) { return sign * q[joint] < most; };
+        const Filters filters{.self = {}, .scene = test::one_by_one(keeps)};
+        const Tracking some(kSource, kTarget, {.least_coverage = 0}, filters);
+        for (const Track& track : some.tracks) {
+          cut += track.configurations.cols() < some.poses.size() ? 1U : 0U;
+          for (const auto& q : track.configurations.colwise())
+            ASSERT_TRUE(keeps(q));
+        }
+      }
+  EXPECT_GT(cut, 50U);
 }
 
 TEST(ShapeTracker, DependsOnSeedAndPathOnly) {
@@ -213,8 +240,8 @@ TEST(TransferWithTracks, RandomSolutionsFillWhereTracksAreMissing) {
 }
 
 TEST(TransferWithFilters, NothingThatAFilterRejectsComesOut) {
-  const Filters filters{.self = [](const auto& q) { return q[1] < 0.5; },
-                        .scene = [](const auto& q) { return q[2] > -0.5; }};
+  const Filters filters{.self = test::one_by_one([](const auto& q) { return q[1] < 0.5; }),
+                        .scene = test::one_by_one([](const auto& q) { return q[2] > -0.5; })};
   for (const int tracks : {0, 3}) {
     const auto moved =
         transfer_path(source_path(), {kSource.chain(), kTarget.chain()},
@@ -231,7 +258,7 @@ TEST(TransferWithFilters, NothingThatAFilterRejectsComesOut) {
 }
 
 TEST(TransferWithFilters, APathWithoutAFreeConfigurationIsCountedAsColliding) {
-  const Filters nothing{.self = [](const auto&) { return false; }, .scene = {}};
+  const Filters nothing{.self = test::one_by_one([](const auto&) { return false; }), .scene = {}};
   const auto moved = transfer_path(source_path(), {kSource.chain(), kTarget.chain()},
                                    Eigen::Isometry3d::Identity(), {}, kSeed, nothing);
   EXPECT_EQ(moved.configurations.cols(), 0);
@@ -240,7 +267,7 @@ TEST(TransferWithFilters, APathWithoutAFreeConfigurationIsCountedAsColliding) {
 
 TEST(TransferWithFilters, WaypointsThatAreTakenOverAreNotAskedAbout) {
   const auto arm = kSource.chain();
-  const Filters nothing{.self = [](const auto&) { return false; }, .scene = {}};
+  const Filters nothing{.self = test::one_by_one([](const auto&) { return false; }), .scene = {}};
   const auto moved =
       transfer_path(source_path(), {arm, arm}, Eigen::Isometry3d::Identity(), {}, kSeed, nothing);
   EXPECT_EQ(moved.summary.poses_solved, moved.summary.poses);

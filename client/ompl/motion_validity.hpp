@@ -1,0 +1,48 @@
+#pragma once
+
+#include <ompl/base/DiscreteMotionValidator.h>
+#include <ompl/base/StateValidityChecker.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+/// Motions of OMPL whose states are asked for together; for this library's sources only.
+namespace kinship::planning {
+
+/// Says which states are valid, several at once.
+class SeveralStatesValidity : public ompl::base::StateValidityChecker {
+ public:
+  using One = std::function<bool(const ompl::base::State& state)>;
+  /// \param qs  dof x n. \return how many, from the first on, are valid before one is not; later
+  /// ones are not asked for.
+  using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
+
+  SeveralStatesValidity(const ompl::base::SpaceInformationPtr& information, One one, Ahead ahead);
+
+  bool isValid(const ompl::base::State* state) const override { return one_(*state); }
+
+  /// Whether all are valid; asks for a few at a time. \param qs  dof x n.
+  bool are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const;
+
+ private:
+  const One one_;
+  const Ahead ahead_;
+};
+
+/// OMPL's validator of straight motions in a space from make_state_space, in its order: the second
+/// state, then the middle, then the middles of the halves, and so on. Asks for the states together
+/// if the checker of `information` is a SeveralStatesValidity.
+class StraightMotionValidator : public ompl::base::DiscreteMotionValidator {
+ public:
+  explicit StraightMotionValidator(const ompl::base::SpaceInformationPtr& information);
+
+  using ompl::base::DiscreteMotionValidator::checkMotion;
+  bool checkMotion(const ompl::base::State* from, const ompl::base::State* to) const override;
+
+ private:
+  /// What OMPL asks for, in its order: dof x n.
+  Eigen::MatrixXd asked(const ompl::base::State& from, const ompl::base::State& to) const;
+};
+
+}  // namespace kinship::planning

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "robots/collision/body.hpp"
+#include "robots/collision/body_pairs.hpp"
+#include "robots/collision/lanes.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::collision {
+
+/// What is known of some configurations; bit i: the i-th.
+struct LaneAnswer {
+  std::uint32_t maybe = 0;   ///< may collide; the others are free for sure
+  std::uint32_t surely = 0;  ///< collides for sure; a part of maybe
+};
+
+/// The moving bodies of a world as spheres, and what stands around as boxes, capsules and
+/// cylinders, asked about several configurations at once. Where solids touch it never says free.
+/// Not shared between threads.
+class LaneWorld {
+ public:
+  /// \param pairs  that are checked, one of each moves.
+  LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bodies,
+            const std::vector<BodyPair>& pairs);
+
+  /// \param qs   dof x n, 1 <= n <= kLanes, finite; limits are not checked.
+  /// \param set  one of lane_sets()
+  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set);
+
+  /// The same with the fastest set.
+  LaneAnswer ask(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
+  /// The same, but nothing is known of those behind the first that surely collides.
+  LaneAnswer ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
+  /// Pairs that may touch at one of the configurations asked about last, not surely colliding.
+  /// \param pairs  of the constructor's bodies.
+  /// \return whether they are known; else each may.
+  bool doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const;
+
+ private:
+  /// How a configuration becomes what the kernels are asked, joint by joint.
+  struct alignas(16) Writing {
+    double lower[kLaneJoints], upper[kLaneJoints];  // so that the numbers hold: of what slides its
+                                                    // limits, of an angle what is exact after turns
+    double offset[kLaneJoints];                     // added to an angle
+    double per_turn[kLaneJoints];                   // 1 / 2 pi; 0 of what slides
+  };
+  struct alignas(64) Place {
+    float values[kLanes];
+  };
+
+  friend class LaneWorldMaker;
+
+  /// Writes a configuration into a lane of the question. \return whether the numbers hold for it.
+  /// \param q  dof, finite.
+  bool write_lane(const double* q, int lane);
+  /// Writes configurations into the question, idle lanes as the last one.
+  /// \return those that the numbers do not hold for.
+  std::uint32_t write_question(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+  LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set, bool is_ahead);
+
+  float slack_ = 0;
+  Writing writing_{};
+  std::vector<LaneJoint> joints_;
+  std::vector<LaneBody> bodies_;
+  std::vector<LaneObstacle> obstacles_;
+  std::vector<float> bounds_;
+  std::vector<unsigned> reach_;
+  std::vector<LaneSphere> spheres_;
+  std::vector<float> cover_;
+  std::vector<LaneOther> others_;
+  std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
+  std::vector<Place> places_;                                   // three a sphere
+  LaneQuestion question_;     // kept, so that asking needs no heap
+  std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
+  bool has_room_ = true;      // for all bodies; else everything may collide
+};
+
+}  // namespace kinship::collision

@@ -1,0 +1,384 @@
+// Whether configurations collide, KINSHIP_SIMD_WIDTH at once. Included only by the units that are
+// compiled for one instruction set.
+
+#include "robots/collision/lanes.hpp"
+#include "robots/collision/simd_floats.hpp"
+#include "robots/collision/simd_separation.hpp"
+
+namespace kinship::collision {
+namespace {
+
+constexpr unsigned kAllOfAGroup = (1U << KINSHIP_SIMD_WIDTH) - 1U;
+
+/// What is known of a group of lanes.
+struct Verdict {
+  unsigned maybe = 0, surely = 0;
+};
+
+/// Configurations of one group: where its joints and, as far as somebody asked, its spheres are.
+class Group {
+ public:
+  /// \param first  lane of the question
+  Group(const LaneScene& scene, LaneQuestion& question, int first, float* places)
+      : scene_(scene), question_(question), places_(places), first_(first) {
+    place_joints(question, first);
+    for (int body = 0; body < scene.bodies; ++body)
+      is_placed_[body] = false;
+  }
+
+  Verdict check() {
+    try_likely();
+    for (int index = 0; index < scene_.bodies && verdict_.surely != kAllOfAGroup; ++index) {
+      const LaneBody& body = scene_.body[index];
+      const WidePoint center = moved(frames_[body.joint], body.form.center);
+      centers_[index] = center;
+      check_obstacles(index, center);
+      for (int i = 0; i < body.others; ++i) {
+        const LaneOther& other = scene_.others[body.first_other + i];
+        const unsigned near =
+            below(distance2(center, centers_[other.body]), all(other.reach2)) & ~verdict_.surely;
+        if (near != 0)
+          compare_bodies(index, other.body, near);
+      }
+    }
+    return verdict_;
+  }
+
+ private:
+  void place_joints(const LaneQuestion& question, int first) {
+    WideFrame frame = standing(scene_.joints[0].R, scene_.joints[0].p);
+    for (int j = 0; j < scene_.dof; ++j) {
+      const LaneJoint& joint = scene_.joints[j];
+      if (joint.is_tilt)
+        tilt(joint.R[7], joint.R[8], joint.p, frame);
+      else if (j > 0)
+        follow(joint.R, joint.p, frame);
+      const Wide q = load(question.q[j] + first);
+      if (joint.slides) {
+        frame.p[0] += q * frame.R[2];
+        frame.p[1] += q * frame.R[5];
+        frame.p[2] += q * frame.R[8];
+      } else {
+        Wide sine, cosine;
+        sine_cosine(q, sine, cosine);
+        turn(sine, cosine, frame);
+      }
+      frames_[j] = frame;
+    }
+  }
+
+  /// What collided last does so often again, and then the rest need not be asked.
+  void try_likely() {
+    if (question_.likely_body < 0)
+      return;
+    const LaneBody& body = scene_.body[question_.likely_body];
+    check_obstacle(question_.likely_body, question_.likely_obstacle,
+                   moved(frames_[body.joint], body.form.center), kAllOfAGroup);
+  }
+
+  /// First the box around where the body is in any lane, against those of many obstacles.
+  KINSHIP_SIMD_INLINE void check_obstacles(int index, const WidePoint& center) {
+    const LaneBody& body = scene_.body[index];
+    const WidePoint low = {all(least(center.x) - body.radius), all(least(center.y) - body.radius),
+                           all(least(center.z) - body.radius)};
+    const WidePoint high = {all(largest(center.x) + body.radius),
+                            all(largest(center.y) + body.radius),
+                            all(largest(center.z) + body.radius)};
+    for (int block = 0; block < scene_.blocks; ++block) {
+      unsigned open = scene_.reach[body.first_reach + block];
+      if (open == 0)
+        continue;
+      unsigned near = 0;
+      for (int part = 0; part < kLanes; part += KINSHIP_SIMD_WIDTH) {
+        const float* const bounds = scene_.bounds + block * 6 * kLanes + part;
+        const unsigned overlap =
+            below(load(bounds), high.x) & below(load(bounds + kLanes), high.y) &
+            below(load(bounds + 2 * kLanes), high.z) & below(low.x, load(bounds + 3 * kLanes)) &
+            below(low.y, load(bounds + 4 * kLanes)) & below(low.z, load(bounds + 5 * kLanes));
+        near |= overlap << part;
+      }
+      open &= near;
+      if (open == 0)
+        continue;
+      const WidePoint half = extents(body);
+      for (; open != 0; open &= open - 1) {
+        const int lane = __builtin_ctz(open);
+        const unsigned within =
+            overlap(scene_.bounds + block * 6 * kLanes + lane, center, half) & ~verdict_.surely;
+        if (within != 0)
+          check_obstacle(index, block * kLanes + lane, center, within);
+      }
+    }
+  }
+
+  /// How far a body reaches along the scene's axes, to either side of its centre, in each lane.
+  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body) const {
+    const LaneForm& form = body.form;
+    const WideFrame& frame = frames_[body.joint];
+    const float(&A)[9] = form.axes;
+    const WidePoint z = turned(frame, A[2], A[5], A[8]);
+    const float more = 4 * scene_.slack + (is_box(form) ? 0.0F : form.radius);
+    WidePoint half = {absolute(z.x) * form.half[2] + more, absolute(z.y) * form.half[2] + more,
+                      absolute(z.z) * form.half[2] + more};
+    if (!is_box(form))
+      return half;
+    const WidePoint x = turned(frame, A[0], A[3], A[6]), y = turned(frame, A[1], A[4], A[7]);
+    half.x += absolute(x.x) * form.half[0] + absolute(y.x) * form.half[1];
+    half.y += absolute(x.y) * form.half[0] + absolute(y.y) * form.half[1];
+    half.z += absolute(x.z) * form.half[0] + absolute(y.z) * form.half[1];
+    return half;
+  }
+
+  /// Lanes in which a box along the axes overlaps that around an obstacle. \param bounds  its own.
+  static KINSHIP_SIMD_INLINE unsigned overlap(const float* bounds, const WidePoint& center,
+                                              const WidePoint& half) {
+    return below(all(bounds[0]), center.x + half.x) &
+           below(all(bounds[kLanes]), center.y + half.y) &
+           below(all(bounds[2 * kLanes]), center.z + half.z) &
+           below(center.x - half.x, all(bounds[3 * kLanes])) &
+           below(center.y - half.y, all(bounds[4 * kLanes])) &
+           below(center.z - half.z, all(bounds[5 * kLanes]));
+  }
+
+  /// \param open  lanes that matter
+  KINSHIP_SIMD_INLINE void check_obstacle(int index, int which, const WidePoint& center,
+                                          unsigned open) {
+    const LaneObstacle& obstacle = scene_.obstacle[which];
+    const unsigned near = reach(obstacle.form, center, scene_.body[index].radius) & open;
+    if (near == 0)
+      return;
+    const unsigned before = verdict_.surely;
+    compare_closely(index, which, near);
+    if (verdict_.surely != before) {
+      question_.likely_body = index;
+      question_.likely_obstacle = which;
+    }
+  }
+
+  static Wide distance2(const WidePoint& a, const WidePoint& b) {
+    const Wide x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return x * x + y * y + z * z;
+  }
+
+  /// Squared distance of a point to a box along the axes.
+  static KINSHIP_SIMD_INLINE Wide distance2_of_box(const float (&center)[3], const float (&half)[3],
+                                                   const WidePoint& at) {
+    const Wide u = positive(absolute(at.x - center[0]) - half[0]);
+    const Wide v = positive(absolute(at.y - center[1]) - half[1]);
+    const Wide w = positive(absolute(at.z - center[2]) - half[2]);
+    return u * u + v * v + w * w;
+  }
+
+  /// Squared distance of a point to a box or cylinder, or to the axis of a capsule.
+  static KINSHIP_SIMD_INLINE Wide distance2(const LaneForm& form, const WidePoint& at) {
+    const float(&A)[9] = form.axes;
+    if (form.shape == LaneShape::AlignedBox)
+      return distance2_of_box(form.center, form.half, at);
+    const Wide dx = at.x - form.center[0], dy = at.y - form.center[1], dz = at.z - form.center[2];
+    const Wide x = dx * A[0] + dy * A[3] + dz * A[6];
+    const Wide y = dx * A[1] + dy * A[4] + dz * A[7];
+    const Wide z = positive(absolute(dx * A[2] + dy * A[5] + dz * A[8]) - form.half[2]);
+    if (form.shape == LaneShape::Box) {
+      const Wide u = positive(absolute(x) - form.half[0]);
+      const Wide v = positive(absolute(y) - form.half[1]);
+      return u * u + v * v + z * z;
+    }
+    const Wide across2 = x * x + y * y;
+    if (form.shape == LaneShape::Capsule)
+      return across2 + z * z;
+    const Wide across = positive(root(across2) - form.radius);
+    return across * across + z * z;
+  }
+
+  /// Lanes in which a sphere reaches a form.
+  static KINSHIP_SIMD_INLINE unsigned reach(const LaneForm& form, const WidePoint& center,
+                                            float radius) {
+    const float limit = form.shape == LaneShape::Capsule ? radius + form.radius : radius;
+    return below(distance2(form, center), all(limit * limit));
+  }
+
+  WidePoint sphere(int index) const {
+    const float* const place = places_ + 3 * KINSHIP_SIMD_WIDTH * index;
+    return {load(place), load(place + KINSHIP_SIMD_WIDTH), load(place + 2 * KINSHIP_SIMD_WIDTH)};
+  }
+
+  void place_spheres(int index) {
+    if (is_placed_[index])
+      return;
+    is_placed_[index] = true;
+    const LaneBody& body = scene_.body[index];
+    for (int i = body.first; i < body.first + body.count; ++i) {
+      const WidePoint at = moved(frames_[body.joint], scene_.spheres[i].center);
+      float* const place = places_ + 3 * KINSHIP_SIMD_WIDTH * i;
+      store(place, at.x);
+      store(place + KINSHIP_SIMD_WIDTH, at.y);
+      store(place + 2 * KINSHIP_SIMD_WIDTH, at.z);
+    }
+  }
+
+  /// Of a surface: lanes in which a sphere reaches those that cover it.
+  unsigned reach_surface(const LaneObstacle& obstacle, const WidePoint& at, float radius) const {
+    unsigned reached = 0;
+    for (int i = obstacle.first; i < obstacle.first + obstacle.count; ++i) {
+      const LaneSphere& its = scene_.spheres[i];
+      const float limit = radius + its.outer;
+      const WidePoint center = {all(its.center[0]), all(its.center[1]), all(its.center[2])};
+      reached |= below(distance2(at, center), all(limit * limit));
+    }
+    return reached;
+  }
+
+  /// A body and an obstacle, closely. \param near  lanes that matter
+  void compare_closely(int index, int which, unsigned near) {
+    const LaneObstacle& obstacle = scene_.obstacle[which];
+    const LaneBody& body = scene_.body[index];
+    const bool few = __builtin_popcount(near) * (body.room / KINSHIP_SIMD_WIDTH) < body.count;
+    const Verdict found = few && obstacle.is_solid ? compare_lanes(body, obstacle.form, near)
+                                                   : compare_spheres(index, obstacle, near);
+    conclude(found, {0, index, which, -1}, [&](unsigned open) {
+      Planes planes = separated(placed(body.form, frames_[body.joint]), body.form,
+                                standing(obstacle.form), obstacle.form, scene_.slack, open);
+      if (!body.is_solid || !obstacle.is_solid)
+        planes.overlapping = 0;
+      return planes;
+    });
+  }
+
+  /// One lane after the other, many spheres at once.
+  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, unsigned near) const {
+    const float extra = form.shape == LaneShape::Capsule ? form.radius : 0.0F;
+    Verdict found;
+    for (; near != 0; near &= near - 1) {
+      const int lane = __builtin_ctz(near);
+      const WideFrame& all_lanes = frames_[body.joint];
+      WideFrame frame;
+      for (int i = 0; i < 9; ++i)
+        frame.R[i] = all(all_lanes.R[i][lane]);
+      for (int i = 0; i < 3; ++i)
+        frame.p[i] = all(all_lanes.p[i][lane]);
+      unsigned touched = 0, inside = 0;
+      for (int i = 0; i < body.room; i += KINSHIP_SIMD_WIDTH) {
+        const float* const row = scene_.cover + body.first_cover + i;
+        const Wide x = load(row), y = load(row + body.room), z = load(row + 2 * body.room);
+        const Wide outer = load(row + 3 * body.room) + extra;
+        const Wide inner = load(row + 4 * body.room);
+        const WidePoint at = {frame.R[0] * x + frame.R[1] * y + frame.R[2] * z + frame.p[0],
+                              frame.R[3] * x + frame.R[4] * y + frame.R[5] * z + frame.p[1],
+                              frame.R[6] * x + frame.R[7] * y + frame.R[8] * z + frame.p[2]};
+        const Wide squared = distance2(form, at);
+        const Wide within = inner + extra;
+        touched |= below(squared, outer * outer);
+        inside |= below(squared, within * within) & below(Wide{}, inner);
+      }
+      found.maybe |= touched != 0 ? 1U << lane : 0U;
+      found.surely |= inside != 0 ? 1U << lane : 0U;
+    }
+    return found;
+  }
+
+  /// One sphere after the other, all lanes at once.
+  Verdict compare_spheres(int index, const LaneObstacle& obstacle, unsigned near) {
+    const LaneBody& body = scene_.body[index];
+    place_spheres(index);
+    const float extra = obstacle.form.shape == LaneShape::Capsule ? obstacle.form.radius : 0.0F;
+    Verdict found;
+    for (int i = body.first; i < body.first + body.count; ++i) {
+      const LaneSphere& its = scene_.spheres[i];
+      const WidePoint at = sphere(i);
+      const Wide squared = distance2(obstacle.form, at);
+      const float outer = its.outer + extra, inner = its.inner + extra;
+      unsigned touched = below(squared, all(outer * outer)) & near;
+      if (touched == 0)
+        continue;
+      if (!obstacle.is_solid)
+        touched &= reach_surface(obstacle, at, its.outer);
+      else if (its.inner > 0)
+        found.surely |= below(squared, all(inner * inner)) & near;
+      found.maybe |= touched;
+      near &= ~found.surely;  // of those nothing else matters
+      if (near == 0)
+        break;
+    }
+    return found;
+  }
+
+  /// Two bodies, closely.
+  void compare_bodies(int first, int second, unsigned near) {
+    place_spheres(first);
+    place_spheres(second);
+    const LaneBody &a = scene_.body[first], &b = scene_.body[second];
+    Verdict found;
+    for (int i = a.first; i < a.first + a.count; ++i) {
+      const WidePoint at = sphere(i);
+      const LaneSphere& its = scene_.spheres[i];
+      const float around = its.outer + b.radius;
+      if ((below(distance2(at, centers_[second]), all(around * around)) & near) == 0)
+        continue;
+      for (int j = b.first; j < b.first + b.count; ++j) {
+        const LaneSphere& others = scene_.spheres[j];
+        const Wide squared = distance2(at, sphere(j));
+        const float outer = its.outer + others.outer, inner = its.inner + others.inner;
+        found.maybe |= below(squared, all(outer * outer)) & near;
+        if (its.inner > 0 && others.inner > 0)
+          found.surely |= below(squared, all(inner * inner)) & near;
+      }
+    }
+    conclude(found, {0, first, -1, second}, [&](unsigned open) {
+      Planes planes = separated(placed(a.form, frames_[a.joint]), a.form,
+                                placed(b.form, frames_[b.joint]), b.form, scene_.slack, open);
+      if (!a.is_solid || !b.is_solid)
+        planes.overlapping = 0;
+      return planes;
+    });
+  }
+
+  /// \param planes  what planes between the two say of some lanes; asked only where that matters.
+  template <typename Ask>
+  KINSHIP_SIMD_INLINE void conclude(Verdict found, LaneDoubt doubt, const Ask& planes) {
+    if (found.maybe == 0)
+      return;
+    unsigned open = found.maybe & ~found.surely;
+    if (open != 0) {
+      const Planes said = planes(open);
+      found.maybe &= ~(open & said.apart);
+      found.surely |= open & said.overlapping & ~said.apart;
+      open &= ~said.apart & ~said.overlapping;
+    }
+    if (open != 0) {
+      doubt.lanes = open << first_;
+      if (question_.doubts < kLaneDoubts)
+        question_.doubt[question_.doubts] = doubt;
+      ++question_.doubts;
+    }
+    // Bits from the first one on, if those behind it do not matter.
+    const unsigned surely = question_.is_ahead
+                                ? (0U - (found.surely & (0U - found.surely))) & kAllOfAGroup
+                                : found.surely;
+    verdict_.maybe |= found.maybe | surely;
+    verdict_.surely |= surely;
+  }
+
+  const LaneScene& scene_;
+  LaneQuestion& question_;
+  float* places_;
+  int first_;  // lane of the question
+  Verdict verdict_;
+  WideFrame frames_[kLaneJoints];
+  WidePoint centers_[kLaneBodies];
+  bool is_placed_[kLaneBodies];
+};
+
+void check_lanes(const LaneScene& scene, LaneQuestion& question, float* places) {
+  question.maybe = question.surely = 0;
+  question.doubts = 0;
+  for (int first = 0; first < question.count; first += KINSHIP_SIMD_WIDTH) {
+    const Verdict verdict = Group(scene, question, first, places).check();
+    question.maybe |= verdict.maybe << first;
+    question.surely |= verdict.surely << first;
+    if (question.is_ahead && verdict.surely != 0)
+      break;  // what comes behind is not looked at
+  }
+}
+
+}  // namespace
+}  // namespace kinship::collision

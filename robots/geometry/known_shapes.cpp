@@ -1,0 +1,138 @@
+#include "robots/geometry/known_shapes.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "robots/geometry/mesh_cover.hpp"
+#include "robots/geometry/shape_rules.hpp"
+
+namespace kinship::geometry {
+namespace {
+
+std::string counted(int count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// \return the link's index, or why it can have no solids.
+Result<int> link_of_solid(const std::string& name, const RobotShapes& shapes,
+                          const kinematics::Chain& chain) {
+  const int link = chain.find_link(name);
+  if (link < 0)
+    return invalid_input("mesh_solids: no link named '" + name + "'");
+  if (!std::binary_search(shapes.left_out.begin(), shapes.left_out.end(), link))
+    return invalid_input("mesh_solids: link '" + name + "' has no mesh");
+  return link;
+}
+
+/// Adds solids and pairs; `covered` receives the links that have solids.
+std::optional<Error> add_solids(const MeshSolids& mesh_solids, const kinematics::Chain& chain,
+                                RobotShapes& shapes, std::set<int>& covered) {
+  for (const LinkSolid& solid : mesh_solids.solids) {
+    const Result<int> link = link_of_solid(solid.link, shapes, chain);
+    if (!link)
+      return link.error();
+    if (const auto why = broken_rule(solid.shape))
+      return invalid_input("mesh_solids: link '" + solid.link + "': " + *why);
+    shapes.shapes.push_back({*link, solid.shape, solid.T_link_shape, true});
+    covered.insert(*link);
+  }
+  std::stable_sort(shapes.shapes.begin(), shapes.shapes.end(),
+                   [](const LinkShape& a, const LinkShape& b) { return a.link < b.link; });
+  for (const auto& [first, second] : mesh_solids.unfiltered) {
+    const int a = chain.find_link(first), b = chain.find_link(second);
+    if (a < 0 || b < 0)
+      return invalid_input("mesh_solids: no link named '" + (a < 0 ? first : second) + "'");
+    if (a != b)
+      shapes.never_colliding.emplace_back(std::min(a, b), std::max(a, b));
+  }
+  auto& pairs = shapes.never_colliding;
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return std::nullopt;
+}
+
+GeometryGrade grade_of(const KnownShapes& known) {
+  if (known.shapes.shapes.empty())
+    return GeometryGrade::None;
+  if (known.unknown_links > 0)
+    return GeometryGrade::Partial;
+  return known.approximate_links > 0 ? GeometryGrade::Approximate : GeometryGrade::Exact;
+}
+
+}  // namespace
+
+Result<KnownShapes> read_known_shapes(const RobotDescription& description,
+                                      const kinematics::Chain& chain) {
+  auto shapes = read_shapes(description, chain, leave_out_mesh);
+  if (!shapes)
+    return shapes.error();
+  KnownShapes known;
+  known.shapes = *std::move(shapes);
+  const std::size_t pairs_before = known.shapes.never_colliding.size();
+  std::set<int> covered;
+  if (const auto error = add_solids(description.mesh_solids, chain, known.shapes, covered))
+    return *error;
+  std::erase_if(known.shapes.left_out, [&](int link) { return covered.contains(link); });
+  std::set<int> with_shape;
+  for (const LinkShape& shape : known.shapes.shapes)
+    with_shape.insert(shape.link);
+  for (const int link : covered)
+    with_shape.erase(link);
+  for (const int link : known.shapes.left_out)
+    with_shape.erase(link);
+  known.exact_links = static_cast<int>(with_shape.size());
+  known.approximate_links = static_cast<int>(covered.size());
+  known.unknown_links = static_cast<int>(known.shapes.left_out.size());
+  known.mesh_solids = static_cast<int>(description.mesh_solids.solids.size());
+  known.unfiltered_pairs = static_cast<int>(known.shapes.never_colliding.size() - pairs_before);
+  known.grade = grade_of(known);
+  return known;
+}
+
+std::string describe(const KnownShapes& known) {
+  if (known.exact_links + known.approximate_links + known.unknown_links == 0)
+    return "no link has a collision shape";
+  std::string words;
+  const auto add = [&words](const std::string& part) {
+    words += (words.empty() ? "" : ", ") + part;
+  };
+  if (known.exact_links > 0)
+    add(counted(known.exact_links, "link") + " by exact shapes");
+  if (known.approximate_links > 0) {
+    std::string part = counted(known.approximate_links, "link") + " by " +
+                       counted(known.mesh_solids, "solid") + " around meshes (approximate";
+    if (known.unfiltered_pairs > 0)
+      part += "; " + counted(known.unfiltered_pairs, "pair") + " of links not compared";
+    add(part + ")");
+  }
+  if (known.unknown_links > 0)
+    add(counted(known.unknown_links, "link") + " unknown, with meshes that only its clients have");
+  return words;
+}
+
+Result<MeshSolids> cover_links(const RobotShapes& shapes, const kinematics::Chain& chain) {
+  MeshSolids mesh_solids;
+  for (const LinkShape& shape : shapes.shapes) {
+    if (!shape.triangles)
+      continue;
+    for (const FittedShape& fitted : cover_mesh(*shape.triangles))
+      mesh_solids.solids.push_back({chain.links()[static_cast<std::size_t>(shape.link)].name,
+                                    fitted.shape, shape.T_link_shape * fitted.T_points_shape});
+  }
+  if (const auto error = check_mesh_solids(mesh_solids))
+    return *error;
+  return mesh_solids;
+}
+
+RobotShapes with_solids(const RobotShapes& shapes, const MeshSolids& mesh_solids,
+                        const kinematics::Chain& chain) {
+  RobotShapes solid = shapes;
+  std::erase_if(solid.shapes, [](const LinkShape& shape) { return shape.triangles != nullptr; });
+  for (const LinkSolid& each : mesh_solids.solids)
+    solid.shapes.push_back({chain.find_link(each.link), each.shape, each.T_link_shape, true});
+  return solid;
+}
+
+}  // namespace kinship::geometry

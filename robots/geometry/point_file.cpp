@@ -1,0 +1,238 @@
+#include "robots/geometry/point_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "proto/types/failure.hpp"
+#include "robots/geometry/octomap_file.hpp"
+
+namespace kinship::geometry {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r,;";
+
+[[noreturn]] void refuse(const std::string& what) { throw Failure(ErrorCode::InvalidInput, what); }
+
+/// Cuts the first line off.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
+
+/// Cuts the first word off; empty if there is none.
+std::string_view take_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
+    words.emplace_back(word);
+  return words;
+}
+
+template <typename Number>
+std::optional<Number> number_of(std::string_view word) {
+  if (word.starts_with('+'))
+    word.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size())
+    return std::nullopt;
+  return number;
+}
+
+/// Collects points, but not those that a sensor did not see.
+class Points {
+ public:
+  void add(const Eigen::Vector3d& point) {
+    if (++seen_ > kMaxPoints)
+      throw Failure(ErrorCode::TooLarge, "more than " + std::to_string(kMaxPoints) + " points");
+    if (point.allFinite())
+      numbers_.insert(numbers_.end(), point.data(), point.data() + 3);
+  }
+  std::size_t seen() const noexcept { return seen_; }
+  Eigen::Matrix3Xd matrix() const {
+    return Eigen::Map<const Eigen::Matrix3Xd>(numbers_.data(), 3,
+                                              static_cast<Eigen::Index>(numbers_.size() / 3));
+  }
+
+ private:
+  std::vector<double> numbers_;
+  std::size_t seen_ = 0;
+};
+
+/// \param columns  where x, y and z stand in a line
+Points read_lines(std::string_view text, const std::array<std::size_t, 3>& columns,
+                  std::size_t line_number) {
+  Points points;
+  const std::size_t last = *std::max_element(columns.begin(), columns.end());
+  for (; !text.empty(); ++line_number) {
+    std::string_view line = take_line(text);
+    line = line.substr(0, line.find('#'));
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    for (std::size_t column = 0; column <= last; ++column) {
+      const std::string_view word = take_word(line);
+      if (word.empty() && column == 0)
+        break;  // an empty line
+      const auto axis = std::find(columns.begin(), columns.end(), column) - columns.begin();
+      const std::optional<double> number = number_of<double>(word);
+      if (word.empty())
+        refuse("line " + std::to_string(line_number) + ": has too few numbers");
+      if (axis < 3 && !number)
+        refuse("line " + std::to_string(line_number) + ": '" + std::string(word.substr(0, 40)) +
+               "' is no number");
+      if (axis < 3)
+        point[axis] = *number;
+      if (column == last)
+        points.add(point);
+    }
+  }
+  return points;
+}
+
+/// What the head of a PCD file says of its points.
+/// Source: the Point Cloud Library, The PCD file format (version 0.7).
+struct PcdHeader {
+  std::array<std::size_t, 3> columns{};  // of x, y and z, counted in numbers
+  std::array<std::size_t, 3> offsets{};  // in a point, bytes
+  std::array<std::size_t, 3> sizes{};    // bytes of a number
+  std::size_t point_bytes = 0, points = 0, lines = 0;
+  bool is_binary = false;
+};
+
+using Members = std::map<std::string, std::vector<std::string>>;
+
+std::size_t count_at(const Members& members, const char* name, std::size_t i,
+                     std::optional<std::size_t> otherwise = std::nullopt) {
+  constexpr std::size_t kMost = 1'000'000'000;
+  const auto member = members.find(name);
+  if (member == members.end() && otherwise)
+    return *otherwise;
+  const auto number = member != members.end() && i < member->second.size()
+                          ? number_of<std::size_t>(member->second[i])
+                          : std::nullopt;
+  if (!number || *number > kMost)
+    refuse("header: " + std::string(name) + " is missing, too short or no number");
+  return *number;
+}
+
+void place_fields(const Members& members, PcdHeader& header) {
+  const auto fields = members.find("FIELDS");
+  if (fields == members.end())
+    refuse("header: FIELDS is missing");
+  std::size_t found = 0, column = 0;
+  for (std::size_t i = 0; i < fields->second.size(); ++i) {
+    const std::size_t size = count_at(members, "SIZE", i), count = count_at(members, "COUNT", i, 1);
+    const std::string& name = fields->second[i];
+    if (name == "x" || name == "y" || name == "z") {
+      const auto type = members.find("TYPE");
+      if (type == members.end() || i >= type->second.size() || type->second[i] != "F" ||
+          (size != sizeof(float) && size != sizeof(double)) || count != 1 ||
+          header.sizes[static_cast<std::size_t>(name[0] - 'x')] != 0)
+        refuse("header: " + name + " must be there once, one number of TYPE F and SIZE 4 or 8");
+      const auto axis = static_cast<std::size_t>(name[0] - 'x');
+      header.columns[axis] = column;
+      header.offsets[axis] = header.point_bytes;
+      header.sizes[axis] = size;
+      ++found;
+    }
+    column += count;
+    header.point_bytes += size * count;
+    if (header.point_bytes > kMaxCloudBytes)
+      refuse("header: a point of " + std::to_string(header.point_bytes) + " bytes");
+  }
+  if (found != 3)
+    refuse("header: FIELDS must name x, y and z once each");
+}
+
+/// \param text  what follows the header is left.
+PcdHeader read_header(std::string_view& text) {
+  constexpr std::size_t kMaxHeaderLines = 100, kMaxHeaderLine = 4096;
+  PcdHeader header;
+  Members members;
+  while (!text.empty() && !members.contains("DATA")) {
+    const std::string_view line = take_line(text);
+    if (++header.lines > kMaxHeaderLines || line.size() > kMaxHeaderLine)
+      refuse("header: more than " + std::to_string(kMaxHeaderLines) + " lines of " +
+             std::to_string(kMaxHeaderLine) + " bytes");
+    std::vector<std::string> words = words_of(line);
+    if (words.empty() || words.front().starts_with('#'))
+      continue;
+    std::string name = std::move(words.front());
+    words.erase(words.begin());
+    members[std::move(name)] = std::move(words);
+  }
+  place_fields(members, header);
+  const std::vector<std::string>& data = members["DATA"];
+  if (data != std::vector<std::string>{"ascii"} && data != std::vector<std::string>{"binary"})
+    refuse("header: DATA must be ascii or binary, not '" +
+           (data.empty() ? std::string() : data.front()) + "'");
+  header.is_binary = data.front() == "binary";
+  header.points = count_at(members, "POINTS", 0);
+  return header;
+}
+
+Eigen::Matrix3Xd read_pcd(std::string_view text) {
+  const PcdHeader header = read_header(text);
+  if (!header.is_binary) {
+    const Points points = read_lines(text, header.columns, header.lines + 1);
+    if (points.seen() < header.points)
+      refuse(std::to_string(header.points) + " points are announced, " +
+             std::to_string(points.seen()) + " follow");
+    return points.matrix();
+  }
+  if (text.size() / header.point_bytes < header.points)
+    refuse(std::to_string(header.points) + " points of " + std::to_string(header.point_bytes) +
+           " bytes are announced, " + std::to_string(text.size()) + " bytes follow");
+  Points points;
+  for (std::size_t i = 0; i < header.points; ++i) {
+    Eigen::Vector3d point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const char* const bytes = text.data() + i * header.point_bytes + header.offsets[axis];
+      float single = 0;
+      double number = 0;
+      if (header.sizes[axis] == sizeof single) {
+        std::memcpy(&single, bytes, sizeof single);
+        number = single;
+      } else {
+        std::memcpy(&number, bytes, sizeof number);
+      }
+      point[static_cast<Eigen::Index>(axis)] = number;
+    }
+    points.add(point);
+  }
+  return points.matrix();
+}
+
+}  // namespace
+
+Result<FilePoints> read_points(std::string_view file, std::string_view ending) {
+  try {
+    if (ending == "bt" || ending == "ot")
+      return read_octomap(file);
+    if (ending == "pcd")
+      return FilePoints{read_pcd(file)};
+    if (ending == "xyz" || ending == "txt")
+      return FilePoints{read_lines(file, {0, 1, 2}, 1).matrix()};
+    return Error{ErrorCode::InvalidInput,
+                 "is a point cloud of a kind that is not known here; known: xyz, txt, pcd, bt, ot"};
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
+
+}  // namespace kinship::geometry

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace kinship::kinematics {
+
+/// A rotation from one joint's frame to the next one's, both with their axes along z, as turns:
+/// Rz(before) Rx(tilt) Rz(after). Those about z may be added to the joints' own.
+/// Source: Denavit and Hartenberg, A Kinematic Notation for Lower-Pair Mechanisms (1955).
+struct AxisTurns {
+  double before, after;  ///< rad
+  double tilt_sine, tilt_cosine;
+};
+
+/// \param R  a rotation; where it leaves the z-axis as it is, all of it is `after`, or turned over.
+AxisTurns axis_turns(const Eigen::Matrix3d& R);
+
+}  // namespace kinship::kinematics

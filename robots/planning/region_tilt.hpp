@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "proto/types/limits.hpp"
+#include "robots/planning/joint_turns.hpp"
+#include "robots/planning/region_angles.hpp"
+
+/// For this library's sources only.
+namespace kinship::planning {
+
+/// Roll and pitch of the frame at the end of a chain, in a region that bounds nothing else. All
+/// they depend on is the third row of the frame's rotation, and a row is swept along the chain at a
+/// fraction of what a pose costs, their derivative as two columns back. Immutable.
+class RegionTilt {
+ public:
+  /// A joint and what comes before it; its axis is the z-axis of its frame.
+  struct Joint {
+    Eigen::Matrix3d R;  ///< in the frame before it, after that one's joint has turned
+    bool slides;
+  };
+
+  /// \param joints  at least one, at most kMaxDof, the first in the region's frame.
+  /// \param R_end   of the frame at the end, after the last joint.
+  /// \param bounds  2 x 2: of roll and pitch, rad, as angle_excess() takes them.
+  /// \param margin  how far inside these a projection aims, rad.
+  RegionTilt(const std::vector<Joint>& joints, const Eigen::Matrix3d& R_end,
+             const Eigen::Matrix2d& bounds, const Eigen::Array2d& margin);
+
+  /// Beyond the bounds, roll and pitch, rad.
+  Eigen::Array2d excess(const Eigen::VectorXd& q) const;
+
+  /// As RegionConstraint::project. \param bounds  2 x dof: of q.
+  bool project(const Eigen::Matrix2Xd& bounds, Eigen::VectorXd& q) const;
+
+ private:
+  static constexpr std::size_t kRoom = kMaxDof;
+
+  /// The row along the chain.
+  struct Sweep {
+    JointTurns turns;
+    double x[kRoom], y[kRoom];  // after each joint has turned
+    Eigen::RowVector3d end;
+  };
+
+  /// What an angle may be, as a cone: asked about without computing it.
+  struct Cone {
+    double sine, cosine;  // of its middle
+    double slope;         // of its sides; not a number: no cone
+  };
+
+  struct Excess {
+    Eigen::Array2d beyond;
+    bool is_flipped;
+  };
+
+  static Cone cone_of(double lower, double upper);
+  void sweep(const Eigen::VectorXd& q, Sweep& along) const;
+  Excess excess(const Eigen::RowVector3d& end) const;
+  /// A step of damped least squares from where q is.
+  void improve(const Sweep& along, const Excess& outside, Eigen::VectorXd& q) const;
+
+  Eigen::Index dof_;
+  // Between two joints' axes a rotation is a turn about z, one about x, one about z. Those about z
+  // are added to the joints' own.
+  alignas(16) double offset_[kRoom] = {}, turns_[kRoom] = {};  // angle: offset + turns * q
+  double tilt_sine_[kRoom], tilt_cosine_[kRoom];               // about x, after each joint
+  Eigen::RowVector3d first_;                                   // the row before the first joint
+  Eigen::Matrix3d R_end_;
+  Eigen::Matrix<double, 2, 3> bounds_;  // of roll, pitch, and yaw, which has none
+  Eigen::Array2d margin_;
+  Cone roll_, pitch_;
+};
+
+}  // namespace kinship::planning

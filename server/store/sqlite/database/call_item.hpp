@@ -1,0 +1,63 @@
+#pragma once
+
+#include <exception>
+#include <future>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "server/store/sqlite/database/writer.hpp"
+
+namespace kinship::store {
+
+/// A function on the write batch whose result somebody waits for.
+template <typename Function>
+class CallItem : public WriteItem {
+ public:
+  using Value = std::invoke_result_t<Function, Batch&>;
+
+  explicit CallItem(Function function) : function_(std::move(function)) {}
+
+  std::future<Value> result() { return promise_.get_future(); }
+  void apply(Batch& batch) override { value_.emplace(function_(batch)); }
+  void finish(const Error* error) override {
+    if (error != nullptr)
+      promise_.set_exception(std::make_exception_ptr(Failure(*error)));
+    else
+      promise_.set_value(std::move(*value_));
+  }
+
+ private:
+  Function function_;
+  std::optional<Value> value_;
+  std::promise<Value> promise_;
+};
+
+/// A function on the connection between two batches, outside of any transaction, whose result
+/// somebody waits for. Reports wait as long as it runs.
+template <typename Function>
+class AfterCommitItem : public WriteItem {
+ public:
+  using Value = std::invoke_result_t<Function, Database&>;
+
+  explicit AfterCommitItem(Function function) : function_(std::move(function)) {}
+
+  std::future<Value> result() { return promise_.get_future(); }
+  void apply(Batch& batch) override { database_ = &batch.database(); }
+  void finish(const Error* error) override {
+    try {
+      if (error != nullptr)
+        throw Failure(*error);
+      promise_.set_value(function_(*database_));
+    } catch (...) {
+      promise_.set_exception(std::current_exception());
+    }
+  }
+
+ private:
+  Function function_;
+  Database* database_ = nullptr;
+  std::promise<Value> promise_;
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,75 @@
+#include "server/store/sqlite/database/database.hpp"
+
+#include <sqlite3.h>
+
+#include "server/store/sqlite/database/checked_vfs.hpp"
+#include "server/store/sqlite/database/online_backup.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+
+namespace kinship::store {
+namespace {
+
+int open_flags(Access access) {
+  switch (access) {
+    case Access::ReadOnly:
+      return SQLITE_OPEN_READONLY;
+    case Access::ReadWrite:
+      return SQLITE_OPEN_READWRITE;
+    case Access::Create:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  }
+  return SQLITE_OPEN_READONLY;
+}
+
+}  // namespace
+
+void Database::Close::operator()(sqlite3* connection) const noexcept { sqlite3_close(connection); }
+
+Database::Database(const std::filesystem::path& file, Access access) {
+  sqlite3* connection = nullptr;
+  const int code = sqlite3_open_v2(file.c_str(), &connection,
+                                   open_flags(access) | SQLITE_OPEN_NOMUTEX, checked_vfs());
+  connection_.reset(connection);  // SQLite may hand out a connection although it failed
+  if (code != SQLITE_OK)
+    throw SqliteError(
+        code, "store '" + file.string() + "': " +
+                  (connection != nullptr ? sqlite3_errmsg(connection) : sqlite3_errstr(code)));
+  sqlite3_extended_result_codes(connection, 1);
+  sqlite3_db_config(connection, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  if (access != Access::ReadOnly)
+    seal_if_empty(*connection);
+}
+
+Database::~Database() = default;
+
+void Database::execute(const std::string& script) {
+  if (sqlite3_exec(connection_.get(), script.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    throw_sqlite_error(*connection_, script);
+}
+
+std::int64_t Database::integer(std::string_view sql) {
+  Statement statement(*connection_, sql);
+  return statement.step() ? statement.column_integer(0) : 0;
+}
+
+Database::CachedStatement Database::cached(std::string_view sql) {
+  auto found = statements_.find(sql);
+  if (found == statements_.end())
+    found = statements_.emplace(std::string(sql), Statement(*connection_, sql)).first;
+  return CachedStatement(&found->second);
+}
+
+std::int64_t Database::last_insert_id() const noexcept {
+  return sqlite3_last_insert_rowid(connection_.get());
+}
+
+std::int64_t Database::changed_rows() const noexcept {
+  return sqlite3_changes64(connection_.get());
+}
+
+bool Database::in_transaction() const noexcept {
+  return sqlite3_get_autocommit(connection_.get()) == 0;
+}
+
+}  // namespace kinship::store

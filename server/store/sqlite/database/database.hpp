@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "server/store/sqlite/database/statement.hpp"
+
+namespace kinship::store {
+
+enum class Access { ReadOnly, ReadWrite, Create };
+
+class OnlineBackup;
+
+/// A connection to an SQLite file: the owner of one sqlite3. Used by one thread at a time (it is
+/// opened without SQLite's own mutex). Every method throws SqliteError.
+class Database {
+ public:
+  /// \param access  Create: makes the file if it is missing.
+  Database(const std::filesystem::path& file, Access access);
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  ~Database();
+
+  void execute(const std::string& script);     ///< runs statements without parameters, drops rows
+  std::int64_t integer(std::string_view sql);  ///< the first column of the first row; 0 if none
+
+  struct Reset {
+    void operator()(Statement* statement) const noexcept { statement->reset(); }
+  };
+  /// A statement on loan; resets itself when the loan ends, so that it holds no read snapshot.
+  using CachedStatement = std::unique_ptr<Statement, Reset>;
+
+  /// The statement for `sql`, prepared once per connection. One loan of the same text at a time.
+  CachedStatement cached(std::string_view sql);
+
+  std::int64_t last_insert_id() const noexcept;
+  std::int64_t changed_rows() const noexcept;  ///< by the last INSERT, UPDATE or DELETE
+  bool in_transaction() const noexcept;
+  sqlite3& connection() noexcept { return *connection_; }
+  /// A backup that reads from this connection, or nothing; it ends before the connection closes.
+  std::unique_ptr<OnlineBackup>& backup() noexcept { return backup_; }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* connection) const noexcept;
+  };
+  std::unique_ptr<sqlite3, Close> connection_;
+  std::map<std::string, Statement, std::less<>> statements_;  // destroyed before the connection
+  std::unique_ptr<OnlineBackup> backup_;                      // and this too
+};
+
+}  // namespace kinship::store

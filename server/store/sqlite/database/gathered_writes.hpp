@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kinship::store {
+
+/// Bytes on their way to a file, gathered as long as each piece begins where the last one ended:
+/// SQLite writes a commit to the WAL in two calls for each page.
+class GatheredWrites {
+ public:
+  /// Room for all that will ever be gathered: taking a piece then needs no heap.
+  void reserve() { bytes_.reserve(kMaxBytes); }
+
+  /// \return whether the piece was taken. If not, what is here has to be written first.
+  bool take(std::int64_t offset, std::span<const std::uint8_t> bytes) {
+    if (!empty() && (offset != end() || bytes_.size() + bytes.size() > kMaxBytes))
+      return false;
+    if (empty())
+      offset_ = offset;
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+
+  bool empty() const noexcept { return bytes_.empty(); }
+  std::int64_t offset() const noexcept { return offset_; }
+  std::span<const std::uint8_t> bytes() const noexcept { return bytes_; }
+  void clear() noexcept { bytes_.clear(); }
+
+ private:
+  static constexpr std::size_t kMaxBytes = 0x1FFFF;  // SQLite's VFS for Unix writes no more at once
+
+  std::int64_t end() const noexcept { return offset_ + std::ssize(bytes_); }
+
+  std::vector<std::uint8_t> bytes_;
+  std::int64_t offset_ = 0;  // of the first byte in the file
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,36 @@
+#include "server/store/sqlite/database/sqlite_error.hpp"
+
+#include <sqlite3.h>
+
+#include "server/store/sqlite/database/checked_vfs.hpp"
+
+namespace kinship::store {
+
+bool SqliteError::concerns_one_row() const noexcept {
+  const int primary = sqlite_code_ & 0xFF;
+  return primary == SQLITE_CONSTRAINT || primary == SQLITE_TOOBIG || primary == SQLITE_MISMATCH;
+}
+
+bool SqliteError::is_damage() const noexcept {
+  const int primary = sqlite_code_ & 0xFF;
+  return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB ||
+         sqlite_code_ == SQLITE_IOERR_DATA || sqlite_code_ == SQLITE_IOERR_CORRUPTFS;
+}
+
+bool SqliteError::spares_transaction() const noexcept {
+  return concerns_one_row() || sqlite_code_ == kDamagedPage;
+}
+
+void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
+  constexpr std::string_view::size_type kMaxShown = 80;
+  std::string message = "SQLite: ";
+  message += sqlite3_extended_errcode(&connection) == kDamagedPage
+                 ? "the checksum of a page is wrong"
+                 : sqlite3_errmsg(&connection);
+  message += " (code " + std::to_string(sqlite3_extended_errcode(&connection)) + ") in '";
+  message += doing.substr(0, kMaxShown);
+  message += "'";
+  throw SqliteError(sqlite3_extended_errcode(&connection), message);
+}
+
+}  // namespace kinship::store

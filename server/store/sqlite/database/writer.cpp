@@ -1,0 +1,295 @@
+#include "server/store/sqlite/database/writer.hpp"
+
+#include <sqlite3.h>
+
+#include <exception>
+#include <optional>
+
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/database/wal_file.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// The item's own error, if it had one.
+std::optional<Error> apply_alone(WriteItem& item, Batch& batch) {
+  Savepoint savepoint(batch.database());
+  try {
+    item.apply(batch);
+  } catch (const SqliteError& error) {
+    if (!error.spares_transaction())
+      throw;
+    return error.error();
+  } catch (const Failure& failure) {
+    return failure.error();
+  } catch (const std::exception& bug) {
+    return Error{ErrorCode::Internal, bug.what()};
+  }
+  savepoint.keep();
+  return std::nullopt;
+}
+
+bool is_damage(const Failure& failure) {
+  const auto* const error = dynamic_cast<const SqliteError*>(&failure);
+  return error != nullptr && error->is_damage();
+}
+
+}  // namespace
+
+void Batch::raise_generations() {
+  for (const auto& [key, retired] : changed_)
+    database_
+        ->cached(
+            "UPDATE experience SET generation = generation + 1,"
+            " retired_generation = iif(?, generation + 1, retired_generation) "
+            "WHERE task_id = ? AND robot_id = ?")
+        ->bind_all(std::int64_t{retired ? 1 : 0}, key.first, key.second)
+        .run();
+}
+
+Writer::Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options)
+    : reopen_(std::move(reopen)), options_(options), database_(std::move(database)) {
+  watch_wal();
+  thread_ = std::thread([this] { run(); });
+}
+
+Writer::~Writer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void Writer::submit(std::unique_ptr<WriteItem> item) {
+  {
+    const std::lock_guard lock(mutex_);
+    queued_weight_ += item->weight();
+    queued_bytes_ += item->bytes();
+    queue_.push_back(std::move(item));
+  }
+  wake_.notify_one();
+}
+
+std::size_t Writer::queued() const {
+  const std::lock_guard lock(mutex_);
+  return queued_weight_;
+}
+
+std::size_t Writer::queued_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return queued_bytes_;
+}
+
+std::string Writer::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+WriterFailures Writer::failures() const {
+  const std::lock_guard lock(mutex_);
+  return failures_;
+}
+
+void Writer::run() {
+  while (true) {
+    Items items = take_batch();
+    if (!database_ && !recover_if_due()) {
+      const Error error{ErrorCode::Storage, trouble()};
+      finish_all(items, &error);
+      const std::lock_guard lock(mutex_);
+      if (stopping_ && queue_.empty())
+        return;
+      continue;
+    }
+    if (!items.empty()) {
+      write(items);
+    } else {
+      const std::lock_guard lock(mutex_);
+      if (stopping_ && queue_.empty())
+        break;
+    }
+    tend_wal();
+  }
+  close();
+}
+
+/// Empty if the writer shall stop or a try is due: after a failure to reopen, or to empty the WAL.
+Writer::Items Writer::take_batch() {
+  std::unique_lock lock(mutex_);
+  const auto something_to_do = [this] { return stopping_ || !queue_.empty(); };
+  if (!database_)
+    wake_.wait_until(lock, next_try_, something_to_do);
+  else if (wal_full())
+    wake_.wait_for(lock, options_.retry_after, something_to_do);
+  else
+    wake_.wait(lock, something_to_do);
+  Items items;
+  std::size_t weight = 0;
+  while (!queue_.empty()) {
+    const std::size_t next = queue_.front()->weight();
+    if (!items.empty() && weight + next > options_.batch_cap)
+      break;
+    weight += next;
+    queued_bytes_ -= queue_.front()->bytes();
+    items.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+  }
+  queued_weight_ -= weight;
+  return items;
+}
+
+void Writer::write(Items& items) {
+  std::vector<std::optional<Error>> errors(items.size());
+  try {
+    if (items.size() != 1 || !write_whole(*items[0])) {
+      Transaction transaction(*database_, Transaction::Kind::Write);
+      Batch batch(*database_);
+      for (std::size_t i = 0; i < items.size(); ++i)
+        errors[i] = apply_alone(*items[i], batch);
+      batch.raise_generations();
+      transaction.commit();
+    }
+  } catch (const Failure& failure) {
+    if (is_damage(failure)) {
+      write_apart(items);
+      return;
+    }
+    fail(failure);
+    const Error error = failure.error();
+    finish_all(items, &error);
+    recover_if_due();
+    return;
+  }
+  for (std::size_t i = 0; i < items.size(); ++i)
+    items[i]->finish(errors[i] ? &*errors[i] : nullptr);
+}
+
+/// Writes one item without savepoints.
+/// \return whether it is durable. If not, it did not happen, and is to be written with savepoints,
+///         which find out what is wrong with it.
+bool Writer::write_whole(WriteItem& item) {
+  Transaction transaction(*database_, Transaction::Kind::Write);
+  Batch batch(*database_, true);
+  try {
+    item.apply(batch);
+  } catch (const SqliteError& error) {
+    if (!error.spares_transaction())
+      throw;
+    return false;
+  } catch (const std::exception&) {
+    return false;
+  }
+  batch.raise_generations();
+  transaction.commit();
+  return true;
+}
+
+/// After damage that undid the batch: each item in a transaction of its own, so that the one that
+/// needs what is damaged fails alone. The rest of the file is fine, nothing is opened again.
+void Writer::write_apart(Items& items) {
+  for (auto& item : items) {
+    std::optional<Error> error;
+    if (!database_)
+      error = Error{ErrorCode::Storage, trouble()};
+    else
+      error = write_alone(*item);
+    item->finish(error ? &*error : nullptr);
+  }
+  if (!database_)
+    recover_if_due();
+}
+
+std::optional<Error> Writer::write_alone(WriteItem& item) {
+  try {
+    Transaction transaction(*database_, Transaction::Kind::Write);
+    Batch batch(*database_);
+    std::optional<Error> error = apply_alone(item, batch);
+    batch.raise_generations();
+    transaction.commit();
+    return error;
+  } catch (const Failure& failure) {
+    if (!is_damage(failure))
+      fail(failure);
+    return failure.error();
+  }
+}
+
+void Writer::finish_all(Items& items, const Error* error) {
+  for (const auto& item : items)
+    item->finish(error);
+}
+
+void Writer::fail(const Failure& failure) {
+  if (database_)  // nothing more is written by this connection, a checkpoint at its end neither
+    sqlite3_db_config(&database_->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  database_.reset();
+  const std::lock_guard lock(mutex_);
+  trouble_ = failure.what();
+  failures_.count += 1;
+  failures_.last = trouble_;
+}
+
+/// A try closes all readers and reads the file, so a stream of items must not bring one each.
+bool Writer::recover_if_due() {
+  if (std::chrono::steady_clock::now() < next_try_)
+    return false;
+  try {
+    database_ = reopen_();
+    watch_wal();
+  } catch (const Failure& failure) {
+    fail(failure);
+  }
+  next_try_ = std::chrono::steady_clock::now() + options_.retry_after;
+  if (!database_)
+    return false;
+  const std::lock_guard lock(mutex_);
+  trouble_.clear();
+  return true;
+}
+
+/// From now on each commit tells how many pages the WAL has.
+void Writer::watch_wal() {
+  constexpr std::uint64_t kFrameHeader = 24;
+  wal_pages_ = 0;
+  wal_bytes_ = 0;
+  frame_bytes_ = kFrameHeader + static_cast<std::uint64_t>(database_->integer("PRAGMA page_size"));
+  const auto note = [](void* pages, sqlite3*, const char*, int count) {
+    *static_cast<std::int64_t*>(pages) = count;
+    return SQLITE_OK;
+  };
+  sqlite3_wal_hook(&database_->connection(), note, &wal_pages_);
+}
+
+/// Readers that are younger than the last frame keep it in the WAL, so a checkpoint may leave some.
+void Writer::tend_wal() {
+  if (!database_)
+    return;
+  try {
+    const std::uint64_t bytes = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
+    const bool full = bytes > options_.max_wal_bytes;
+    if (full || bytes >= options_.checkpoint_bytes) {
+      const bool done =
+          checkpoint(*database_, full ? CheckpointKind::Whole : CheckpointKind::Passive);
+      if (done && full)
+        wal_pages_ = 0;
+    }
+    wal_bytes_ = static_cast<std::uint64_t>(wal_pages_) * frame_bytes_;
+  } catch (const Failure& failure) {
+    fail(failure);
+    recover_if_due();
+  }
+}
+
+void Writer::close() {
+  try {
+    checkpoint(*database_, CheckpointKind::Whole);
+  } catch (const SqliteError&) {
+    // All is durable in the WAL already; the next start checkpoints it.
+  }
+  database_.reset();
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "proto/types/failure.hpp"
+#include "server/store/sqlite/database/database.hpp"
+
+namespace kinship::store {
+
+/// One write transaction while it is being filled.
+class Batch {
+ public:
+  /// \param undone_whole  see is_undone_whole().
+  explicit Batch(Database& database, bool undone_whole = false)
+      : database_(&database), undone_whole_(undone_whole) {}
+
+  Database& database() const noexcept { return *database_; }
+
+  /// Whether whoever has to undo a part of it may throw instead: the transaction is undone, and
+  /// written again by parts. A savepoint copies each page that is changed after it.
+  bool is_undone_whole() const noexcept { return undone_whole_; }
+
+  /// Says that the paths of a robot and task changed; the batch raises their generation once.
+  void paths_changed(std::int64_t task_id, std::int64_t robot_id) {
+    changed_.try_emplace({task_id, robot_id}, false);
+  }
+  /// The same, and the new generation is that of the last retirement too.
+  void paths_retired(std::int64_t task_id, std::int64_t robot_id) {
+    changed_[{task_id, robot_id}] = true;
+  }
+  void raise_generations();
+
+ private:
+  Database* database_;
+  bool undone_whole_;
+  std::map<std::pair<std::int64_t, std::int64_t>, bool> changed_;  // task, robot -> retired
+};
+
+/// Something to be written. Both methods run on the writer's thread.
+class WriteItem {
+ public:
+  virtual ~WriteItem() = default;
+
+  virtual std::size_t weight() const { return 1; }  ///< counts towards the cap of a batch
+  virtual std::size_t bytes() const { return 0; }   ///< that it occupies while it waits
+
+  /// Writes into the batch. What it throws undoes this item alone, except an SqliteError that does
+  /// not spare the transaction: that one undoes the batch. May be called again for another batch.
+  virtual void apply(Batch& batch) = 0;
+
+  /// Called once, when the item is durable (no error) or undone, outside of any transaction. Must
+  /// not throw or block.
+  virtual void finish(const Error* error) = 0;
+};
+
+struct WriterOptions {
+  std::size_t batch_cap = 256;  ///< weight of one transaction, unless one item exceeds it alone
+  std::chrono::milliseconds retry_after{1000};  ///< between two tries to reopen a failed database
+  std::uint64_t checkpoint_bytes = std::uint64_t{32} << 20U;  ///< of the WAL, to checkpoint it
+  std::uint64_t max_wal_bytes = std::uint64_t{512} << 20U;    ///< see Writer::wal_full()
+};
+
+/// What went wrong with the disk so far.
+struct WriterFailures {
+  std::uint64_t count = 0;
+  std::string last;  ///< what the last one said
+};
+
+/// The thread that owns the only writing connection. It takes whatever is queued as one
+/// transaction and finishes the items after the commit is durable; nobody waits for a timer. When
+/// the WAL is long enough it checkpoints after that, so that no item waits for it.
+///
+/// Where something is damaged the items are written one by one, and those that need it fail alone.
+///
+/// Fail-stop: on an I/O error or a full disk, in a checkpoint too, it undoes the batch, finishes
+/// every item with the error, closes the connection and opens it again with checks, but never
+/// sooner than `retry_after` after the last try; until a try succeeds items are answered with the
+/// error.
+class Writer {
+ public:
+  /// \param database  the connection to begin with.
+  /// \param reopen    makes a checked connection after a failure, or throws Failure. Called on the
+  ///                  writer's thread when the old connection is closed.
+  using Reopen = std::function<std::unique_ptr<Database>()>;
+  Writer(std::unique_ptr<Database> database, Reopen reopen, const WriterOptions& options = {});
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  /// Writes what is queued, checkpoints, and closes the connection.
+  ~Writer();
+
+  void submit(std::unique_ptr<WriteItem> item);
+
+  std::size_t queued() const;        ///< weight of what waits
+  std::size_t queued_bytes() const;  ///< and its size
+  /// Empty while all is well; else why nothing is written.
+  std::string trouble() const;
+  WriterFailures failures() const;  ///< since the writer began
+
+  std::uint64_t wal_bytes() const noexcept { return wal_bytes_; }  ///< in use, not of the file
+  /// Whether the WAL is longer than it may be, because readings pin it. Items are written all the
+  /// same. The writer tries every `retry_after` to empty it.
+  bool wal_full() const noexcept { return wal_bytes_ > options_.max_wal_bytes; }
+
+ private:
+  using Items = std::vector<std::unique_ptr<WriteItem>>;
+
+  void run();
+  Items take_batch();
+  void write(Items& items);
+  bool write_whole(WriteItem& item);
+  void write_apart(Items& items);
+  std::optional<Error> write_alone(WriteItem& item);
+  void finish_all(Items& items, const Error* error);
+  void fail(const Failure& failure);
+  bool recover_if_due();
+  void watch_wal();
+  void tend_wal();
+  void close();
+
+  const Reopen reopen_;
+  const WriterOptions options_;
+  // The writer's thread only:
+  std::unique_ptr<Database> database_;                // empty after a failure
+  std::int64_t wal_pages_ = 0;                        // as of the last commit
+  std::uint64_t frame_bytes_ = 0;                     // of one of these pages
+  std::chrono::steady_clock::time_point next_try_{};  // to reopen; long past at first
+
+  std::atomic<std::uint64_t> wal_bytes_ = 0;
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::unique_ptr<WriteItem>> queue_;  // guarded by mutex_, like all below
+  std::size_t queued_weight_ = 0;
+  std::size_t queued_bytes_ = 0;
+  std::string trouble_;
+  WriterFailures failures_;
+  bool stopping_ = false;
+
+  std::thread thread_;
+};
+
+}  // namespace kinship::store

@@ -1,0 +1,56 @@
+#include "server/store/sqlite/files/file_system.hpp"
+
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// statfs(2) and linux/magic.h, which has not all of them.
+constexpr std::pair<long, std::string_view> kNetworkFilesystems[] = {
+    {0x6969, "NFS"},        {0x517B, "SMB"},        {0xFF534D42, "CIFS"},  {0xFE534D42, "SMB"},
+    {0x01021997, "9P"},     {0x00C36400, "Ceph"},   {0x5346414F, "AFS"},   {0x6B414653, "AFS"},
+    {0x0BD00BD0, "Lustre"}, {0x01161970, "GFS2"},   {0x7461636F, "OCFS2"}, {0x73757245, "Coda"},
+    {0x47504653, "GPFS"},   {0x19830326, "BeeGFS"}, {0x564C, "NCP"},
+};
+
+}  // namespace
+
+std::string network_filesystem_of(long type) {
+  for (const auto& [known, name] : kNetworkFilesystems)
+    if (known == type)
+      return std::string(name);
+  return {};
+}
+
+void require_local_filesystem(const std::filesystem::path& file,
+                              const std::filesystem::path& directory) {
+  struct statfs found {};
+  if (statfs(directory.c_str(), &found) != 0)
+    return;  // who opens the file learns why
+  const std::string name = network_filesystem_of(static_cast<long>(found.f_type));
+  if (!name.empty())
+    throw Failure(
+        ErrorCode::Storage,
+        "store '" + file.string() + "': lies on a network filesystem (" + name +
+            "), where neither locks nor syncs hold; name a file on a disk of this machine "
+            "(backups may go there)");
+}
+
+std::string explain_file_error(int reason, const std::filesystem::path& directory) {
+  if (reason == EROFS)
+    return "lies on a read-only filesystem; mount it with write access, or name a file elsewhere";
+  if (reason == EACCES || reason == EPERM)
+    return "user " + std::to_string(geteuid()) + " may not write in '" + directory.string() +
+           "'; give it to that user, or name a file elsewhere";
+  return std::strerror(reason);
+}
+
+}  // namespace kinship::store

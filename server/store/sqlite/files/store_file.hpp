@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace kinship::store {
+
+/// Where the store is, as one absolute name: links are followed, so that one file has one lock.
+/// Parents are made for the owner alone; nothing else is written.
+/// \throws Failure(Storage) if what is there cannot be a store: a directory, a file with a second
+///         name (it would have a second lock), or one that is not empty and no SQLite database.
+std::filesystem::path locate_store(const std::filesystem::path& file);
+
+/// Nothing if this process may write the store, or none is there.
+/// \param located  of locate_store.
+/// \throws Failure(Storage) with what to change, if not.
+void require_writable(const std::filesystem::path& file, const std::filesystem::path& located);
+
+/// \throws Failure(Storage) that says of the store what is in the way.
+[[noreturn]] void refuse_store(const std::filesystem::path& file, const std::string& why);
+
+/// Makes an empty file that only its owner may read and write, unless there is one.
+/// \throws Failure(Storage) if it cannot be made.
+void make_for_owner(const std::filesystem::path& file);
+
+}  // namespace kinship::store

@@ -1,0 +1,73 @@
+#include "server/store/sqlite/opening/connection.hpp"
+
+#include "server/store/sqlite/database/checked_vfs.hpp"
+#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/database/wal_file.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::int64_t kNewestRowsChecked = 64;
+
+// The writer checkpoints between its batches, where it sees the outcome; SQLite's own automatic one
+// drops errors. A second connection that does can corrupt the file in SQLite before 3.51.3.
+void configure_writer(Database& database) {
+  database.execute(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
+      "PRAGMA wal_autocheckpoint = 0; PRAGMA journal_size_limit = 67108864;"
+      "PRAGMA mmap_size = 0; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY;"
+      "PRAGMA secure_delete = ON");  // a free page holds no rows: a repair takes what it finds
+  gather_wal_writes(database.connection());
+}
+
+}  // namespace
+
+std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
+  make_for_owner(file);
+  make_wal_durable(file);
+  // A file of somebody else is refused before anything is written to it.
+  std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
+  configure_writer(*database);
+  sync_directory_of(file);  // SQLite drops errors of that
+  return database;
+}
+
+std::unique_ptr<Database> reopen_writer(const std::filesystem::path& file) {
+  make_wal_durable(file);
+  auto database = std::make_unique<Database>(file, Access::ReadWrite);
+  configure_writer(*database);
+  // The database file may have lost pages of a failed checkpoint: all are written again.
+  if (!checkpoint(*database, CheckpointKind::Whole))
+    throw Failure(ErrorCode::Storage, "another program reads the store and keeps its WAL");
+  check_schema(*database, file, embedded_migrations());
+  Transaction probe(*database, Transaction::Kind::Write);
+  Statement(database->connection(),
+            "INSERT INTO setting VALUES ('reopened_ms', ?) "
+            "ON CONFLICT (key) DO UPDATE SET value = excluded.value")
+      .bind(1, std::to_string(now_ms()))
+      .run();
+  Batch batch(*database);
+  set_aside(batch, find_damaged_paths(*database, kNewestRowsChecked));
+  batch.raise_generations();
+  probe.commit();
+  sync_directory_of(file);
+  return database;
+}
+
+std::unique_ptr<Database> open_reader(const std::filesystem::path& file) {
+  auto database = std::make_unique<Database>(file, Access::ReadOnly);
+  // Readers wait for nobody but a recovery of the WAL.
+  database->execute(
+      "PRAGMA query_only = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA mmap_size = 0;"
+      "PRAGMA busy_timeout = 5000; PRAGMA cell_size_check = ON");
+  return database;
+}
+
+}  // namespace kinship::store

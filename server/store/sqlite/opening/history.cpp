@@ -1,0 +1,233 @@
+#include "server/store/sqlite/opening/history.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/files/file_identity.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::string_view kEpoch = "epoch";
+constexpr std::string_view kRuns = "runs";
+constexpr std::string_view kKey = "history_key";
+constexpr std::string_view kIdentity = "file_identity";
+
+std::string setting(Database& database, std::string_view name) {
+  const auto query = database.cached("SELECT value FROM setting WHERE key = ?");
+  return query->bind(1, name).step() ? std::string(query->column_text(0)) : "";
+}
+
+void set(Database& database, std::string_view name, std::string_view value) {
+  database
+      .cached(
+          "INSERT INTO setting VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = "
+          "excluded.value")
+      ->bind_all(name, value)
+      .run();
+}
+
+/// 244 random bits.
+Digest random_key() {
+  Digest key;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Uuid random = Uuid::random();
+    std::copy(random.bytes.begin(), random.bytes.end(), key.bytes.begin() + 16 * half);
+  }
+  return key;
+}
+
+Digest ensure_key(Database& database) {
+  if (const std::optional<Digest> key = Digest::from_hex(setting(database, kKey)))
+    return *key;
+  const Digest key = random_key();
+  set(database, kKey, key.hex());
+  return key;
+}
+
+Uuid ensure_epoch(Database& database, const std::filesystem::path& file) {
+  const std::string text = setting(database, kEpoch);
+  if (text.empty())
+    return write_new_epoch(database, file);
+  const std::optional<Uuid> epoch = Uuid::parse(text);
+  if (!epoch)
+    throw Failure(ErrorCode::Storage, "its epoch is no UUID");
+  return *epoch;
+}
+
+}  // namespace
+
+Uuid write_new_epoch(Database& database, const std::filesystem::path& file) {
+  const Uuid epoch = Uuid::random();
+  set(database, kEpoch, epoch.text());
+  set(database, kIdentity, identity_of(file));
+  set(database, kRuns, RunLog(epoch).text());
+  return epoch;
+}
+
+std::uint64_t position_of(Database& database) {
+  const auto query = database.cached("SELECT max(id) FROM attempt");
+  return query->step() ? static_cast<std::uint64_t>(query->column_integer(0)) : 0;
+}
+
+History::History(const std::filesystem::path& file) : file_(file), witness_(file) {}
+
+/// \return why the file cannot be what it was when it was written last; empty: it can.
+std::string History::find_rollback(const State& before, const RunLog& log, std::uint64_t position,
+                                   const std::string& stored_identity) const {
+  const std::string identity = identity_of(file_);
+  if (!stored_identity.empty() && !may_be_same_file(stored_identity, identity))
+    return "the file is a copy (inode and birth " + identity + ", was " + stored_identity + ")";
+  const bool is_first_run = before.log.epoch() == Uuid{};
+  std::optional<WitnessFile::Testimony> known;
+  if (!is_first_run)
+    known = {before.log.epoch(), before.log.at(before.position)};
+  else
+    known = witness_.read();
+  if (!known)
+    return "";
+  if (known->epoch != log.epoch())
+    return "the file is of epoch " + log.epoch().text() + ", was of " + known->epoch.text();
+  if (!log.contains(known->point, position))
+    return "the file was put back to " + std::to_string(position) + " attempts or fewer, had " +
+           std::to_string(known->point.position);
+  return "";
+}
+
+void History::begin_run(Database& database) {
+  State next;
+  {
+    const std::lock_guard lock(mutex_);
+    next = state_;
+  }
+  Transaction transaction(database, Transaction::Kind::Write);
+  const bool is_new = setting(database, kEpoch).empty();
+  const Uuid epoch = ensure_epoch(database, file_);
+  next.key = ensure_key(database);
+  std::optional<RunLog> log = RunLog::parse(setting(database, kRuns));
+  if (!log || log->epoch() != epoch)
+    log = RunLog(epoch);
+  const std::string stored_identity = setting(database, kIdentity);
+  if (stored_identity.empty())  // of an older server
+    set(database, kIdentity, identity_of(file_));
+  const std::uint64_t position = position_of(database);
+  const std::string trouble = is_new ? "" : find_rollback(next, *log, position, stored_identity);
+  if (!trouble.empty()) {
+    log = RunLog(write_new_epoch(database, file_));
+    ++next.rollbacks;
+    next.trouble = trouble;
+  }
+  is_run_written_ = log->is_empty();  // the first one is named before it has written anything
+  log->begin(Uuid::random(), position);
+  if (is_run_written_)
+    set(database, kRuns, log->text());
+  transaction.commit();
+  next.log = std::move(*log);
+  next.position = position;
+  {
+    const std::lock_guard lock(mutex_);
+    state_ = std::move(next);
+  }
+  testify();
+}
+
+void History::write_run(Database& database) {
+  if (is_run_written_)
+    return;
+  std::string text;
+  {
+    const std::lock_guard lock(mutex_);
+    text = state_.log.text();
+  }
+  set(database, kRuns, text);
+}
+
+void History::committed(std::uint64_t position) {
+  is_run_written_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    if (position <= state_.position)
+      return;
+    state_.position = position;
+  }
+  testify();
+}
+
+/// On the thread that writes to the store, so that a later testimony is never overtaken.
+void History::testify() const {
+  WitnessFile::Testimony testimony;
+  {
+    const std::lock_guard lock(mutex_);
+    testimony = {state_.log.epoch(), state_.log.at(state_.position)};
+  }
+  witness_.write(testimony);
+}
+
+Uuid History::epoch() const {
+  const std::lock_guard lock(mutex_);
+  return state_.log.epoch();
+}
+
+StorePoint History::point() const {
+  Digest key;
+  Uuid epoch;
+  HistoryPoint point;
+  {
+    const std::lock_guard lock(mutex_);
+    key = state_.key;
+    epoch = state_.log.epoch();
+    point = state_.log.at(state_.position);
+  }
+  return {epoch, seal(key, epoch, point)};
+}
+
+bool History::has_lost(const HistoryMark& mark) const {
+  if (mark.empty())
+    return false;
+  const std::lock_guard lock(mutex_);
+  const std::optional<HistoryPoint> point = open_seal(state_.key, state_.log.epoch(), mark);
+  return point && !state_.log.contains(*point, state_.position);
+}
+
+std::uint64_t History::rollbacks() const {
+  const std::lock_guard lock(mutex_);
+  return state_.rollbacks;
+}
+
+std::string History::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return state_.trouble;
+}
+
+void History::Renewal::apply(Batch& batch) {
+  if (!history_.has_lost(mark_))
+    return;
+  Database& database = batch.database();
+  position_ = position_of(database);
+  log_.emplace(write_new_epoch(database, history_.file_));
+  log_->begin(Uuid::random(), position_);
+  set(database, kRuns, log_->text());
+}
+
+void History::Renewal::finish(const Error* error) {
+  if (error != nullptr) {
+    promise_.set_exception(std::make_exception_ptr(Failure(*error)));
+    return;
+  }
+  if (log_) {
+    {
+      const std::lock_guard lock(history_.mutex_);
+      State& state = history_.state_;
+      state.trouble = "a client was given a receipt that the store does not have: it was put back";
+      ++state.rollbacks;
+      state.log = *log_;
+      state.position = std::max(state.position, position_);
+    }
+    history_.is_run_written_ = true;
+    history_.testify();
+  }
+  promise_.set_value(log_.has_value());
+}
+
+}  // namespace kinship::store

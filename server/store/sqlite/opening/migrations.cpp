@@ -1,0 +1,131 @@
+#include "server/store/sqlite/opening/migrations.hpp"
+
+#include <sqlite3.h>
+
+#include <string>
+
+#include "proto/types/sha256.hpp"
+#include "server/store/sqlite/database/checked_vfs.hpp"
+#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/sqlite/database/online_backup.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
+constexpr std::int64_t kFirstSealed = 4;             // schema of which all pages bear checksums
+
+Digest text_digest(const Migration& migration) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(migration.text.data());
+  return Sha256().add(Bytes(bytes, migration.text.size())).finish();
+}
+
+/// 0: an empty file. Otherwise the version of a Kinship store.
+std::int64_t checked_version(Database& database, const std::filesystem::path& file,
+                             std::span<const Migration> migrations) {
+  std::int64_t application = 0;
+  try {
+    application = database.integer("PRAGMA application_id");
+  } catch (const SqliteError& error) {
+    if ((error.sqlite_code() & 0xFF) == SQLITE_NOTADB)
+      refuse_store(file, "is no SQLite database");
+    throw;
+  }
+  if (application == 0 && database.integer("SELECT count(*) FROM sqlite_master") == 0)
+    return 0;
+  if (application != kApplicationId)
+    refuse_store(file, "is a database, but no Kinship store");
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  const auto newest = static_cast<std::int64_t>(migrations.size());
+  if (version > newest)
+    refuse_store(file, "has schema " + std::to_string(version) + "; this binary knows up to " +
+                           std::to_string(newest));
+  return version;
+}
+
+void check_history(Database& database, const std::filesystem::path& file, std::int64_t version,
+                   std::span<const Migration> migrations) {
+  Statement applied(database.connection(),
+                    "SELECT version, sha256 FROM schema_migration ORDER BY version");
+  std::int64_t expected = 0;
+  while (applied.step()) {
+    ++expected;
+    if (applied.column_integer(0) != expected || expected > version)
+      break;
+    const Digest known = text_digest(migrations[static_cast<std::size_t>(expected - 1)]);
+    const Bytes stored = applied.column_blob(1);
+    if (!std::equal(stored.begin(), stored.end(), known.bytes.begin(), known.bytes.end()))
+      refuse_store(file, "was made by another text of migration " + std::to_string(expected) +
+                             " than this binary has");
+  }
+  if (expected != version)
+    refuse_store(file, "says schema " + std::to_string(version) +
+                           ", but records migrations up to " + std::to_string(expected));
+}
+
+/// Without foreign keys while it lasts, which a table that is written anew would trip over: each
+/// migration leaves them as they were, which `kinshipd check` compares.
+void apply(Database& database, const Migration& migration) {
+  database.execute("PRAGMA foreign_keys = OFF");
+  Transaction transaction(database, Transaction::Kind::Write);
+  database.execute(std::string(migration.text));
+  const Digest digest = text_digest(migration);
+  Statement(database.connection(), "INSERT INTO schema_migration VALUES (?, ?, ?, ?, ?)")
+      .bind_all(migration.version, migration.name, Bytes(digest.bytes), now_ms(),
+                std::string_view(sqlite3_libversion()))
+      .run();
+  database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+  transaction.commit();
+  database.execute("PRAGMA foreign_keys = ON");
+}
+
+}  // namespace
+
+std::int64_t known_schema(Database& database, const std::filesystem::path& file,
+                          std::span<const Migration> migrations) {
+  const std::int64_t version = checked_version(database, file, migrations);
+  if (version > 0)
+    check_history(database, file, version, migrations);
+  if (version >= kFirstSealed && !is_sealed(database.connection()))
+    refuse_store(file,
+                 "says in its header that its pages bear no checksums: the header is damaged");
+  return version;
+}
+
+void apply_missing(Database& database, const std::filesystem::path& file,
+                   std::span<const Migration> migrations) {
+  const std::int64_t version = known_schema(database, file, migrations);
+  for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
+    apply(database, migration);
+}
+
+std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version) {
+  return file.string() + ".backup-" + std::to_string(version);
+}
+
+void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version) {
+  const std::filesystem::path backup = backup_of_version(file, version);
+  const std::filesystem::path partial = backup.string() + ".partial";
+  for (const std::string companion : {"", "-wal", "-shm", "-journal"})
+    std::filesystem::remove(partial.string() + companion);
+  make_for_owner(partial);
+  copy_database(database, partial, [](double) {});
+  sync_file(partial);
+  std::filesystem::rename(partial, backup);
+  sync_directory_of(backup);
+}
+
+void check_schema(Database& database, const std::filesystem::path& file,
+                  std::span<const Migration> migrations) {
+  const std::int64_t version = checked_version(database, file, migrations);
+  if (version != static_cast<std::int64_t>(migrations.size()))
+    refuse_store(file, "has schema " + std::to_string(version) + " instead of " +
+                           std::to_string(migrations.size()));
+  check_history(database, file, version, migrations);
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "server/store/sqlite/database/database.hpp"
+
+namespace kinship::store {
+
+/// One file of schema/sqlite.
+struct Migration {
+  std::int64_t version = 0;  ///< 1, 2, 3, ... without gaps
+  std::string_view name;     ///< of the file, without ".sql"
+  std::string_view text;
+};
+
+/// All migrations that this binary knows, by version (written by cmake/embed_texts.cmake).
+std::span<const Migration> embedded_migrations();
+
+/// The schema of a file that this binary can read or migrate; 0 if the file is empty.
+/// \throws Failure(Storage) if the file is no Kinship store, is newer than `migrations`, or was
+///         made by a migration of another text.
+std::int64_t known_schema(Database& database, const std::filesystem::path& file,
+                          std::span<const Migration> migrations);
+
+/// Applies those of `migrations` that a database lacks, each in one transaction, and records each
+/// with the SHA-256 of its text. Keeps no copy.
+/// \throws Failure(Storage) as known_schema() does; nothing is changed then.
+void apply_missing(Database& database, const std::filesystem::path& file,
+                   std::span<const Migration> migrations);
+
+/// Where a database of this version is copied to before it is migrated.
+std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version);
+
+/// Copies a database to there. Under that name there is never half a copy.
+void keep_copy_of(Database& database, const std::filesystem::path& file, std::int64_t version);
+
+/// That nothing is to be changed: ours, at the newest version, same texts.
+/// \throws Failure(Storage) if not.
+void check_schema(Database& database, const std::filesystem::path& file,
+                  std::span<const Migration> migrations);
+
+}  // namespace kinship::store

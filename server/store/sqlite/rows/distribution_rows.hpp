@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store {
+
+/// \return the revision given: 1, then one more at each call for the same id, also after an
+/// eviction. \throws Failure(NotFound) if its robot is not registered; Failure(InvalidInput) if it
+/// could not
+///         be read back: more sources or components than the limits, a placement that is no pose.
+///
+/// Those not used for longest are deleted where all together would take more than `max_bytes` (0:
+/// no limit), but never this one. Their revisions are not kept one by one: what is stored for the
+/// first time after that, or again, begins above all of them.
+std::uint64_t upsert_distribution(Database& database, const Distribution& distribution,
+                                  std::uint64_t max_bytes = 0);
+
+/// Notes that a distribution is used now, to the hour.
+void note_use(Database& database, const Digest& id);
+
+/// About what all of them take, bytes.
+std::uint64_t bytes_of_distributions(Database& database);
+
+/// A distribution without its store epoch.
+struct DistributionRead {
+  std::optional<Distribution> distribution;
+  bool damaged = false;  ///< it is there, but cannot be used
+};
+DistributionRead select_distribution(Database& database, const Digest& id);
+
+/// The one in this row, of any schema.
+DistributionRead read_distribution(Database& database, std::int64_t row);
+
+/// Deletes a distribution; its revision is kept, so that the next one counts on.
+/// \return whether it was there.
+bool delete_distribution(Database& database, const Digest& id);
+
+}  // namespace kinship::store

@@ -1,0 +1,248 @@
+#include "server/store/sqlite/rows/experience_rows.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// Empty for an arm that nobody judges.
+std::string_view sums_of(SamplingMode mode) {
+  switch (mode) {
+    case SamplingMode::Guided:
+      return ", guided_attempts = guided_attempts + 1, guided_solved = guided_solved + ?4,"
+             " guided_checks = guided_checks + ?5,"
+             " guided_checks_squared = guided_checks_squared + ?5 * ?5,"
+             " guided_checks_of_solved = guided_checks_of_solved + ?4 * ?5";
+    case SamplingMode::Control:
+      return ", control_attempts = control_attempts + 1, control_solved = control_solved + ?4,"
+             " control_checks = control_checks + ?5,"
+             " control_checks_squared = control_checks_squared + ?5 * ?5,"
+             " control_checks_of_solved = control_checks_of_solved + ?4 * ?5";
+    case SamplingMode::Uniform:
+      break;
+  }
+  return "";
+}
+
+ModeTotals read_totals(const Statement& row, int first_column) {
+  return {count_of(row, first_column), count_of(row, first_column + 1),
+          row.column_real(first_column + 2), row.column_real(first_column + 3),
+          row.column_real(first_column + 4)};
+}
+
+/// The newest judged attempts of each arm, as they are met.
+class RecentAttempts {
+ public:
+  bool complete() const { return std::min(guided_, control_) >= kKnownAttemptsPerMode; }
+
+  /// \param row  of kColumns, newest first.
+  void add(const Statement& row) {
+    const SamplingMode mode = mode_of(row.column_integer(0));
+    const Outcome outcome = outcome_of(row.column_integer(1));
+    if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
+      return;
+    if ((mode == SamplingMode::Guided ? guided_ : control_)++ < kKnownAttemptsPerMode) {
+      KnownAttempt known{.judged = {.sampling_mode = mode,
+                                    .solved = outcome == Outcome::Solved,
+                                    .checks = count_of(row, 2),
+                                    .age = age_},
+                         .planner = std::string(row.column_text(3))};
+      if (!row.column_is_null(4))
+        known.distribution_id = id_of<Digest>(row.column_blob(4));
+      newest_first_.push_back(std::move(known));
+    }
+    ++age_;
+  }
+  std::vector<KnownAttempt> oldest_first() const {
+    return {newest_first_.rbegin(), newest_first_.rend()};
+  }
+
+  static constexpr std::string_view kColumns =
+      "SELECT arm, outcome, collision_checks, planner, distribution_digest FROM attempt ";
+
+ private:
+  std::vector<KnownAttempt> newest_first_;
+  std::size_t guided_ = 0, control_ = 0;
+  std::uint32_t age_ = 0;
+};
+
+/// One by one, without those that cannot be read.
+std::vector<KnownAttempt> readable_recent_of(Database& database, const ExperienceKey& key,
+                                             std::int64_t max_rows) {
+  const auto ids = database.cached(
+      "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
+      "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
+  ids->bind_all(key.task_id, key.robot_id, max_rows);
+  RecentAttempts recent;
+  while (!recent.complete() && ids->step()) {
+    const auto query = database.cached(std::string(RecentAttempts::kColumns) + "WHERE id = ?");
+    try {
+      if (query->bind(1, ids->column_integer(0)).step())
+        recent.add(*query);
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+    }
+  }
+  return recent.oldest_first();
+}
+
+/// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRows alone: an
+/// arm that had no attempts among so many is as good as unknown.
+std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key) {
+  constexpr std::int64_t kMaxRows = 10'000;
+  try {
+    const auto query =
+        database.cached(std::string(RecentAttempts::kColumns) +
+                        "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
+    query->bind_all(key.task_id, key.robot_id, kMaxRows);
+    RecentAttempts recent;
+    while (!recent.complete() && query->step())
+      recent.add(*query);
+    return recent.oldest_first();
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return readable_recent_of(database, key, kMaxRows);
+  }
+}
+
+}  // namespace
+
+const RobotNames::Name* RobotNames::find(std::int64_t robot_id) {
+  if (!names_.contains(robot_id) && !has_all_)
+    try {
+      const auto query = database_->cached("SELECT digest, label FROM robot WHERE id = ?");
+      if (query->bind(1, robot_id).step())
+        names_[robot_id] = {id_of<Digest>(query->column_blob(0)),
+                            std::string(query->column_text(1))};
+    } catch (const SqliteError& error) {
+      if (!error.is_damage())
+        throw;
+      read_all();
+    }
+  const auto found = names_.find(robot_id);
+  return found == names_.end() ? nullptr : &found->second;
+}
+
+void RobotNames::read_all() {
+  has_all_ = true;
+  const auto digests = database_->cached("SELECT id, digest FROM robot ORDER BY digest");
+  while (digests->step())
+    names_[digests->column_integer(0)].digest = id_of<Digest>(digests->column_blob(1));
+  const auto labels = database_->cached("SELECT id, label FROM robot ORDER BY label");
+  while (labels->step())
+    names_[labels->column_integer(0)].label = labels->column_text(1);
+}
+
+void ensure_experience(Database& database, const ExperienceKey& key) {
+  database
+      .cached("INSERT INTO experience (task_id, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+}
+
+void count_attempt(Database& database, const ExperienceKey& key, const PlanningRecord& record,
+                   bool brought_path) {
+  const std::string_view sums = sums_of(record.sampling_mode);
+  const auto update =
+      database.cached("UPDATE experience SET attempts = attempts + 1, paths = paths + ?3" +
+                      std::string(sums) + " WHERE task_id = ?1 AND robot_id = ?2");
+  update->bind_all(key.task_id, key.robot_id, std::int64_t{brought_path ? 1 : 0});
+  if (!sums.empty())
+    update->bind(4, std::int64_t{record.outcome == Outcome::Solved ? 1 : 0})
+        .bind(5, static_cast<double>(record.collision_checks));
+  update->run();
+}
+
+void count_path(Database& database, const ExperienceKey& key) { uncount_paths(database, key, -1); }
+
+void uncount_paths(Database& database, const ExperienceKey& key, std::int64_t paths) {
+  database.cached("UPDATE experience SET paths = paths - ? WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(paths, key.task_id, key.robot_id)
+      .run();
+}
+
+void count_dropped(Database& database, const ExperienceKey& key) {
+  database.cached("UPDATE experience SET dropped = dropped + 1 WHERE task_id = ? AND robot_id = ?")
+      ->bind_all(key.task_id, key.robot_id)
+      .run();
+}
+
+std::optional<ExperienceKey> find_experience(Database& database, const Digest& robot,
+                                             std::string_view task) {
+  const auto query = database.cached(
+      "SELECT experience.task_id, experience.robot_id FROM experience "
+      "JOIN task ON task.id = experience.task_id JOIN robot ON robot.id = experience.robot_id "
+      "WHERE task.name = ? AND robot.digest = ?");
+  if (!query->bind_all(task, Bytes(robot.bytes)).step())
+    return std::nullopt;
+  return ExperienceKey{query->column_integer(0), query->column_integer(1)};
+}
+
+std::vector<ExperienceKey> select_experience(Database& database, const std::optional<Digest>& robot,
+                                             std::string_view task, const ExperienceKey& first) {
+  std::string sql = "SELECT task_id, robot_id FROM experience WHERE (task_id, robot_id) >= (?, ?)";
+  if (!task.empty())
+    sql += " AND task_id = (SELECT id FROM task WHERE name = ?3)";
+  if (robot)
+    sql += " AND robot_id = (SELECT id FROM robot WHERE digest = ?4)";
+  const auto query = database.cached(sql + " ORDER BY task_id, robot_id");
+  query->bind_all(first.task_id, first.robot_id);
+  if (!task.empty())
+    query->bind(3, task);
+  if (robot)
+    query->bind(4, Bytes(robot->bytes));
+  std::vector<ExperienceKey> keys;
+  while (query->step())
+    keys.push_back({query->column_integer(0), query->column_integer(1)});
+  return keys;
+}
+
+std::uint64_t generation_of(Database& database, const Digest& robot, std::string_view task) {
+  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
+  if (!key)
+    return 0;
+  const auto query =
+      database.cached("SELECT generation FROM experience WHERE task_id = ? AND robot_id = ?");
+  return query->bind_all(key->task_id, key->robot_id).step() ? count_of(*query, 0) : 0;
+}
+
+std::vector<ExperienceSummary> experience_of(Database& database, std::string_view task) {
+  RobotNames names(database);
+  const auto query = database.cached(
+      "SELECT robot_id, paths, generation, retired_generation, dropped FROM experience "
+      "WHERE task_id = (SELECT id FROM task WHERE name = ?) AND generation > 0");
+  query->bind(1, task);
+  std::vector<ExperienceSummary> robots;
+  while (query->step())
+    if (const RobotNames::Name* const robot = names.find(query->column_integer(0)))
+      robots.push_back({.robot = robot->digest,
+                        .paths = count_of(*query, 1),
+                        .generation = count_of(*query, 2),
+                        .retired_generation = count_of(*query, 3),
+                        .dropped = count_of(*query, 4)});
+  std::ranges::sort(robots, {}, &ExperienceSummary::robot);
+  return robots;
+}
+
+AttemptTotals totals_of(Database& database, const Digest& robot, std::string_view task) {
+  const std::optional<ExperienceKey> key = find_experience(database, robot, task);
+  if (!key)
+    return {};
+  const auto query = database.cached(
+      "SELECT guided_attempts, guided_solved, guided_checks, guided_checks_squared,"
+      " guided_checks_of_solved, control_attempts, control_solved, control_checks,"
+      " control_checks_squared, control_checks_of_solved "
+      "FROM experience WHERE task_id = ? AND robot_id = ?");
+  if (!query->bind_all(key->task_id, key->robot_id).step())
+    return {};
+  return {read_totals(*query, 0), read_totals(*query, 5), recent_of(database, *key)};
+}
+
+}  // namespace kinship::store

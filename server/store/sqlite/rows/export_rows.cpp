@@ -1,0 +1,147 @@
+#include "server/store/sqlite/rows/export_rows.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/attempt_rows.hpp"
+#include "server/store/sqlite/rows/experience_rows.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
+
+namespace kinship::store {
+namespace {
+
+std::int64_t parse_cursor(std::string_view cursor) {
+  std::int64_t id = 0;
+  const auto [end, error] = std::from_chars(cursor.data(), cursor.data() + cursor.size(), id);
+  if (!cursor.empty() && (error != std::errc() || end != cursor.data() + cursor.size() || id < 0))
+    throw Failure(ErrorCode::InvalidInput,
+                  "cursor '" + std::string(cursor) + "' is not one of this listing");
+  return id;
+}
+
+constexpr std::string_view kNotAsideAttempt =
+    "AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id) ";
+
+void append_ids(Statement& query, std::vector<std::int64_t>& ids) {
+  while (query.step())
+    ids.push_back(query.column_integer(0));
+}
+
+/// The next attempts of some robots and tasks by id. Each brings its own next ones, read from an
+/// index; the oldest of them all are the next of all.
+std::vector<std::int64_t> next_of(Database& database, const std::vector<ExperienceKey>& keys,
+                                  std::int64_t after_id, std::int64_t count) {
+  std::vector<std::int64_t> ids;
+  for (const ExperienceKey& key : keys) {
+    const auto query = database.cached(
+        "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
+        "WHERE task_id = ? AND robot_id = ? AND id > ? " +
+        std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+    query->bind_all(key.task_id, key.robot_id, after_id, count);
+    append_ids(*query, ids);
+  }
+  std::ranges::sort(ids);
+  if (std::ssize(ids) > count)
+    ids.resize(static_cast<std::size_t>(count));
+  return ids;
+}
+
+/// The next attempts of all by id; where their rows cannot be read, from the index.
+std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
+                                      std::int64_t count) {
+  try {
+    std::vector<std::int64_t> ids;
+    const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
+                                       std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
+    query->bind_all(after_id, count);
+    append_ids(*query, ids);
+    return ids;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return next_of(database, select_experience(database, {}, ""), after_id, count);
+  }
+}
+
+/// Nothing if it lies on a damaged page, which is noted.
+std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
+  std::optional<AttemptRow> row;
+  try {
+    row = select_attempt(database, id);
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    noted.damaged_attempts.push_back(id);
+    return std::nullopt;
+  }
+  name_robot_and_task(database, *row);
+  return row;
+}
+
+/// Nothing if its path is retired or damaged; a path or scene found damaged now is noted.
+std::optional<Attempt> read_candidate(Database& database, std::int64_t id, ExportRead& noted) {
+  std::optional<AttemptRow> row = read_row(database, id, noted);
+  if (!row)
+    return std::nullopt;
+  if (row->path_id) {
+    const std::optional<std::int64_t> path_id =
+        row_in_use(database, AsideKind::Path, *row->path_id);
+    if (!path_id || is_retired(database, {row->task_id, row->robot_id}, *path_id))
+      return std::nullopt;
+    PathsRead read = select_path(database, *path_id);
+    noted.damaged.insert(noted.damaged.end(), read.damaged.begin(), read.damaged.end());
+    if (!read.paths.empty())
+      row->attempt.path = std::move(read.paths.front().path);
+  }
+  if (row->attempt.path.has_value() != (row->attempt.record.outcome == Outcome::Solved))
+    return std::nullopt;
+  if (row->scene_id) {
+    SceneRead read = select_scene(database, *row->scene_id);
+    if (read.damaged)
+      noted.damaged_scenes.push_back(*row->scene_id);
+    row->attempt.scene = std::move(read.scene);
+  }
+  return std::move(row->attempt);
+}
+
+}  // namespace
+
+ExportRead export_page(Database& database, const std::optional<Digest>& robot,
+                       std::string_view task, std::string_view cursor, std::size_t limit,
+                       std::size_t max_bytes) {
+  constexpr std::int64_t kCandidates = 64;
+  const std::size_t rows = std::max<std::size_t>(limit, 1);
+  const bool filtered = robot || !task.empty();
+  const std::vector<ExperienceKey> keys =
+      filtered ? select_experience(database, robot, task) : std::vector<ExperienceKey>();
+  ExportRead read;
+  std::int64_t last_id = parse_cursor(cursor);
+  std::size_t bytes = 0;
+  while (true) {
+    const std::vector<std::int64_t> candidates = filtered
+                                                     ? next_of(database, keys, last_id, kCandidates)
+                                                     : next_of_all(database, last_id, kCandidates);
+    if (candidates.empty())
+      return read;
+    for (const std::int64_t id : candidates) {
+      if (std::optional<Attempt> attempt = read_candidate(database, id, read)) {
+        const BatchBytes more = batch_bytes(*attempt);
+        bytes += more.waypoints + more.scenes;
+        if (read.page.rows.size() == rows || (!read.page.rows.empty() && bytes > max_bytes)) {
+          read.page.next_cursor = std::to_string(last_id);
+          return read;
+        }
+        read.page.rows.push_back(std::move(*attempt));
+      }
+      last_id = id;
+    }
+  }
+}
+
+}  // namespace kinship::store

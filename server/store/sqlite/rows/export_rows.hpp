@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store {
+
+/// Attempts with their paths and scenes, and those of them that turned out damaged on the way.
+struct ExportRead {
+  Page<Attempt> page;
+  std::vector<std::int64_t> damaged;  ///< paths
+  std::vector<std::int64_t> damaged_scenes;
+  std::vector<std::int64_t> damaged_attempts;
+};
+
+/// A page of Store::export_attempts(). The cursor is the id of the last attempt looked at.
+/// \throws Failure(InvalidInput) for a cursor of another listing.
+ExportRead export_page(Database& database, const std::optional<Digest>& robot,
+                       std::string_view task, std::string_view cursor, std::size_t limit,
+                       std::size_t max_bytes);
+
+}  // namespace kinship::store

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/store.hpp"
+
+/// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
+/// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.
+/// \throws Failure(InvalidInput) for a cursor of another listing.
+namespace kinship::store {
+
+Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit);
+
+Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit);
+
+std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task);
+
+/// By task, then robot, then arrival; retired paths too.
+Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
+                                std::string_view task, std::string_view cursor, std::size_t limit);
+
+Page<DistributionSummary> page_of_distributions(Database& database,
+                                                const std::optional<Digest>& robot,
+                                                std::string_view task, std::string_view cursor,
+                                                std::size_t limit);
+
+/// Fills the counts, the schema version and the size; adds what is set aside to the message.
+void count_rows(Database& database, StoreStatus& status);
+
+}  // namespace kinship::store

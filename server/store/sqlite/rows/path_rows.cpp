@@ -1,0 +1,420 @@
+#include "server/store/sqlite/rows/path_rows.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "server/store/crc32c.hpp"
+#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// Where a column stands among the selected ones. Schema 1 has no more than its content.
+struct PathColumn {
+  static constexpr int kId = 0, kReportUuid = 1, kPlacement = 2, kDof = 3, kWaypointCount = 4,
+                       kEncoding = 5, kCrc = 6, kWaypoints = 7, kReceivedMs = 8, kSceneId = 9;
+};
+
+constexpr std::string_view kPathContentColumns =
+    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
+constexpr std::string_view kPathColumns =
+    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
+    " received_ms, scene_id FROM path ";
+
+/// Everything that a transfer relies on is under the checksum, not the waypoints alone.
+struct PathContent {
+  Bytes report_uuid;
+  Bytes T_task_base;  // empty: missing
+  std::int64_t dof = 0;
+  std::int64_t waypoint_count = 0;
+  std::int64_t encoding = 0;
+  Bytes waypoints;
+
+  /// No encoding makes so short a blob.
+  bool is_dropped() const { return waypoints.size() == 1; }
+  std::uint32_t crc() const {
+    ByteWriter header;
+    header.add(report_uuid).add(T_task_base);
+    for (const std::int64_t number : {dof, waypoint_count, encoding})
+      header.add(static_cast<std::uint64_t>(number));
+    return crc32c(waypoints, crc32c(header.bytes()));
+  }
+};
+
+PathContent content_of(const Statement& row) {
+  return {row.column_blob(PathColumn::kReportUuid),  row.column_blob(PathColumn::kPlacement),
+          row.column_integer(PathColumn::kDof),      row.column_integer(PathColumn::kWaypointCount),
+          row.column_integer(PathColumn::kEncoding), row.column_blob(PathColumn::kWaypoints)};
+}
+
+/// \param row  of kPathContentColumns.
+bool has_right_crc(const Statement& row) {
+  return content_of(row).crc() == row.column_integer(PathColumn::kCrc);
+}
+
+/// A path without the time it was received and its scene, or nothing if it is damaged.
+/// \param row  of kPathContentColumns, or of kPathColumns.
+std::optional<StoredPath> read_path_content(const Statement& row) {
+  const PathContent content = content_of(row);
+  if (content.crc() != row.column_integer(PathColumn::kCrc))
+    return std::nullopt;
+  std::optional<Path> path =
+      decode_waypoints(content.dof, content.waypoint_count, content.encoding, content.waypoints);
+  if (!path)
+    return std::nullopt;
+  std::optional<Eigen::Isometry3d> T_task_base;
+  if (!row.column_is_null(PathColumn::kPlacement)) {
+    T_task_base = pose_from_blob(content.T_task_base);
+    if (!T_task_base)
+      return std::nullopt;
+  }
+  return StoredPath{row.column_integer(PathColumn::kId), id_of<Uuid>(content.report_uuid),
+                    T_task_base, 0, std::move(*path)};
+}
+
+/// \param row  of kPathContentColumns.
+bool is_intact(const Statement& row) {
+  return content_of(row).is_dropped() ? has_right_crc(row) : read_path_content(row).has_value();
+}
+
+/// \param row  of kPathColumns.
+void take_row(const Statement& row, PathsRead& read) {
+  if (content_of(row).is_dropped() && has_right_crc(row))
+    return;
+  std::optional<StoredPath> path = read_path_content(row);
+  if (!path) {
+    read.damaged.push_back(row.column_integer(PathColumn::kId));
+    return;
+  }
+  path->received_ms = row.column_integer(PathColumn::kReceivedMs);
+  if (!row.column_is_null(PathColumn::kSceneId))
+    path->scene_id = row.column_integer(PathColumn::kSceneId);
+  read.paths.push_back(std::move(*path));
+}
+
+constexpr std::int64_t kFirstWithAside = 4;  // schema
+
+constexpr std::string_view kNotAside =
+    " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ";
+
+/// Runs what reads one row. \return false if the row cannot be read.
+template <typename Read>
+bool can_read(Read read) {
+  try {
+    return read();
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return false;
+  }
+}
+
+/// \return whether the path is there and its checksum is right.
+bool is_readable(Database& database, std::int64_t id) {
+  return can_read([&] {
+    const auto query = database.cached(std::string(kPathContentColumns) + "FROM path WHERE id = ?");
+    return query->bind(1, id).step() && has_right_crc(*query);
+  });
+}
+
+bool index_has(Database& database, std::string_view sql, const ExperienceKey& key,
+               std::int64_t id) {
+  const auto query = database.cached(sql);
+  return query->bind_all(key.task_id, key.robot_id, id).step();
+}
+
+bool is_in_use(Database& database, const ExperienceKey& key, std::int64_t id) {
+  return index_has(database,
+                   "SELECT 1 FROM path INDEXED BY path_by_task_robot "
+                   "WHERE task_id = ? AND robot_id = ? AND id = ? AND retired_ms IS NULL",
+                   key, id);
+}
+
+/// The robot and task of a path whose row may not be readable, as long as it is not retired.
+std::optional<ExperienceKey> key_in_use(Database& database, std::int64_t id) {
+  for (const ExperienceKey& key : select_experience(database, {}, ""))
+    if (is_in_use(database, key, id))
+      return key;
+  return std::nullopt;
+}
+
+/// Takes a path that is in use out of it.
+void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id,
+                    std::optional<std::int64_t> replaced_by) {
+  Database& database = batch.database();
+  const bool was_aside = find_aside(database, AsideKind::Path, id).has_value();
+  put_aside(database, AsideKind::Path, id, replaced_by);
+  if (was_aside)
+    return;
+  uncount_paths(database, key, 1);
+  batch.paths_changed(key.task_id, key.robot_id);
+}
+
+/// Reads the row of one path.
+void take_path(Database& database, std::int64_t id, PathsRead& read) {
+  if (!can_read([&] {
+        const auto query = database.cached(std::string(kPathColumns) + "WHERE id = ?");
+        if (query->bind(1, id).step())
+          take_row(*query, read);
+        return true;
+      }))
+    read.damaged.push_back(id);
+}
+
+/// The ids of paths in use, and those retired, as the indexes have them.
+constexpr std::string_view kIdsOfIndexes =
+    "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE retired_ms IS NULL "
+    "UNION ALL SELECT id FROM path INDEXED BY path_retired WHERE retired_ms IS NOT NULL) AS path ";
+
+std::vector<std::int64_t> newest_paths(Database& database, std::int64_t count) {
+  std::vector<std::int64_t> ids;
+  const auto collect = [&](const std::string& sql) {
+    ids.clear();
+    const auto query = database.cached(sql + " ORDER BY id DESC LIMIT ?");
+    query->bind(1, count);
+    while (query->step())
+      ids.push_back(query->column_integer(0));
+    return true;
+  };
+  const std::string others(kNotAside);
+  if (!can_read([&] { return collect("SELECT id FROM path WHERE TRUE" + others); }))
+    collect(std::string(kIdsOfIndexes) + "WHERE TRUE" + others);
+  return ids;
+}
+
+PathsChecked check_one_by_one(Database& database, std::int64_t after_id, std::int64_t limit) {
+  const auto query = database.cached(std::string(kIdsOfIndexes) + "WHERE id > ?" +
+                                     std::string(kNotAside) + "ORDER BY id LIMIT ?");
+  query->bind_all(after_id, limit);
+  PathsChecked checked;
+  while (query->step()) {
+    checked.last_id = query->column_integer(0);
+    ++checked.paths;
+    if (!is_readable(database, checked.last_id))
+      checked.damaged.push_back(checked.last_id);
+  }
+  return checked;
+}
+
+/// Its checksum goes on covering the rest of the row.
+/// \return false if the row cannot be read, so that it cannot be written either.
+bool remove_waypoints(Database& database, std::int64_t id) {
+  constexpr std::array<std::uint8_t, 1> kNone = {0};
+  return can_read([&] {
+    std::uint32_t crc = 0;
+    {
+      const auto query = database.cached(
+          "SELECT id, report_uuid, T_task_base, dof, waypoint_count, 2, 0, x'00' FROM path "
+          "WHERE id = ?");
+      if (!query->bind(1, id).step())
+        return false;
+      crc = content_of(*query).crc();
+    }
+    Savepoint savepoint(database);
+    database
+        .cached(
+            "UPDATE path SET retired_ms = ?, encoding = 2, crc32c = ?, waypoints = ? WHERE id = ?")
+        ->bind_all(now_ms(), std::int64_t{crc}, Bytes(kNone), id)
+        .run();
+    savepoint.keep();
+    return true;
+  });
+}
+
+/// One by one, where a page that holds several cannot be read.
+PathsRead select_readable(Database& database, const ExperienceKey& key, const PathRange& range) {
+  const auto ids = database.cached(
+      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ? "
+      "AND id > ? AND received_ms >= ? AND retired_ms IS NULL" +
+      std::string(kNotAside) + "ORDER BY id");
+  ids->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
+  PathsRead read;
+  while (read.paths.size() < range.limit && ids->step())
+    take_path(database, ids->column_integer(0), read);
+  return read;
+}
+
+}  // namespace
+
+SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content) {
+  std::vector<std::int64_t> ids;
+  {
+    const auto query = database.cached(
+        "SELECT id FROM path INDEXED BY path_by_content "
+        "WHERE robot_id = ? AND task_id = ? AND content_sha256 = ? AND retired_ms IS NULL");
+    query->bind_all(key.robot_id, key.task_id, Bytes(content.bytes));
+    while (query->step())
+      ids.push_back(query->column_integer(0));
+  }
+  SameContent same;
+  for (const std::int64_t id : ids) {
+    const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
+    if (!aside && is_readable(database, id))
+      same.readable = id;
+    else if (!aside || (!aside->replaced_by && !aside->retired))
+      same.damaged.push_back(id);
+  }
+  return same;
+}
+
+bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id) {
+  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Path, id);
+  if (row && is_readable(database, *row))
+    return true;
+  const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
+  return (aside && aside->retired) || is_retired(database, key, row.value_or(id));
+}
+
+bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id) {
+  return index_has(database,
+                   "SELECT 1 FROM path INDEXED BY path_retired "
+                   "WHERE task_id = ? AND robot_id = ? AND id = ? AND retired_ms IS NOT NULL",
+                   key, id);
+}
+
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid) {
+  const auto ids = database.cached(
+      "SELECT id FROM path INDEXED BY path_retired "
+      "WHERE task_id = ? AND robot_id = ? AND retired_ms IS NOT NULL");
+  ids->bind_all(key.task_id, key.robot_id);
+  while (ids->step()) {
+    const std::int64_t id = ids->column_integer(0);
+    if (can_read([&] {
+          const auto row = database.cached("SELECT report_uuid FROM path WHERE id = ?");
+          return row->bind(1, id).step() && id_of<Uuid>(row->column_blob(0)) == report_uuid;
+        }))
+      return id;
+  }
+  return std::nullopt;
+}
+
+std::int64_t insert_path(Database& database, const ExperienceKey& key,
+                         const PreparedAttempt& prepared, const PathArrival& arrival) {
+  const PreparedPath& path = *prepared.path;
+  const auto T_task_base = optional_pose_blob(prepared.attempt.T_task_base);
+  const PathContent content{Bytes(prepared.attempt.report_uuid.bytes),
+                            blob_or_null(T_task_base).value_or(Bytes()),
+                            path.blob.dof,
+                            path.blob.waypoint_count,
+                            static_cast<std::int64_t>(path.blob.encoding),
+                            Bytes(path.blob.bytes)};
+  database
+      .cached(
+          "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
+          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
+                 path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
+                 content.encoding, std::int64_t{content.crc()}, content.waypoints,
+                 arrival.received_ms, arrival.scene_id)
+      .run();
+  return database.last_insert_id();
+}
+
+PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
+  PathsRead read;
+  const bool whole = can_read([&] {
+    const auto query =
+        database.cached(std::string(kPathColumns) +
+                        "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
+                        "AND retired_ms IS NULL" +
+                        std::string(kNotAside) + "ORDER BY id");
+    query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
+    while (read.paths.size() < range.limit && query->step())
+      take_row(*query, read);
+    return true;
+  });
+  return whole ? std::move(read) : select_readable(database, key, range);
+}
+
+std::vector<std::int64_t> select_path_ids(Database& database, const ExperienceKey& key) {
+  const auto query = database.cached(
+      "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ? "
+      "AND retired_ms IS NULL" +
+      std::string(kNotAside) + "ORDER BY id");
+  query->bind_all(key.task_id, key.robot_id);
+  std::vector<std::int64_t> ids;
+  while (query->step())
+    ids.push_back(query->column_integer(0));
+  return ids;
+}
+
+PathsRead select_path(Database& database, std::int64_t id) {
+  PathsRead read;
+  if (const auto row = row_in_use(database, AsideKind::Path, id))
+    take_path(database, *row, read);
+  return read;
+}
+
+void set_aside(Batch& batch, const std::vector<std::int64_t>& paths) {
+  Database& database = batch.database();
+  for (const std::int64_t path : paths) {
+    if (find_aside(database, AsideKind::Path, path))
+      continue;
+    if (const auto key = key_in_use(database, path))
+      put_path_aside(batch, *key, path, std::nullopt);
+    else
+      put_aside(database, AsideKind::Path, path);
+  }
+}
+
+void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by) {
+  put_path_aside(batch, key, damaged, by);
+}
+
+void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id) {
+  if (is_in_use(batch.database(), key, id))
+    put_path_aside(batch, key, id, std::nullopt);
+  retire_aside(batch.database(), id);
+}
+
+void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id) {
+  Database& database = batch.database();
+  if (remove_waypoints(database, id))
+    uncount_paths(database, key, 1);
+  else
+    retire_damaged(batch, key, id);
+  count_dropped(database, key);
+  batch.paths_changed(key.task_id, key.robot_id);
+}
+
+PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
+                         std::int64_t limit) {
+  const std::string others =
+      schema < kFirstWithAside ? " AND damaged = 0 " : std::string(kNotAside);
+  PathsChecked checked;
+  if (can_read([&] {
+        const auto query =
+            database.cached(std::string(kPathContentColumns) + "FROM path WHERE id > ?" + others +
+                            "ORDER BY id LIMIT ?");
+        query->bind_all(after_id, limit);
+        while (query->step()) {
+          checked.last_id = query->column_integer(PathColumn::kId);
+          ++checked.paths;
+          if (!is_intact(*query))
+            checked.damaged.push_back(checked.last_id);
+        }
+        return true;
+      }))
+    return checked;
+  if (schema < kFirstWithAside)
+    throw Failure(ErrorCode::Storage,
+                  "its paths cannot be read one by one in schema " + std::to_string(schema));
+  return check_one_by_one(database, after_id, limit);
+}
+
+std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count) {
+  std::vector<std::int64_t> damaged;
+  for (const std::int64_t id : newest_paths(database, count))
+    if (!is_readable(database, id))
+      damaged.push_back(id);
+  return damaged;
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/rows/experience_rows.hpp"
+#include "server/store/sqlite/rows/prepared_attempt.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store {
+
+/// The paths of one content that are in use (not retired).
+struct SameContent {
+  std::optional<std::int64_t> readable;
+  std::vector<std::int64_t> damaged;  ///< that nothing replaced yet
+};
+/// Reads what it finds, and looks at its checksum.
+SameContent find_same(Database& database, const ExperienceKey& key, const Digest& content);
+
+/// Whether a path, or what replaced it, can be read, or was retired, so that nobody wants it.
+bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t id);
+
+/// What a path is written with beside what its attempt says.
+struct PathArrival {
+  std::int64_t received_ms = 0;
+  std::optional<std::int64_t> scene_id;
+};
+
+/// \return the id of the new path.
+std::int64_t insert_path(Database& database, const ExperienceKey& key,
+                         const PreparedAttempt& prepared, const PathArrival& arrival);
+
+/// Paths as read, and the ids of those whose checksum or content is wrong.
+struct PathsRead {
+  std::vector<StoredPath> paths;
+  std::vector<std::int64_t> damaged;
+};
+
+/// The paths in use of a robot and task in the order of ids; damaged ones do not count towards the
+/// limit. Where a page is damaged the paths are read one by one, by the ids of the index.
+PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range);
+
+/// The ids of the paths in use, ascending, from an index.
+std::vector<std::int64_t> select_path_ids(Database& database, const ExperienceKey& key);
+
+/// The path with this id, or what replaced it, also a retired one: none if it is set aside, or
+/// dropped.
+PathsRead select_path(Database& database, std::int64_t id);
+
+/// From an index: whether a path is retired, its row need not be readable.
+bool is_retired(Database& database, const ExperienceKey& key, std::int64_t id);
+
+/// The retired path that a report brought, looked for among all of its robot and task.
+std::optional<std::int64_t> find_retired(Database& database, const ExperienceKey& key,
+                                         const Uuid& report_uuid);
+
+/// Sets paths aside: out of the counts and of every reading, and the generation is raised. One that
+/// is aside already stays so; one that is retired was out of the counts before. Their rows are not
+/// touched, they may lie on a damaged page.
+void set_aside(Batch& batch, const std::vector<std::int64_t>& paths);
+/// One of a known robot and task, in use until now, for which a report brought another row.
+void replace_path(Batch& batch, const ExperienceKey& key, std::int64_t damaged, std::int64_t by);
+/// Sets one aside as retired: it could not be written.
+void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
+
+/// Takes a path out of use for good: its row stays, retired, its waypoints do not. One that cannot
+/// be written is set aside as retired.
+void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id);
+
+/// How SQL tells a dropped path from others, without reading its waypoints.
+inline constexpr std::string_view kIsDropped = "length(path.waypoints) = 1";
+
+/// A part of a full check.
+struct PathsChecked {
+  std::int64_t last_id = 0;
+  std::uint64_t paths = 0;
+  std::vector<std::int64_t> damaged;
+};
+
+/// Decodes the next paths with id > after_id, at most `limit`, retired ones too; those set aside
+/// are left out. Of a database of this schema, also an older one.
+PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t after_id,
+                         std::int64_t limit);
+
+/// Those of the newest `count` paths of all that are damaged and not set aside yet.
+std::vector<std::int64_t> find_damaged_paths(Database& database, std::int64_t count);
+
+}  // namespace kinship::store

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+#include "proto/types/result.hpp"
+#include "server/store/sqlite/database/writer.hpp"
+#include "server/store/store.hpp"
+
+/// Paths that people take out of every fit. Their rows stay, out of the indexes that fits read.
+namespace kinship::store {
+
+/// Retires the path of a report: the one it brought, or the earlier one of the same content.
+/// \return NotFound for an unknown report; InvalidInput for one that brought no path.
+Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid);
+
+/// Which paths of a task are to be retired.
+struct TaskReset {
+  std::int64_t task_id = 0;
+  std::int64_t last_path_id = 0;  ///< those that come later stay
+};
+
+/// \return NotFound for an unknown task.
+Result<TaskReset> begin_reset(Database& database, std::string_view task);
+
+/// Retires some of the paths of a reset, few enough that the writer is soon free for reports, and
+/// adds them to `retired`. \return whether paths are left.
+bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired);
+
+}  // namespace kinship::store

@@ -1,0 +1,152 @@
+#include "server/store/sqlite/rows/scene_rows.hpp"
+
+#include "server/store/crc32c.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/byte_stream.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/sqlite/rows/set_aside_rows.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::string_view kSceneColumns =
+    "SELECT id, content_sha256, size, encoding, crc32c, scene FROM scene ";
+
+/// The content's digest is under the checksum: a scene that stands under another's digest would be
+/// taken for it.
+std::uint32_t crc_of(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene) {
+  ByteWriter header;
+  header.add(content);
+  for (const std::int64_t number : {size, encoding})
+    header.add(static_cast<std::uint64_t>(number));
+  return crc32c(scene, crc32c(header.bytes()));
+}
+
+/// \param row  of kSceneColumns.
+bool has_right_crc_of_scene(const Statement& row) {
+  return crc_of(row.column_blob(1), row.column_integer(2), row.column_integer(3),
+                row.column_blob(5)) == row.column_integer(4);
+}
+
+/// \param row  of kSceneColumns.
+std::optional<RecordedScene> read_scene(const Statement& row) {
+  if (!has_right_crc_of_scene(row))
+    return std::nullopt;
+  return decode_scene(row.column_integer(2), row.column_integer(3), row.column_blob(5));
+}
+
+bool can_read_scene(Database& database, std::int64_t id) {
+  try {
+    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
+    return query->bind(1, id).step() && has_right_crc_of_scene(*query);
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return false;
+  }
+}
+
+/// The ids of the rows of one content, from the index.
+std::vector<std::int64_t> ids_of(Database& database, Bytes content) {
+  const auto query =
+      database.cached("SELECT id FROM scene INDEXED BY scene_by_content WHERE content_sha256 = ?");
+  query->bind(1, content);
+  std::vector<std::int64_t> ids;
+  while (query->step())
+    ids.push_back(query->column_integer(0));
+  return ids;
+}
+
+/// The next ids, at most `limit`, that are not set aside; from the index where the rows cannot be
+/// read.
+std::vector<std::int64_t> next_ids(Database& database, std::int64_t schema, std::int64_t after_id,
+                                   std::int64_t limit) {
+  constexpr std::int64_t kFirstWithAsideScenes = 4;
+  const std::string others =
+      schema < kFirstWithAsideScenes
+          ? " AND damaged = 0"
+          : " AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3 AND set_aside.id = scene.id)";
+  std::vector<std::int64_t> ids;
+  const auto collect = [&](const std::string& from) {
+    ids.clear();
+    const auto query = database.cached("SELECT id FROM scene " + from + " WHERE id > ?" + others +
+                                       " ORDER BY id LIMIT ?");
+    query->bind_all(after_id, limit);
+    while (query->step())
+      ids.push_back(query->column_integer(0));
+  };
+  try {
+    collect("");
+  } catch (const SqliteError& error) {
+    if (!error.is_damage() || schema < kFirstWithAsideScenes)
+      throw;
+    collect("INDEXED BY scene_by_content");
+  }
+  return ids;
+}
+
+}  // namespace
+
+std::int64_t ensure_scene(Database& database, const PreparedScene& scene,
+                          std::int64_t received_ms) {
+  const Bytes content(scene.content.bytes);
+  std::vector<std::int64_t> damaged;
+  for (const std::int64_t id : ids_of(database, content)) {
+    const std::optional<Aside> aside = find_aside(database, AsideKind::Scene, id);
+    if (!aside && can_read_scene(database, id))
+      return id;
+    if (!aside || !aside->replaced_by)
+      damaged.push_back(id);
+  }
+  const auto encoding = static_cast<std::int64_t>(scene.blob.encoding);
+  const Bytes bytes(scene.blob.bytes);
+  const std::int64_t crc = crc_of(content, scene.blob.size, encoding, bytes);
+  database
+      .cached(
+          "INSERT INTO scene (content_sha256, received_ms, size, encoding, crc32c, scene) "
+          "VALUES (?, ?, ?, ?, ?, ?)")
+      ->bind_all(content, received_ms, scene.blob.size, encoding, crc, bytes)
+      .run();
+  const std::int64_t id = database.last_insert_id();
+  for (const std::int64_t old : damaged)
+    put_aside(database, AsideKind::Scene, old, id);
+  return id;
+}
+
+SceneRead select_scene(Database& database, std::int64_t id) {
+  SceneRead read;
+  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
+  if (!row)
+    return read;
+  try {
+    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
+    if (query->bind(1, *row).step()) {
+      read.scene = read_scene(*query);
+      read.damaged = !read.scene;
+    }
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    read.damaged = true;
+  }
+  return read;
+}
+
+bool is_scene_readable(Database& database, std::int64_t id) {
+  const std::optional<std::int64_t> row = row_in_use(database, AsideKind::Scene, id);
+  return row && can_read_scene(database, *row);
+}
+
+ScenesChecked check_scenes(Database& database, std::int64_t schema, std::int64_t after_id,
+                           std::int64_t limit) {
+  ScenesChecked checked;
+  for (const std::int64_t id : next_ids(database, schema, after_id, limit)) {
+    checked.last_id = id;
+    ++checked.scenes;
+    if (!can_read_scene(database, id))
+      checked.damaged.push_back(id);
+  }
+  return checked;
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/rows/prepared_attempt.hpp"
+
+/// Scenes, one row for each content.
+namespace kinship::store {
+
+/// The row of a scene's content, which is made if it is missing or damaged; from then on the new
+/// row stands for the damaged one.
+std::int64_t ensure_scene(Database& database, const PreparedScene& scene, std::int64_t received_ms);
+
+/// A scene as read: nothing if it is damaged, was set aside before, or is not there.
+struct SceneRead {
+  std::optional<RecordedScene> scene;
+  bool damaged = false;  ///< found now
+};
+SceneRead select_scene(Database& database, std::int64_t id);
+
+/// Whether a scene, or what replaced it, can be read.
+bool is_scene_readable(Database& database, std::int64_t id);
+
+/// A part of a full check.
+struct ScenesChecked {
+  std::int64_t last_id = 0;
+  std::uint64_t scenes = 0;
+  std::vector<std::int64_t> damaged;
+};
+
+/// Decodes the next scenes with id > after_id, at most `limit`; those set aside are left out.
+/// Of a database of this schema, also an older one.
+ScenesChecked check_scenes(Database& database, std::int64_t schema, std::int64_t after_id,
+                           std::int64_t limit);
+
+}  // namespace kinship::store

@@ -1,0 +1,203 @@
+#include "server/store/sqlite/upkeep/restoration.hpp"
+
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+#include "server/store/sqlite/database/online_backup.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/database/wal_file.hpp"
+#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/history.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
+#include "server/store/sqlite/upkeep/store_check.hpp"
+#include "server/store/sqlite/upkeep/store_repair.hpp"
+
+namespace kinship::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+void remove_with_companions(const fs::path& file) {
+  unlink((file.string() + ".sealing").c_str());
+  for (const char* const companion : kCompanions)
+    unlink((file.string() + companion).c_str());
+  unlink(file.c_str());
+}
+
+std::string stamp() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  const std::size_t size = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
+  return {text.data(), size};
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::string& doing, int error) {
+  throw Failure(ErrorCode::Storage,
+                "store '" + file.string() + "': " + doing + ": " + std::strerror(error));
+}
+
+void require(int error, const fs::path& file, const std::string& doing) {
+  if (error != 0)
+    fail(file, doing, error);
+}
+
+/// What earlier restores left beside a store.
+std::vector<fs::path> replaced_stores(const fs::path& file) {
+  const std::string prefix = file.filename().string() + ".replaced-";
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
+    if (entry.path().filename().string().starts_with(prefix))
+      found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
+}
+
+}  // namespace
+
+Restoration::Restoration(fs::path backup, fs::path file)
+    : backup_(std::move(backup)), file_(std::move(file)), copy_(file_.string() + ".restoring") {
+  remove_with_companions(copy_);
+}
+
+Restoration::~Restoration() { remove_with_companions(copy_); }
+
+void Restoration::prepare(const std::function<void(double)>& progress) {
+  constexpr double kCopyShare = 0.3;
+  make_for_owner(copy_);
+  const std::string named = "backup '" + backup_.string() + "': ";
+  try {
+    {
+      const std::unique_ptr<Database> source = open_reader(backup_);
+      if (known_schema(*source, backup_, embedded_migrations()) == 0)
+        throw Failure(ErrorCode::Storage, named + "is empty");
+      copy_database(*source, copy_, [&](double done) { progress(kCopyShare * done); });
+    }
+    {
+      const std::unique_ptr<Database> opened =
+          open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+      Database& database = *opened;
+      epoch_ = write_new_epoch(database, copy_);
+      const StoreCheck check = check_database(
+          database, backup_, [&](double done) { progress(kCopyShare + (1 - kCopyShare) * done); });
+      if (check.problems > 0)
+        throw Failure(ErrorCode::Storage,
+                      named + std::to_string(check.problems) +
+                          " problems, nothing was restored; the first: " + check.messages.front());
+    }
+    sync_file(copy_);
+  } catch (const SqliteError& error) {
+    throw Failure(ErrorCode::Storage, named + error.what());
+  }
+}
+
+Repaired Restoration::repair(const std::function<void(double)>& progress) {
+  constexpr double kSalvageShare = 0.6;
+  make_for_owner(copy_);
+  fold_old();
+  Repaired repaired;
+  {
+    Database source(file_, Access::ReadOnly);
+    const std::unique_ptr<Database> target =
+        open_migrated(copy_, embedded_migrations(), Keep::Nothing);
+    // Half a copy is of no use to anybody, and it is synced when it is whole.
+    target->execute("PRAGMA synchronous = OFF");
+    Salvaged salvaged =
+        salvage(source, *target, [&](double done) { progress(kSalvageShare * done); });
+    repaired.damaged_pages = salvaged.damaged_pages;
+    repaired.lost = std::move(salvaged.lost);
+    epoch_ = write_new_epoch(*target, copy_);
+    repaired.check = check_database(
+        *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
+  }
+  sync_file(copy_);
+  return repaired;
+}
+
+Restored Restoration::replace() {
+  Restored restored;
+  restored.epoch = epoch_;
+  restored.leftovers = replaced_stores(file_);
+  WitnessFile::remove(file_);  // of the old store: it would take the new one for rolled back
+  if (fs::exists(file_)) {
+    fold_old();
+    restored.replaced = name_copy();
+    set_companions_aside(restored.replaced);
+    exchange(restored.replaced);
+  } else {
+    set_companions_aside(file_.string() + ".replaced-" + stamp());
+    require(rename_new(copy_, file_), file_, "cannot be named");
+  }
+  sync_directory_of(file_);
+  return restored;
+}
+
+/// Brings what a killed server left in the WAL into the old store, so that it is one file. One
+/// that SQLite cannot read is kept as it is.
+void Restoration::fold_old() {
+  make_wal_durable(file_);
+  try {
+    Database database(file_, Access::ReadWrite);
+    sqlite3_exec(&database.connection(), "PRAGMA schema_version", nullptr, nullptr, nullptr);
+    sqlite3_wal_checkpoint_v2(&database.connection(), "main", SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                              nullptr);  // also if the schema cannot be read
+    database.execute("PRAGMA journal_mode = DELETE");
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+  }
+}
+
+/// SQLite must not find them beside the new store, and not under a name where it would take them
+/// for those of another one.
+void Restoration::set_companions_aside(const fs::path& replaced) const {
+  for (const std::string companion : kCompanions) {
+    const fs::path from = file_.string() + companion;
+    if (fs::exists(from))
+      require(rename_new(from, replaced.string() + "." + companion.substr(1)), from,
+              "cannot be set aside");
+  }
+}
+
+fs::path Restoration::name_copy() const {
+  const std::string wanted = file_.string() + ".replaced-" + stamp();
+  constexpr int kTries = 100;
+  for (int number = 1; number <= kTries; ++number) {
+    const fs::path name = number == 1 ? wanted : wanted + "-" + std::to_string(number);
+    const int error = rename_new(copy_, name);
+    if (error == 0)
+      return name;
+    if (error != EEXIST)
+      fail(name, "cannot be named", error);
+  }
+  fail(wanted, "cannot be named", EEXIST);
+}
+
+void Restoration::exchange(const fs::path& replaced) const {
+  if (renameat2(AT_FDCWD, replaced.c_str(), AT_FDCWD, file_.c_str(), RENAME_EXCHANGE) == 0)
+    return;
+  if (errno != EINVAL && errno != ENOSYS)
+    fail(file_, "cannot be replaced", errno);
+  // A file system without exchange: the old store has two names for a moment.
+  require(rename_new(replaced, copy_), copy_, "cannot be named");
+  if (link(file_.c_str(), replaced.c_str()) != 0)
+    fail(replaced, "cannot be named", errno);
+  if (std::rename(copy_.c_str(), file_.c_str()) != 0)
+    fail(file_, "cannot be replaced", errno);
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,388 @@
+#include "server/store/sqlite/upkeep/store_check.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/sqlite/database/checked_vfs.hpp"
+#include "server/store/sqlite/database/page_scan.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/rows/distribution_rows.hpp"
+#include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/sqlite/rows/scene_rows.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::int64_t kFirstWithSetAside = 4;  // schema
+constexpr std::int64_t kFirstWithCap = 5;       // schema
+constexpr std::int64_t kFirstWithGeometry = 5;  // schema
+constexpr std::size_t kMaxMessages = 100;
+constexpr double kScanShare = 0.2;   // of the time
+constexpr double kPagesShare = 0.5;  // with SQLite's own check, which tells no progress
+constexpr double kPathsShare = 0.35;
+constexpr double kScenesShare = 0.05;
+
+/// A rule that rows must not break, as a query for the words about each row that does.
+struct Rule {
+  std::string table;
+  std::string query;
+};
+
+const std::string kPair = "'task ' || task_id || ', robot ' || robot_id || ': ' || ";
+
+// What an experience says of its attempts of one arm.
+Rule rule_of_sums(const std::string& mode, int code, const std::string& counted) {
+  // Sums of doubles depend on their order in the last bits.
+  const auto differs = [&](const std::string& sum) {
+    return "abs(" + mode + sum + " - found" + sum + ") > 1e-9 * (1 + found" + sum + ")";
+  };
+  return {"experience",
+          "SELECT " + kPair + "'the sums of its " + mode +
+              " attempts are wrong' FROM experience LEFT JOIN (SELECT task_id AS t, robot_id AS r,"
+              " count(*) AS found_attempts, sum(outcome = 1) AS found_solved,"
+              " total(collision_checks) AS found_checks,"
+              " total(1.0 * collision_checks * collision_checks) AS found_checks_squared,"
+              " total(iif(outcome = 1, collision_checks, 0)) AS found_checks_of_solved "
+              "FROM attempt WHERE arm = " +
+              std::to_string(code) + " AND " + counted +
+              " GROUP BY task_id, robot_id) ON t = task_id AND r = robot_id "
+              "WHERE " +
+              mode + "_attempts <> coalesce(found_attempts, 0) OR " + differs("_solved") + " OR " +
+              differs("_checks") + " OR " + differs("_checks_squared") + " OR " +
+              differs("_checks_of_solved")};
+}
+
+/// Of a row of `table`, in schema 4 by `kind`.
+std::string not_aside(std::int64_t schema, const std::string& table, int kind) {
+  if (schema < kFirstWithSetAside)
+    return table == "path" ? "path.damaged = 0" : "TRUE";
+  return "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = " + std::to_string(kind) +
+         " AND set_aside.id = " + table + ".id)";
+}
+
+/// What holds since paths may be retired (schema 2), and of scenes since there are any (3).
+void add_rules_since_retirement(std::vector<Rule>& rules, std::int64_t schema,
+                                const std::string& counted) {
+  const std::string path_kept = not_aside(schema, "path", 1);
+  const std::string attempt_kept = not_aside(schema, "attempt", 2);
+  rules.push_back({"path",
+                   "SELECT 'path ' || path.id || ': arrived at another time than its attempt' "
+                   "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                   "WHERE " +
+                       path_kept + " AND " + attempt_kept +
+                       " AND path.received_ms <> attempt.received_ms"});
+  rules.push_back({"evicted_distribution",
+                   "SELECT 'distribution ' || lower(hex(digest)) || ': evicted, but there' "
+                   "FROM evicted_distribution JOIN distribution USING (digest) WHERE " +
+                       not_aside(schema, "distribution", 4)});
+  if (schema > 2)
+    rules.push_back({"path",
+                     "SELECT 'path ' || path.id || ': has another scene than its attempt' "
+                     "FROM path JOIN attempt ON attempt.path_id = path.id AND attempt.status = 1 "
+                     "WHERE " +
+                         path_kept + " AND " + attempt_kept +
+                         " AND path.scene_id IS NOT attempt.scene_id"});
+  for (const auto& [mode, code] : {std::pair("guided", 1), std::pair("control", 2)})
+    rules.push_back(rule_of_sums(mode, code, counted));
+}
+
+/// What holds since there may be a cap of paths (schema 5), and distributions make room.
+void add_rules_since_cap(std::vector<Rule>& rules, std::int64_t schema,
+                         const std::string& counted) {
+  // What came again after damage may have been counted twice.
+  rules.push_back(
+      {"experience",
+       "SELECT " + kPair +
+           "'says ' || dropped || ' dropped paths, has ' || found FROM (SELECT *, (SELECT count(*) "
+           "FROM attempt WHERE attempt.task_id = experience.task_id "
+           "AND attempt.robot_id = experience.robot_id AND status = 1 AND path_id IS NULL AND " +
+           counted +
+           ") + (SELECT count(*) FROM path WHERE path.task_id = experience.task_id "
+           "AND path.robot_id = experience.robot_id AND retired_ms IS NOT NULL AND " +
+           std::string(kIsDropped) + " AND " + not_aside(schema, "path", 1) +
+           ") AS found FROM experience) WHERE dropped < found"});
+  rules.push_back(
+      {"distribution",
+       "SELECT 'distribution ' || id || ': nothing says when it was used' FROM distribution "
+       "WHERE id NOT IN (SELECT id FROM distribution_use) AND " +
+           not_aside(schema, "distribution", 4)});
+  rules.push_back({"distribution_use",
+                   "SELECT 'distribution ' || id || ': used, but not there' FROM distribution_use "
+                   "WHERE id NOT IN (SELECT id FROM distribution)"});
+}
+
+std::vector<Rule> rules_of(std::int64_t schema) {
+  const std::string path_kept = not_aside(schema, "path", 1);
+  const std::string attempt_kept = not_aside(schema, "attempt", 2);
+  const std::string in_use = path_kept + (schema > 1 ? " AND retired_ms IS NULL" : "");
+  // An attempt that came again stands there twice.
+  const std::string counted =
+      schema < kFirstWithSetAside
+          ? "TRUE"
+          : "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id"
+            " AND replaced_by IS NOT NULL)";
+  // A repair may have left it without.
+  const std::string is_orphan =
+      schema < kFirstWithSetAside
+          ? "FALSE"
+          : "EXISTS (SELECT 1 FROM set_aside WHERE kind = 5 AND set_aside.id = path.id)";
+  std::vector<Rule> rules = {
+      {"path",
+       "SELECT 'path ' || path.id || ': ' || iif(attempt.id IS NULL, 'no attempt has its UUID',"
+       " 'its attempt does not name it') FROM path "
+       "LEFT JOIN attempt ON attempt.report_uuid = path.report_uuid AND " +
+           counted + " WHERE " + path_kept +
+           " AND (attempt.id IS NULL OR attempt.path_id IS NOT path.id) AND " + attempt_kept +
+           " AND NOT " + is_orphan},
+      {"attempt",
+       "SELECT 'attempt ' || attempt.id || ': its path is missing' FROM attempt "
+       "LEFT JOIN path ON path.id = attempt.path_id WHERE status <> 3 AND path.id IS NULL AND " +
+           // It was beyond the cap.
+           std::string(schema < kFirstWithCap ? "" : "NOT (status = 1 AND path_id IS NULL) AND ") +
+           attempt_kept},
+      {"attempt",
+       "SELECT 'attempt ' || attempt.id || ': its path is of another robot or task' FROM attempt "
+       "JOIN path ON path.id = attempt.path_id WHERE " +
+           attempt_kept + " AND " + path_kept +
+           " AND (path.task_id, path.robot_id) <> (attempt.task_id, attempt.robot_id)"},
+      {"experience",
+       "SELECT " + kPair +
+           "'says ' || paths || ' paths, has ' || found FROM (SELECT *, (SELECT count(*) FROM path "
+           "WHERE path.task_id = experience.task_id AND path.robot_id = experience.robot_id AND " +
+           in_use + ") AS found FROM experience) WHERE paths <> found"},
+      {"experience",
+       "SELECT " + kPair +
+           "'says ' || attempts || ' attempts, has ' || found FROM (SELECT *, (SELECT count(*) "
+           "FROM attempt WHERE attempt.task_id = experience.task_id "
+           "AND attempt.robot_id = experience.robot_id AND " +
+           counted + ") AS found FROM experience) WHERE attempts <> found"}};
+  if (schema > 1)
+    add_rules_since_retirement(rules, schema, counted);
+  if (schema >= kFirstWithCap)
+    add_rules_since_cap(rules, schema, counted);
+  return rules;
+}
+
+class Checker {
+ public:
+  Checker(Database& database, const std::function<void(double)>& progress)
+      : database_(&database), progress_(&progress) {}
+
+  StoreCheck run(const std::filesystem::path& file);
+
+ private:
+  void note(const std::string& table, const std::string& message);
+  /// What SQLite cannot read is a problem of the table, once; the rest is checked all the same.
+  template <typename Part>
+  void guarded(const std::string& table, Part part);
+  void count_tables();
+  void check_pages();
+  void note_structure(const std::string& lines);
+  void check_structure();
+  void check_robots();
+  void check_paths();
+  void check_scenes();
+  void check_distributions();
+  void check_epoch();
+
+  Database* database_;
+  const std::function<void(double)>* progress_;
+  std::int64_t schema_ = 0;
+  StoreCheck check_;
+  std::set<std::string> unread_;  // tables with a part that no check could read
+};
+
+StoreCheck Checker::run(const std::filesystem::path& file) {
+  check_.file = file.string();
+  try {
+    schema_ = known_schema(*database_, file, embedded_migrations());
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    // Nothing can be asked for without its schema, but which pages are damaged can be.
+    note("",
+         "the schema cannot be read, so that rows are not checked; 'kinshipd repair' keeps "
+         "what can be read, 'kinshipd restore' takes a backup");
+    check_pages();
+    return std::move(check_);
+  }
+  if (schema_ == 0)
+    throw Failure(ErrorCode::Storage, "store '" + file.string() + "': is empty");
+  check_.schema_version = static_cast<std::uint32_t>(schema_);
+  count_tables();
+  if (schema_ >= kFirstWithSetAside)
+    check_pages();
+  guarded("", [&] { check_structure(); });
+  guarded("setting", [&] { check_epoch(); });
+  guarded("robot", [&] { check_robots(); });
+  (*progress_)(kPagesShare);
+  guarded("path", [&] { check_paths(); });
+  if (schema_ > 2)
+    guarded("scene", [&] { check_scenes(); });
+  guarded("distribution", [&] { check_distributions(); });
+  for (const Rule& rule : rules_of(schema_))
+    guarded(rule.table, [&] {
+      Statement query(database_->connection(), rule.query);
+      while (query.step())
+        note(rule.table, std::string(query.column_text(0)));
+    });
+  (*progress_)(1);
+  return std::move(check_);
+}
+
+void Checker::note(const std::string& table, const std::string& message) {
+  ++check_.problems;
+  const auto found = std::ranges::find(check_.tables, table, &StoreCheck::Table::name);
+  if (found != check_.tables.end())
+    ++found->problems;
+  if (check_.messages.size() < kMaxMessages)
+    check_.messages.push_back((table.empty() ? "" : table + ": ") + message);
+}
+
+template <typename Part>
+void Checker::guarded(const std::string& table, Part part) {
+  try {
+    part();
+  } catch (const SqliteError& error) {
+    if (error.sqlite_code() != kDamagedPage)
+      note(table, error.what());
+    else if (unread_.insert(table).second && !table.empty())
+      note(table, "what needs a damaged page is not checked");
+  }
+}
+
+void Checker::count_tables() {
+  std::vector<std::string> names;
+  Statement tables(database_->connection(),
+                   "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (tables.step())
+    names.emplace_back(tables.column_text(0));
+  for (const std::string& name : names) {
+    check_.tables.push_back({name, 0, 0});
+    guarded(name, [&] {
+      check_.tables.back().rows =
+          static_cast<std::uint64_t>(database_->integer("SELECT count(*) FROM \"" + name + "\""));
+    });
+  }
+  guarded("path", [&] {
+    check_.damaged_paths = static_cast<std::uint64_t>(database_->integer(
+        schema_ < kFirstWithSetAside ? "SELECT count(*) FROM path WHERE damaged = 1"
+                                     : "SELECT count(*) FROM set_aside WHERE kind = 1"));
+    if (schema_ > 1)
+      check_.retired_paths = static_cast<std::uint64_t>(
+          database_->integer("SELECT count(*) FROM path WHERE retired_ms IS NOT NULL AND " +
+                             not_aside(schema_, "path", 1)));
+  });
+  check_.bytes = static_cast<std::uint64_t>(database_->integer("PRAGMA page_count") *
+                                            database_->integer("PRAGMA page_size"));
+}
+
+void Checker::check_pages() {
+  constexpr std::uint64_t kPagesOfAReport = 4096;
+  PageReader reader(*database_);
+  const std::uint64_t count = reader.count();
+  std::vector<std::uint64_t> damaged;
+  for (std::uint64_t page = 1; page <= count; ++page) {
+    if (!reader.read(page))
+      damaged.push_back(page);
+    if (page % kPagesOfAReport == 0)
+      (*progress_)(kScanShare * static_cast<double>(page) / static_cast<double>(count));
+  }
+  if (damaged.empty())
+    return;
+  for (const auto& [page, owner] : owners_of(*database_, damaged))
+    note(owner.table, "page " + std::to_string(page) + " is damaged (checksum): " + owner.words);
+}
+
+/// \param lines  of PRAGMA integrity_check; damaged pages are named already.
+void Checker::note_structure(const std::string& lines) {
+  const std::string damaged = "error code=" + std::to_string(kDamagedPage);
+  std::istringstream stream(lines);
+  for (std::string line; std::getline(stream, line);)
+    if (line != "ok" && !line.starts_with("*** in database") && !line.ends_with(damaged))
+      note("", line);
+}
+
+void Checker::check_structure() {
+  Statement integrity(database_->connection(), "PRAGMA integrity_check");
+  while (integrity.step())
+    note_structure(std::string(integrity.column_text(0)));
+  Statement foreign(database_->connection(), "PRAGMA foreign_key_check");
+  while (foreign.step()) {
+    const std::string table(foreign.column_text(0));
+    const std::string row =
+        foreign.column_is_null(1) ? "a row" : "row " + std::to_string(foreign.column_integer(1));
+    note(table, row + " names a " + std::string(foreign.column_text(2)) + " that is not there");
+  }
+}
+
+void Checker::check_epoch() {
+  Statement epoch(database_->connection(), "SELECT value FROM setting WHERE key = 'epoch'");
+  const std::optional<Uuid> parsed =
+      epoch.step() ? Uuid::parse(epoch.column_text(0)) : std::nullopt;
+  if (parsed)
+    check_.epoch = *parsed;
+  else
+    note("setting", "the store's epoch is missing or no UUID");
+}
+
+void Checker::check_robots() {
+  for (const std::string& label : select_robots(*database_, schema_ >= kFirstWithGeometry).damaged)
+    note("robot", "'" + label + "': its row is damaged (checksum)");
+}
+
+void Checker::check_paths() {
+  constexpr std::int64_t kPage = 1000;
+  const std::int64_t last =
+      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM path"), 1);
+  for (PathsChecked page = store::check_paths(*database_, schema_, 0, kPage); page.paths > 0;
+       page = store::check_paths(*database_, schema_, page.last_id, kPage)) {
+    for (const std::int64_t id : page.damaged)
+      note("path", std::to_string(id) + ": damaged (checksum)");
+    (*progress_)(kPagesShare +
+                 kPathsShare * static_cast<double>(page.last_id) / static_cast<double>(last));
+  }
+}
+
+void Checker::check_scenes() {
+  constexpr std::int64_t kPage = 1000;
+  const std::int64_t last =
+      std::max<std::int64_t>(database_->integer("SELECT max(id) FROM scene"), 1);
+  for (ScenesChecked page = store::check_scenes(*database_, schema_, 0, kPage); page.scenes > 0;
+       page = store::check_scenes(*database_, schema_, page.last_id, kPage)) {
+    for (const std::int64_t id : page.damaged)
+      note("scene", std::to_string(id) + ": damaged (checksum)");
+    (*progress_)(kPagesShare + kPathsShare +
+                 kScenesShare * static_cast<double>(page.last_id) / static_cast<double>(last));
+  }
+}
+
+void Checker::check_distributions() {
+  std::vector<std::pair<std::int64_t, Digest>> rows;  // both are in an index
+  Statement query(database_->connection(), "SELECT id, digest FROM distribution WHERE " +
+                                               not_aside(schema_, "distribution", 4) +
+                                               " ORDER BY digest");
+  while (query.step())
+    rows.emplace_back(query.column_integer(0), id_of<Digest>(query.column_blob(1)));
+  for (const auto& [row, digest] : rows) {
+    const std::optional<Distribution> found = read_distribution(*database_, row).distribution;
+    if (!found || found->id != digest)
+      note("distribution", digest.hex() + ": damaged (checksum)");
+  }
+}
+
+}  // namespace
+
+StoreCheck check_database(Database& database, const std::filesystem::path& file,
+                          const std::function<void(double)>& progress) {
+  return Checker(database, progress).run(file);
+}
+
+}  // namespace kinship::store

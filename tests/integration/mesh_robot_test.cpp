@@ -1,0 +1,225 @@
+// Robots whose collision geometry is meshes, and a scene with a mesh: what a server, which reads
+// none, filters with, and what it says of that.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "client/link/client.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/reserved_domain.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::mesh_robot_test {
+namespace {
+
+using std::chrono::seconds;
+
+struct Answer {
+  int code = 0;
+  std::string out, err;
+};
+
+/// A planar arm of bars, each a mesh in a file named after its length in mm.
+std::string arm_urdf(const std::vector<int>& lengths_mm) {
+  std::string urdf = "<robot name='arm'><link name='base'/>";
+  std::string parent = "base", at = "0 0 0";
+  int number = 0;
+  for (const int length_mm : lengths_mm) {
+    const std::string link = "link" + std::to_string(++number);
+    urdf += "<link name='" + link +
+            "'><collision><origin xyz='0.04 -0.02 -0.02'/><geometry><mesh "
+            "filename='bar" +
+            std::to_string(length_mm) +
+            ".stl' scale='0.001 0.001 0.001'/>"
+            "</geometry></collision></link><joint name='joint" +
+            std::to_string(number) + "' type='revolute'><parent link='" + parent +
+            "'/><child link='" + link + "'/><origin xyz='" + at +
+            "'/><axis xyz='0 0 1'/>"
+            "<limit lower='-2.8' upper='2.8' effort='1' velocity='1'/></joint>";
+    parent = link;
+    at = std::to_string(length_mm / 1000.0) + " 0 0";
+  }
+  return urdf + "<link name='tip'/><joint name='end' type='fixed'><parent link='" + parent +
+         "'/><child link='tip'/><origin xyz='" + at + "'/></joint></robot>";
+}
+
+const std::vector<int> kTeacher_mm = {400, 300, 250, 150}, kPupil_mm = {450, 250, 300, 120};
+
+/// Past a rock, which is a mesh.
+Problem past_the_rock(int number) {
+  Problem problem;
+  problem.name = "past-" + std::to_string(number);
+  problem.T_task_base = Eigen::Isometry3d::Identity();
+  problem.start = Eigen::Vector4d(-1.2, 0.5, 0.4, 0.05 * number);
+  problem.goal_configurations = Eigen::Vector4d(1.1, -0.4, -0.5, 0.1 * number);
+  problem.scene.meshes = {{"rock",
+                           {.file = "rock.stl", .scale = Eigen::Vector3d::Constant(0.001)},
+                           Eigen::Isometry3d(Eigen::Translation3d(0.7, -0.15, -0.1))}};
+  problem.time_limit_s = 600;
+  problem.seed = static_cast<std::uint64_t>(number);
+  return problem;
+}
+
+class MeshRobots : public testing::Test {
+ protected:
+  MeshRobots()
+      : server_({.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}),
+        client_(
+            {.domain = domain_.number(), .outbox = directory_ / "outbox", .timeout = seconds(60)}) {
+    for (const std::vector<int>& lengths_mm : {kTeacher_mm, kPupil_mm})
+      for (const int length_mm : lengths_mm)
+        write("bar" + std::to_string(length_mm) + ".stl",
+              test::BoxMesh({length_mm - 80.0, 40, 40}).binary_stl());
+    write("rock.stl", test::BoxMesh({300, 300, 200}).binary_stl());
+    write("teacher.urdf", arm_urdf(kTeacher_mm));
+    write("pupil.urdf", arm_urdf(kPupil_mm));
+    std::string lines;
+    for (int i = 0; i < 6; ++i)
+      lines += json::to_json(past_the_rock(i)) + "\n";
+    write("problems.jsonl", lines);
+  }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_.path() / name, std::ios::binary) << text;
+    return directory_.path() / name;
+  }
+
+  Answer run(const std::string& program, std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(),
+                     {"--domain", std::to_string(domain_.number()), "--timeout", "60"});
+    const std::filesystem::path errors = directory_ / "errors";
+    std::filesystem::remove(errors);
+    test::Program process(program, arguments, errors);
+    Answer answer;
+    answer.out = process.read_all();
+    answer.code = process.wait();
+    answer.err = test::read_text(errors);
+    return answer;
+  }
+
+  std::vector<std::string> of_robot(const std::string& name) const {
+    return {"--base", "base", "--tip", "tip", "--axes", "x,y,yaw", "--label", name};
+  }
+
+  Answer plan_as_teacher() const {
+    std::vector<std::string> arguments = of_robot("teacher");
+    arguments.insert(arguments.end(),
+                     {"--robot", directory_ / "teacher.urdf", "--problems",
+                      directory_ / "problems.jsonl", "--task", "past", "--guidance", "uniform",
+                      "--report", "yes", "--outbox", directory_ / "plan_outbox", "--json"});
+    return run("kinship-plan", arguments);
+  }
+
+  Answer register_with_meshes(const std::string& name) const {
+    std::vector<std::string> arguments = of_robot(name);
+    arguments.insert(arguments.begin(),
+                     {"robots", "register", (directory_.path() / (name + ".urdf")).string()});
+    return run("kinship", arguments);
+  }
+
+  /// As a client from before registers: without what it could tell of the meshes.
+  RegisterReply register_without(const std::string& name) {
+    RobotDescription description;
+    description.label = name;
+    description.urdf = test::read_text((directory_.path() / (name + ".urdf")).string());
+    description.base_link = "base";
+    description.tip_link = "tip";
+    description.task_axes.matters = {true, true, false, false, false, true};
+    return client_.register_robot(description).value_or_throw();
+  }
+
+  Distribution fetch(const Digest& robot) {
+    FetchRequest request;
+    request.task = "past";
+    request.robot = robot;
+    request.T_task_base = Eigen::Isometry3d::Identity();
+    request.deadline = seconds(120);
+    const FetchReply reply = client_.fetch(request).value_or_throw();
+    EXPECT_TRUE(reply.distribution) << reply.message;
+    return reply.distribution.value_or(Distribution());
+  }
+
+  RobotSummary show(const std::string& name) {
+    AdminRequest request;
+    request.verb = AdminVerb::ShowRobot;
+    request.argument = name;
+    return json::robot_summary_from_json(client_.admin(request).value_or_throw().rows.at(0))
+        .value_or_throw();
+  }
+
+  test::ReservedDomain domain_;
+  test::TemporaryDirectory directory_;
+  test::ServerProcess server_;
+  link::Client client_;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(MeshRobots, AreFilteredWithSolidsAroundTheirMeshesAndTheServerSaysSo) {
+  const Answer planned = plan_as_teacher();
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  EXPECT_TRUE(has(planned.err, "'teacher', as the server filters for it: 4 links by 4 solids"))
+      << planned.err;
+  EXPECT_TRUE(
+      has(planned.err, "is reported with solids around its meshes and clouds (approximate)"))
+      << planned.err;
+  EXPECT_TRUE(has(planned.err, "6 acknowledged")) << planned.err;
+
+  const Answer registered = register_with_meshes("pupil");
+  ASSERT_EQ(registered.code, 0) << registered.err;
+  EXPECT_TRUE(has(registered.out, "the server filters with: 4 links by 4 solids around meshes"))
+      << registered.out;
+  EXPECT_EQ(show("pupil").geometry_ms, 0);
+
+  const Distribution distribution = fetch(show("pupil").robot);
+  ASSERT_EQ(distribution.sources.size(), 1U);
+  EXPECT_GT(distribution.sources[0].filter_checks, 0U);
+  EXPECT_GT(distribution.sources[0].scene_collisions, 0U);
+  EXPECT_LT(distribution.sources[0].scene_collisions, distribution.sources[0].filter_checks);
+  EXPECT_EQ(distribution.sources[0].paths_with_scene, 6U);
+  EXPECT_TRUE(has(distribution.filters, "self-collision: 4 links by 4 solids around meshes"))
+      << distribution.filters;
+  EXPECT_TRUE(has(distribution.filters,
+                  "recorded scenes: those of 6 of 6 paths, 6 of them with solids around meshes"))
+      << distribution.filters;
+  const Answer explained =
+      run("kinship", {"distributions", "explain", "--distribution", distribution.id.hex()});
+  EXPECT_TRUE(has(explained.out, distribution.filters)) << explained.out << explained.err;
+}
+
+TEST_F(MeshRobots, ARegistrationWithoutShapesIsUpgradedByALaterOneWithThem) {
+  ASSERT_EQ(plan_as_teacher().code, 0);
+  const RegisterReply plain = register_without("pupil");
+  EXPECT_EQ(plain.geometry_grade, GeometryGrade::None);
+  const Distribution unfiltered = fetch(plain.robot);
+  EXPECT_TRUE(has(unfiltered.filters,
+                  "not filtered, for 'pupil': 4 links unknown, with meshes that only its clients "
+                  "have; register it again where its meshes are"))
+      << unfiltered.filters;
+  EXPECT_EQ(unfiltered.sources.at(0).filter_checks, 0U);
+
+  const Answer again = register_with_meshes("pupil");
+  EXPECT_TRUE(has(again.out, "(known already)")) << again.out << again.err;
+  EXPECT_TRUE(has(again.out, "better geometry than before, it counts from now on: 4 links by 4"))
+      << again.out;
+  EXPECT_GT(show("pupil").geometry_ms, 0);
+  EXPECT_EQ(show("pupil").robot, plain.robot);
+
+  const Distribution filtered = fetch(plain.robot);
+  EXPECT_NE(filtered.id, unfiltered.id);
+  EXPECT_GT(filtered.sources.at(0).filter_checks, 0U);
+  EXPECT_TRUE(has(filtered.filters, "recorded scenes: those of 6 of 6 paths")) << filtered.filters;
+  EXPECT_FALSE(register_without("pupil").took_geometry);
+  EXPECT_EQ(fetch(plain.robot).id, filtered.id) << "an older client takes nothing away";
+}
+
+}  // namespace
+}  // namespace kinship::mesh_robot_test

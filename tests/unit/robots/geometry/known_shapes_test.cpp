@@ -1,0 +1,111 @@
+#include "robots/geometry/known_shapes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "robots/kinematics/urdf.hpp"
+#include "tests/support/box_mesh.hpp"
+
+namespace kinship::geometry::known_shapes_test {
+namespace {
+
+std::string link_of(const std::string& name, const std::string& geometry) {
+  return "<link name='" + name + "'>" +
+         (geometry.empty() ? "" : "<collision><geometry>" + geometry + "</geometry></collision>") +
+         "</link>";
+}
+
+const std::string kMesh = "<mesh filename='arm.stl'/>", kBox = "<box size='1 1 1'/>";
+
+/// base - arm - tip, one joint.
+RobotDescription description(const std::string& base, const std::string& arm) {
+  RobotDescription robot;
+  robot.label = "r";
+  robot.urdf = "<robot name='r'>" + link_of("base", base) + link_of("arm", arm) +
+               link_of("tip", "") +
+               "<joint name='j' type='revolute'><parent link='base'/><child link='arm'/>"
+               "<axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+               "<joint name='f' type='fixed'><parent link='arm'/><child link='tip'/></joint>"
+               "</robot>";
+  robot.base_link = "base";
+  robot.tip_link = "tip";
+  return robot;
+}
+
+kinematics::Chain chain() { return kinematics::read_chain(description("", "")).value_or_throw(); }
+
+Result<KnownShapes> known(const RobotDescription& robot) {
+  return read_known_shapes(robot, chain());
+}
+
+RobotDescription with_solid(RobotDescription robot, const std::string& link) {
+  robot.mesh_solids.solids = {{link, SphereShape{0.1}}, {link, BoxShape{{0.1, 0.1, 0.3}}}};
+  return robot;
+}
+
+TEST(KnownShapes, GradesWhatIsKnown) {
+  const auto grade = [](const RobotDescription& robot) { return known(robot).value().grade; };
+  EXPECT_EQ(grade(description("", "")), GeometryGrade::None);
+  EXPECT_EQ(grade(description("", kMesh)), GeometryGrade::None);
+  EXPECT_EQ(grade(description(kBox, kMesh)), GeometryGrade::Partial);
+  EXPECT_EQ(grade(with_solid(description(kBox, kMesh), "arm")), GeometryGrade::Approximate);
+  EXPECT_EQ(grade(description(kBox, kBox)), GeometryGrade::Exact);
+}
+
+TEST(KnownShapes, SaysWhatIsKnownInWords) {
+  EXPECT_EQ(describe(known(description("", "")).value()), "no link has a collision shape");
+  EXPECT_EQ(describe(known(description(kBox, kBox)).value()), "2 links by exact shapes");
+  EXPECT_EQ(describe(known(description(kBox, kMesh)).value()),
+            "1 link by exact shapes, 1 link unknown, with meshes that only its clients have");
+  RobotDescription robot = with_solid(description(kBox, kMesh), "arm");
+  robot.mesh_solids.unfiltered = {{"tip", "base"}};
+  EXPECT_EQ(describe(known(robot).value()),
+            "1 link by exact shapes, 1 link by 2 solids around meshes (approximate; 1 pair of "
+            "links not compared)");
+}
+
+TEST(KnownShapes, SolidsAreShapesOfTheirLinkAndPairsAreNotChecked) {
+  RobotDescription robot = with_solid(description(kBox, kMesh), "arm");
+  robot.mesh_solids.unfiltered = {{"tip", "base"}};
+  const RobotShapes shapes = known(robot).value().shapes;
+  ASSERT_EQ(shapes.shapes.size(), 3U);
+  EXPECT_FALSE(shapes.shapes[0].approximate);
+  EXPECT_TRUE(shapes.shapes[1].approximate);
+  EXPECT_EQ(shapes.shapes[2].link, chain().find_link("arm"));
+  ASSERT_EQ(shapes.never_colliding.size(), 1U);
+  EXPECT_EQ(shapes.never_colliding[0],
+            std::pair(chain().find_link("base"), chain().find_link("tip")));
+  EXPECT_TRUE(shapes.left_out.empty());
+}
+
+TEST(KnownShapes, SolidsOfWhatHasNoMeshAreRefused) {
+  EXPECT_EQ(known(with_solid(description(kBox, kMesh), "base")).error().message,
+            "mesh_solids: link 'base' has no mesh");
+  EXPECT_EQ(known(with_solid(description(kBox, kMesh), "hand")).error().message,
+            "mesh_solids: no link named 'hand'");
+  RobotDescription robot = with_solid(description(kBox, kMesh), "arm");
+  robot.mesh_solids.unfiltered = {{"arm", "leg"}};
+  EXPECT_EQ(known(robot).error().message, "mesh_solids: no link named 'leg'");
+  robot = with_solid(description(kBox, kMesh), "arm");
+  robot.mesh_solids.solids[0].shape = SphereShape{-1};
+  EXPECT_NE(known(robot).error().message.find("mesh_solids: link 'arm': sphere radius"),
+            std::string::npos);
+}
+
+TEST(KnownShapes, CoversWhatIsAMesh) {
+  const RobotDescription robot = description(kBox, kMesh);
+  const RobotShapes shapes =
+      read_shapes(robot, chain(), [](const std::string&) {
+        return Result<std::optional<Eigen::Matrix3Xd>>(test::BoxMesh({0.1, 0.2, 0.3}).triangles());
+      }).value_or_throw();
+  const MeshSolids solids = cover_links(shapes, chain()).value_or_throw();
+  ASSERT_FALSE(solids.solids.empty());
+  for (const LinkSolid& solid : solids.solids)
+    EXPECT_EQ(solid.link, "arm");
+  const RobotShapes solid = with_solids(shapes, solids, chain());
+  EXPECT_EQ(solid.shapes.size(), 1 + solids.solids.size());
+  for (const LinkShape& shape : solid.shapes)
+    EXPECT_EQ(shape.triangles, nullptr);
+}
+
+}  // namespace
+}  // namespace kinship::geometry::known_shapes_test

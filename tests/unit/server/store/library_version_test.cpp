@@ -1,0 +1,34 @@
+#include "server/store/sqlite/files/library_version.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::store::library_version_test {
+namespace {
+
+TEST(LibraryVersion, OfThisMachineServes) {
+  EXPECT_NO_THROW(require_library(sqlite3_libversion_number()));
+}
+
+TEST(LibraryVersion, AnOlderOneIsRefusedWithBothVersions) {
+  EXPECT_NO_THROW(require_library(3'037'000));
+  try {
+    require_library(3'034'001);
+    FAIL() << "let through";
+  } catch (const Failure& failure) {
+    EXPECT_STREQ(failure.what(),
+                 "SQLite 3.34.1 is older than SQLite 3.37.0, which a store needs; install a newer "
+                 "libsqlite3");
+  }
+}
+
+TEST(LibraryVersion, WarnsOfTheRaceBetweenCheckpointAndWriter) {
+  EXPECT_EQ(library_advice(3'040'001),
+            "SQLite 3.40.1 is older than 3.51.3: no other program may write to the store");
+  EXPECT_EQ(library_advice(3'051'003), "");
+}
+
+}  // namespace
+}  // namespace kinship::store::library_version_test
