@@ -34,6 +34,12 @@ function(kinship_unite target)
   endif()
 endfunction()
 
+# Archives go into shared libraries too, ours (C, Python) and others' (plug-ins), and are not seen through them.
+function(kinship_hide target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden
+                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
 # kinship_library(NAME SOURCES a.cpp ... DEPENDS kinship::types ... PRIVATE_DEPENDS Some::Library ...)
 #
 # One static library per folder, alias kinship::NAME. DEPENDS are seen by users of the headers,
@@ -44,6 +50,7 @@ function(kinship_library name)
     add_library(kinship_${name} STATIC ${arg_SOURCES})
     target_link_libraries(kinship_${name} PUBLIC kinship_options ${arg_DEPENDS}
                           PRIVATE ${arg_PRIVATE_DEPENDS})
+    kinship_hide(kinship_${name})
     kinship_unite(kinship_${name})
   else()
     add_library(kinship_${name} INTERFACE)

@@ -200,9 +200,9 @@ bool overruns(std::span<const std::uint8_t> bytes, bool swapped, std::uint32_t v
 /// In front of the function of this name in Cyclone DDS, which calls it for each message from the
 /// network: a program's own symbols come before those of libraries.
 // NOLINTNEXTLINE(readability-function-size): its parameters are Cyclone DDS's
-extern "C" bool dds_stream_normalize(void* data, std::uint32_t size, bool swapped,
-                                     std::uint32_t version, const ddsi_sertype_default* type,
-                                     bool just_key, std::uint32_t* actual_size) {
+extern "C" __attribute__((visibility("default"))) bool dds_stream_normalize(
+    void* data, std::uint32_t size, bool swapped, std::uint32_t version,
+    const ddsi_sertype_default* type, bool just_key, std::uint32_t* actual_size) {
   static const auto kBehind = reinterpret_cast<decltype(&dds_stream_normalize)>(
       dlsym(RTLD_NEXT, "dds_stream_normalize"));  // NOLINT: what dlsym is for
   const char* const name = type->c.type_name;
@@ -218,7 +218,8 @@ extern "C" bool dds_stream_normalize(void* data, std::uint32_t size, bool swappe
 
 /// In front of the function of this name in Cyclone DDS, which is asked about the type of each
 /// reader and writer that a peer announces, and ends the process at kinds it does not know.
-extern "C" bool ddsi_typeinfo_valid(const ddsi_typeinfo_t* type) {
+extern "C" __attribute__((visibility("default"))) bool ddsi_typeinfo_valid(
+    const ddsi_typeinfo_t* type) {
   static const auto kBehind = reinterpret_cast<decltype(&ddsi_typeinfo_valid)>(
       dlsym(RTLD_NEXT, "ddsi_typeinfo_valid"));  // NOLINT: what dlsym is for
   return type->x.minimal.typeid_with_size.type_id._d == DDS_XTypes_EK_MINIMAL &&
