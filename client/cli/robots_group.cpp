@@ -1,5 +1,6 @@
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
+#include "client/cli/compare_command.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_commands.hpp"
@@ -75,6 +76,33 @@ void add_register(CLI::App& group, Session& session) {
   });
 }
 
+void add_compare(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = add_command(
+      group, "compare", "What the experience of each robot is worth to each other one on a task",
+      "kinship robots compare --task box_to_shelf\n"
+      "kinship robots compare --task box_to_shelf --targets ur10e --placement \"ur10e=0 0 0.6 0 0 "
+      "0 1\"");
+  command->add_option("--task", options->task, "Task whose experience is meant")->required();
+  command
+      ->add_option(
+          "--targets", options->targets,
+          "Robots that would use it: labels or digests, separated by commas (default: all)")
+      ->delimiter(',');
+  command->add_option("--placement", options->placements,
+                      "\"LABEL=x y z qx qy qz qw\": where a robot's base stands in the task frame "
+                      "(default: as in its newest path of the task); may be repeated");
+  const auto wait_s = std::make_shared<double>(120);
+  command->add_option("--wait", *wait_s, "Seconds for one pair (default 120)")
+      ->check(arguments::between(0.0, 3600.0));
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options, wait_s](link::Client& server) {
+    options->wait = milliseconds(*wait_s);
+    options->json = session.json;
+    return compare_robots(server, *options, session.out, session.err);
+  });
+}
+
 }  // namespace
 
 void add_robots(CLI::App& app, Session& session) {
@@ -87,6 +115,7 @@ void add_robots(CLI::App& app, Session& session) {
   add_register(*robots, session);
   add_check(*robots, session);
   add_inverse(*robots, session);
+  add_compare(*robots, session);
 }
 
 }  // namespace kinship::cli

@@ -70,6 +70,12 @@ class Server {
   std::unique_ptr<test::ServerProcess> process_;
 };
 
+std::vector<std::string> with(std::vector<std::string> words,
+                              const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -368,6 +374,33 @@ TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
   EXPECT_EQ(status.rehearsal_time_s, reply.rehearsal->processor_time_s);
   EXPECT_NE(server_.kinship({"status"}).out.find("\nrehearsals     1 done, 0 queued, "),
             std::string::npos);
+}
+
+TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
+  teach(server_);
+  const std::vector<std::string> compare = {"robots", "compare", "--task",
+                                            "sweep",  "--wait",  "200"};
+  const Answer panda = server_.kinship(with(compare, {"--targets", "panda"}));
+  EXPECT_EQ(panda.code, 0) << panda.err;
+  EXPECT_NE(panda.out.find("\nTARGET \\ SOURCE  panda\npanda            "), std::string::npos)
+      << panda.out;
+  EXPECT_NE(panda.err.find("rehearsing 1 of 1: panda with the experience of panda"),
+            std::string::npos);
+
+  const Answer unplaced = server_.kinship(compare);  // nobody knows where the UR10e stands
+  EXPECT_EQ(unplaced.code, 1);
+  EXPECT_NE(unplaced.out.find("ur10e from panda: where its base stands is not known: --placement"),
+            std::string::npos)
+      << unplaced.out;
+  const Answer placed = server_.kinship(
+      with(compare, {"--targets", "ur10e", "--placement", "ur10e=0 0 0 0 0 0 1", "--json"}));
+  EXPECT_EQ(placed.code, 0) << placed.err;
+  EXPECT_NE(placed.out.find("\"queries\": "), std::string::npos) << placed.out;
+
+  EXPECT_EQ(server_.kinship(with(compare, {"--targets", "nobody"})).code, 3);
+  EXPECT_EQ(server_.kinship(with(compare, {"--placement", "0 0 0 0 0 0 1"})).code, 2);
+  EXPECT_EQ(server_.kinship(with(compare, {"--placement", "nobody=0 0 0 0 0 0 1"})).code, 2);
+  EXPECT_EQ(server_.kinship({"robots", "compare", "--task", "unheard"}).code, 3);
 }
 
 TEST_F(AdminCommands, AServerThatMayNotRehearseDoesNot) {

@@ -20,7 +20,7 @@ EXPERIMENTS = HERE.parents[4] / "client" / "experiments"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(EXPERIMENTS))
 
-from analysis import calibration, clouds, family, report, statistics, tables, tuning  # noqa: E402: after the path
+from analysis import calibration, clouds, family, report, statistics, tables, transferability, tuning  # noqa: E402: after the path
 from analysis.study_folder import Cell, StudyFolder  # noqa: E402
 
 
@@ -270,6 +270,40 @@ class TestProgram(CopiedStudy):
         result = self.analyse(str(self.folder / "missing"))
         self.assertEqual(result.returncode, 1)
         self.assertIn("study.json", result.stderr)
+
+
+class TestTransferability(CopiedStudy):
+
+    def pair(self, target: str, source: str, gain: float, **candidates: float) -> transferability.Pair:
+        return transferability.Pair("planar", target, source, gain, candidates)
+
+    def test_the_candidate_is_chosen_without_the_robot_that_is_left_out(self) -> None:
+        # "good" ranks all pairs but those of d, "bad" only those of d.
+        names = "abcd"
+        pairs = [self.pair(target, source, gain, good=-gain if "d" in (target, source) else gain,
+                           bad=gain if "d" in (target, source) else -gain)
+                 for gain, (target, source) in enumerate(
+                     ((t, s) for t in names for s in names if t != s), 1)]
+        rows = {robot: (name, value) for robot, name, value in transferability.left_out(pairs, ["good", "bad"])}
+        self.assertEqual(rows["d"], ("good", -1.0))
+
+    def test_density_of_a_mixture_by_hand(self) -> None:
+        mixture = {"weights": [0.5, 0.5], "means": [[0.0], [4.0]], "covariances": [[[1.0]], [[1.0]]]}
+        at_zero = 0.5 * (1 + math.exp(-8)) / math.sqrt(2 * math.pi)
+        self.assertAlmostEqual(transferability.mean_log_density(mixture, np.array([[0.0]])), math.log(at_zero))
+        self.assertEqual(transferability.mean_log_density(mixture, np.array([[1e3]])), -50)
+
+    def test_a_folder_with_predictions(self) -> None:
+        self.assertIn("has no study with transferability.json", self.analyse(str(self.folder.parent), "--transferability").stderr)
+        study = StudyFolder(self.folder)
+        rows = [{"target_label": target, "source_label": source, "worth": 2.0 + index}
+                for index, (target, source) in enumerate((t, s) for t in study.robots for s in study.robots)]
+        (self.folder / transferability.PREDICTIONS).write_text(json.dumps({"rows": rows}))
+        result = self.analyse(str(self.folder.parent), "--transferability")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = (self.folder.parent / "transferability.md").read_text()
+        self.assertIn("## One robot left out", text)
+        self.assertRegex(text, r"\| rehearsal \| +-?[0-9.]+ \|")
 
 
 class TestClouds(unittest.TestCase):

@@ -1,0 +1,258 @@
+#include "client/cli/compare_command.hpp"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <utility>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
+#include "client/link/robot_names.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "proto/types/enum_text.hpp"
+#include "proto/types/task_experience.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr std::string_view kCompare = "robots compare";
+
+/// Where the robots stand that somebody told, by label.
+using Placements = std::map<std::string, Eigen::Isometry3d>;
+
+struct Placement {
+  bool is_known = false;
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< known and missing: reported without one
+};
+
+struct Target {
+  Digest robot;
+  std::string label;
+  Placement placement;
+};
+
+Result<Placements> parse_placements(const std::vector<std::string>& texts) {
+  Placements placements;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return Error{ErrorCode::InvalidInput, "--placement: '" + text +
+                                                "' is not LABEL=x y z qx qy qz qw, as in \"ur10e=0 "
+                                                "0 0.6 0 0 0 1\""};
+    const auto pose = models::parse_pose(text.substr(equals + 1));
+    if (!pose)
+      return Error{pose.error().code, "--placement: " + pose.error().message};
+    placements.insert_or_assign(text.substr(0, equals), *pose);
+  }
+  return placements;
+}
+
+/// The newest placement that a robot reported for the task; unknown if it has no path of it.
+Placement reported_placement(link::Client& server, const std::string& task,
+                             const std::string& robot, std::ostream& err) {
+  Placement placement;
+  std::int64_t newest_ms = -1;
+  ListOptions options;
+  options.task = task;
+  options.robot = robot;
+  for_each_row(server, AdminVerb::ListPaths, options, kCompare, err, [&](const std::string& row) {
+    const auto path = json::path_summary_from_json(row);
+    if (path && path->received_ms > newest_ms) {
+      newest_ms = path->received_ms;
+      placement = {true, path->T_task_base};
+    }
+    return true;
+  });
+  return placement;
+}
+
+/// The robots that are asked about. Empty with an exit code in `code` if something is wrong.
+std::vector<Target> find_targets(link::Client& server, const CompareOptions& options,
+                                 const Placements& placements, std::ostream& err, int& code) {
+  std::vector<Target> targets;
+  const auto add = [&](const Digest& robot, const std::string& label) {
+    const auto told = placements.find(label);
+    targets.push_back({robot, label,
+                       told != placements.end()
+                           ? Placement{true, told->second}
+                           : reported_placement(server, options.task, label, err)});
+  };
+  std::vector<std::pair<Digest, std::string>> robots;
+  if (options.targets.empty())
+    code =
+        for_each_row(server, AdminVerb::ListRobots, {}, kCompare, err, [&](const std::string& row) {
+          if (const auto robot = json::robot_summary_from_json(row))
+            robots.emplace_back(robot->robot, robot->label);
+          return true;
+        });
+  for (const std::string& name : options.targets) {
+    const auto robot = link::find_robot(server, name);
+    if (!robot) {
+      code = refuse(kCompare, robot.error(), err);
+      return {};
+    }
+    robots.emplace_back(robot->robot, robot->label);
+  }
+  for (const auto& [robot, label] : robots)
+    add(robot, label);
+  for (const auto& [label, pose] : placements)
+    if (std::ranges::find(targets, label, &Target::label) == targets.end()) {
+      err << kCompare << ": --placement names '" << label << "', which is not among the robots\n";
+      code = kWrongUsage;
+      return {};
+    }
+  return targets;
+}
+
+/// Has the server rehearse one pair.
+Transferability compare_pair(link::Client& server, const CompareOptions& options,
+                             const Target& target, const TaskRobotSummary& source) {
+  Transferability pair{target.robot, source.robot, target.label, source.label, {}, {}};
+  if (!target.placement.is_known) {
+    pair.message = "where its base stands is not known: --placement \"" + target.label + "=...\"";
+    return pair;
+  }
+  FetchRequest request;
+  request.task = options.task;
+  request.robot = target.robot;
+  request.T_task_base = target.placement.T_task_base;
+  request.selection.sources = {source.robot};
+  request.deadline = options.wait;
+  request.experience_bytes = kDefaultExperienceBytes;
+  request.rehearsed = true;
+  auto reply = server.fetch(request);
+  if (!reply) {
+    pair.message = reply.error().message;
+    return pair;
+  }
+  pair.message = reply->message;
+  pair.rehearsal = std::move(reply).value().rehearsal;
+  if (pair.rehearsal && !pair.rehearsal->message.empty())
+    pair.message = pair.rehearsal->message;
+  if (!pair.rehearsal && pair.message.empty())
+    pair.message = "not rehearsed within the time (--wait)";
+  return pair;
+}
+
+const GuideCost* cost_of(const Rehearsal& rehearsal, Guide guide) {
+  const auto cost = std::ranges::find(rehearsal.costs, guide, &GuideCost::guide);
+  return cost == rehearsal.costs.end() ? nullptr : &*cost;
+}
+
+nlohmann::json to_json(const Transferability& pair) {
+  nlohmann::json row = {{"target", pair.target.hex()},
+                        {"target_label", pair.target_label},
+                        {"source", pair.source.hex()},
+                        {"source_label", pair.source_label},
+                        {"worth", nullptr},
+                        {"message", pair.message}};
+  if (!pair.rehearsal)
+    return row;
+  const Rehearsal& rehearsal = *pair.rehearsal;
+  row["queries"] = rehearsal.queries;
+  row["left_out"] = rehearsal.left_out;
+  row["is_complete"] = rehearsal.is_complete;
+  row["guide"] = to_text(rehearsal.guide);
+  row["processor_time_s"] = rehearsal.processor_time_s;
+  if (const auto value = worth(rehearsal))
+    row["worth"] = *value;
+  return row;
+}
+
+/// What of the queries a target could not take, and what could not be told at all.
+void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out) {
+  for (const Transferability& pair : pairs) {
+    const std::string names = pair.target_label + " from " + pair.source_label + ": ";
+    if (!pair.message.empty())
+      out << names << pair.message << '\n';
+    if (pair.rehearsal && pair.rehearsal->left_out > 0)
+      out << names << pair.rehearsal->left_out << " of "
+          << pair.rehearsal->queries + pair.rehearsal->left_out
+          << " recorded queries left out: it cannot take their start or goal where it stands\n";
+  }
+}
+
+}  // namespace
+
+std::optional<double> worth(const Rehearsal& rehearsal) {
+  const GuideCost* const none = cost_of(rehearsal, Guide::None);
+  const GuideCost* const best = cost_of(rehearsal, rehearsal.guide);
+  if (none == nullptr || best == nullptr || none->plans == 0 || best->mean_checks <= 0)
+    return std::nullopt;
+  return none->mean_checks / best->mean_checks;
+}
+
+void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
+  constexpr int kDigits = 2;
+  std::vector<std::string> headings{"TARGET \\ SOURCE"};
+  for (const Transferability& pair : pairs)
+    if (pair.target == pairs.front().target)
+      headings.push_back(pair.source_label);
+  const std::size_t sources = headings.size() - 1;
+  Table table(std::move(headings));
+  for (std::size_t row = 0; row < pairs.size(); row += sources) {
+    double best = 0;
+    for (std::size_t i = row; i < row + sources; ++i)
+      if (pairs[i].rehearsal)
+        best = std::max(best, worth(*pairs[i].rehearsal).value_or(0));
+    std::vector<std::string> cells{pairs[row].target_label};
+    for (std::size_t i = row; i < row + sources; ++i) {
+      const auto value = pairs[i].rehearsal ? worth(*pairs[i].rehearsal) : std::nullopt;
+      cells.push_back(!value ? "-" : number_text(*value, kDigits) + (*value == best ? "*" : " "));
+    }
+    table.add_row(std::move(cells));
+  }
+  table.print(out);
+}
+
+int compare_robots(link::Client& server, const CompareOptions& options, std::ostream& out,
+                   std::ostream& err) {
+  const auto placements = parse_placements(options.placements);
+  if (!placements)
+    return refuse(kCompare, placements.error(), err);
+  int code = kDone;
+  const auto rows = show_rows(server, AdminVerb::ShowTask, options.task, kCompare, err, code);
+  if (rows.empty())
+    return code;
+  const auto task = json::task_summary_from_json(rows.front());
+  if (!task)
+    return refuse(kCompare, task.error(), err);
+  std::vector<TaskRobotSummary> sources;
+  std::ranges::copy_if(task->robots, std::back_inserter(sources),
+                       [](const TaskRobotSummary& robot) { return robot.paths > 0; });
+  if (sources.empty()) {
+    err << kCompare << ": no robot has paths of task '" << options.task << "'\n";
+    return kNotFound;
+  }
+  const auto targets = find_targets(server, options, *placements, err, code);
+  if (code != kDone)
+    return code;
+
+  std::vector<Transferability> pairs;
+  for (const Target& target : targets)
+    for (const TaskRobotSummary& source : sources) {
+      err << "rehearsing " << pairs.size() + 1 << " of " << targets.size() * sources.size() << ": "
+          << target.label << " with the experience of " << source.label << '\n';
+      pairs.push_back(compare_pair(server, options, target, source));
+    }
+  if (options.json) {
+    nlohmann::json document = {{"task", options.task}, {"rows", nlohmann::json::array()}};
+    for (const Transferability& pair : pairs)
+      document["rows"].push_back(to_json(pair));
+    out << document.dump(2) << '\n';
+  } else {
+    out << "What the experience of each source is worth to each target on '" << options.task
+        << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
+           "source's recorded queries; * the best of a row\n\n";
+    print_worths(pairs, out);
+    out << '\n';
+    print_remarks(pairs, out);
+  }
+  const bool all_told = std::ranges::all_of(
+      pairs, [](const Transferability& pair) { return pair.rehearsal.has_value(); });
+  return all_told ? kDone : kFailed;
+}
+
+}  // namespace kinship::cli
