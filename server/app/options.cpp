@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <ostream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "proto/dds/participant.hpp"
+#include "server/app/configuration_text.hpp"
 
 namespace kinship::app {
 namespace {
@@ -22,7 +25,8 @@ server may have the store open. Exit codes: 0 done, 1 failed or damage found, 2 
 Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
-  kinshipd --config /etc/kinship/kinshipd.ini    lines like: store=/var/lib/kinship/fleet.db
+  kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
+  kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
@@ -202,12 +206,25 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("kinshipd ") + KINSHIP_VERSION);
   add_server_options(app, options);
+  bool print_config = false;
+  app.add_flag("--print-config", print_config,
+               "Print the options that would serve, as a file for --config, and end")
+      ->configurable(false);
   add_verbs(app, offline);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
-    err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>()
-        << "': " << error.what() << '\n';
+    const std::string what = error.what();
+    err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>() << "': " << what
+        << suggestion(app, what.substr(what.find_last_of(" .") + 1)) << '\n';
+    return kWrongUsage;
+  } catch (const CLI::ExtrasError& error) {
+    app.exit(error, out, err);
+    for (int i = 1; i < argc; ++i)
+      if (const std::string_view word = argv[i]; word.starts_with("--"))
+        if (const std::string near = suggestion(app, word.substr(2, word.find('=') - 2));
+            !near.empty() && app.get_option_no_throw(std::string(word)) == nullptr)
+          err << word << near << '\n';
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
@@ -226,6 +243,10 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   if (is_empty) {
     err << "kinshipd: neither XDG_STATE_HOME nor HOME is set; say where with --store FILE\n";
     return kWrongUsage;
+  }
+  if (print_config) {
+    out << configuration_text(app, std::vector<std::string>(argv + 1, argv + argc));
+    return kDone;
   }
   if (is_offline)
     return offline;

@@ -50,7 +50,7 @@ using Options = std::variant<ServerOptions, OfflineOptions, int>;
 
 /// Options from the command line; what is not there from the file of --config; the domain then
 /// from the environment (KINSHIP_DOMAIN).
-/// \return the options, or an exit code after help or a message was written.
+/// \return the options, or an exit code after help, the configuration or a message was written.
 Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
 /// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither

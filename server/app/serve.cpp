@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <csignal>
 #include <memory>
 #include <ostream>
@@ -103,9 +104,12 @@ int serve(const ServerOptions& options, std::ostream& out) {
     spdlog::warn("store: {}", status.storage_message);
   out << "ready domain=" << options.domain << " store=" << options.store.string() << std::endl;
   notify_service_manager("READY=1");
-  loop.run([&service] {
-    service.expire(WaitClock::now());
-    return service.next_deadline().value_or(WaitClock::time_point::max());
+  Watchdog watchdog;
+  loop.run([&service, &watchdog] {
+    const auto now = WaitClock::now();
+    service.expire(now);
+    return std::min(watchdog.beat(now),
+                    service.next_deadline().value_or(WaitClock::time_point::max()));
   });
 
   notify_service_manager("STOPPING=1");

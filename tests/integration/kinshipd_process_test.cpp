@@ -7,8 +7,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
 
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
@@ -166,25 +168,56 @@ TEST_F(KinshipdProcess, WrongUsageIsExitCodeTwoAndHelpIsZero) {
   EXPECT_NE(output_.find("Examples:"), std::string::npos);
 }
 
-TEST_F(KinshipdProcess, TellsTheServiceManagerWhenItServesAndWhenItStops) {
-  const std::filesystem::path path = directory_ / "notify";
-  const int notify = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-  ASSERT_EQ(bind(notify, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  ASSERT_EQ(setenv("NOTIFY_SOCKET", path.c_str(), 1), 0);
-  test::ServerProcess server(options());
-  ASSERT_EQ(unsetenv("NOTIFY_SOCKET"), 0);
-  const auto receive = [notify] {
+/// What systemd would hear of a service.
+class ServiceManager {
+ public:
+  explicit ServiceManager(const std::filesystem::path& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+    if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      throw std::runtime_error("cannot bind " + path.string());
+    setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  }
+  ~ServiceManager() {
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+    close(socket_);
+  }
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+
+  std::string receive() const {
     char text[64] = {};
-    const ssize_t size = recv(notify, text, sizeof text, 0);
+    const ssize_t size = recv(socket_, text, sizeof text, 0);
     return std::string(text, size > 0 ? static_cast<std::size_t>(size) : 0);
-  };
-  EXPECT_EQ(receive(), "READY=1");
+  }
+
+ private:
+  int socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+};
+
+TEST_F(KinshipdProcess, TellsTheServiceManagerWhenItServesAndWhenItStops) {
+  const ServiceManager manager(directory_ / "notify");
+  test::ServerProcess server(options());
+  EXPECT_EQ(manager.receive(), "READY=1");
   EXPECT_EQ(server.terminate(), 0);
-  EXPECT_EQ(receive(), "STOPPING=1");
-  close(notify);
+  EXPECT_EQ(manager.receive(), "STOPPING=1");
+}
+
+TEST_F(KinshipdProcess, TellsTheWatchdogThatItServesAsLongAsItDoes) {
+  const ServiceManager manager(directory_ / "notify");
+  setenv("WATCHDOG_USEC", "100000", 1);
+  test::ServerProcess server(options());
+  EXPECT_EQ(manager.receive(), "READY=1");
+  using Clock = std::chrono::steady_clock;
+  EXPECT_EQ(manager.receive(), "WATCHDOG=1");
+  const Clock::time_point first = Clock::now();
+  constexpr int kBeats = 4;
+  for (int i = 0; i < kBeats; ++i)
+    EXPECT_EQ(manager.receive(), "WATCHDOG=1");  // blocks for ever if it does not come
+  EXPECT_GE(Clock::now() - first, std::chrono::milliseconds(150));  // of 4 * 50 ms: no busy loop
+  EXPECT_EQ(server.terminate(), 0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <vector>
@@ -192,6 +193,72 @@ TEST_F(Options, AWrongLineOfAConfigurationIsSaidWithItsFile) {
   EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage);
   EXPECT_NE(err_.str().find("'" + file + "'"), std::string::npos) << err_.str();
   EXPECT_NE(err_.str().find("storee"), std::string::npos) << err_.str();
+}
+
+TEST_F(Options, AMisspeltNameIsAnsweredWithTheNearestOne) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << "storee = \"x\"\n";
+  EXPECT_EQ(code({"--config", file.c_str()}), kWrongUsage);
+  EXPECT_NE(err_.str().find("(did you mean 'store'?)"), std::string::npos) << err_.str();
+  EXPECT_EQ(code({"--wrokers", "3"}), kWrongUsage);
+  EXPECT_NE(err_.str().find("--wrokers (did you mean 'workers'?)"), std::string::npos)
+      << err_.str();
+  EXPECT_EQ(code({"--workers", "3", "--utterly-else"}), kWrongUsage);
+  EXPECT_EQ(err_.str().find("did you mean"), std::string::npos) << err_.str();
+}
+
+TEST_F(Options, ThePrintedConfigurationSaysWhereEachValueIsFrom) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << "workers = 5\nlog-level = \"error\"\n";
+  setenv("KINSHIP_DOMAIN", "4", 1);
+  EXPECT_EQ(code({"--config", file.c_str(), "--print-config", "--log-level", "debug"}), kDone);
+  const std::string text = out_.str();
+  const std::vector<std::string> parts = {
+      "[" + file + "]\nworkers = 5\n", "[command line]\nlog-level = \"debug\"\n",
+      "[KINSHIP_DOMAIN]\ndomain = 4\n", "[default]\nmax-wal-mb = 512\n",
+      "[default]\n# backup-folder = \"\"\n"};
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+}
+
+TEST_F(Options, ThePrintedConfigurationIsAFileThatSaysTheSame) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  EXPECT_EQ(code({"--print-config", "--domain", "9", "--rehearsal-cpu", "0.25", "--store",
+                  "/a \"place\"/x.db"}),
+            kDone);
+  std::ofstream(file) << out_.str();
+  const ServerOptions options = good({"--config", file.c_str()});
+  EXPECT_EQ(options.domain, 9U);
+  EXPECT_EQ(options.rehearsal_fraction, 0.25);
+  EXPECT_EQ(options.store, "/a \"place\"/x.db");
+  EXPECT_EQ(options.backup_folder, "");
+}
+
+TEST_F(Options, TheSampleConfigurationIsThatOfTheDefaults) {
+  const std::filesystem::path sample =
+      std::filesystem::path(KINSHIP_SOURCE_DIR) / "deploy/etc/kinshipd.toml";
+  good({"--config", sample.c_str()});
+  std::ifstream stream(sample);
+  std::ostringstream lines;
+  for (std::string line; std::getline(stream, line);)  // "#name = value": an option's default
+    lines << (line.starts_with('#') && !line.starts_with("# ") ? line.substr(1) : line) << '\n';
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << lines.str();
+  ASSERT_EQ(code({"--print-config"}), kDone);
+  std::istringstream defaults(out_.str());
+  ASSERT_EQ(code({"--config", file.c_str(), "--print-config"}), kDone) << err_.str();
+  const std::string printed = out_.str();
+  for (std::string line; std::getline(defaults, line);) {
+    const bool is_of_the_machine = line.starts_with("store = ") || line.starts_with("workers = ");
+    if (line.starts_with('#') || line.empty() || is_of_the_machine)
+      continue;
+    EXPECT_NE(printed.find('\n' + line + '\n'), std::string::npos) << line;
+    EXPECT_NE(lines.str().find('\n' + line + '\n'), std::string::npos) << "sample lacks " << line;
+  }
 }
 
 TEST_F(Options, TheHelpOfAVerbIsNotThatOfTheServer) {
