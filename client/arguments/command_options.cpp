@@ -1,9 +1,13 @@
 #include "client/arguments/command_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 
+#include "client/arguments/number_range.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/nearest_name.hpp"
 
 namespace kinship::arguments {
 namespace {
@@ -64,6 +68,36 @@ void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
       ->check([](const std::string& text) {
         return complaint(parse_since(text, std::chrono::system_clock::now()));
       });
+}
+
+void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain) {
+  constexpr std::uint32_t kMaxDomain = 230;
+  app.add_option("--server", host, "host of kinshipd: a name or an address")
+      ->envname("KINSHIP_SERVER")
+      ->capture_default_str();
+  app.add_option("--domain", domain, "DDS domain")
+      ->envname("KINSHIP_DOMAIN")
+      ->check(between<std::uint32_t>(0, kMaxDomain))
+      ->capture_default_str();
+}
+
+std::string suggestion_for(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> candidates;
+  const CLI::App* verb = &app;
+  for (;;) {
+    if (word.starts_with("--"))
+      for (const CLI::Option* const option : verb->get_options())
+        std::ranges::transform(option->get_lnames(), std::back_inserter(candidates),
+                               [](const std::string& name) { return "--" + name; });
+    const auto understood = verb->get_subcommands();
+    if (understood.empty())
+      break;
+    verb = understood.front();
+  }
+  if (!word.starts_with("--"))
+    for (const CLI::App* const other : verb->get_subcommands([](const CLI::App*) { return true; }))
+      candidates.push_back(other->get_name());
+  return suggestion(word.substr(0, word.find('=')), candidates);
 }
 
 }  // namespace kinship::arguments

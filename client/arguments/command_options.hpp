@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,16 @@ std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profil
 /// --transfer, --axes, --hold, --srdf, --package. Where it is (`source`) is the program's to ask.
 /// \param arguments  filled when the command line is parsed; must outlive that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
+
+/// Adds --server and --domain, which may also come from the environment: KINSHIP_SERVER and
+/// KINSHIP_DOMAIN. \param host, domain  the defaults, and what is asked for once the command line
+/// is parsed; must outlive that.
+void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain);
+
+/// What a misspelt word of a command line may have meant, for the end of a line about it:
+/// " (did you mean 'register'?)"; empty if nothing is near. Verbs are sought among those of the
+/// deepest verb that was understood, options ("--...") among its own and those above it.
+std::string suggestion_for(const CLI::App& app, const std::string& word);
 
 /// Adds --sources, --weighting and --since. A malformed value is refused while the command line is
 /// parsed. \param arguments  filled when the command line is parsed; must outlive that.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/groups.hpp"
 #include "proto/types/exit_code.hpp"
@@ -20,9 +21,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", std::string("kinship ") + KINSHIP_VERSION);
-  app.add_option("--domain", session.domain, "DDS domain (default 0)")
-      ->envname("KINSHIP_DOMAIN")
-      ->check(arguments::between<std::uint32_t>(0, 230));
+  arguments::add_server_address(app, session.host, session.domain);
   app.add_option("--timeout", session.timeout_s, "Seconds to wait for an answer (default 5)")
       ->check(arguments::between(0.01, 86'400.0));
   add_server_commands(app, session);
@@ -45,8 +44,14 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
     if (unknown.empty())
       app.exit(error, out, err);
     else
-      err << "kinship: unknown command or argument '" << unknown.front()
-          << "' (see: kinship --help)\n";
+      err << "kinship: unknown command or argument '" << unknown.front() << "'"
+          << arguments::suggestion_for(app, unknown.front()) << " (see: kinship --help)\n";
+    return kWrongUsage;
+  } catch (const CLI::ExtrasError& error) {
+    app.exit(error, out, err);
+    for (const std::string& word : app.remaining(true))
+      if (const std::string near = arguments::suggestion_for(app, word); !near.empty())
+        err << word << near << '\n';
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;

@@ -11,6 +11,7 @@ namespace kinship::cli {
 int Session::with_server(const std::function<int(link::Client&)>& use) const {
   link::ClientOptions options;
   options.has_outbox = false;  // a look at a server delivers nothing to it
+  options.server = host;
   options.domain = domain;
   options.timeout = milliseconds(timeout_s);
   link::Client server(options);

@@ -18,6 +18,7 @@ namespace kinship::cli {
 struct Session {
   std::ostream& out;
   std::ostream& err;
+  std::string host = link::ClientOptions().server;
   std::uint32_t domain = 0;
   double timeout_s = 5;
   bool json = false;

@@ -122,6 +122,7 @@ int run(int argc, char** argv) {
   CommandLine line;
   CLI::App app{"kinship-experiments: planning problems and comparisons for experiments"};
   app.footer(kExamples);
+  app.set_version_flag("--version", std::string("kinship-experiments ") + KINSHIP_VERSION);
   app.require_subcommand(1);
   add_shelf(app, line);
   add_placement(app, line);

@@ -154,11 +154,7 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
       ->capture_default_str();
   app.add_option("--machine", options.machine,
                  "name of this robot or cell in reports (default: the host's)");
-  app.add_option("--server", options.server, "host of kinshipd")->capture_default_str();
-  app.add_option("--domain", options.domain, "DDS domain")
-      ->envname("KINSHIP_DOMAIN")
-      ->check(between<std::uint32_t>(0, 230))
-      ->capture_default_str();
+  arguments::add_server_address(app, options.server, options.domain);
   app.add_option("--timeout", raw.timeout_s, "seconds to wait for a server")
       ->check(between(0.01, 3600.0))
       ->capture_default_str();
@@ -183,10 +179,11 @@ void require_name(const std::optional<Error>& error, const std::string& option) 
     throw CLI::ValidationError(option, error->message);
 }
 
-/// On the command line; a domain may come from the environment, and is then not told to be unused.
+/// On the command line; an address may come from the environment, and is then not told to be
+/// unused.
 bool is_given(const CLI::App& app, const std::string& option) {
-  return app.count(option) > 0 &&
-         (option != "--domain" || std::getenv("KINSHIP_DOMAIN") == nullptr);
+  const std::string variable = app.get_option(option)->get_envname();
+  return app.count(option) > 0 && (variable.empty() || std::getenv(variable.c_str()) == nullptr);
 }
 
 void require_task(const CLI::App& app, const PlanOptions& options) {
@@ -298,6 +295,7 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
   CLI::App app{"kinship-plan: plans motions of one robot, guided by the experience of its fleet",
                "kinship-plan"};
   app.footer(kExamples);
+  app.set_version_flag("--version", std::string("kinship-plan ") + KINSHIP_VERSION);
   add_inputs(app, options);
   add_planning_options(app, options, raw);
   add_guidance_options(app, options, raw);
@@ -305,6 +303,12 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
   try {
     app.parse(reversed_arguments(argc, argv));
     complete(app, raw, options, err);
+  } catch (const CLI::ExtrasError& error) {
+    app.exit(error, out, err);
+    for (const std::string& word : app.remaining())
+      if (const std::string near = arguments::suggestion_for(app, word); !near.empty())
+        err << word << near << '\n';
+    return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error, out, err);
     return code == 0 ? kDone : kWrongUsage;

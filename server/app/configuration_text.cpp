@@ -2,29 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstddef>
 #include <cstdlib>
-#include <numeric>
+#include <iterator>
 
 namespace kinship::app {
 namespace {
-
-/// Number of letters that are put in, taken out or changed to make one word of another.
-/// Source: Wagner and Fischer, The String-to-String Correction Problem (1974).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-    }
-  }
-  return row.back();
-}
 
 bool belongs_into_a_file(const CLI::Option& option) {
   return option.get_configurable() && !option.get_lnames().empty();
@@ -84,17 +66,11 @@ std::string configuration_text(const CLI::App& app, const std::vector<std::strin
   return text;
 }
 
-std::string suggestion(const CLI::App& app, std::string_view name) {
-  constexpr std::size_t kFar = 3;  // beyond it one word is not a misspelt other one
-  std::string nearest;
-  std::size_t least = kFar;
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
   for (const CLI::Option* const option : app.get_options())
-    for (const std::string& candidate : option->get_lnames())
-      if (const std::size_t distance = edit_distance(name, candidate); distance < least) {
-        least = distance;
-        nearest = candidate;
-      }
-  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+    std::ranges::copy(option->get_lnames(), std::back_inserter(names));
+  return names;
 }
 
 }  // namespace kinship::app

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace CLI {  // NOLINT: theirs
@@ -15,8 +14,7 @@ namespace kinship::app {
 /// \param arguments  of the command line, by which what was said there is told from the file.
 std::string configuration_text(const CLI::App& app, const std::vector<std::string>& arguments);
 
-/// " (did you mean 'store'?)" with the option of `app` whose name is nearest to a misspelt one;
-/// empty if none is near.
-std::string suggestion(const CLI::App& app, std::string_view name);
+/// The long names of all options, without their dashes.
+std::vector<std::string> option_names(const CLI::App& app);
 
 }  // namespace kinship::app

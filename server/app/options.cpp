@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proto/dds/participant.hpp"
+#include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 
 namespace kinship::app {
@@ -216,13 +217,14 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
     const std::string what = error.what();
     err << "kinshipd: --config '" << app.get_config_ptr()->as<std::string>() << "': " << what
-        << suggestion(app, what.substr(what.find_last_of(" .") + 1)) << '\n';
+        << suggestion(what.substr(what.find_last_of(" .") + 1), option_names(app)) << '\n';
     return kWrongUsage;
   } catch (const CLI::ExtrasError& error) {
     app.exit(error, out, err);
     for (int i = 1; i < argc; ++i)
       if (const std::string_view word = argv[i]; word.starts_with("--"))
-        if (const std::string near = suggestion(app, word.substr(2, word.find('=') - 2));
+        if (const std::string near =
+                suggestion(word.substr(2, word.find('=') - 2), option_names(app));
             !near.empty() && app.get_option_no_throw(std::string(word)) == nullptr)
           err << word << near << '\n';
     return kWrongUsage;

@@ -376,6 +376,17 @@ TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
             std::string::npos);
 }
 
+TEST_F(AdminCommands, TheHostOfTheServerIsAnOptionOrComesFromTheEnvironment) {
+  EXPECT_EQ(server_.kinship({"--server", "localhost", "status"}).code, 0);
+  const Answer nobody = server_.kinship({"--server", "nobody.invalid", "status"});
+  EXPECT_NE(nobody.code, 0);
+  EXPECT_NE(nobody.err.find("nobody.invalid"), std::string::npos) << nobody.err;
+  setenv("KINSHIP_SERVER", "nobody.invalid", 1);
+  EXPECT_EQ(server_.kinship({"status"}).code, nobody.code);
+  EXPECT_EQ(server_.kinship({"--server", "127.0.0.1", "status"}).code, 0);
+  unsetenv("KINSHIP_SERVER");
+}
+
 TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
   teach(server_);
   const std::vector<std::string> compare = {"robots", "compare", "--task",

@@ -50,6 +50,17 @@ TEST(Commands, HelpIsAnAnswer) {
   }
 }
 
+TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
+  const auto error = [](const std::vector<std::string>& words) { return run_command(words).err; };
+  EXPECT_NE(error({"robtos"}).find("'robtos' (did you mean 'robots'?)"), std::string::npos);
+  EXPECT_NE(error({"paths", "lsit"}).find("'lsit' (did you mean 'list'?)"), std::string::npos)
+      << error({"paths", "lsit"});
+  EXPECT_NE(error({"paths", "list", "--tsk", "pick"}).find("--tsk (did you mean '--task'?)"),
+            std::string::npos)
+      << error({"paths", "list", "--tsk", "pick"});
+  EXPECT_EQ(error({"frobnicate"}).find("did you mean"), std::string::npos);
+}
+
 TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({}).code, kWrongUsage);
   EXPECT_EQ(run_command({"paths"}).code, kWrongUsage);
