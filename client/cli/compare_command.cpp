@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
 #include "client/link/robot_names.hpp"
+#include "proto/json/robot_answers_json.hpp"
 #include "proto/json/summaries_json.hpp"
-#include "proto/types/enum_text.hpp"
 #include "proto/types/task_experience.hpp"
 #include "robots/models/robot_arguments.hpp"
 
@@ -136,31 +135,6 @@ Transferability compare_pair(link::Client& server, const CompareOptions& options
   return pair;
 }
 
-const GuideCost* cost_of(const Rehearsal& rehearsal, Guide guide) {
-  const auto cost = std::ranges::find(rehearsal.costs, guide, &GuideCost::guide);
-  return cost == rehearsal.costs.end() ? nullptr : &*cost;
-}
-
-nlohmann::json to_json(const Transferability& pair) {
-  nlohmann::json row = {{"target", pair.target.hex()},
-                        {"target_label", pair.target_label},
-                        {"source", pair.source.hex()},
-                        {"source_label", pair.source_label},
-                        {"worth", nullptr},
-                        {"message", pair.message}};
-  if (!pair.rehearsal)
-    return row;
-  const Rehearsal& rehearsal = *pair.rehearsal;
-  row["queries"] = rehearsal.queries;
-  row["left_out"] = rehearsal.left_out;
-  row["is_complete"] = rehearsal.is_complete;
-  row["guide"] = to_text(rehearsal.guide);
-  row["processor_time_s"] = rehearsal.processor_time_s;
-  if (const auto value = worth(rehearsal))
-    row["worth"] = *value;
-  return row;
-}
-
 /// What of the queries a target could not take, and what could not be told at all.
 void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out) {
   for (const Transferability& pair : pairs) {
@@ -175,14 +149,6 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 }
 
 }  // namespace
-
-std::optional<double> worth(const Rehearsal& rehearsal) {
-  const GuideCost* const none = cost_of(rehearsal, Guide::None);
-  const GuideCost* const best = cost_of(rehearsal, rehearsal.guide);
-  if (none == nullptr || best == nullptr || none->plans == 0 || best->mean_checks <= 0)
-    return std::nullopt;
-  return none->mean_checks / best->mean_checks;
-}
 
 void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
   constexpr int kDigits = 2;
@@ -238,10 +204,7 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
       pairs.push_back(compare_pair(server, options, target, source));
     }
   if (options.json) {
-    nlohmann::json document = {{"task", options.task}, {"rows", nlohmann::json::array()}};
-    for (const Transferability& pair : pairs)
-      document["rows"].push_back(to_json(pair));
-    out << document.dump(2) << '\n';
+    out << json::to_json(options.task, pairs) << '\n';
   } else {
     out << "What the experience of each source is worth to each target on '" << options.task
         << "': collision checks\nof planning without guidance to those with, by rehearsal of the "

@@ -1,82 +1,26 @@
 #include "client/cli/robot_commands.hpp"
 
 #include <algorithm>
-#include <ctime>
-#include <fstream>
 #include <optional>
 #include <ostream>
 #include <random>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/offline_robot.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"
-#include "client/files/lines.hpp"
 #include "proto/json/robot_answers_json.hpp"
-#include "proto/types/pose.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
-#include "robots/models/loaded_robot.hpp"
 
 namespace kinship::cli {
 namespace {
 
 constexpr int kJointDigits = 4;
-
-double cpu_time_s() {
-  std::timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-Error in_line(const std::filesystem::path& file, std::size_t number, const Error& error) {
-  return {error.code,
-          "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
-}
-
-struct DescribedRobot {
-  RobotDescription description;
-  kinematics::Chain chain;
-};
-
-/// The robot that the arguments describe. Empty with an exit code in `code` if there is none:
-/// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
-std::optional<DescribedRobot> read_robot(const char* command,
-                                         const models::RobotArguments& arguments, std::ostream& err,
-                                         int& code) {
-  auto description = models::describe_robot(arguments);
-  if (!description) {
-    code = refuse(command, description.error(), err);
-    return std::nullopt;
-  }
-  auto chain = kinematics::read_chain(*description);
-  if (!chain) {
-    refuse(command, chain.error(), err);
-    code = kFailed;
-    return std::nullopt;
-  }
-  return DescribedRobot{*std::move(description), *std::move(chain)};
-}
-
-/// A robot's collision geometry: planning needs it, kinematics and the server do not.
-/// \return empty if it cannot be known here, and says why on `err`; of a description that is no
-///         chain nothing is said.
-std::optional<geometry::RobotShapes> read_geometry(const char* command,
-                                                   const models::RobotArguments& arguments,
-                                                   const RobotDescription& description,
-                                                   std::ostream& err) {
-  const auto chain = kinematics::read_chain(description);
-  if (!chain)
-    return std::nullopt;
-  auto shapes = models::load_shapes(arguments, description, *chain);
-  if (shapes)
-    return *std::move(shapes);
-  err << command << ": without collision geometry: " << shapes.error().message << '\n';
-  return std::nullopt;
-}
 
 /// Tells the server of the meshes that are here, or `err` why not.
 void add_mesh_solids(const char* command, const models::RobotArguments& arguments,
@@ -92,19 +36,6 @@ void add_mesh_solids(const char* command, const models::RobotArguments& argument
     err << command << ": no solids around its meshes: " << fitted.error().message << '\n';
 }
 
-const char* reason_text(inverse::NoSolution reason) {
-  switch (reason) {
-    case inverse::NoSolution::OutOfReach:
-      return "out_of_reach";
-    case inverse::NoSolution::Limits:
-      return "limits";
-    case inverse::NoSolution::NotConverged:
-      return "not_converged";
-    default:
-      return "";
-  }
-}
-
 const char* type_text(kinematics::JointType type) {
   switch (type) {
     case kinematics::JointType::Revolute:
@@ -113,36 +44,6 @@ const char* type_text(kinematics::JointType type) {
       return "continuous";
     default:
       return "prismatic";
-  }
-}
-
-InverseAnswer solve(const inverse::Solver& solver, const Eigen::Isometry3d& T_base_tip,
-                    const inverse::InverseOptions& options) {
-  InverseAnswer answer;
-  answer.solver = solver.name();
-  const double start_s = cpu_time_s();
-  const inverse::InverseSolutions solutions = solver.solve(T_base_tip, options);
-  answer.time_us = 1e6 * (cpu_time_s() - start_s);
-  answer.solutions = solutions.configurations;
-  answer.reason = reason_text(solutions.reason);
-  return answer;
-}
-
-void print_answer(const InverseAnswer& answer, bool json, std::ostream& out) {
-  if (json) {
-    out << json::to_json(answer) << '\n';
-    return;
-  }
-  out << answer.solver << ": " << answer.solutions.cols() << " solutions in "
-      << number_text(answer.time_us, 0) << " us";
-  if (!answer.reason.empty())
-    out << " (" << answer.reason << ')';
-  out << '\n';
-  for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column) {
-    for (Eigen::Index joint = 0; joint < answer.solutions.rows(); ++joint)
-      out << (joint == 0 ? "  " : " ")
-          << number_text(answer.solutions(joint, column), kJointDigits);
-    out << '\n';
   }
 }
 
@@ -249,36 +150,6 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (fitted && !fitted->mesh_solids.solids.empty())
     print_filter(*fitted, out);
   return kDone;
-}
-
-int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
-  constexpr const char* kCommand = "robots ik";
-  int code = kDone;
-  const auto robot = read_robot(kCommand, options.robot, err, code);
-  if (!robot)
-    return code;
-  const inverse::Solver solver(robot->chain);
-  const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
-                                                   .min_distance = options.min_distance,
-                                                   .seed = options.seed};
-  if (options.poses.empty()) {
-    const auto T_base_tip = models::parse_pose(options.pose);
-    if (!T_base_tip)
-      return refuse(kCommand, T_base_tip.error(), err);
-    print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
-    return kDone;
-  }
-  std::ifstream stream = files::open_input(options.poses);
-  files::for_each_line(stream, options.poses.string(), [&](const files::Line& line) {
-    const Result<Eigen::Isometry3d> T_base_tip =
-        line.text ? json::pose_from_json(*line.text) : line.text.error();
-    if (T_base_tip)
-      print_answer(solve(solver, *T_base_tip, inverse_options), options.json, out);
-    else
-      code = refuse(kCommand, in_line(options.poses, line.number, T_base_tip.error()), err);
-    return T_base_tip.has_value();
-  });
-  return code;
 }
 
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,

@@ -2,6 +2,7 @@
 #include "client/arguments/number_range.hpp"
 #include "client/cli/compare_command.hpp"
 #include "client/cli/groups.hpp"
+#include "client/cli/kinematics_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_commands.hpp"
 
@@ -44,16 +45,52 @@ void add_check(CLI::App& group, Session& session) {
   });
 }
 
+constexpr const char* kPlacementHelp =
+    "Robot's base in the task frame, \"x y z qx qy qz qw\": poses are then in the task frame";
+
+void add_forward(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<ForwardCommandOptions>();
+  CLI::App* command =
+      add_command(group, "fk", "Where configurations put tip link and transfer frame (no server)",
+                  "kinship robots fk robots/models/ur10e --q \"0 -1.57 1.57 0 1.57 0\"\n"
+                  "kinship robots fk robots/models/ur10e --configurations starts.jsonl --json");
+  add_robot_arguments(*command, options->robot);
+  CLI::Option_group* configurations = command->add_option_group("configurations");
+  configurations->add_option("--q", options->configuration,
+                             "Joint values, rad or m, separated by spaces");
+  configurations->add_option("--configurations", options->configurations,
+                             "File with lines [q_1, q_2, ...]");
+  configurations->require_option(1);
+  command->add_option("--placement", options->placement, kPlacementHelp);
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    return place_configurations(*options, session.out, session.err);
+  });
+}
+
 void add_inverse(CLI::App& group, Session& session) {
   const auto options = std::make_shared<InverseCommandOptions>();
-  CLI::App* command =
-      add_command(group, "ik", "Inverse kinematics of the tip link's pose (no server)",
-                  "kinship robots ik robots/models/ur10e --pose \"0.5 0.1 0.4 0 1 0 0\" --json");
+  CLI::App* command = add_command(
+      group, "ik", "Inverse kinematics of a pose of the tip link or transfer frame (no server)",
+      "kinship robots ik robots/models/ur10e --pose \"0.5 0.1 0.4 0 1 0 0\" --json\n"
+      "kinship robots ik robots/models/ur10e --pose \"0.5 0.1 0.4 1 0 0 0\" --frame transfer "
+      "--collision-free --scene my.problems.jsonl");
   add_robot_arguments(*command, options->robot);
   CLI::Option_group* poses = command->add_option_group("poses");
-  poses->add_option("--pose", options->pose, "Tip link in base link, \"x y z qx qy qz qw\"");
+  poses->add_option("--pose", options->pose, "Of the frame in base link, \"x y z qx qy qz qw\"");
   poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]");
   poses->require_option(1);
+  command
+      ->add_option("--frame", options->frame,
+                   "Whose pose it is: tip, or transfer as in the goals of problems (default tip)")
+      ->check(CLI::IsMember({"tip", "transfer"}));
+  command->add_option("--placement", options->placement, kPlacementHelp);
+  command->add_flag("--collision-free", options->collision_free,
+                    "Leave out solutions in which the robot touches itself or the scene");
+  command->add_option("--scene", options->scene,
+                      "Problem file: scene, attached objects and placement of its first problem, "
+                      "for --collision-free");
   add_choice(*command, options->max_solutions, options->min_distance);
   command->add_option("--seed", options->seed, "Equal seed, equal solutions (default 0)")
       ->check(CLI::NonNegativeNumber);
@@ -114,6 +151,7 @@ void add_robots(CLI::App& app, Session& session) {
           show_robot);
   add_register(*robots, session);
   add_check(*robots, session);
+  add_forward(*robots, session);
   add_inverse(*robots, session);
   add_compare(*robots, session);
 }

@@ -10,6 +10,37 @@ std::string to_json(const InverseAnswer& answer) {
   document["solutions"] = list_of_columns(answer.solutions);
   document["reason"] = answer.reason.empty() ? OrderedJson(nullptr) : OrderedJson(answer.reason);
   document["time_us"] = answer.time_us;
+  if (answer.colliding)
+    document["colliding"] = *answer.colliding;
+  return write(document);
+}
+
+std::string to_json(const ForwardAnswer& answer) {
+  OrderedJson document;
+  document["q"] = list(answer.q);
+  document["frame"] = answer.is_in_task ? "task" : "base";
+  document["tip"] = pose_list(answer.tip);
+  document["transfer"] = pose_list(answer.transfer);
+  return write(document);
+}
+
+std::string to_json(const std::string& task, const std::vector<Transferability>& pairs) {
+  OrderedJson rows = OrderedJson::array();
+  for (const Transferability& pair : pairs) {
+    OrderedJson row;
+    row["target"] = pair.target.hex();
+    row["target_label"] = pair.target_label;
+    row["source"] = pair.source.hex();
+    row["source_label"] = pair.source_label;
+    const auto value = pair.rehearsal ? worth(*pair.rehearsal) : std::nullopt;
+    row["worth"] = value ? OrderedJson(*value) : OrderedJson(nullptr);
+    row["rehearsal"] = pair.rehearsal ? json_of(*pair.rehearsal) : OrderedJson(nullptr);
+    row["message"] = pair.message;
+    rows.push_back(std::move(row));
+  }
+  OrderedJson document;
+  document["task"] = task;
+  document["rows"] = std::move(rows);
   return write(document);
 }
 
@@ -46,6 +77,14 @@ std::string to_json(const RegisterReply& reply, const std::string& label) {
 Result<Eigen::Isometry3d> pose_from_json(std::string_view text) {
   try {
     return Document(text, "pose").any_root().pose();
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
+
+Result<Eigen::VectorXd> configuration_from_json(std::string_view text) {
+  try {
+    return Document(text, "configuration").any_root().vector(kMaxDof);
   } catch (const Failure& failure) {
     return failure.error();
   }

@@ -2,17 +2,24 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_check.hpp"
+#include "proto/types/transferability.hpp"
 
-/// What `robots register`, `check` and `ik` print and read.
+/// What `robots register`, `check`, `fk`, `ik` and `compare` print and read.
 namespace kinship::json {
 
 std::string to_json(const InverseAnswer& answer);  ///< reason null if there are solutions
 std::string to_json(const RobotCheck& check);
+
+std::string to_json(const ForwardAnswer& answer);
+
+/// `robots compare`: {"task": ..., "rows": [...]}, a pair a row; worth null where it is not known.
+std::string to_json(const std::string& task, const std::vector<Transferability>& pairs);
 
 /// `robots register`.
 std::string to_json(const RegisterReply& reply, const std::string& label);
@@ -20,5 +27,8 @@ std::string to_json(const RegisterReply& reply, const std::string& label);
 /// A line [x, y, z, qx, qy, qz, qw].
 /// \return the pose, or InvalidInput that names what is wrong.
 Result<Eigen::Isometry3d> pose_from_json(std::string_view text);
+
+/// A line [q_1, q_2, ...] of at most kMaxDof numbers, joint units.
+Result<Eigen::VectorXd> configuration_from_json(std::string_view text);
 
 }  // namespace kinship::json

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -41,8 +43,17 @@ struct RobotCheck {
 struct InverseAnswer {
   std::string solver;
   Eigen::MatrixXd solutions;  ///< dof x n
-  std::string reason;         ///< out_of_reach, limits, not_converged; empty if n > 0
+  std::string reason;         ///< out_of_reach, limits, not_converged, colliding; empty if n > 0
   double time_us = 0;         ///< CPU time
+  std::optional<std::uint64_t> colliding;  ///< left out for it; none: nobody looked
+};
+
+/// `robots fk`: where a configuration puts the robot, in the base link or in the task frame.
+struct ForwardAnswer {
+  Eigen::VectorXd q;  ///< dof, joint units
+  bool is_in_task = false;
+  Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d transfer = Eigen::Isometry3d::Identity();
 };
 
 }  // namespace kinship

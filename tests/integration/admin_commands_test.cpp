@@ -406,7 +406,7 @@ TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
   const Answer placed = server_.kinship(
       with(compare, {"--targets", "ur10e", "--placement", "ur10e=0 0 0 0 0 0 1", "--json"}));
   EXPECT_EQ(placed.code, 0) << placed.err;
-  EXPECT_NE(placed.out.find("\"queries\": "), std::string::npos) << placed.out;
+  EXPECT_NE(placed.out.find("\"queries\":"), std::string::npos) << placed.out;
 
   EXPECT_EQ(server_.kinship(with(compare, {"--targets", "nobody"})).code, 3);
   EXPECT_EQ(server_.kinship(with(compare, {"--placement", "0 0 0 0 0 0 1"})).code, 2);

@@ -279,5 +279,68 @@ TEST(RobotsIk, AnswersAFileLineByLineAndNamesABrokenLine) {
   EXPECT_NE(answer.err.find("line 3"), std::string::npos) << answer.err;
 }
 
+TEST(RobotsFk, IsWhatIkLeadsBackTo) {
+  const Answer answer = run_command(
+      {"robots", "fk", kModels + "panda", "--q", "0.3 -0.4 0.1 -2 0.2 1.8 0.7", "--json"});
+  ASSERT_EQ(answer.code, kDone) << answer.err;
+  EXPECT_TRUE(answer.out.starts_with("{\"q\":[0.3,-0.4,0.1,-2.0,0.2,1.8,0.7],\"frame\":\"base\","))
+      << answer.out;
+  const std::size_t begin = answer.out.find("\"transfer\":[") + 12;
+  std::string pose = answer.out.substr(begin, answer.out.find(']', begin) - begin);
+  std::ranges::replace(pose, ',', ' ');
+  const Answer back = run_command({"robots", "ik", kModels + "panda", "--pose", pose, "--frame",
+                                   "transfer", "--collision-free", "--max-solutions", "0"});
+  EXPECT_EQ(back.code, kDone) << back.err;
+  EXPECT_NE(back.out.find(" solutions in "), std::string::npos) << back.out;
+  EXPECT_EQ(back.out.find(": 0 solutions"), std::string::npos) << back.out;
+}
+
+TEST(RobotsFk, APlacementMovesPosesIntoTheTaskFrame) {
+  const std::string q = "0 0 0 -1.5 0 1.5 0";
+  const Answer base = run_command({"robots", "fk", kModels + "panda", "--q", q});
+  const Answer task =
+      run_command({"robots", "fk", kModels + "panda", "--q", q, "--placement", "0 0 10 0 0 0 1"});
+  ASSERT_EQ(base.code, kDone) << base.err;
+  EXPECT_NE(base.out.find(" in base link\n"), std::string::npos);
+  EXPECT_NE(task.out.find(" 10."), std::string::npos) << task.out;
+  EXPECT_NE(task.out.find(" in task frame\n"), std::string::npos) << task.out;
+}
+
+TEST(RobotsFk, NamesTheJointAndItsLimit) {
+  const Answer far = run_command({"robots", "fk", kModels + "panda", "--q", "9 0 0 -1 0 1 0"});
+  EXPECT_EQ(far.code, kWrongUsage);
+  EXPECT_NE(far.err.find("'panda_joint1' at 9.0000 is outside -2.89"), std::string::npos)
+      << far.err;
+  const Answer few = run_command({"robots", "fk", kModels + "panda", "--q", "0 0"});
+  EXPECT_EQ(few.code, kWrongUsage);
+  EXPECT_NE(few.err.find("2 values, but the robot has 7 joints"), std::string::npos) << few.err;
+  EXPECT_EQ(run_command({"robots", "fk", kModels + "panda", "--q", "0 zero"}).code, kWrongUsage);
+}
+
+TEST(RobotsIk, LeavesOutWhatTouchesTheScene) {
+  const test::TemporaryDirectory folder;
+  const std::string file = (folder / "wall.problems.jsonl").string();
+  std::ofstream(file)  // a box around the pose
+      << R"({"name": "in a box", "start": [0, 0, 0, -1.5, 0, 1.5, 0], "goal": {"pose": [0.5, 0, 0.4, 1, 0, 0, 0]}, )"
+      << R"("scene": {"boxes": [{"name": "block", "pose": [0.5, 0, 0.4, 0, 0, 0, 1], "size": [0.3, 0.3, 0.3]}]}})"
+      << '\n';
+  const std::vector<std::string> ik = {
+      "robots",  "ik",       kModels + "panda", "--pose", "0.5 0 0.4 1 0 0 0",
+      "--frame", "transfer", "--json"};
+  const auto with = [&ik](std::vector<std::string> more) {
+    std::vector<std::string> words = ik;
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words);
+  };
+  EXPECT_NE(with({}).out.find("\"reason\":null"), std::string::npos) << with({}).out;
+  EXPECT_NE(with({"--collision-free"}).out.find("\"reason\":null"), std::string::npos);
+  const Answer blocked = with({"--collision-free", "--scene", file});
+  EXPECT_EQ(blocked.code, kDone) << blocked.err;
+  EXPECT_NE(blocked.out.find("\"solutions\":[],\"reason\":\"colliding\""), std::string::npos)
+      << blocked.out;
+  EXPECT_EQ(with({"--scene", file}).code, kWrongUsage);
+  EXPECT_NE(with({"--collision-free", "--scene", file + "x"}).code, kDone);
+}
+
 }  // namespace
 }  // namespace kinship::cli::commands_test

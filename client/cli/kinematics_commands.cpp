@@ -1,0 +1,249 @@
+#include "client/cli/kinematics_commands.hpp"
+
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <sstream>
+#include <vector>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/offline_robot.hpp"
+#include "client/cli/table.hpp"
+#include "client/files/lines.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/json/robot_answers_json.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/models/scene_meshes.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr int kDigitsOfJoint = 4;
+constexpr const char* kForward = "robots fk";
+constexpr const char* kInverse = "robots ik";
+
+Error in_line(const std::filesystem::path& file, std::size_t number, const Error& error) {
+  return {error.code,
+          "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
+}
+
+/// T_task_base as --placement says it; empty if it says nothing.
+Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text) {
+  if (text.empty())
+    return std::optional<Eigen::Isometry3d>();
+  const auto pose = models::parse_pose(text);
+  if (!pose)
+    return Error{pose.error().code, "--placement: " + pose.error().message};
+  return std::optional(*pose);
+}
+
+Result<Eigen::VectorXd> parse_configuration(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<double> values;
+  for (double value = 0; stream >> value;)
+    values.push_back(value);
+  if (!stream.eof() || values.empty())
+    return Error{ErrorCode::InvalidInput, "--q: '" + text + "' is no list of joint values"};
+  return Eigen::VectorXd(
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+}
+
+/// Wants as many values as the robot has joints, and says which of them are outside the limits.
+std::optional<Error> find_fault(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
+  if (q.size() != chain.dof())
+    return Error{ErrorCode::InvalidInput, "a configuration of " + std::to_string(q.size()) +
+                                              " values, but the robot has " +
+                                              std::to_string(chain.dof()) + " joints"};
+  for (Eigen::Index joint = 0; joint < q.size(); ++joint)
+    if (!(q(joint) >= chain.lower()(joint) && q(joint) <= chain.upper()(joint)))
+      return Error{ErrorCode::InvalidInput,
+                   "joint '" + chain.joints()[static_cast<std::size_t>(joint)].name + "' at " +
+                       number_text(q(joint), kDigitsOfJoint) + " is outside " +
+                       number_text(chain.lower()(joint), kDigitsOfJoint) + " to " +
+                       number_text(chain.upper()(joint), kDigitsOfJoint)};
+  return std::nullopt;
+}
+
+void print_forward(const ForwardAnswer& answer, bool json, std::ostream& out) {
+  if (json) {
+    out << json::to_json(answer) << '\n';
+    return;
+  }
+  const char* const frame = answer.is_in_task ? " in task frame\n" : " in base link\n";
+  out << "tip         " << pose_text(answer.tip) << frame << "transfer    "
+      << pose_text(answer.transfer) << frame;
+}
+
+/// Leaves out solutions in which the robot touches something.
+void leave_out_colliding(collision::CollisionWorld& world, InverseAnswer& answer) {
+  Eigen::MatrixXd free(answer.solutions.rows(), answer.solutions.cols());
+  Eigen::Index kept = 0;
+  for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column)
+    if (!world.collides(answer.solutions.col(column)))
+      free.col(kept++) = answer.solutions.col(column);
+  answer.colliding = static_cast<std::uint64_t>(answer.solutions.cols() - kept);
+  if (kept == 0 && answer.solutions.cols() > 0)
+    answer.reason = "colliding";
+  answer.solutions = free.leftCols(kept).eval();
+}
+
+void print_inverse(const InverseAnswer& answer, bool json, std::ostream& out) {
+  if (json) {
+    out << json::to_json(answer) << '\n';
+    return;
+  }
+  out << answer.solver << ": " << answer.solutions.cols() << " solutions in "
+      << number_text(answer.time_us, 0) << " us";
+  if (!answer.reason.empty())
+    out << " (" << answer.reason << ')';
+  if (answer.colliding.value_or(0) > 0)
+    out << ", " << *answer.colliding << " left out that collide";
+  out << '\n';
+  for (Eigen::Index column = 0; column < answer.solutions.cols(); ++column) {
+    for (Eigen::Index joint = 0; joint < answer.solutions.rows(); ++joint)
+      out << (joint == 0 ? "  " : " ")
+          << number_text(answer.solutions(joint, column), kDigitsOfJoint);
+    out << '\n';
+  }
+}
+
+/// What surrounds the robot in the first problem of a file.
+Result<collision::Surroundings> read_surroundings(const InverseCommandOptions& options) {
+  collision::Surroundings surroundings;
+  if (options.scene.empty())
+    return surroundings;
+  std::ifstream stream = files::open_input(options.scene);
+  std::optional<Result<Problem>> problem;
+  files::for_each_line(stream, options.scene.string(), [&](const files::Line& line) {
+    problem = line.text ? json::problem_from_json(*line.text)
+                        : Result<Problem>(in_line(options.scene, line.number, line.text.error()));
+    return false;
+  });
+  if (!problem)
+    return Error{ErrorCode::InvalidInput, "'" + options.scene.string() + "' holds no problem"};
+  if (!*problem)
+    return Error{problem->error().code,
+                 "--scene '" + options.scene.string() + "': " + problem->error().message};
+  const auto packages = models::parse_packages(options.robot.packages);
+  if (!packages)
+    return packages.error();
+  Problem first = **problem;
+  models::SceneMeshes meshes(options.scene.parent_path(), *packages);
+  if (const auto error = meshes.read(first.scene, first.attached))
+    return *error;
+  surroundings.T_task_base = first.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  surroundings.scene = std::move(first.scene);
+  surroundings.attached = std::move(first.attached);
+  surroundings.allowed_collisions = std::move(first.allowed_collisions);
+  return surroundings;
+}
+
+/// What solutions must not touch; none unless it was asked for, or with an exit code in `code`.
+std::optional<collision::CollisionWorld> make_world(const InverseCommandOptions& options,
+                                                    const DescribedRobot& robot, std::ostream& err,
+                                                    int& code) {
+  if (!options.collision_free)
+    return std::nullopt;
+  const auto geometry = read_geometry(kInverse, options.robot, robot.description, err);
+  if (!geometry) {
+    code = kFailed;
+    return std::nullopt;
+  }
+  const auto surroundings = read_surroundings(options);
+  if (!surroundings) {
+    code = refuse(kInverse, surroundings.error(), err);
+    return std::nullopt;
+  }
+  return collision::CollisionWorld(robot.chain, *geometry, *surroundings);
+}
+
+/// Calls `use` with each line's value; a broken line ends it. \return an exit code.
+template <typename Value>
+int for_each_value(const std::filesystem::path& file, const char* command, std::ostream& err,
+                   Result<Value> (*parse)(std::string_view),
+                   const std::function<std::optional<Error>(const Value&)>& use) {
+  int code = kDone;
+  std::ifstream stream = files::open_input(file);
+  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
+    const Result<Value> value = line.text ? parse(*line.text) : line.text.error();
+    const std::optional<Error> error = value ? use(*value) : std::optional(value.error());
+    if (error)
+      code = refuse(command, in_line(file, line.number, *error), err);
+    return !error;
+  });
+  return code;
+}
+
+}  // namespace
+
+int place_configurations(const ForwardCommandOptions& options, std::ostream& out,
+                         std::ostream& err) {
+  int code = kDone;
+  const auto robot = read_robot(kForward, options.robot, err, code);
+  if (!robot)
+    return code;
+  const auto placement = placement_of(options.placement);
+  if (!placement)
+    return refuse(kForward, placement.error(), err);
+  const auto place = [&](const Eigen::VectorXd& q) -> std::optional<Error> {
+    if (const auto fault = find_fault(robot->chain, q))
+      return fault;
+    const Eigen::Isometry3d T_base_tip = kinematics::T_base_tip(robot->chain, q);
+    const Eigen::Isometry3d T_frame_base = placement->value_or(Eigen::Isometry3d::Identity());
+    print_forward({.q = q,
+                   .is_in_task = placement->has_value(),
+                   .tip = T_frame_base * T_base_tip,
+                   .transfer = T_frame_base * T_base_tip * robot->description.T_tip_transfer},
+                  options.json, out);
+    return std::nullopt;
+  };
+  if (!options.configurations.empty())
+    return for_each_value<Eigen::VectorXd>(options.configurations, kForward, err,
+                                           json::configuration_from_json, place);
+  const auto q = parse_configuration(options.configuration);
+  const std::optional<Error> error = q ? place(*q) : std::optional(q.error());
+  return error ? refuse(kForward, *error, err) : kDone;
+}
+
+int solve_poses(const InverseCommandOptions& options, std::ostream& out, std::ostream& err) {
+  int code = kDone;
+  if (!options.scene.empty() && !options.collision_free) {
+    err << kInverse << ": --scene needs --collision-free\n";
+    return kWrongUsage;
+  }
+  const auto robot = read_robot(kInverse, options.robot, err, code);
+  if (!robot)
+    return code;
+  const auto placement = placement_of(options.placement);
+  if (!placement)
+    return refuse(kInverse, placement.error(), err);
+  auto world = make_world(options, *robot, err, code);
+  if (code != kDone)
+    return code;
+  const inverse::Solver solver(robot->chain);
+  const inverse::InverseOptions inverse_options = {.max_solutions = options.max_solutions,
+                                                   .min_distance = options.min_distance,
+                                                   .seed = options.seed};
+  const Eigen::Isometry3d T_frame_tip = options.frame == "transfer"
+                                            ? robot->description.T_tip_transfer.inverse()
+                                            : Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d T_base_task =
+      placement->value_or(Eigen::Isometry3d::Identity()).inverse();
+  const auto answer_one = [&](const Eigen::Isometry3d& pose) -> std::optional<Error> {
+    InverseAnswer answer = solve(solver, T_base_task * pose * T_frame_tip, inverse_options);
+    if (world)
+      leave_out_colliding(*world, answer);
+    print_inverse(answer, options.json, out);
+    return std::nullopt;
+  };
+  if (!options.poses.empty())
+    return for_each_value<Eigen::Isometry3d>(options.poses, kInverse, err, json::pose_from_json,
+                                             answer_one);
+  const auto pose = models::parse_pose(options.pose);
+  const std::optional<Error> error = pose ? answer_one(*pose) : std::optional(pose.error());
+  return error ? refuse(kInverse, *error, err) : kDone;
+}
+
+}  // namespace kinship::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <iosfwd>
+#include <optional>
+
+#include "proto/types/robot_check.hpp"
+#include "proto/types/robot_description.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/inverse.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+/// A robot of the command line, without a server.
+namespace kinship::cli {
+
+struct DescribedRobot {
+  RobotDescription description;
+  kinematics::Chain chain;
+};
+
+/// The robot that the arguments describe. Empty with an exit code in `code` if there is none:
+/// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
+std::optional<DescribedRobot> read_robot(const char* command,
+                                         const models::RobotArguments& arguments, std::ostream& err,
+                                         int& code);
+
+/// A robot's collision geometry: planning needs it, kinematics and the server do not.
+/// \return empty if it cannot be known here, and says why on `err`; of a description that is no
+///         chain nothing is said.
+std::optional<geometry::RobotShapes> read_geometry(const char* command,
+                                                   const models::RobotArguments& arguments,
+                                                   const RobotDescription& description,
+                                                   std::ostream& err);
+
+/// Inverse kinematics, and the processor time that it took.
+InverseAnswer solve(const inverse::Solver& solver, const Eigen::Isometry3d& T_base_tip,
+                    const inverse::InverseOptions& options);
+
+}  // namespace kinship::cli
