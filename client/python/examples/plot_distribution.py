@@ -54,9 +54,9 @@ def draw_hand(top, side, robot: kinship.Robot, samples: np.ndarray, density: np.
     x, y, z = robot.fk(samples, frame="transfer")[:, :3, 3].T
     for axes, height, name in ((top, y, "y"), (side, z, "z")):
         axes.scatter(x, height, c=density, s=4, cmap="viridis", rasterized=True)
-        axes.plot(0, 0, "k^")
+        axes.plot(0, 0, "k^")  # the base
         axes.set(xlabel="x [m]", ylabel=f"{name} [m]", aspect="equal")
-    top.set_title("transfer frame in the robot's base")
+    top.set_title("transfer frame in the robot's base, brighter where denser")
 
 
 # %% A joint's marginal: that of a mixture is a mixture of normal distributions.
@@ -68,6 +68,7 @@ def draw_joint(axes, distribution: kinship.Distribution, robot: kinship.Robot, s
     axes.plot(q, (np.exp(-scaled**2 / 2) / (deviation * np.sqrt(2 * np.pi))) @ distribution.weights)
     axes.set_xlim(robot.lower[joint], robot.upper[joint])
     axes.set_yticks([])
+    axes.tick_params(labelsize=7)
     axes.set_ylabel(robot.joint_names[joint], rotation=0, ha="right", va="center", fontsize=7)
 
 
@@ -79,6 +80,7 @@ def draw(distribution: kinship.Distribution, robot: kinship.Robot, picture: path
     draw_hand(*hand, robot, samples, distribution.log_density(samples))
     for joint in range(robot.dof):
         draw_joint(figure.add_subplot(grid[2 * joint:2 * joint + 2, 1]), distribution, robot, samples, joint)
+    figure.axes[-1].set_xlabel("samples and mixture, rad or m")
     figure.suptitle(f"'{distribution.task}' for {robot.label}, revision {distribution.revision}")
     figure.savefig(picture, dpi=100)
 
