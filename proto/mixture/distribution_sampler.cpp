@@ -39,4 +39,12 @@ std::optional<Eigen::VectorXd> DistributionSampler::sample(std::mt19937_64& gene
   return q;
 }
 
+Eigen::MatrixXd DistributionSampler::sample(std::mt19937_64& generator, Eigen::Index count) const {
+  Eigen::MatrixXd configurations = sampler_.sample(generator, count);
+  for (const Eigen::Index joint : continuous_)
+    for (double& value : configurations.row(joint))
+      value = wrapped(value);
+  return configurations;
+}
+
 }  // namespace kinship::mixture

@@ -23,6 +23,7 @@ class DistributionSampler {
 
   /// As `Sampler::sample`.
   std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator) const;
+  Eigen::MatrixXd sample(std::mt19937_64& generator, Eigen::Index count) const;
 
  private:
   std::vector<Eigen::Index> continuous_;  // joints

@@ -33,6 +33,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"spdlog", {"spdlog/"}},
     {"assimp", {"assimp/"}},
     {"tinyxml2", {"tinyxml2.h"}},
+    {"pybind11", {"pybind11/"}},
 };
 
 inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
@@ -102,6 +103,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          types},
         {"Eigen", "CLI11"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
+      {"client/python",
+       {{link, files, planning, inverse, collision, geometry, kinematics, models, mixture, json,
+         types},
+        {"Eigen", "pybind11"}}},
       {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };
 }();

@@ -7,13 +7,11 @@
 #include <numbers>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "proto/types/failure.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::mixture::cholesky_test {
 namespace {
-
-using test::log_density;
 
 constexpr std::uint64_t kSeed = 3;
 

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "server/density/fit.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::choice_of_components_test {
 namespace {
@@ -110,7 +110,9 @@ TEST(ChoiceOfComponents, ScoreIsThatOfAFitToTheOtherPathsAlone) {
                     {centred * centred.transpose() / static_cast<double>(trained) +
                      1e-4 * Eigen::MatrixXd::Identity(2, 2)});
   const double expected =
-      (0.99 * kinship::test::log_density(one, scored).array().exp() + 0.01 / (3 * 6)).log().mean();
+      (0.99 * kinship::mixture::log_density(one, scored).array().exp() + 0.01 / (3 * 6))
+          .log()
+          .mean();
   ASSERT_EQ(summary.curve.back().components, 1);
   EXPECT_NEAR(summary.curve.back().score, expected, 1e-10);
 }

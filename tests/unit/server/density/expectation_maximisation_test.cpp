@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "proto/mixture/log_density.hpp"
 #include "proto/types/failure.hpp"
 #include "server/density/em_run.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::expectation_maximisation_test {
 namespace {
@@ -60,7 +60,7 @@ TEST(Expectation, MassesSumToTheWeightsAndTheLikelihoodIsTheMixtures) {
     const Expectation result = expectation(mixture, example.points, {});
     EXPECT_NEAR(result.moments.sums.row(0).sum(), 700, 1e-9);
     EXPECT_NEAR(result.mean_log_likelihood,
-                example.weights.dot(kinship::test::log_density(mixture, example.columns)) / 700,
+                example.weights.dot(kinship::mixture::log_density(mixture, example.columns)) / 700,
                 1e-13 * std::abs(result.mean_log_likelihood));
   }
 }
@@ -69,7 +69,7 @@ TEST(MeanLogDensity, IsThatOfTheMixtureWithItsBackground) {
   const Example example = random_points(3, 500);
   const Mixture mixture = start_of(3, 4);
   const Eigen::ArrayXd densities =
-      kinship::test::log_density(mixture, example.columns).array().exp();
+      kinship::mixture::log_density(mixture, example.columns).array().exp();
   EXPECT_NEAR(mean_log_density(mixture, example.points, 0, 0, {}),
               expectation(mixture, example.points, {}).mean_log_likelihood, 1e-13);
   const double expected =
@@ -97,7 +97,7 @@ TEST(LogDensities, AreTheMixturesPointByPoint) {
   ASSERT_EQ(densities.size(), example.points.size());
   for (Eigen::Index i = 0; i < densities.size(); ++i) {
     const Eigen::VectorXd point = example.points.point(i) + example.points.offset();
-    EXPECT_NEAR(densities[i], kinship::test::log_density(mixture, point)[0], 1e-11) << i;
+    EXPECT_NEAR(densities[i], kinship::mixture::log_density(mixture, point)[0], 1e-11) << i;
   }
 }
 
@@ -213,7 +213,7 @@ TEST(Maximisation, EqualsTheFormulasWrittenOut) {
     const Mixture alone(Eigen::VectorXd::Ones(1), start.means().col(k),
                         {start.covariances()[static_cast<std::size_t>(k)]});
     r.col(k) =
-        start.weights()[k] * kinship::test::log_density(alone, example.columns).array().exp();
+        start.weights()[k] * kinship::mixture::log_density(alone, example.columns).array().exp();
   }
   r.array().colwise() *= example.weights.array() / r.rowwise().sum().array();
   for (Eigen::Index k = 0; k < 3; ++k) {

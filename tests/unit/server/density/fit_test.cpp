@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "tests/support/log_density.hpp"
+#include "proto/mixture/log_density.hpp"
 
 namespace kinship::density::fit_test {
 namespace {
@@ -82,7 +82,7 @@ TEST(FitMixture, LastLogLikelihoodIsThatOfTheMixture) {
   const Eigen::MatrixXd configurations = draws_of(known_mixture(), 2000);
   const FitSummary summary = fit(configurations, {.components = 4});
   EXPECT_NEAR(summary.log_likelihoods.back(),
-              kinship::test::log_density(summary.mixture, configurations).mean(), 1e-10);
+              kinship::mixture::log_density(summary.mixture, configurations).mean(), 1e-10);
 }
 
 TEST(FitMixture, SameSeedSameBytesAnotherSeedAnotherStart) {
@@ -166,7 +166,7 @@ TEST(FitMixture, ConstantJointAndCollinearConfigurationsGetTheFloor) {
 
   Eigen::MatrixXd collinear = draws_of(known_mixture(), 500);
   collinear.row(1) = 3 * collinear.row(0);
-  EXPECT_TRUE(kinship::test::log_density(fit(collinear, {.components = 3}).mixture, collinear)
+  EXPECT_TRUE(kinship::mixture::log_density(fit(collinear, {.components = 3}).mixture, collinear)
                   .array()
                   .isFinite()
                   .all());

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "proto/types/limits.hpp"
 #include "server/density/hold_out.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::kernel_density_test {
 namespace {
@@ -54,7 +54,7 @@ TEST(KernelDensity, IntegratesToOne) {
   for (Eigen::Index i = 0; i < kCells; ++i) {
     row.row(0).setConstant(-8 + static_cast<double>(i) * step);
     row.row(1).setLinSpaced(-8, 8 - step);
-    sum += kinship::test::log_density(mixture, row).array().exp().sum() * step * step;
+    sum += kinship::mixture::log_density(mixture, row).array().exp().sum() * step * step;
   }
   EXPECT_NEAR(sum, 1, 1e-6);
 }
@@ -76,7 +76,8 @@ double loss_of(const Mixture& mixture, double distance) {
   means(0, 1) = distance;
   const Mixture truth(Eigen::Vector2d(0.5, 0.5), means, {Eigen::Matrix2d::Identity()});
   const Eigen::MatrixXd others = draws_around(distance, 300, kSeed + 100);
-  return (kinship::test::log_density(truth, others) - kinship::test::log_density(mixture, others))
+  return (kinship::mixture::log_density(truth, others) -
+          kinship::mixture::log_density(mixture, others))
       .mean();
 }
 
@@ -228,7 +229,7 @@ TEST(KernelDensity, ItsScoreIsThatOfTheFifthThatAnExportMarks) {
                         {all.mixture.covariance(0)});
   const double log_uniform =
       -(points.rowwise().maxCoeff() - points.rowwise().minCoeff()).array().log().sum();
-  const double score = (0.99 * kinship::test::log_density(mixture, scored).array().exp() +
+  const double score = (0.99 * kinship::mixture::log_density(mixture, scored).array().exp() +
                         0.01 * std::exp(log_uniform))
                            .log()
                            .mean();
@@ -289,12 +290,12 @@ TEST(KernelDensity, ConstantJointGetsTheFloor) {
 TEST(KernelDensity, OnePointFarAwayIsOneKernel) {
   Eigen::MatrixXd points = normal_points(2, 400);
   const Eigen::VectorXd near =
-      kinship::test::log_density(estimate(points, options_for(points)).mixture, points);
+      kinship::mixture::log_density(estimate(points, options_for(points)).mixture, points);
   points.col(399).setConstant(1000);
   const Mixture mixture = estimate(points, options_for(points)).mixture;
   EXPECT_EQ(mixture.size(), 400);
   EXPECT_NEAR(mixture.means().maxCoeff(), 1000, 1e-3);
-  const Eigen::VectorXd with = kinship::test::log_density(mixture, points);
+  const Eigen::VectorXd with = kinship::mixture::log_density(mixture, points);
   EXPECT_TRUE(with.allFinite());
   EXPECT_GT(with.head(300).mean(), near.head(300).mean() - 1);
 }

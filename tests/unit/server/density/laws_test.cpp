@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "proto/mixture/sampler.hpp"
-#include "tests/support/log_density.hpp"
 #include "tests/unit/server/density/estimators.hpp"
 
 namespace kinship::density::laws_test {
@@ -117,7 +117,7 @@ TEST_P(Laws, WeightsSumToOneAndEigenvaluesKeepTheFloor) {
     for (const Eigen::MatrixXd& covariance : mixture.covariances())
       EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues()[0],
                 test::kFloor * (1 - 1e-9) - 1e-14 * scale_of(sample) * scale_of(sample));
-    EXPECT_TRUE(kinship::test::log_density(mixture, sample.points).allFinite());
+    EXPECT_TRUE(kinship::mixture::log_density(mixture, sample.points).allFinite());
   });
 }
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "server/density/fit.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::nasty_data_test {
 namespace {
@@ -43,7 +43,7 @@ void expect_usable(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights
       EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues()[0],
                 1e-4 * (1 - 1e-9) - 1e-13 * largest);
     }
-    EXPECT_TRUE(kinship::test::log_density(mixture, points).allFinite());
+    EXPECT_TRUE(kinship::mixture::log_density(mixture, points).allFinite());
     options.computation.prune = false;
     const Mixture dense = fit_mixture(points, weights, options)->mixture;
     ASSERT_EQ(dense.size(), mixture.size());

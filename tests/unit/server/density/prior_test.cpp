@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "server/density/fit.hpp"
 #include "server/density/prior_search.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::prior_test {
 namespace {
@@ -62,7 +62,7 @@ FitSummary fit(const Paths& paths, const FitOptions& options) {
 }
 
 double score(const Mixture& mixture, const Paths& others) {
-  return kinship::test::log_density(mixture, others.configurations).mean();
+  return kinship::mixture::log_density(mixture, others.configurations).mean();
 }
 
 void expect_same(const Mixture& one, const Mixture& other) {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <random>
 
+#include "proto/mixture/log_density.hpp"
 #include "server/density/fit.hpp"
-#include "tests/support/log_density.hpp"
 
 namespace kinship::density::warm_start_test {
 namespace {
@@ -53,7 +53,7 @@ struct Grown {
 };
 
 double mean_score(const Mixture& mixture, const Eigen::MatrixXd& points) {
-  return kinship::test::log_density(mixture, points).mean();
+  return kinship::mixture::log_density(mixture, points).mean();
 }
 
 TEST(WarmStart, ANewCloudFarAwayGetsComponentsOfItsOwn) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/log_density.hpp"
+#include "proto/mixture/log_density.hpp"
 #include "tests/unit/server/fitting/fit_fixture.hpp"
 
 namespace kinship::fitting::warm_refit_test {
@@ -48,7 +48,7 @@ class WarmRefit : public FitDistribution {
         registry.find(pupil_.digest).value_or_throw();
     SourceTransfer transfer(*store, registry, key_, *target);
     transfer_sources(transfer, key_, store->experience("shelf"), 20, {});
-    return test::log_density(mixture, transfer.pool().configurations()).mean();
+    return mixture::log_density(mixture, transfer.pool().configurations()).mean();
   }
 
   DistributionKey key_ = quick_key_of(pupil_);

@@ -1,0 +1,332 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "client/link/admin_rows.hpp"
+#include "client/python/arrays.hpp"
+#include "client/python/bindings.hpp"
+#include "client/python/client_handle.hpp"
+#include "client/python/errors.hpp"
+#include "client/python/follower_handle.hpp"
+#include "client/python/robot_names.hpp"
+#include "proto/types/enum_text.hpp"
+
+namespace kinship::python {
+namespace {
+
+using ClientClass = py::class_<ClientHandle>;
+using OutboxState = link::Client::OutboxState;
+
+/// What fetch and follow have in common, as Python says it.
+struct Wish {
+  std::string task;
+  RobotName robot;
+  std::optional<Array> T_task_base;
+  std::string profile;
+  std::vector<RobotName> sources;
+  std::string weighting;
+  std::int64_t since_ms = 0;
+};
+
+FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
+  FetchRequest request;
+  request.task = wish.task;
+  request.T_task_base = read_pose(wish.T_task_base, "T_task_base");
+  request.profile = wish.profile;
+  request.selection.since_ms = wish.since_ms;
+  if (!wish.weighting.empty())
+    request.selection.weighting = parse_word<Weighting>(wish.weighting).value_or_throw();
+  request.robot = client.find(wish.robot);
+  std::vector<Digest>& sources = request.selection.sources;
+  for (const RobotName& source : wish.sources)
+    sources.push_back(client.find(source));
+  std::ranges::sort(sources);
+  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+  return request;
+}
+
+/// \throws the exception that stands for a reply without a distribution.
+std::shared_ptr<SampledDistribution> distribution_of(Result<FetchReply> fetched,
+                                                     const FetchRequest& request) {
+  FetchReply reply = std::move(fetched).value_or_throw();
+  const std::string about = "task '" + request.task + "', robot " + request.robot.short_hex();
+  const std::string why = reply.message.empty() ? "" : ": " + reply.message;
+  switch (reply.status) {
+    case FetchStatus::Ready:
+      return std::make_shared<SampledDistribution>(
+          std::make_shared<const Distribution>(*std::move(reply.distribution)));
+    case FetchStatus::Pending:
+      raise_error("NotReady", about + ": still being made at the deadline" + why);
+    case FetchStatus::Busy:
+      raise_error("NotReady", about + ": the server was busy until the deadline" + why);
+    case FetchStatus::NoExperience:
+      raise_error("NoExperience", about + ": no experience" + why);
+    case FetchStatus::UnknownRobot:
+      raise_error("UnknownRobot", about + ": the server does not know the robot" + why);
+    case FetchStatus::Failed:
+      raise_error("FitFailed", about + ": failed" + why);
+    case FetchStatus::Refused:
+      break;
+  }
+  raise_error("Refused", about + ": refused" + why);
+}
+
+RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {
+  const std::shared_ptr<link::Client> line = client.line();
+  RegisterReply reply;
+  {
+    const py::gil_scoped_release unlocked;
+    reply = line->register_robot(robot.description_for_server()).value_or_throw();
+  }
+  if (reply.status == RegisterStatus::Refused)
+    raise_error("Refused", "robot '" + robot.description().label + "': " + reply.message);
+  return reply;
+}
+
+std::string report(const ClientHandle& client, const json::NamedAttempt& named) {
+  const Attempt attempt = attempt_of(named);
+  const std::shared_ptr<link::Client> line = client.line();
+  const py::gil_scoped_release unlocked;
+  line->report(attempt);
+  return attempt.report_uuid.text();
+}
+
+std::vector<Receipt> deliver(const ClientHandle& client,
+                             const std::vector<json::NamedAttempt>& named) {
+  std::vector<Attempt> attempts;
+  attempts.reserve(named.size());
+  for (const json::NamedAttempt& attempt : named)
+    attempts.push_back(attempt_of(attempt));
+  const std::shared_ptr<link::Client> line = client.line();
+  const py::gil_scoped_release unlocked;
+  return line->deliver(std::move(attempts)).value_or_throw();
+}
+
+std::string receipt_word(const Receipt& receipt) {
+  switch (receipt.status) {
+    case ReceiptStatus::Stored:
+      return "stored";
+    case ReceiptStatus::Duplicate:
+      return "duplicate";
+    case ReceiptStatus::Recorded:
+      return "recorded";
+    case ReceiptStatus::Refused:
+      return "refused";
+    case ReceiptStatus::UnknownRobot:
+      return "unknown_robot";
+    case ReceiptStatus::TryAgain:
+      break;
+  }
+  return "try_again";
+}
+
+/// The rows of a listing, as Python objects.
+py::list rows_of(const ClientHandle& client, AdminVerb verb) {
+  const std::shared_ptr<link::Client> line = client.line();
+  AdminRequest request;
+  request.verb = verb;
+  std::vector<std::string> rows;
+  {
+    const py::gil_scoped_release unlocked;
+    rows = link::rows_of(*line, request).value_or_throw();
+  }
+  const py::object loads = py::module_::import("json").attr("loads");
+  py::list documents;
+  for (const std::string& row : rows)
+    documents.append(loads(row));
+  return documents;
+}
+
+void bind_answers(py::module_& module) {
+  py::class_<OutboxState>(module, "OutboxState", "How far reports have got.")
+      .def_readonly("pending", &OutboxState::pending, "Not yet acknowledged by the server.")
+      .def_readonly("accepted", &OutboxState::accepted, "Since this client started.")
+      .def_readonly("refused", &OutboxState::refused, "Since this client started.")
+      .def_readonly("problem", &OutboxState::problem, "Why sending does not get on, or empty.");
+  py::class_<Receipt>(module, "Receipt", "The server's answer to one attempt.")
+      .def_property_readonly(
+          "report_uuid", [](const Receipt& self) { return self.report_uuid.text(); },
+          "Of the attempt.")
+      .def_property_readonly("status", receipt_word,
+                             "'stored', 'duplicate', 'recorded' (its path is not kept), 'refused', "
+                             "'try_again' or 'unknown_robot'.")
+      .def_readonly("message", &Receipt::message, "Why.");
+  py::class_<RegisterReply>(module, "Registration", "The server's answer to a robot.")
+      .def_property_readonly(
+          "robot", [](const RegisterReply& self) { return self.robot.hex(); }, "Its digest.")
+      .def_property_readonly(
+          "is_new",
+          [](const RegisterReply& self) { return self.status == RegisterStatus::Registered; },
+          "Whether the server did not know it before.")
+      .def_readonly("solver", &RegisterReply::solver, "What inverse kinematics will use.")
+      .def_readonly("message", &RegisterReply::message, "A warning; mostly empty.")
+      .def_readonly("same_arms", &RegisterReply::same_arms,
+                    "Labels of known robots that are the same arm.")
+      .def_readonly("geometry", &RegisterReply::geometry,
+                    "What the server filters with, in words.");
+}
+
+void bind_follower(py::module_& module) {
+  py::class_<FollowerHandle>(module, "Follower",
+                             "Holds the newest distribution without blocking who asks for it.")
+      .def("newest", &FollowerHandle::newest,
+           "The newest distribution, at once; None as long as there is none.")
+      .def(
+          "wait_for_newer",
+          [](FollowerHandle& self, const std::shared_ptr<SampledDistribution>& held,
+             double timeout) {
+            return self.wait_for_newer(held, to_milliseconds(timeout, "timeout"));
+          },
+          py::arg("held") = py::none(), py::kw_only(), py::arg("timeout") = 60.0,
+          "Waits, timeout s at most, until the newest is another revision than held. Returns the "
+          "newest then.")
+      .def_property_readonly("status", &FollowerHandle::status,
+                             "'ready', 'pending', 'no_experience', 'unknown_robot', 'no_server', "
+                             "'refused' or 'failed'.")
+      .def_property_readonly(
+          "reason", [](const FollowerHandle& self) { return self.line()->state().reason; },
+          "Why it is not ready; a warning otherwise.")
+      .def("close", &FollowerHandle::close, "Ends it. What it gave stays valid.")
+      .def(
+          "__enter__", [](py::object self) { return self; }, "Itself.")
+      .def(
+          "__exit__", [](FollowerHandle& self, const py::args&) { self.close(); }, "Closes it.");
+}
+
+void bind_life(ClientClass& client) {
+  client
+      .def(py::init([](std::uint32_t domain, const std::string& server,
+                       const std::optional<std::filesystem::path>& outbox, bool has_outbox,
+                       double timeout) {
+             return std::make_unique<ClientHandle>(
+                 link::ClientOptions{.domain = domain,
+                                     .server = server,
+                                     .outbox = outbox.value_or(std::filesystem::path()),
+                                     .has_outbox = has_outbox,
+                                     .timeout = to_milliseconds(timeout, "timeout")});
+           }),
+           py::kw_only(), py::arg("domain") = 0, py::arg("server") = "127.0.0.1",
+           py::arg("outbox") = py::none(), py::arg("has_outbox") = true, py::arg("timeout") = 5.0,
+           R"(Opens a line to a server; the server need not be there.
+
+domain      of DDS, as kinshipd's
+server      its host
+outbox      folder where reports wait for their receipts; by default one for this server
+has_outbox  False: delivers nothing that waits there, and report() is not allowed
+timeout     of register, deliver and listings, s)")
+      .def("close", &ClientHandle::close,
+           "Ends every wait. What is in the outbox is sent by the next client.")
+      .def(
+          "__enter__", [](py::object self) { return self; }, "Itself.")
+      .def(
+          "__exit__", [](ClientHandle& self, const py::args&) { self.close(); }, "Closes it.");
+}
+
+void bind_reports(ClientClass& client) {
+  client
+      .def("register", register_robot, py::arg("robot"),
+           "Makes a robot known to the server. Raises Refused or NoServer.")
+      .def("report", report, py::arg("attempt"),
+           R"(Puts an attempt into the outbox, durably, and sends it in the background.
+
+Waits for no server. Returns its UUID; raises InvalidInput if the server would refuse it.)")
+      .def("deliver", deliver, py::arg("attempts"),
+           "Hands attempts over at once, past the outbox. Returns a Receipt each; raises NoServer.")
+      .def_property_readonly(
+          "outbox",
+          [](const ClientHandle& self) {
+            const std::shared_ptr<link::Client> line = self.line();
+            const py::gil_scoped_release unlocked;
+            return line->outbox();
+          },
+          "How far reports have got.")
+      .def(
+          "flush",
+          [](const ClientHandle& self, double deadline) {
+            return self.flush(to_milliseconds(deadline, "deadline"));
+          },
+          py::arg("deadline") = 30.0,
+          "Waits, deadline s at most, until the server has acknowledged every report.");
+}
+
+void bind_fetching(ClientClass& client) {
+  client
+      .def(
+          "fetch",
+          [](const ClientHandle& self, const std::string& task, const RobotName& robot,
+             double deadline, const std::optional<Array>& T_task_base, const std::string& profile,
+             const std::vector<RobotName>& sources, const std::string& weighting,
+             std::int64_t since_ms, std::uint64_t minimum_generation) {
+            FetchRequest request =
+                request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
+            request.minimum_generation = minimum_generation;
+            request.deadline = to_milliseconds(deadline, "deadline");
+            return distribution_of(self.fetch(request), request);
+          },
+          py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("deadline") = 30.0,
+          py::arg("T_task_base") = py::none(), py::arg("profile") = "default",
+          py::arg("sources") = std::vector<RobotName>(), py::arg("weighting") = "",
+          py::arg("since_ms") = 0, py::arg("minimum_generation") = 0,
+          R"(The distribution of a task for a robot.
+
+robot        a Robot, its digest, or the label by which the server knows it
+deadline     so long it may be waited for, s; 0: what is there already
+T_task_base  where the robot stands in the task's frame: (4, 4) or (7,)
+profile      parameters of transfer and fit
+sources      the robots whose experience counts; empty: all
+weighting    'sources' or 'paths'; empty: the profile's
+since_ms     experience received at or after, Unix time, ms
+
+Raises NotReady, NoExperience, UnknownRobot, FitFailed, Refused or NoServer.)")
+      .def(
+          "follow",
+          [](const ClientHandle& self, const std::string& task, const RobotName& robot,
+             const std::optional<Array>& T_task_base, const std::string& profile,
+             const std::vector<RobotName>& sources, const std::string& weighting,
+             std::int64_t since_ms) {
+            const FetchRequest request =
+                request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
+            const std::shared_ptr<link::Client> line = self.line();
+            const py::gil_scoped_release unlocked;
+            return std::make_unique<FollowerHandle>(line->follow(request));
+          },
+          py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("T_task_base") = py::none(),
+          py::arg("profile") = "default", py::arg("sources") = std::vector<RobotName>(),
+          py::arg("weighting") = "", py::arg("since_ms") = 0,
+          "Holds the newest distribution from now on, for what fetch() would be asked for. May "
+          "outlive the client.");
+}
+
+void bind_listings(ClientClass& client) {
+  client
+      .def(
+          "status", [](const ClientHandle& self) { return rows_of(self, AdminVerb::Status)[0]; },
+          "What the server says of itself, as `kinship status --json`.")
+      .def(
+          "robots", [](const ClientHandle& self) { return rows_of(self, AdminVerb::ListRobots); },
+          "The robots that the server knows, as `kinship robots list --json`.")
+      .def(
+          "tasks", [](const ClientHandle& self) { return rows_of(self, AdminVerb::ListTasks); },
+          "The tasks that it has experience of, as `kinship tasks list --json`.");
+}
+
+}  // namespace
+
+void bind_client(py::module_& module) {
+  bind_answers(module);
+  bind_follower(module);
+  ClientClass client(module, "Client",
+                     "A line to kinshipd: registers robots, reports attempts, fetches and follows "
+                     "distributions. Whatever waits lets other threads run, and hears Ctrl-C. May "
+                     "be shared between threads, but not taken through a fork.");
+  bind_life(client);
+  bind_reports(client);
+  bind_fetching(client);
+  bind_listings(client);
+}
+
+}  // namespace kinship::python

@@ -1,0 +1,122 @@
+#include "client/python/client_handle.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "client/link/robot_names.hpp"
+
+namespace kinship::python {
+namespace {
+
+namespace py = pybind11;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kSlice = 500ms;  // so long a signal may have to wait
+
+/// Lets Python handle signals. \throws what the handler raises: KeyboardInterrupt.
+void hear_signals() {
+  if (PyErr_CheckSignals() != 0)
+    throw py::error_already_set();
+}
+
+milliseconds left_until(Clock::time_point deadline) {
+  return std::max(0ms, std::chrono::duration_cast<milliseconds>(deadline - Clock::now()));
+}
+
+bool is_final(const Result<FetchReply>& reply) {
+  return reply && reply->status != FetchStatus::Pending && reply->status != FetchStatus::Busy;
+}
+
+}  // namespace
+
+ClientHandle::ClientHandle(const link::ClientOptions& options) {
+  const py::gil_scoped_release unlocked;
+  client_ = std::make_shared<link::Client>(options);
+}
+
+std::shared_ptr<link::Client> ClientHandle::line() const {
+  if (!client_)
+    throw Failure(ErrorCode::InvalidInput, "the client is closed");
+  return client_;
+}
+
+void ClientHandle::close() {
+  std::shared_ptr<link::Client> client = std::move(client_);
+  client_.reset();
+  const py::gil_scoped_release unlocked;
+  if (client)
+    client->cancel();
+  client.reset();
+}
+
+Result<FetchReply> ClientHandle::fetch(FetchRequest request) const {
+  const Clock::time_point deadline = Clock::now() + request.deadline;
+  std::optional<Result<FetchReply>> last;
+  while (true) {
+    const std::shared_ptr<link::Client> client = line();
+    request.deadline = std::min(kSlice, left_until(deadline));
+    const Clock::time_point slice_end = Clock::now() + request.deadline;
+    {
+      const py::gil_scoped_release unlocked;
+      Result<FetchReply> reply = client->fetch(request);
+      const bool is_too_early = !reply || reply->status == FetchStatus::Busy;  // to ask again
+      if (reply || !last)  // no answer this time does not undo that of last time
+        last.emplace(std::move(reply));
+      if (is_too_early)
+        std::this_thread::sleep_until(std::min(slice_end, deadline));
+    }
+    hear_signals();
+    if (is_final(*last) || Clock::now() >= deadline - 1ms)
+      return *std::move(last);
+  }
+}
+
+link::Client::OutboxState ClientHandle::flush(milliseconds timeout) const {
+  const Clock::time_point deadline = Clock::now() + timeout;
+  while (true) {
+    const std::shared_ptr<link::Client> client = line();
+    link::Client::OutboxState state;
+    {
+      const py::gil_scoped_release unlocked;
+      state = client->flush(std::min(kSlice, left_until(deadline)));
+    }
+    hear_signals();
+    if (state.pending == 0 || Clock::now() >= deadline)
+      return state;
+  }
+}
+
+Digest ClientHandle::find(const RobotName& robot) const {
+  if (const auto* known = std::get_if<std::shared_ptr<Robot>>(&robot))
+    return (*known)->digest();
+  const auto& name = std::get<std::string>(robot);
+  if (const auto digest = Digest::from_hex(name))
+    return *digest;
+  const std::shared_ptr<link::Client> client = line();
+  const py::gil_scoped_release unlocked;
+  return link::find_robot(*client, name).value_or_throw().robot;
+}
+
+std::shared_ptr<const Distribution> wait_for_newer(const link::Follower& follower,
+                                                   const std::shared_ptr<const Distribution>& held,
+                                                   milliseconds timeout) {
+  const Clock::time_point deadline = Clock::now() + timeout;
+  while (true) {
+    std::shared_ptr<const Distribution> newest;
+    {
+      const py::gil_scoped_release unlocked;
+      newest = follower.wait_for_newer(held, std::min(deadline, Clock::now() + kSlice));
+    }
+    hear_signals();
+    const bool is_newer = newest && (!held || newest->revision != held->revision ||
+                                     newest->store_epoch != held->store_epoch);
+    if (is_newer || Clock::now() >= deadline)
+      return newest;
+  }
+}
+
+}  // namespace kinship::python

@@ -1,0 +1,76 @@
+"""Kinship: an experience database server for robot motion planning.
+
+    import kinship
+
+    robot = kinship.Robot("robots/models/ur10e")
+    with kinship.Client() as client:
+        client.register(robot)
+        distribution = client.fetch("box_to_shelf", robot, deadline=60)
+    q = distribution.sample(1000, seed=1)          # (1000, dof)
+
+Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
+(4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.
+"""
+from .errors import (
+    Conflict,
+    Error,
+    FitFailed,
+    InternalError,
+    InvalidInput,
+    NoExperience,
+    NoServer,
+    NotFound,
+    NotReady,
+    Refused,
+    StorageError,
+    TooLarge,
+    UnknownRobot,
+)
+from ._kinship import (
+    Attempt,
+    Client,
+    Distribution,
+    Follower,
+    OutboxState,
+    Problem,
+    Receipt,
+    Registration,
+    Robot,
+    Sampler,
+    Scene,
+    World,
+    read_experience,
+    read_problems,
+    write_experience,
+)
+
+__all__ = [
+    "Attempt",
+    "Client",
+    "Conflict",
+    "Distribution",
+    "Error",
+    "FitFailed",
+    "Follower",
+    "InternalError",
+    "InvalidInput",
+    "NoExperience",
+    "NoServer",
+    "NotFound",
+    "NotReady",
+    "OutboxState",
+    "Problem",
+    "Receipt",
+    "Refused",
+    "Registration",
+    "Robot",
+    "Sampler",
+    "Scene",
+    "StorageError",
+    "TooLarge",
+    "UnknownRobot",
+    "World",
+    "read_experience",
+    "read_problems",
+    "write_experience",
+]

@@ -1,0 +1,93 @@
+#include "client/python/robot.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "robots/collision/fitted_links.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
+
+namespace kinship::python {
+namespace {
+
+constexpr const char* kTip = "tip";
+constexpr const char* kTransfer = "transfer";
+
+int index_of_link(const Robot& robot, const std::string& name) {
+  const int link = robot.chain().find_link(name);
+  if (link >= 0)
+    return link;
+  std::string known;
+  for (const kinematics::ChainLink& other : robot.chain().links())
+    known += ", " + other.name;
+  throw Failure(ErrorCode::NotFound, "robot '" + robot.description().label + "' has no link '" +
+                                         name + "'; frames: " + kTip + ", " + kTransfer + known);
+}
+
+}  // namespace
+
+std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments) {
+  RobotDescription description = models::describe_robot(arguments).value_or_throw();
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  auto shapes = models::load_shapes(arguments, description, chain);
+  return std::make_shared<Robot>(std::move(description), std::move(chain), std::move(shapes));
+}
+
+std::shared_ptr<Robot> Robot::of_description(RobotDescription description) {
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  auto shapes = geometry::read_shapes(description, chain);
+  return std::make_shared<Robot>(std::move(description), std::move(chain), std::move(shapes));
+}
+
+Robot::Robot(RobotDescription description, kinematics::Chain chain,
+             Result<geometry::RobotShapes> shapes)
+    : description_(std::move(description)),
+      chain_(std::move(chain)),
+      digest_(chain_.digest()),
+      shapes_(std::move(shapes)),
+      solver_(chain_) {}
+
+std::vector<Eigen::Isometry3d> Robot::poses(const Eigen::MatrixXd& qs,
+                                            const std::string& frame) const {
+  const bool is_tip = frame == kTip;
+  const bool is_transfer = frame == kTransfer;
+  const auto link =
+      is_tip || is_transfer ? 0U : static_cast<std::size_t>(index_of_link(*this, frame));
+  std::vector<Eigen::Isometry3d> T_base_frames;
+  T_base_frames.reserve(static_cast<std::size_t>(qs.cols()));
+  for (const auto& q : qs.colwise())
+    T_base_frames.push_back(is_tip        ? kinematics::T_base_tip(chain_, q)
+                            : is_transfer ? kinematics::T_base_transfer(chain_, q)
+                                          : kinematics::link_poses(chain_, q)[link]);
+  return T_base_frames;
+}
+
+Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std::string& frame,
+                               const inverse::InverseOptions& options) const {
+  if (frame != kTip && frame != kTransfer)
+    throw std::invalid_argument("frame '" + frame + "', must be " + kTip + " or " + kTransfer);
+  const Eigen::Isometry3d T_base_tip =
+      frame == kTip ? T_base_frame : T_base_frame * chain_.T_tip_transfer().inverse();
+  return solver_.solve(T_base_tip, options).configurations;
+}
+
+collision::RobotSolids Robot::solids() const {
+  if (!shapes_)
+    throw Failure(shapes_.error());
+  const std::scoped_lock lock(mutex_);
+  if (!solids_)
+    solids_.emplace(chain_, *shapes_);
+  return *solids_;
+}
+
+RobotDescription Robot::description_for_server() const {
+  RobotDescription description = description_;
+  if (!shapes_)
+    return description;
+  if (auto fitted = collision::fit_robot(chain_, *shapes_))
+    description.mesh_solids = std::move(fitted).value().mesh_solids;
+  return description;
+}
+
+}  // namespace kinship::python

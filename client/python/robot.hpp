@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/result.hpp"
+#include "proto/types/robot_description.hpp"
+#include "robots/collision/robot_solids.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/models/robot_arguments.hpp"
+
+namespace kinship::python {
+
+/// A robot with what is computed once of it. Immutable to its users, shared between threads.
+class Robot {
+ public:
+  /// With its collision meshes, or with the reason why they cannot be had: kinematics and the
+  /// server need none.
+  /// \throws Failure as models::describe_robot and kinematics::read_chain say.
+  static std::shared_ptr<Robot> load(const models::RobotArguments& arguments);
+
+  /// What a server or a file tells of a robot; it has no files, so its meshes are not known.
+  static std::shared_ptr<Robot> of_description(RobotDescription description);
+
+  Robot(RobotDescription description, kinematics::Chain chain,
+        Result<geometry::RobotShapes> shapes);
+
+  const RobotDescription& description() const noexcept { return description_; }
+  const kinematics::Chain& chain() const noexcept { return chain_; }
+  const Digest& digest() const noexcept { return digest_; }
+  const inverse::Solver& solver() const noexcept { return solver_; }
+
+  /// Pose of a frame in the base link: "tip", "transfer" or a link.
+  /// \param qs  dof x n.
+  /// \throws Failure(NotFound) if there is no such link.
+  std::vector<Eigen::Isometry3d> poses(const Eigen::MatrixXd& qs, const std::string& frame) const;
+
+  /// \param frame  "tip" or "transfer".
+  /// \return       dof x n, n >= 0.
+  /// \throws std::invalid_argument for another frame.
+  Eigen::MatrixXd inverse(const Eigen::Isometry3d& T_base_frame, const std::string& frame,
+                          const inverse::InverseOptions& options) const;
+
+  /// What all its worlds share, made when it is first asked for.
+  /// \throws Failure if its collision geometry is not known.
+  collision::RobotSolids solids() const;
+
+  /// The description with solids around its meshes, if it has any that are known.
+  RobotDescription description_for_server() const;
+
+ private:
+  RobotDescription description_;
+  kinematics::Chain chain_;
+  Digest digest_;
+  Result<geometry::RobotShapes> shapes_;
+  inverse::Solver solver_;
+  mutable std::mutex mutex_;  // guards what follows
+  mutable std::optional<collision::RobotSolids> solids_;
+};
+
+}  // namespace kinship::python

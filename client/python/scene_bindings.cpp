@@ -1,0 +1,156 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <fstream>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "client/files/lines.hpp"
+#include "client/python/arrays.hpp"
+#include "client/python/bindings.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/types/pose.hpp"
+#include "proto/types/problem.hpp"
+#include "robots/models/scene_meshes.hpp"
+
+namespace kinship::python {
+namespace {
+
+using Packages = std::map<std::string, std::string>;
+
+models::PackageFolders folders_of(const Packages& packages) {
+  return {packages.begin(), packages.end()};
+}
+
+void add_solid(Scene& scene, const std::string& name, const Array& pose, const Shape& shape) {
+  scene.objects.push_back({.name = name, .shape = shape, .T_task_object = read_pose(pose, name)});
+}
+
+Eigen::Vector3d read_triple(const Array& values, const char* name) {
+  if (values.ndim() != 1 || values.shape(0) != 3)
+    throw std::invalid_argument(std::string(name) + ": must be three numbers");
+  return Eigen::Map<const Eigen::Vector3d>(values.data());
+}
+
+/// Reads the files that a scene names at once, so that it is the caller who hears of what is wrong
+/// with them.
+void add_mesh(Scene& scene, const std::string& name, const std::string& file, const Array& pose,
+              const Array& scale, const Packages& packages) {
+  Scene mesh{.objects = {}};
+  mesh.meshes.push_back({.name = name,
+                         .mesh = {.file = file, .scale = read_triple(scale, "scale")},
+                         .T_task_mesh = read_pose(pose, name)});
+  std::vector<AttachedObject> none;
+  const py::gil_scoped_release unlocked;
+  if (const auto error = models::SceneMeshes({}, folders_of(packages)).read(mesh, none))
+    throw Failure(*error);
+  scene.meshes.push_back(std::move(mesh.meshes.front()));
+}
+
+std::vector<Problem> read_problems(const std::filesystem::path& file, const Packages& packages) {
+  const py::gil_scoped_release unlocked;
+  std::ifstream stream = files::open_input(file);
+  models::SceneMeshes meshes(file.parent_path(), folders_of(packages));
+  std::vector<Problem> problems;
+  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
+    auto problem = line.text ? json::problem_from_json(*line.text) : line.text.error();
+    const auto error = problem ? std::nullopt : std::optional(problem.error());
+    const auto where = "'" + file.string() + "' line " + std::to_string(line.number) + ": ";
+    if (error)
+      throw Failure(error->code, where + error->message);
+    problems.push_back(std::move(problem).value());
+    if (const auto unread = meshes.read(problems.back().scene, problems.back().attached))
+      throw Failure(unread->code, where + unread->message);
+    return true;
+  });
+  return problems;
+}
+
+void bind_problem(py::module_& module) {
+  py::class_<Problem>(module, "Problem", "A planning problem, a line of a problem file.")
+      .def_static(
+          "from_json",
+          [](const std::string& text) {
+            Problem problem = json::problem_from_json(text).value_or_throw();
+            if (const auto error =
+                    models::SceneMeshes({}, {}).read(problem.scene, problem.attached))
+              throw Failure(*error);
+            return problem;
+          },
+          py::arg("text"), "Reads one line; meshes are named relative to the current folder.")
+      .def(
+          "to_json", [](const Problem& self) { return json::to_json(self); },
+          "The line of a problem file.")
+      .def_readonly("name", &Problem::name, "What messages call it.")
+      .def_property_readonly(
+          "start", [](const Problem& self) { return to_vector(self.start); }, "(dof,)")
+      .def_property_readonly(
+          "goal_configurations",
+          [](const Problem& self) { return to_rows(self.goal_configurations); },
+          "(n, dof); n is 0 if a pose is the goal.")
+      .def_property_readonly(
+          "T_task_goal", [](const Problem& self) { return to_matrix(self.T_task_goal); },
+          "Where the transfer frame is to get: (4, 4), or None if configurations are the goal.")
+      .def_property_readonly(
+          "T_task_base", [](const Problem& self) { return to_matrix(self.T_task_base); },
+          "Where the robot stands in the task's frame: (4, 4), or None: not said.")
+      .def_readonly("scene", &Problem::scene, "What is around the robot.")
+      .def_readonly("time_limit_s", &Problem::time_limit_s, "Of wall-clock time.")
+      .def_readonly("seed", &Problem::seed, "Of the planner.");
+}
+
+}  // namespace
+
+void bind_scenes(py::module_& module) {
+  const Array identity = to_matrix(Eigen::Isometry3d::Identity());
+  const std::vector<double> ones = {1, 1, 1};
+  py::class_<Scene>(module, "Scene",
+                    "Obstacles in the task's frame. Poses are those of centres: (4, 4), or (7,).")
+      .def(py::init<>(), "An empty scene.")
+      .def(
+          "add_box",
+          [](Scene& self, const std::string& name, const Array& pose, const Array& size) {
+            add_solid(self, name, pose, BoxShape{read_triple(size, "size")});
+          },
+          py::arg("name"), py::arg("pose"), py::arg("size"), "size: full extents, m.")
+      .def(
+          "add_cylinder",
+          [](Scene& self, const std::string& name, const Array& pose, double radius,
+             double length) {
+            add_solid(self, name, pose, CylinderShape{radius, length});
+          },
+          py::arg("name"), py::arg("pose"), py::arg("radius"), py::arg("length"), "Along z; m.")
+      .def(
+          "add_capsule",
+          [](Scene& self, const std::string& name, const Array& pose, double radius,
+             double length) {
+            add_solid(self, name, pose, CapsuleShape{radius, length});
+          },
+          py::arg("name"), py::arg("pose"), py::arg("radius"), py::arg("length"),
+          "Along z; length is that of the cylindrical part, m.")
+      .def(
+          "add_sphere",
+          [](Scene& self, const std::string& name, const Array& center, double radius) {
+            Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+            pose.translation() = read_triple(center, "center");
+            add_solid(self, name, to_matrix(pose), SphereShape{radius});
+          },
+          py::arg("name"), py::arg("center"), py::arg("radius"), "center: (3,), m.")
+      .def("add_mesh", add_mesh, py::arg("name"), py::arg("file"), py::arg("pose") = identity,
+           py::arg("scale") = ones, py::arg("packages") = Packages(),
+           "Reads a surface of triangles (STL, OBJ, DAE). What lies wholly inside does not touch "
+           "it.")
+      .def(
+          "__len__",
+          [](const Scene& self) {
+            return self.objects.size() + self.meshes.size() + self.clouds.size();
+          },
+          "Number of obstacles.");
+  bind_problem(module);
+  module.def("read_problems", read_problems, py::arg("file"), py::arg("packages") = Packages(),
+             "Reads a problem file, JSON Lines as kinship-plan takes them, with its meshes.\n\n"
+             "Raises NotFound, InvalidInput or TooLarge with the file, line and value.");
+}
+
+}  // namespace kinship::python

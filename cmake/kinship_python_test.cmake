@@ -1,0 +1,7 @@
+# kinship_python_test(NAME FILE LABEL): a file of unittest tests over `import kinship`, one test of CTest. It finds programs
+# and sources by KINSHIP_BIN_DIR and KINSHIP_SOURCE_DIR, and modules of tests/support by their names.
+function(kinship_python_test name file label)
+  add_test(NAME ${name} COMMAND ${KINSHIP_PYTHON_EXECUTABLE} -B ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 300 ENVIRONMENT
+    "PYTHONPATH=${CMAKE_BINARY_DIR}/python:${PROJECT_SOURCE_DIR}/tests/support;KINSHIP_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};KINSHIP_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+endfunction()

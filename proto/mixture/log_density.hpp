@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "proto/types/distribution.hpp"
+#include "proto/types/mixture.hpp"
+
+namespace kinship::mixture {
+
+/// Natural logarithm of the mixture's density at each configuration, in the log domain, so that
+/// one far from every component still has a number.
+/// \param configurations  d x N, joint units.
+/// \return                N, in nats. O(K d^3 + N K d^2).
+/// \throws std::invalid_argument if dimensions differ.
+/// \throws Failure(Internal) if a covariance is not positive definite.
+/// Source: Bishop, Pattern Recognition and Machine Learning (2006), eq. 9.7 and 2.43.
+Eigen::VectorXd log_density(const Mixture& mixture,
+                            const Eigen::Ref<const Eigen::MatrixXd>& configurations);
+
+/// The same of a distribution's mixture, not truncated to its limits; continuous joints are turned
+/// to where its means lie.
+/// \param distribution  with a mixture.
+Eigen::VectorXd log_density(const Distribution& distribution,
+                            const Eigen::Ref<const Eigen::MatrixXd>& configurations);
+
+}  // namespace kinship::mixture

@@ -1,0 +1,205 @@
+"""`import kinship` against a real kinshipd over DDS."""
+import os
+import pathlib
+import signal
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import kinship
+from kinshipd_process import Kinshipd
+from panda_sweeps import attempt
+
+MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
+TASK = "sweep"
+
+
+class WithServer(unittest.TestCase):
+    """One server for the class; its client has an outbox of its own for each test."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.server = cls.enterClassContext(Kinshipd())
+        cls.server.start()
+        cls.panda = kinship.Robot(MODELS / "panda")
+        cls.ur10e = kinship.Robot(MODELS / "ur10e")
+
+    def setUp(self):
+        self.client = self.enterContext(self.open_client())
+
+    def open_client(self, **options):
+        return kinship.Client(domain=self.server.domain, outbox=self.server.folder / self.id(), timeout=20, **options)
+
+    def report_sweeps(self, task, seeds):
+        self.client.register(self.panda)
+        for seed in seeds:
+            self.client.report(attempt(self.panda, task, seed))
+        state = self.client.flush(60)
+        self.assertEqual((state.pending, state.refused), (0, 0), state.problem)
+
+
+class RoundTrip(WithServer):
+    def test_what_one_robot_reports_another_fetches(self):
+        self.report_sweeps(TASK, range(6))
+        registration = self.client.register(self.ur10e)
+        self.assertEqual(registration.robot, self.ur10e.digest)
+        distribution = self.client.fetch(TASK, self.ur10e, deadline=120)
+        self.assertEqual(distribution.task, TASK)
+        self.assertEqual(distribution.robot, self.ur10e.digest)
+        self.assertEqual(distribution.means.shape, (len(distribution), 6))
+        self.assertEqual(distribution.covariances.shape, (len(distribution), 6, 6))
+        sources = distribution.provenance["sources"]
+        self.assertEqual([(source["label"], source["paths"]) for source in sources], [("panda", 6)])
+        samples = distribution.sample(1000, seed=1)
+        self.assertTrue(((samples >= self.ur10e.lower) & (samples <= self.ur10e.upper)).all())
+        # Samples of the UR10e put its hand where the Panda's went.
+        hands = self.ur10e.fk(samples, frame="transfer")[:, :3, 3]
+        ways = np.concatenate([self.panda.fk(attempt(self.panda, TASK, seed).waypoints, frame="transfer")[:, :3, 3]
+                               for seed in range(6)])
+        distances = np.linalg.norm(hands[:, None] - ways[None], axis=2).min(axis=1)
+        self.assertLess(np.median(distances), 0.3)
+
+    def test_the_same_distribution_by_label_and_digest_and_after_json(self):
+        self.report_sweeps("by_name", range(4))
+        self.client.register(self.ur10e)
+        distribution = self.client.fetch("by_name", self.ur10e, deadline=120)
+        for name in (self.ur10e.digest, "ur10e"):
+            again = self.client.fetch("by_name", name, deadline=120)
+            self.assertEqual((again.id, again.revision), (distribution.id, distribution.revision))
+        copied = kinship.Distribution.from_json(distribution.to_json())
+        np.testing.assert_array_equal(copied.means, distribution.means)
+        np.testing.assert_array_equal(copied.sample(50, seed=3), distribution.sample(50, seed=3))
+
+    def test_deliver_says_what_became_of_each(self):
+        self.client.register(self.panda)
+        attempts = [attempt(self.panda, "delivered", seed) for seed in range(2)]
+        unsolved = kinship.Attempt("delivered", self.panda, planning_time_s=1, outcome="timeout")
+        first = self.client.deliver(attempts + [unsolved])
+        self.assertEqual([receipt.status for receipt in first], ["stored", "stored", "recorded"])
+        self.assertEqual([receipt.report_uuid for receipt in first[:2]], [a.report_uuid for a in attempts])
+        again = self.client.deliver(attempts)
+        self.assertEqual([receipt.status for receipt in again], ["duplicate", "duplicate"])
+        task, = [row for row in self.client.tasks() if row["task"] == "delivered"]
+        self.assertEqual(task["paths"], 2)
+
+    def test_a_follower_gets_what_is_reported_later(self):
+        self.client.register(self.panda)
+        with self.client.follow("followed", self.panda) as follower:
+            self.assertIsNone(follower.newest())
+            self.report_sweeps("followed", range(4))
+            newest = follower.wait_for_newer(timeout=120)
+            self.assertIsNotNone(newest, follower.reason)
+            self.assertEqual(newest.task, "followed")
+            self.assertEqual(follower.status, "ready")
+            self.assertIs(follower.newest(), follower.newest())
+            self.assertIs(follower.wait_for_newer(newest, timeout=0.1), newest)
+        with self.assertRaisesRegex(kinship.InvalidInput, "closed"):
+            follower.newest()
+
+
+class Errors(WithServer):
+    def test_of_a_task_without_experience(self):
+        self.client.register(self.panda)
+        with self.assertRaisesRegex(kinship.NoExperience, "task 'nobody_did_it'.*no experience"):
+            self.client.fetch("nobody_did_it", self.panda)
+
+    def test_of_robots_that_the_server_does_not_know(self):
+        iiwa = kinship.Robot(MODELS / "iiwa7")
+        with self.assertRaisesRegex(kinship.UnknownRobot, iiwa.digest[:12]):
+            self.client.fetch(TASK, iiwa)
+        with self.assertRaisesRegex(kinship.NotFound, "no_such_robot"):
+            self.client.fetch(TASK, "no_such_robot")
+
+    def test_of_what_the_server_refuses(self):
+        self.client.register(self.panda)
+        taken = kinship.Robot(MODELS / "iiwa14", label="panda")
+        with self.assertRaisesRegex(kinship.Refused, "label"):
+            self.client.register(taken)
+        with self.assertRaisesRegex(kinship.Error, "no_such_profile"):
+            self.client.fetch(TASK, self.panda, profile="no_such_profile")
+
+    def test_of_values_that_break_a_rule(self):
+        wrong = attempt(self.panda, TASK, 1)
+        wrong.task = "no such name"
+        with self.assertRaisesRegex(kinship.InvalidInput, "task"):
+            self.client.report(wrong)
+        with self.assertRaisesRegex(ValueError, "weighting: 'robots' is not one of sources, paths"):
+            self.client.fetch(TASK, self.panda, weighting="robots")
+        with self.assertRaisesRegex(ValueError, "deadline: -1 s"):
+            self.client.fetch(TASK, self.panda, deadline=-1)
+        self.assertEqual(self.client.outbox.pending, 0)
+
+    def test_of_a_client_that_is_closed(self):
+        self.client.close()
+        with self.assertRaisesRegex(kinship.InvalidInput, "the client is closed"):
+            self.client.fetch(TASK, self.panda)
+
+
+class WithoutServer(unittest.TestCase):
+    """Nobody listens in the domain: a fetch waits until its deadline."""
+
+    def setUp(self):
+        self.server = self.enterContext(Kinshipd())
+        self.client = self.enterContext(
+            kinship.Client(domain=self.server.domain, outbox=self.server.folder / "outbox"))
+        self.panda = kinship.Robot(MODELS / "panda")
+
+    def test_other_threads_run_while_a_fetch_waits(self):
+        ticks, is_over = [], threading.Event()
+
+        def tick():
+            while not is_over.wait(0.01):
+                ticks.append(time.monotonic())
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begin = time.monotonic()
+        with self.assertRaises(kinship.NoServer):
+            self.client.fetch(TASK, self.panda, deadline=2)
+        end = time.monotonic()
+        is_over.set()
+        thread.join()
+        self.assertGreaterEqual(end - begin, 1.9)
+        during = [at for at in ticks if begin < at < end]
+        self.assertGreater(len(during), 50, "the thread stood still while the fetch waited")
+
+    def test_control_c_ends_a_fetch_that_waits(self):
+        previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGALRM, previous)
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        begin = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            self.client.fetch(TASK, self.panda, deadline=60)
+        self.assertLess(time.monotonic() - begin, 30)
+
+    def test_closing_ends_the_fetch_of_another_thread(self):
+        errors = []
+
+        def fetch():
+            try:
+                self.client.fetch(TASK, self.panda, deadline=60)
+            except kinship.Error as error:
+                errors.append(error)
+
+        thread = threading.Thread(target=fetch)
+        thread.start()
+        self.client.close()
+        thread.join(30)
+        self.assertFalse(thread.is_alive())
+        self.assertEqual(len(errors), 1)
+
+    def test_reports_wait_for_the_server(self):
+        self.client.report(attempt(self.panda, TASK, 1))
+        self.assertEqual(self.client.flush(0.1).pending, 1)
+        with self.assertRaises(kinship.NoServer):
+            kinship.Client(domain=self.server.domain, has_outbox=False, timeout=0.2).register(self.panda)
+        self.server.start()
+        self.client.register(self.panda)
+        state = self.client.flush(60)
+        self.assertEqual((state.pending, state.accepted), (0, 1), state.problem)
+
+
+if __name__ == "__main__":
+    unittest.main()
