@@ -39,4 +39,12 @@ std::optional<Eigen::VectorXd> DistributionSampler::sample(std::mt19937_64& gene
   return q;
 }
 
+Eigen::MatrixXd DistributionSampler::sample(std::mt19937_64& generator, Eigen::Index count) const {
+  Eigen::MatrixXd drawn = sampler_.sample(generator, count);
+  for (const Eigen::Index joint : continuous_)
+    for (double& q : drawn.row(joint))
+      q = wrapped(q);
+  return drawn;
+}
+
 }  // namespace kinship::mixture

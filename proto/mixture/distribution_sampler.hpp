@@ -24,6 +24,9 @@ class DistributionSampler {
   /// As `Sampler::sample`.
   std::optional<Eigen::VectorXd> sample(std::mt19937_64& generator) const;
 
+  /// Many at once, as `Sampler::sample`: d x count, or fewer columns.
+  Eigen::MatrixXd sample(std::mt19937_64& generator, Eigen::Index count) const;
+
  private:
   std::vector<Eigen::Index> continuous_;  // joints
   Sampler sampler_;
