@@ -73,6 +73,8 @@ SamplingMode read_sampling(kinship_sampling given) {
       return SamplingMode::Guided;
     case KINSHIP_CONTROL:
       return SamplingMode::Control;
+    case KINSHIP_SAMPLING_WIDTH:
+      break;
   }
   throw Failure(invalid_input("attempt->sampling is " + std::to_string(given) + ", must be 0 to " +
                               std::to_string(KINSHIP_CONTROL)));

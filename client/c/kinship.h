@@ -9,9 +9,9 @@
  * which take NULL. Text and numbers that are passed in are copied.
  * - Any thread may use any handle, several at once; a handle is closed when nobody uses it any
  * more.
- * - Structures begin with their size in bytes: `kinship_request request = {.size = sizeof request};`. All
- * else that is 0 is as if it were not said, so what a later version adds at the end does not
- * disturb who was compiled before.
+ * - Structures begin with their size in bytes: `kinship_request request = {.size = sizeof
+ * request};`. All else that is 0 is as if it were not said, so what a later version adds at the end
+ * does not disturb who was compiled before.
  * - Lengths in m, angles in rad. A pose is x y z qx qy qz qw. Functions that may wait say so.
  */
 #ifndef KINSHIP_H
@@ -42,7 +42,9 @@ typedef enum kinship_code {
   KINSHIP_PENDING = 8,     /**< the distribution is still being made: ask again later */
   KINSHIP_NO_EXPERIENCE = 9,  /**< nobody has done the task yet */
   KINSHIP_UNKNOWN_ROBOT = 10, /**< register it first */
-  KINSHIP_REFUSED = 11        /**< the server refuses it, for good */
+  KINSHIP_REFUSED = 11,       /**< the server refuses it, for good */
+  KINSHIP_CODE_WIDTH =
+      0x7fffffff /**< no code: enumerations are as wide as int, whatever the compiler is told */
 } kinship_code;
 
 /** Version of the library that runs, e.g. "0.1.0"; never freed. */
@@ -104,7 +106,8 @@ KINSHIP_API kinship_code kinship_register(kinship_client* client,
 typedef enum kinship_sampling {
   KINSHIP_UNIFORM = 0,
   KINSHIP_GUIDED = 1,
-  KINSHIP_CONTROL = 2
+  KINSHIP_CONTROL = 2,
+  KINSHIP_SAMPLING_WIDTH = 0x7fffffff
 } kinship_sampling;
 
 /** What a planner says about one query. */
@@ -223,7 +226,8 @@ typedef enum kinship_layout {
   KINSHIP_ROWS = 0,
   /** Joint j of configuration i at out[j * stride + i], a structure of arrays; stride >= count,
      beyond count untouched. */
-  KINSHIP_ARRAYS = 1
+  KINSHIP_ARRAYS = 1,
+  KINSHIP_LAYOUT_WIDTH = 0x7fffffff
 } kinship_layout;
 
 /** Equal seeds and counts give equal numbers. `out` needs no alignment.

@@ -13,13 +13,16 @@ namespace {
 
 constexpr size_t kDof = 3, kCount = 50, kStride = 8, kArrayStride = 64;
 
-/// A mixture of three joints whose second limit cuts it in two.
+constexpr double kLimit = 0.1;  // the nearest float is beyond it
+
+/// A mixture of three joints, the second of which hardly moves and has its limit in the middle.
 Distribution cut_distribution() {
   Distribution distribution;
-  distribution.mixture.emplace(Eigen::VectorXd::Ones(1), Eigen::Vector3d(0, 1, 2),
-                               std::vector<Eigen::MatrixXd>{Eigen::Matrix3d::Identity() * 0.01});
+  const Eigen::Matrix3d covariance = Eigen::Vector3d(0.01, 1e-18, 0.01).asDiagonal();
+  distribution.mixture.emplace(Eigen::VectorXd::Ones(1), Eigen::Vector3d(0, kLimit, 2),
+                               std::vector<Eigen::MatrixXd>{covariance});
   distribution.limits.resize(2, 3);
-  distribution.limits << -3, 1.0F / 3.0F, -3, 3, 1, 3;
+  distribution.limits << -3, -3, -3, 3, kLimit, 3;
   return distribution;
 }
 
@@ -72,7 +75,7 @@ TEST_F(CSampler, FloatsAreTheSameNumbersRoundedAndWithinTheLimits) {
   for (size_t i = 0; i < doubles.size(); ++i)
     EXPECT_NEAR(floats[i], doubles[i], 1e-6);
   for (size_t i = 0; i < kMany; ++i)
-    EXPECT_LE(static_cast<double>(floats[i * kDof + 1]), 1.0);
+    EXPECT_LE(static_cast<double>(floats[i * kDof + 1]), kLimit);
 }
 
 TEST_F(CSampler, AStrideThatIsTooShortIsRefused) {
