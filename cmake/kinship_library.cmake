@@ -1,16 +1,25 @@
 # What every library, program and test of Kinship is built with. Warnings are errors for who develops, not for who
 # builds a release with another compiler.
 
-add_library(kinship_options INTERFACE)
-target_include_directories(kinship_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(kinship_options INTERFACE
+include(GNUInstallDirs)
+set(KINSHIP_INCLUDEDIR ${CMAKE_INSTALL_INCLUDEDIR}/kinship-${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(KINSHIP_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/Kinship)
+
+# What our own sources are compiled with, and who builds Kinship within another project is spared.
+add_library(kinship_warnings INTERFACE)
+target_compile_options(kinship_warnings INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
   -Wold-style-cast $<$<CONFIG:Debug>:-Werror>>)
 # GCC 12 warns of impossible overlaps inside "text" + std::string when it optimizes (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(kinship_options INTERFACE
+  target_compile_options(kinship_warnings INTERFACE
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-Wno-restrict>)
 endif()
+
+# What also its users are compiled with.
+add_library(kinship_options INTERFACE)
+target_include_directories(kinship_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                           $<INSTALL_INTERFACE:${KINSHIP_INCLUDEDIR}>)
 # Threads touch Eigen only through values; its own OpenMP pool would break "same bytes for any number of threads".
 target_compile_definitions(kinship_options INTERFACE EIGEN_DONT_PARALLELIZE)
 if(KINSHIP_SANITIZE)
@@ -48,8 +57,8 @@ function(kinship_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
   if(arg_SOURCES)
     add_library(kinship_${name} STATIC ${arg_SOURCES})
-    target_link_libraries(kinship_${name} PUBLIC kinship_options ${arg_DEPENDS}
-                          PRIVATE ${arg_PRIVATE_DEPENDS})
+    target_link_libraries(kinship_${name} PRIVATE $<BUILD_INTERFACE:kinship_warnings>
+                          PUBLIC kinship_options ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
     kinship_hide(kinship_${name})
     kinship_unite(kinship_${name})
   else()
@@ -63,7 +72,7 @@ endfunction()
 function(kinship_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS})
+  target_link_libraries(${name} PRIVATE kinship_warnings kinship_options ${arg_DEPENDS})
 endfunction()
 
 # Defines KINSHIP_SOURCE_DIR and KINSHIP_BIN_DIR for those of the sources that name them. The others compile to the same
@@ -106,7 +115,7 @@ function(kinship_test name)
     math(EXPR arg_TIMEOUT "5 * ${arg_TIMEOUT}")
   endif()
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE kinship_options ${arg_DEPENDS} GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE kinship_warnings kinship_options ${arg_DEPENDS} GTest::gtest GTest::gtest_main)
   kinship_tell_places(${arg_SOURCES})
   # What is tested is fully optimized, the tests themselves need not be: a third of their build time.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)

@@ -102,6 +102,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{link, arguments, files, inverse, collision, geometry, kinematics, models, mixture, json,
          types},
         {"Eigen", "CLI11"}}},
+      {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
+      {"client/library",
+       {{link, ompl, planning, collision, models, inverse, mixture, kinematics, types}, {}}},
+      // A project of its own: what is installed, and files beside its own, which have no folder.
+      {"client/examples", {{""}, {"OMPL"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/python",
        {{link, files, planning, inverse, collision, geometry, kinematics, models, mixture, json,

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "client/c/errors.hpp"
+#include "client/c/handles.hpp"
+
+namespace kinship::c_library {
+namespace {
+
+using SharedDistribution = std::shared_ptr<const Distribution>;
+
+FetchRequest read_request(const kinship_request& given) {
+  require(given.task, "request->task");
+  FetchRequest request;
+  request.task = given.task;
+  request.robot = read_robot(given.robot, "request->robot");
+  if (given.T_task_base != nullptr)
+    request.T_task_base = read_pose(given.T_task_base, "request->T_task_base");
+  if (given.profile != nullptr)
+    request.profile = given.profile;
+  request.deadline = std::chrono::milliseconds(given.deadline_ms);
+  return request;
+}
+
+/// Why a fetch brought no distribution.
+kinship_code explain(const FetchReply& reply, const std::string& task) {
+  const auto say = [&](kinship_code code, const std::string& otherwise) {
+    return remember(code, reply.message.empty() ? otherwise : reply.message);
+  };
+  switch (reply.status) {
+    case FetchStatus::Pending:
+      return say(KINSHIP_PENDING, "the distribution of task '" + task + "' is still being made");
+    case FetchStatus::NoExperience:
+      return say(KINSHIP_NO_EXPERIENCE, "no experience with task '" + task + "'");
+    case FetchStatus::UnknownRobot:
+      return say(KINSHIP_UNKNOWN_ROBOT, "the server does not know this robot");
+    case FetchStatus::Busy:
+      return say(KINSHIP_UNAVAILABLE, "the server is busy");
+    case FetchStatus::Failed:
+      return remember(KINSHIP_NO_EXPERIENCE, reply.distribution
+                                                 ? reply.distribution->reason
+                                                 : "nothing could be transferred or fitted");
+    case FetchStatus::Ready:
+    case FetchStatus::Refused:
+      break;
+  }
+  return say(KINSHIP_REFUSED, "the server sent no distribution");
+}
+
+/// Why a follower holds none.
+kinship_code explain(const link::Follower::State& state) {
+  switch (state.status) {
+    case link::FollowStatus::NoServer:
+      return remember(KINSHIP_UNAVAILABLE, state.reason);
+    case link::FollowStatus::NoExperience:
+    case link::FollowStatus::Failed:
+      return remember(KINSHIP_NO_EXPERIENCE, state.reason);
+    case link::FollowStatus::UnknownRobot:
+      return remember(KINSHIP_UNKNOWN_ROBOT, state.reason);
+    case link::FollowStatus::Refused:
+      return remember(KINSHIP_REFUSED, state.reason);
+    case link::FollowStatus::Ready:
+    case link::FollowStatus::Pending:
+      break;
+  }
+  return remember(KINSHIP_PENDING, state.reason);
+}
+
+bool is_same(const SharedDistribution& a, const SharedDistribution& b) {
+  return a == b || (a && b && a->revision == b->revision && a->store_epoch == b->store_epoch &&
+                    a->id == b->id);
+}
+
+}  // namespace
+}  // namespace kinship::c_library
+
+using namespace kinship::c_library;  // NOLINT: what follows is C's
+
+kinship_code kinship_fetch(kinship_client* client, const kinship_request* request,
+                           kinship_distribution** distribution) {
+  return guarded([&] {
+    require(client, "client");
+    require(distribution, "distribution");
+    *distribution = nullptr;
+    const kinship::FetchRequest wanted = read_request(read_structure(request, "request"));
+    const auto reply = client->line.fetch(wanted);
+    if (!reply)
+      return remember(reply.error());
+    if (reply->status != kinship::FetchStatus::Ready || !reply->distribution ||
+        !reply->distribution->mixture)
+      return explain(*reply, wanted.task);
+    *distribution = new kinship_distribution{
+        std::make_shared<const kinship::Distribution>(*reply->distribution)};
+    return KINSHIP_OK;
+  });
+}
+
+void kinship_distribution_free(kinship_distribution* distribution) { delete distribution; }
+
+kinship_code kinship_distribution_describe(const kinship_distribution* distribution,
+                                           kinship_distribution_info* info) {
+  return guarded([&] {
+    require(distribution, "distribution");
+    const kinship::Distribution& value = *distribution->value;
+    kinship_distribution_info told{};
+    told.dof = static_cast<size_t>(value.mixture->dimension());
+    told.components = static_cast<size_t>(value.mixture->size());
+    told.revision = value.revision;
+    for (const kinship::Source& source : value.sources)
+      told.paths += source.paths;
+    told.recommended_share = value.advice.recommended_share;
+    write_structure(told, info, "info");
+    return KINSHIP_OK;
+  });
+}
+
+kinship_code kinship_distribution_copy(const kinship_distribution* distribution, double* weights,
+                                       double* means, double* covariances) {
+  return guarded([&] {
+    require(distribution, "distribution");
+    const kinship::Mixture& mixture = *distribution->value->mixture;
+    if (weights != nullptr)
+      std::copy_n(mixture.weights().data(), mixture.weights().size(), weights);
+    if (means != nullptr)
+      std::copy_n(mixture.means().data(), mixture.means().size(), means);
+    for (Eigen::Index k = 0; covariances != nullptr && k < mixture.size(); ++k) {
+      const Eigen::MatrixXd& covariance = mixture.covariance(k);  // symmetric: rows or columns
+      covariances = std::copy_n(covariance.data(), covariance.size(), covariances);
+    }
+    return KINSHIP_OK;
+  });
+}
+
+kinship_code kinship_follower_open(kinship_client* client, const kinship_request* request,
+                                   kinship_follower** follower) {
+  return guarded([&] {
+    require(client, "client");
+    require(follower, "follower");
+    *follower = nullptr;
+    *follower =
+        new kinship_follower{client->line.follow(read_request(read_structure(request, "request")))};
+    return KINSHIP_OK;
+  });
+}
+
+void kinship_follower_close(kinship_follower* follower) { delete follower; }
+
+kinship_code kinship_follower_newer(kinship_follower* follower, const kinship_distribution* held,
+                                    uint32_t timeout_ms, kinship_distribution** distribution) {
+  return guarded([&] {
+    require(follower, "follower");
+    require(distribution, "distribution");
+    *distribution = nullptr;
+    const SharedDistribution known = held == nullptr ? nullptr : held->value;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+    const SharedDistribution newest = timeout_ms == 0
+                                          ? follower->value->newest()
+                                          : follower->value->wait_for_newer(known, deadline);
+    if (!newest)
+      return explain(follower->value->state());
+    if (is_same(newest, known))
+      return remember(KINSHIP_PENDING, "the distribution that is held is the newest");
+    *distribution = new kinship_distribution{newest};
+    return KINSHIP_OK;
+  });
+}

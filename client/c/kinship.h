@@ -1,0 +1,247 @@
+/** \file kinship.h
+ * Kinship for C and for whatever calls C: register a robot, report paths, fetch or follow the
+ * distribution that the fleet's experience gives it, draw configurations from it.
+ *
+ * - Functions that can fail return a kinship_code; kinship_error_text() then says in words what
+ * went wrong in the last call of this thread, with the thing, its value and the limit. What they
+ * would have made is NULL then.
+ * - Handles are made by ..._open, ..._create or a fetch and freed once, by ..._close or ..._free,
+ * which take NULL. Text and numbers that are passed in are copied.
+ * - Any thread may use any handle, several at once; a handle is closed when nobody uses it any
+ * more.
+ * - Structures begin with their size in bytes: `kinship_request request = {.size = sizeof
+ * request};`. All else that is 0 is as if it were not said, so what a later version adds at the end
+ * does not disturb who was compiled before.
+ * - Lengths in m, angles in rad. A pose is x y z qx qy qz qw. Functions that may wait say so.
+ */
+#ifndef KINSHIP_H
+#define KINSHIP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define KINSHIP_API __attribute__((visibility("default")))
+#else
+#define KINSHIP_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum kinship_code {
+  KINSHIP_OK = 0,
+  KINSHIP_INVALID_INPUT = 1, /**< a value breaks a rule */
+  KINSHIP_NOT_FOUND = 2,     /**< no robot or task of this name */
+  KINSHIP_CONFLICT = 3,      /**< a label is another robot's */
+  KINSHIP_TOO_LARGE = 4,     /**< a size limit is exceeded */
+  KINSHIP_UNAVAILABLE = 5, /**< no server answered in time: plan uniformly, reports wait on disk */
+  KINSHIP_STORAGE = 6,     /**< a file could not be written */
+  KINSHIP_INTERNAL = 7,    /**< a bug of ours, or an answer that nobody expects */
+  KINSHIP_PENDING = 8,     /**< the distribution is still being made: ask again later */
+  KINSHIP_NO_EXPERIENCE = 9,  /**< nobody has done the task yet */
+  KINSHIP_UNKNOWN_ROBOT = 10, /**< register it first */
+  KINSHIP_REFUSED = 11,       /**< the server refuses it, for good */
+  KINSHIP_CODE_WIDTH =
+      0x7fffffff /**< no code: enumerations are as wide as int, whatever the compiler is told */
+} kinship_code;
+
+/** Version of the library that runs, e.g. "0.1.0"; never freed. */
+KINSHIP_API const char* kinship_version(void);
+
+/** Why the last call of this thread that returned another code than KINSHIP_OK did; "" before there
+ * was one. Valid until the next call of this thread that fails. */
+KINSHIP_API const char* kinship_error_text(void);
+
+/** The identity of a robot: a digest of its kinematics and transfer frame, the same on every
+ * machine. */
+typedef struct kinship_robot {
+  uint8_t digest[32];
+} kinship_robot;
+
+/* ----------------------------------------------------------------------------------------------
+ * client */
+
+typedef struct kinship_client kinship_client;
+
+typedef struct kinship_client_options {
+  size_t size;
+  uint32_t domain;     /**< DDS domain, 0 to 230 */
+  const char* server;  /**< host of kinshipd; NULL: 127.0.0.1 */
+  const char* outbox;  /**< folder of reports that wait; NULL: below XDG_STATE_HOME or HOME */
+  int without_outbox;  /**< not 0: delivers nothing, kinship_report() is refused */
+  uint32_t timeout_ms; /**< of kinship_register() and of fetches without deadline; 0: 5000 */
+} kinship_client_options;
+
+/** Needs no server. \param options NULL: as KINSHIP_DOMAIN and KINSHIP_SERVER say. */
+KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* options,
+                                             kinship_client** client);
+/** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */
+KINSHIP_API void kinship_client_close(kinship_client* client);
+
+typedef struct kinship_robot_description {
+  size_t size;
+  const char* label;     /**< for people; unique at a server */
+  const char* urdf;      /**< text of the URDF */
+  const char* base_link; /**< where the chain begins */
+  const char* tip_link;  /**< where it ends */
+  const double*
+      T_tip_transfer; /**< pose of the frame that robots of a task place alike; NULL: the tip's */
+  const char* const* never_colliding; /**< 2 n names of links, pair by pair; NULL: none */
+  size_t never_colliding_pairs;       /**< n */
+} kinship_robot_description;
+
+/** Waits up to the client's timeout.
+ * \param robot  its identity; set also with KINSHIP_UNAVAILABLE: the description is kept in the
+ * outbox, and reports of the robot can be handed over. \param dof    number of joints; may be NULL.
+ */
+KINSHIP_API kinship_code kinship_register(kinship_client* client,
+                                          const kinship_robot_description* description,
+                                          kinship_robot* robot, size_t* dof);
+
+/* ----------------------------------------------------------------------------------------------
+ * report */
+
+typedef enum kinship_sampling {
+  KINSHIP_UNIFORM = 0,
+  KINSHIP_GUIDED = 1,
+  KINSHIP_CONTROL = 2,
+  KINSHIP_SAMPLING_WIDTH = 0x7fffffff
+} kinship_sampling;
+
+/** What a planner says about one query. */
+typedef struct kinship_attempt {
+  size_t size;
+  const kinship_robot* robot;
+  const char* task;    /**< name of the task */
+  const char* machine; /**< which of the fleet's; NULL: "" */
+  const double*
+      T_task_base; /**< pose of the base in the task's frame; NULL: not known, used as identity */
+  int solved;      /**< 0: there is no path, and waypoints are not looked at */
+  const double* waypoints; /**< dof numbers each, one waypoint after the other, joint units */
+  size_t waypoint_count;   /**< at least 2 */
+  size_t dof;
+  const char* planner; /**< its name; NULL: "" */
+  double planning_time_s;
+  double time_limit_s;       /**< 0: none */
+  uint64_t collision_checks; /**< configurations of which any collision question was asked */
+  kinship_sampling sampling; /**< CONTROL: uniform on purpose although there was guidance */
+  double share;              /**< of samples drawn from the distribution, 0 to 1 */
+} kinship_attempt;
+
+/** Puts the attempt into the outbox: durable on return, sent in the background. Never waits for the
+ * network. */
+KINSHIP_API kinship_code kinship_report(kinship_client* client, const kinship_attempt* attempt);
+
+/** The same of a line of an experience file, as `kinship paths export` writes them: with a scene,
+ * if it has one. The robot stands there as digest, 64 hexadecimal digits. */
+KINSHIP_API kinship_code kinship_report_line(kinship_client* client, const char* line);
+
+typedef struct kinship_outbox {
+  size_t size;
+  size_t pending;  /**< wait for their receipt */
+  size_t accepted; /**< since the client was opened */
+  size_t refused;  /**< since then; kept on disk with the reason */
+} kinship_outbox;
+
+/** Waits until nothing is pending or the time has passed. \param outbox  what is then; may be NULL.
+ * \return KINSHIP_UNAVAILABLE if reports still wait. */
+KINSHIP_API kinship_code kinship_flush(kinship_client* client, uint32_t timeout_ms,
+                                       kinship_outbox* outbox);
+
+/* ----------------------------------------------------------------------------------------------
+ * fetch and follow */
+
+/** A mixture of Gaussians over the configurations of one robot, with its provenance. Never changes.
+ */
+typedef struct kinship_distribution kinship_distribution;
+
+typedef struct kinship_request {
+  size_t size;
+  const kinship_robot* robot;
+  const char* task;
+  const double* T_task_base; /**< where this robot stands; NULL: used as identity */
+  const char* profile;       /**< NULL: "default" */
+  uint32_t deadline_ms;      /**< 0: what is there, within the client's timeout */
+} kinship_request;
+
+/** Waits until the distribution is made, up to the deadline.
+ * \return KINSHIP_PENDING, _NO_EXPERIENCE, _UNKNOWN_ROBOT, _REFUSED or _UNAVAILABLE if there is
+ * none: plan uniformly. */
+KINSHIP_API kinship_code kinship_fetch(kinship_client* client, const kinship_request* request,
+                                       kinship_distribution** distribution);
+KINSHIP_API void kinship_distribution_free(kinship_distribution* distribution);
+
+typedef struct kinship_distribution_info {
+  size_t size;
+  size_t dof;
+  size_t components;
+  uint64_t revision;        /**< grows with the experience */
+  uint64_t paths;           /**< of all sources */
+  double recommended_share; /**< of samples to draw from it, 0 to 1; the others uniform */
+} kinship_distribution_info;
+
+KINSHIP_API kinship_code kinship_distribution_describe(const kinship_distribution* distribution,
+                                                       kinship_distribution_info* info);
+/** Copies the mixture. Each pointer may be NULL.
+ * \param weights      components numbers.
+ * \param means        components x dof, one component after the other.
+ * \param covariances  components x dof x dof. */
+KINSHIP_API kinship_code kinship_distribution_copy(const kinship_distribution* distribution,
+                                                   double* weights, double* means,
+                                                   double* covariances);
+
+/** Holds the newest distribution of a request. */
+typedef struct kinship_follower kinship_follower;
+
+/** Does not wait. The request's deadline is not used. The follower may outlive the client. */
+KINSHIP_API kinship_code kinship_follower_open(kinship_client* client,
+                                               const kinship_request* request,
+                                               kinship_follower** follower);
+KINSHIP_API void kinship_follower_close(kinship_follower* follower);
+/** The newest one, a handle of its own. With a timeout of 0 it never blocks, otherwise it waits for
+ * another than `held`. \param held  the one that the caller has; NULL: any will do. \return
+ * KINSHIP_OK with one that differs from `held`, KINSHIP_PENDING without: `held` is the newest
+ * still, or the codes of kinship_fetch() while there is none. */
+KINSHIP_API kinship_code kinship_follower_newer(kinship_follower* follower,
+                                                const kinship_distribution* held,
+                                                uint32_t timeout_ms,
+                                                kinship_distribution** distribution);
+
+/* ----------------------------------------------------------------------------------------------
+ * sampler */
+
+/** Draws configurations within the limits of the joints. Never changes: threads share one and take
+ * seeds of their own. */
+typedef struct kinship_sampler kinship_sampler;
+
+KINSHIP_API kinship_code kinship_sampler_create(const kinship_distribution* distribution,
+                                                kinship_sampler** sampler);
+KINSHIP_API void kinship_sampler_free(kinship_sampler* sampler);
+
+typedef enum kinship_layout {
+  /** Joint j of configuration i at out[i * stride + j]; stride >= dof, and what is beyond dof is
+     set to 0. */
+  KINSHIP_ROWS = 0,
+  /** Joint j of configuration i at out[j * stride + i], a structure of arrays; stride >= count,
+     beyond count untouched. */
+  KINSHIP_ARRAYS = 1,
+  KINSHIP_LAYOUT_WIDTH = 0x7fffffff
+} kinship_layout;
+
+/** Equal seeds and counts give equal numbers. `out` needs no alignment.
+ * \return KINSHIP_INTERNAL, and nothing is written, if the mixture lies outside the limits. */
+KINSHIP_API kinship_code kinship_sampler_fill(const kinship_sampler* sampler, double* out,
+                                              size_t count, size_t stride, kinship_layout layout,
+                                              uint64_t seed);
+/** The same, rounded to single precision, and then not beyond the limits. */
+KINSHIP_API kinship_code kinship_sampler_fill_float(const kinship_sampler* sampler, float* out,
+                                                    size_t count, size_t stride,
+                                                    kinship_layout layout, uint64_t seed);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,202 @@
+// Kinship installed, and client/examples built against it as a project of its own and run beside a
+// server.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.hpp"
+#include "tests/support/reserved_domain.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::installed_library_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ended {
+  int exit_code = -1;
+  std::string output;
+};
+
+Ended run(const std::vector<std::string>& command) {
+  test::ChildProcess process(command);
+  Ended ended;
+  for (std::string line = process.read_line(); !line.empty(); line = process.read_line())
+    ended.output += line + '\n';
+  ended.exit_code = process.wait();
+  return ended;
+}
+
+/// Its empty lines do not end the output.
+Ended run_in_shell(const std::string& command) {
+  return run({"/bin/sh", "-c", "{ " + command + "; } 2>&1 | sed 's/^$/ /'"});
+}
+
+const fs::path kBuild = fs::path(KINSHIP_BIN_DIR).parent_path();
+// Always the same one, so that a compiler cache knows the examples.
+const fs::path kFolder = kBuild / "tests" / "installed_library";
+const fs::path kPrefix = kFolder / "prefix";
+
+/// Every file that a header names in quotes is installed with it, so none needs our source tree.
+void expect_headers_are_complete(const fs::path& root) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*"([^"]+)")re");
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    if (!entry.is_regular_file())
+      continue;
+    std::ifstream stream(entry.path());
+    std::smatch match;
+    for (std::string line; std::getline(stream, line);)
+      if (std::regex_search(line, match, kInclude)) {
+        ++count;
+        EXPECT_TRUE(fs::exists(root / match[1].str()))
+            << entry.path() << " includes " << match[1] << ", which is not installed";
+      }
+  }
+  EXPECT_GT(count, 100);
+}
+
+class InstalledLibrary : public testing::Test {
+ protected:
+  InstalledLibrary() {
+    setenv("KINSHIP_DOMAIN", std::to_string(domain_.number()).c_str(), 1);
+    setenv("XDG_STATE_HOME", directory_.path().c_str(), 1);
+    unsetenv("KINSHIP_SERVER");
+  }
+
+  static void install() {
+    fs::remove_all(kPrefix);
+    for (const std::string component : {"client", "planning", "c", "robots"}) {
+      const Ended installed = run({KINSHIP_CMAKE, "--install", kBuild.string(), "--prefix",
+                                   kPrefix.string(), "--component", component});
+      ASSERT_EQ(installed.exit_code, 0) << installed.output;
+    }
+  }
+  static void build_examples() {
+    const std::string source = std::string(KINSHIP_SOURCE_DIR) + "/client/examples";
+    const std::string build = (kFolder / "build").string();
+    const std::string flags =
+        " -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_FLAGS='-O0 -Wall -Wextra -Werror'"
+        " -DCMAKE_C_FLAGS='-Wall -Wextra -Wpedantic -Werror'";
+    fs::remove_all(build);
+    // sed is the last of the pipe: what cmake says decides.
+    const Ended built = run_in_shell(
+        std::string(KINSHIP_CMAKE) + " -G '" KINSHIP_GENERATOR "' -S '" + source + "' -B '" +
+        build + "' -DCMAKE_PREFIX_PATH='" + kPrefix.string() + "'" + flags +
+        KINSHIP_LAUNCHERS " && " KINSHIP_CMAKE " --build '" + build + "' && echo BUILT");
+    ASSERT_NE(built.output.find("\nBUILT\n"), std::string::npos) << built.output;
+  }
+  void start_server() {
+    server_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
+        .store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
+  }
+  static std::vector<std::string> example(const std::string& name,
+                                          std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), (kFolder / "build" / name).string());
+    return arguments;
+  }
+  static void expect_output(const Ended& run, const std::string& part) {
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_NE(run.output.find(part), std::string::npos) << "no '" << part << "' in: " << run.output;
+  }
+
+  test::ReservedDomain domain_;
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<test::ServerProcess> server_;
+};
+
+TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
+  ASSERT_NO_FATAL_FAILURE(install());
+  expect_headers_are_complete(kPrefix / "include" / "kinship-0.1");
+  ASSERT_NO_FATAL_FAILURE(build_examples());
+  const std::string models = (kPrefix / "share/kinship/robots").string();
+
+  const Ended offline = run(example("07_work_offline", {models}));
+  expect_output(offline, "planning uniformly");
+  expect_output(offline, "accepted 0, pending 1");
+  start_server();
+  expect_output(run(example("07_work_offline", {models})), "accepted 2, pending 0");
+
+  expect_output(run(example("01_report_a_path", {models, "0"})),
+                "accepted 6, refused 0, pending 0");
+  expect_output(run(example("01_report_a_path_c", {models + "/panda/robot.urdf"})), "accepted 1");
+  expect_output(run(example("02_fetch_and_sample", {models})), "paths of 'panda'\ndrawn 1000");
+  expect_output(run(example("02_fetch_and_sample_c", {models + "/ur10e/robot.urdf"})),
+                "of 6 joints");
+  expect_output(run(example("03_guide_an_ompl_planner", {models})), "solved with ");
+  expect_output(run(example("04_guide_your_own_planner", {models})), "solved in ");
+  expect_output(run(example("06_register_any_urdf",
+                            {models + "/iiwa7/robot.urdf", "iiwa_link_0", "iiwa_link_ee", "0.12"})),
+                "inverse kinematics: ");
+
+  test::ChildProcess following(example("05_follow_and_replan", {models, "2"}));
+  const std::string first = following.read_line();
+  EXPECT_TRUE(first.starts_with("revision ")) << first;
+  expect_output(run(example("01_report_a_path", {models, "6"})), "accepted 6");
+  const std::string second = following.read_line();
+  EXPECT_TRUE(second.starts_with("revision ")) << second;
+  EXPECT_NE(second, first);
+  EXPECT_EQ(following.wait(), 0);
+}
+
+TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
+  const std::string header = test::read_text(KINSHIP_SOURCE_DIR "/client/c/kinship.h");
+  static const std::regex kDeclared(R"(KINSHIP_API [^;(]*?(kinship_\w+)\()");
+  std::vector<std::string> declared;
+  for (std::sregex_iterator it(header.begin(), header.end(), kDeclared), end; it != end; ++it)
+    declared.push_back((*it)[1]);
+  std::ranges::sort(declared);
+  EXPECT_GT(declared.size(), 15U);
+
+  const Ended symbols = run({"/usr/bin/nm", "-D", "--defined-only", "--without-symbol-versions",
+                             "--format=posix", KINSHIP_C_LIBRARY});
+  ASSERT_EQ(symbols.exit_code, 0) << symbols.output;
+  std::vector<std::string> exported;
+  std::istringstream lines(symbols.output);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string name = line.substr(0, line.find(' ')); name != "KINSHIP_0")
+      exported.push_back(name);
+  std::ranges::sort(exported);
+  EXPECT_EQ(exported, declared);
+}
+
+TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {
+  const fs::path folder = kBuild / "tests" / "added_library";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ofstream(folder / "CMakeLists.txt")
+      << "cmake_minimum_required(VERSION 3.25)\nproject(theirs LANGUAGES C CXX)\n"
+      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship)\n"
+      << "foreach(name IN ITEMS client planning c)\n"
+      << "  add_executable(uses_${name} main.cpp)\n"
+      << "  target_link_libraries(uses_${name} PRIVATE Kinship::${name})\nendforeach()\n"
+      << "if(TARGET unit_types OR TARGET GTest::gtest)\n  message(FATAL_ERROR tests)\nendif()\n";
+  std::ofstream(folder / "main.cpp") << "int main() { return 0; }\n";
+  const Ended configured = run_in_shell(
+      std::string(KINSHIP_CMAKE) + " -G '" KINSHIP_GENERATOR "' -S '" + folder.string() + "' -B '" +
+      (folder / "build").string() + "' -DCMAKE_EXPORT_COMPILE_COMMANDS=ON && echo CONFIGURED");
+  ASSERT_NE(configured.output.find("\nCONFIGURED\n"), std::string::npos) << configured.output;
+  // A line each for the command and the file of a source.
+  std::istringstream lines(test::read_text(folder / "build" / "compile_commands.json"));
+  int theirs = 0;
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("\"command\"") != std::string::npos &&
+        line.find(" -c " + (folder / "main.cpp").string()) != std::string::npos) {
+      ++theirs;
+      EXPECT_EQ(line.find("-Wconversion"), std::string::npos) << line;
+    }
+  EXPECT_EQ(theirs, 3);
+}
+
+}  // namespace
+}  // namespace kinship::installed_library_test

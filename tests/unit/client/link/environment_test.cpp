@@ -1,0 +1,52 @@
+#include "client/link/environment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::link::environment_test {
+namespace {
+
+class Environment : public testing::Test {
+ protected:
+  Environment() { clear(); }
+  ~Environment() override { clear(); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+  static void clear() {
+    unsetenv("KINSHIP_DOMAIN");
+    unsetenv("KINSHIP_SERVER");
+  }
+};
+
+TEST_F(Environment, WhatIsNotSaidIsAsOptionsHaveIt) {
+  EXPECT_EQ(options_from_environment().domain, 0U);
+  EXPECT_EQ(options_from_environment().server, ClientOptions().server);
+}
+
+TEST_F(Environment, DomainAndServerAreTaken) {
+  setenv("KINSHIP_DOMAIN", "230", 1);
+  setenv("KINSHIP_SERVER", "10.0.0.7", 1);
+  EXPECT_EQ(options_from_environment().domain, 230U);
+  EXPECT_EQ(options_from_environment().server, "10.0.0.7");
+}
+
+TEST_F(Environment, ADomainThatIsNoneIsRefusedByName) {
+  for (const char* const text : {"231", "-1", "7a", " 7", "99999999999"}) {
+    setenv("KINSHIP_DOMAIN", text, 1);
+    try {
+      options_from_environment();
+      FAIL() << "taken: " << text;
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ErrorCode::InvalidInput);
+      EXPECT_EQ(std::string(failure.what()),
+                "KINSHIP_DOMAIN '" + std::string(text) + "' is not a domain from 0 to 230");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinship::link::environment_test
