@@ -31,6 +31,13 @@ bool is_final(const Result<FetchReply>& reply) {
   return reply && reply->status != FetchStatus::Pending && reply->status != FetchStatus::Busy;
 }
 
+/// An error that tells of its slice, telling of the whole time.
+Error in_all(Error error, milliseconds asked_for) {
+  if (error.code == ErrorCode::Unavailable && asked_for > kSlice)
+    error.message += ", asked anew until " + std::to_string(asked_for.count()) + " ms had passed";
+  return error;
+}
+
 }  // namespace
 
 ClientHandle::ClientHandle(const link::ClientOptions& options) {
@@ -54,7 +61,8 @@ void ClientHandle::close() {
 }
 
 Result<FetchReply> ClientHandle::fetch(FetchRequest request) const {
-  const Clock::time_point deadline = Clock::now() + request.deadline;
+  const milliseconds asked_for = request.deadline;
+  const Clock::time_point deadline = Clock::now() + asked_for;
   std::optional<Result<FetchReply>> last;
   while (true) {
     const std::shared_ptr<link::Client> client = line();
@@ -70,8 +78,10 @@ Result<FetchReply> ClientHandle::fetch(FetchRequest request) const {
         std::this_thread::sleep_until(std::min(slice_end, deadline));
     }
     hear_signals();
-    if (is_final(*last) || Clock::now() >= deadline - 1ms)
+    if (is_final(*last))
       return *std::move(last);
+    if (Clock::now() >= deadline - 1ms)
+      return *last ? *std::move(last) : in_all(last->error(), asked_for);
   }
 }
 

@@ -156,7 +156,7 @@ class WithoutServer(unittest.TestCase):
         thread = threading.Thread(target=tick)
         thread.start()
         begin = time.monotonic()
-        with self.assertRaises(kinship.NoServer):
+        with self.assertRaisesRegex(kinship.NoServer, f"no server answered.*domain {self.server.domain}.*2000 ms"):
             self.client.fetch(TASK, self.panda, deadline=2)
         end = time.monotonic()
         is_over.set()
