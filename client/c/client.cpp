@@ -121,7 +121,7 @@ Digest read_robot(const kinship_robot* robot, const char* name) {
 
 }  // namespace kinship::c_library
 
-using namespace kinship::c_library;  // NOLINT: what follows is C's
+using namespace kinship::c_library;
 
 kinship_code kinship_client_open(const kinship_client_options* options, kinship_client** client) {
   return guarded([&] {

@@ -76,7 +76,7 @@ bool is_same(const SharedDistribution& a, const SharedDistribution& b) {
 }  // namespace
 }  // namespace kinship::c_library
 
-using namespace kinship::c_library;  // NOLINT: what follows is C's
+using namespace kinship::c_library;
 
 kinship_code kinship_fetch(kinship_client* client, const kinship_request* request,
                            kinship_distribution** distribution) {

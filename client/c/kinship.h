@@ -30,6 +30,8 @@
 extern "C" {
 #endif
 
+/* Names as C has them. NOLINTBEGIN(readability-identifier-naming,readability-function-size) */
+
 typedef enum kinship_code {
   KINSHIP_OK = 0,
   KINSHIP_INVALID_INPUT = 1, /**< a value breaks a rule */
@@ -240,6 +242,7 @@ KINSHIP_API kinship_code kinship_sampler_fill_float(const kinship_sampler* sampl
                                                     size_t count, size_t stride,
                                                     kinship_layout layout, uint64_t seed);
 
+/* NOLINTEND(readability-identifier-naming,readability-function-size) */
 #ifdef __cplusplus
 }
 #endif

@@ -73,7 +73,7 @@ kinship_code fill(const kinship_sampler* sampler, Number* out, const Room& room,
 }  // namespace
 }  // namespace kinship::c_library
 
-using namespace kinship::c_library;  // NOLINT: what follows is C's
+using namespace kinship::c_library;
 
 kinship_code kinship_sampler_create(const kinship_distribution* distribution,
                                     kinship_sampler** sampler) {
@@ -88,7 +88,6 @@ kinship_code kinship_sampler_create(const kinship_distribution* distribution,
 
 void kinship_sampler_free(kinship_sampler* sampler) { delete sampler; }
 
-// NOLINTNEXTLINE(readability-identifier-naming): C's
 kinship_code kinship_sampler_fill(const kinship_sampler* sampler, double* out, size_t count,
                                   size_t stride, kinship_layout layout, uint64_t seed) {
   return fill(sampler, out, {count, stride, layout}, seed);

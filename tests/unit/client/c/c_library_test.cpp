@@ -44,9 +44,7 @@ class CLibraryOffline : public testing::Test {
     attempt_.waypoint_count = 2;
     attempt_.dof = 7;
   }
-  CLibraryOffline(const CLibraryOffline&) = delete;
-  CLibraryOffline& operator=(const CLibraryOffline&) = delete;
-  ~CLibraryOffline() override { kinship_client_close(client_); }
+  void TearDown() override { kinship_client_close(client_); }
 
   static void expect_refused(kinship_code code, const std::string& text) {
     EXPECT_EQ(code, KINSHIP_INVALID_INPUT);

@@ -33,9 +33,7 @@ class CSampler : public testing::Test {
         std::make_shared<const Distribution>(cut_distribution())};
     EXPECT_EQ(kinship_sampler_create(&distribution, &sampler_), KINSHIP_OK);
   }
-  CSampler(const CSampler&) = delete;
-  CSampler& operator=(const CSampler&) = delete;
-  ~CSampler() override { kinship_sampler_free(sampler_); }
+  void TearDown() override { kinship_sampler_free(sampler_); }
 
   kinship_sampler* sampler_ = nullptr;
 };

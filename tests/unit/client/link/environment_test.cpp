@@ -11,10 +11,8 @@ namespace {
 
 class Environment : public testing::Test {
  protected:
-  Environment() { clear(); }
-  ~Environment() override { clear(); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
+  void SetUp() override { clear(); }
+  void TearDown() override { clear(); }
 
   static void clear() {
     unsetenv("KINSHIP_DOMAIN");
