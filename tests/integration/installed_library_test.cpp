@@ -170,6 +170,21 @@ TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
   EXPECT_EQ(exported, declared);
 }
 
+TEST(CLibrary, AloneIsFoundByPkgConfig) {
+  const std::string prefix = (kBuild / "tests" / "c_library").string();
+  fs::remove_all(prefix);
+  const Ended installed =
+      run({KINSHIP_CMAKE, "--install", kBuild.string(), "--prefix", prefix, "--component", "c"});
+  ASSERT_EQ(installed.exit_code, 0) << installed.output;
+  const Ended ended = run_in_shell(
+      "export PKG_CONFIG_PATH=\"$(dirname \"$(find '" + prefix + "' -name kinship.pc)\")\" && " +
+      "cc -std=c99 -Wall -Werror '" KINSHIP_SOURCE_DIR "/client/examples/01_report_a_path_c.c' " +
+      "$(pkg-config --cflags --libs kinship) -o '" + prefix + "/example' && " +
+      "LD_LIBRARY_PATH=\"$(pkg-config --variable=prefix kinship)/" KINSHIP_LIBDIR "\" '" + prefix +
+      "/example'");
+  EXPECT_EQ(ended.output, "usage: 01_report_a_path_c URDF\n");
+}
+
 TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {
   const fs::path folder = kBuild / "tests" / "added_library";
   fs::remove_all(folder);
