@@ -191,7 +191,7 @@ TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {
   fs::create_directories(folder);
   std::ofstream(folder / "CMakeLists.txt")
       << "cmake_minimum_required(VERSION 3.25)\nproject(theirs LANGUAGES C CXX)\n"
-      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship)\n"
+      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship EXCLUDE_FROM_ALL)\n"
       << "foreach(name IN ITEMS client planning c)\n"
       << "  add_executable(uses_${name} main.cpp)\n"
       << "  target_link_libraries(uses_${name} PRIVATE Kinship::${name})\nendforeach()\n"
