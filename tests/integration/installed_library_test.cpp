@@ -170,13 +170,28 @@ TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
   EXPECT_EQ(exported, declared);
 }
 
+TEST(CLibrary, AloneIsFoundByPkgConfig) {
+  const std::string prefix = (kBuild / "tests" / "c_library").string();
+  fs::remove_all(prefix);
+  const Ended installed =
+      run({KINSHIP_CMAKE, "--install", kBuild.string(), "--prefix", prefix, "--component", "c"});
+  ASSERT_EQ(installed.exit_code, 0) << installed.output;
+  const Ended ended = run_in_shell(
+      "export PKG_CONFIG_PATH=\"$(dirname \"$(find '" + prefix + "' -name kinship.pc)\")\" && " +
+      "cc -std=c99 -Wall -Werror '" KINSHIP_SOURCE_DIR "/client/examples/01_report_a_path_c.c' " +
+      "$(pkg-config --cflags --libs kinship) -o '" + prefix + "/example' && " +
+      "LD_LIBRARY_PATH=\"$(pkg-config --variable=prefix kinship)/" KINSHIP_LIBDIR "\" '" + prefix +
+      "/example'");
+  EXPECT_EQ(ended.output, "usage: 01_report_a_path_c URDF\n");
+}
+
 TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {
   const fs::path folder = kBuild / "tests" / "added_library";
   fs::remove_all(folder);
   fs::create_directories(folder);
   std::ofstream(folder / "CMakeLists.txt")
       << "cmake_minimum_required(VERSION 3.25)\nproject(theirs LANGUAGES C CXX)\n"
-      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship)\n"
+      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship EXCLUDE_FROM_ALL)\n"
       << "foreach(name IN ITEMS client planning c)\n"
       << "  add_executable(uses_${name} main.cpp)\n"
       << "  target_link_libraries(uses_${name} PRIVATE Kinship::${name})\nendforeach()\n"
