@@ -43,16 +43,17 @@ class Server {
   }
   test::ServerProcess& process() { return *process_; }
 
-  std::vector<std::string> with_domain(const std::vector<std::string>& words) const {
+  std::vector<std::string> with_domain(const std::vector<std::string>& words,
+                                       const char* timeout_s = "30") const {
     std::vector<std::string> arguments = {"--domain", std::to_string(domain_.number()), "--timeout",
-                                          "30"};
+                                          timeout_s};
     arguments.insert(arguments.end(), words.begin(), words.end());
     return arguments;
   }
-  Answer kinship(const std::vector<std::string>& words) const {
+  Answer kinship(const std::vector<std::string>& words, const char* timeout_s = "30") const {
     const test::TemporaryDirectory folder;
     Answer answer;
-    test::Program program("kinship", with_domain(words), folder / "err");
+    test::Program program("kinship", with_domain(words, timeout_s), folder / "err");
     answer.out = program.read_all();
     answer.code = program.wait();
     answer.err = test::read_text(folder / "err");
@@ -378,11 +379,11 @@ TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
 
 TEST_F(AdminCommands, TheHostOfTheServerIsAnOptionOrComesFromTheEnvironment) {
   EXPECT_EQ(server_.kinship({"--server", "localhost", "status"}).code, 0);
-  const Answer nobody = server_.kinship({"--server", "nobody.invalid", "status"});
+  const Answer nobody = server_.kinship({"--server", "nobody.invalid", "status"}, "0.5");
   EXPECT_NE(nobody.code, 0);
   EXPECT_NE(nobody.err.find("nobody.invalid"), std::string::npos) << nobody.err;
   setenv("KINSHIP_SERVER", "nobody.invalid", 1);
-  EXPECT_EQ(server_.kinship({"status"}).code, nobody.code);
+  EXPECT_EQ(server_.kinship({"status"}, "0.5").code, nobody.code);
   EXPECT_EQ(server_.kinship({"--server", "127.0.0.1", "status"}).code, 0);
   unsetenv("KINSHIP_SERVER");
 }
