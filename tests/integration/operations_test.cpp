@@ -33,7 +33,7 @@ class BackupScript : public testing::Test {
     setenv("KINSHIP_DOMAIN", std::to_string(domain_.number()).c_str(), 1);
     setenv("KINSHIP_BACKUPS", "2", 1);
   }
-  ~BackupScript() override {
+  void TearDown() override {
     unsetenv("KINSHIP_DOMAIN");
     unsetenv("KINSHIP_BACKUPS");
   }
