@@ -27,6 +27,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_server_commands(app, session);
   add_jobs(app, session);
   add_robots(app, session);
+  add_problems(app, session);
   add_tasks(app, session);
   add_paths(app, session);
   add_distributions(app, session);

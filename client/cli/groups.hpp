@@ -8,6 +8,7 @@ namespace kinship::cli {
 void add_server_commands(CLI::App& app, Session& session);  ///< status, backup, watch
 void add_jobs(CLI::App& app, Session& session);
 void add_robots(CLI::App& app, Session& session);
+void add_problems(CLI::App& app, Session& session);
 void add_tasks(CLI::App& app, Session& session);
 void add_paths(CLI::App& app, Session& session);
 void add_distributions(CLI::App& app, Session& session);

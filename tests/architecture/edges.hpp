@@ -34,6 +34,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"assimp", {"assimp/"}},
     {"tinyxml2", {"tinyxml2.h"}},
     {"pybind11", {"pybind11/"}},
+    {"yaml-cpp", {"yaml-cpp/"}},
 };
 
 inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
@@ -63,6 +64,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
   const std::string planner = "client/planner";
+  const std::string moveit = "client/moveit";
   const std::set<std::string> planner_programs = {
       link,      arguments, files,      planning, ompl,    evidence, inverse,
       collision, geometry,  kinematics, models,   mixture, json,     types};
@@ -98,9 +100,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
+      {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {"client/cli",
-       {{link, arguments, files, inverse, collision, geometry, kinematics, models, mixture, json,
-         types},
+       {{link, arguments, files, moveit, inverse, collision, geometry, kinematics, models, mixture,
+         json, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
       {"client/library",

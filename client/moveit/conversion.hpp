@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/types/problem.hpp"
+#include "proto/types/result.hpp"
+#include "robots/kinematics/chain.hpp"
+
+/// Problems out of MoveIt's messages, written as YAML.
+namespace kinship::moveit {
+
+/// A mesh that a scene carried along; a problem names a file.
+struct MeshFile {
+  std::string name;  ///< as the problem names it
+  std::string obj;   ///< its text, Wavefront OBJ
+};
+
+struct Conversion {
+  Problem problem;
+  std::vector<MeshFile> meshes;  ///< to be written beside the problem file
+  /// What a problem cannot say and planning is possible without, in words.
+  std::vector<std::string> left_out;
+};
+
+struct ConversionInput {
+  std::filesystem::path scene;    ///< moveit_msgs/PlanningScene; empty: nothing is around the robot
+  std::filesystem::path request;  ///< moveit_msgs/MotionPlanRequest
+  /// The robot's base in the task frame; empty: the task frame is MoveIt's planning frame, that of
+  /// the URDF's root link.
+  std::optional<Eigen::Isometry3d> T_task_base;
+  std::string name;  ///< of the problem
+};
+
+/// Reads a planning scene and a request as one problem for a robot: obstacles and what it holds,
+/// pairs that may touch, start, goal, time limit and an orientation to be kept on the way.
+/// \return NotFound or InvalidInput that names file, line and member; also for what a problem
+/// cannot
+///         say and that must not be left out: an octomap, a cone, a plane, another path constraint.
+Result<Conversion> read_problem(const ConversionInput& input, const kinematics::Chain& chain);
+
+}  // namespace kinship::moveit

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "client/moveit/conversion.hpp"
+#include "client/moveit/frames.hpp"
+#include "client/moveit/yaml_value.hpp"
+
+namespace kinship::moveit {
+
+/// The configuration in which a robot starts: the request's start state, and the scene's robot
+/// state for joints that it does not name. \return dof, joint units \throws Failure(InvalidInput)
+/// that names the first joint of which nothing is said
+Eigen::VectorXd read_start(const YamlValue& scene, const YamlValue& request,
+                           const kinematics::Chain& chain);
+
+/// goal_constraints and path_constraints of moveit_msgs/MotionPlanRequest, into `conversion`.
+/// \throws Failure(InvalidInput) that names the place
+void read_goals(const YamlValue& request, const kinematics::Chain& chain, const Frames& frames,
+                Conversion& conversion);
+
+}  // namespace kinship::moveit

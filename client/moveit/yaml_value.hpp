@@ -1,0 +1,54 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kinship::moveit {
+
+/// A place in a YAML document that knows its way there, so that an error can name it. What is asked
+/// of a missing place is missing too.
+class YamlValue {
+ public:
+  /// Reads a file's first document; later ones, as of an echoed topic, are left.
+  /// \throws Failure(NotFound or InvalidInput) that names the file, and the line of a syntax error.
+  static YamlValue read(const std::filesystem::path& file);
+
+  /// A member of a map; missing if there is none.
+  YamlValue operator[](const std::string& member) const;
+
+  /// The first of these that is there; missing if none is.
+  YamlValue first_of(std::initializer_list<const char*> members) const;
+
+  bool is_missing() const noexcept { return !node_ || node_.IsNull(); }
+  bool is_map() const noexcept { return !is_missing() && node_.IsMap(); }
+
+  /// The values of a list; none if it is missing.
+  /// \throws Failure(InvalidInput) if it is no list.
+  std::vector<YamlValue> items() const;
+
+  /// \throws Failure(InvalidInput) if it is missing or no finite number.
+  double number() const;
+  double number_or(double otherwise) const { return is_missing() ? otherwise : number(); }
+  bool flag() const;         ///< true, false, 1, 0 \throws as number()
+  std::string text() const;  ///< \throws Failure(InvalidInput) if it is missing or no scalar
+  std::string text_or(const std::string& otherwise) const {
+    return is_missing() ? otherwise : text();
+  }
+
+  /// \throws Failure(InvalidInput), always: "'scene.yaml' line 12, world.collision_objects[0]:
+  /// WHY".
+  [[noreturn]] void refuse(const std::string& why) const;
+
+ private:
+  YamlValue(YAML::Node node, std::string file, std::string way)
+      : node_(std::move(node)), file_(std::move(file)), way_(std::move(way)) {}
+
+  YAML::Node node_;
+  std::string file_;
+  std::string way_;  // empty for the document
+};
+
+}  // namespace kinship::moveit

@@ -1,0 +1,344 @@
+#include "client/moveit/conversion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/models/loaded_robot.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::moveit::conversion_test {
+namespace {
+
+/// As `ros2 topic echo` writes messages: numbers for kinds, points with x, y and z.
+constexpr const char* kEchoedScene = R"(
+robot_state:
+  joint_state:
+    name: [panda_joint1, panda_joint2, panda_joint3, panda_joint4, panda_joint5, panda_joint6, panda_joint7, panda_finger_joint1]
+    position: [0.1, -0.4, 0.0, -2.2, 0.0, 1.8, 0.8, 0.04]
+  attached_collision_objects:
+  - link_name: panda_link8
+    touch_links: [finger_left, panda_leftfinger]
+    object:
+      header: {frame_id: panda_link8}
+      id: cup
+      pose: {position: {x: 0.0, y: 0.0, z: 0.1}, orientation: {x: 0, y: 0, z: 0, w: 1}}
+      primitives: [{type: 3, dimensions: [0.1, 0.03]}]
+      primitive_poses: [{position: {x: 0.0, y: 0.0, z: 0.02}}]
+      operation: 0
+fixed_frame_transforms:
+- header: {frame_id: panda_link0}
+  child_frame_id: table
+  transform: {translation: {x: 0.5, y: 0.0, z: 0.2}, rotation: {x: 0, y: 0, z: 0, w: 1}}
+allowed_collision_matrix:
+  entry_names: [panda_link0, shelf, stranger]
+  entry_values:
+  - enabled: [false, true, true]
+  - enabled: [true, false, false]
+  - enabled: [true, false, false]
+link_padding: [{link_name: panda_link1, padding: 0.01}]
+world:
+  collision_objects:
+  - header: {frame_id: table}
+    id: shelf
+    pose: {position: {x: 0.0, y: 0.1, z: 0.0}, orientation: {x: 0.0, y: 0.0, z: 0.70710678, w: 0.70710678}}
+    primitives:
+    - {type: 1, dimensions: [0.4, 0.2, 0.02]}
+    - {type: 2, dimensions: [0.05]}
+    primitive_poses:
+    - {position: {x: 0.3, y: 0.0, z: 0.0}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}
+    - {position: {x: 0.0, y: 0.0, z: 0.5}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 0.0}}
+    operation: 0
+---
+)";
+
+constexpr const char* kEchoedRequest = R"(
+group_name: panda_arm
+allowed_planning_time: 3.5
+start_state:
+  joint_state: {name: [panda_joint1], position: [0.3]}
+  is_diff: true
+goal_constraints:
+- joint_constraints: []
+  position_constraints:
+  - header: {frame_id: panda_link0}
+    link_name: palm
+    target_point_offset: {x: 0.0, y: 0.0, z: 0.0}
+    constraint_region:
+      primitives: [{type: 2, dimensions: [0.001]}]
+      primitive_poses: [{position: {x: 0.4, y: -0.3, z: 0.5}}]
+  orientation_constraints:
+  - header: {frame_id: panda_link0}
+    link_name: palm
+    orientation: {x: 1.0, y: 0.0, z: 0.0, w: 0.0}
+)";
+
+/// As benchmark sets write them: lists and words.
+constexpr const char* kListedScene = R"(
+world:
+  collision_objects:
+    - id: box
+      header: {frame_id: world}
+      primitives: [{type: box, dimensions: [0.1, 0.2, 0.3]}]
+      primitive_poses: [{position: [0.5, 0.1, 0.2], orientation: [0, 0, 0, 1]}]
+    - id: can
+      primitives: [{type: cylinder, dimensions: [0.2, 0.05]}]
+      primitive_poses: [{position: [0.5, -0.1, 0.2], orientation: [0, 0, 0, 1]}]
+    - id: bowl
+      meshes: [{resource: "package://set/bowl.stl", dimensions: [2, 2, 2]}]
+      mesh_poses: [{position: [0, 0, 1], orientation: [0, 0, 0, 1]}]
+)";
+
+std::string listed_request(const std::string& further = "") {
+  return R"(
+start_state: {joint_state: {name: [panda_joint1, panda_joint2, panda_joint3, panda_joint4, panda_joint5, panda_joint6, panda_joint7], position: [0.1, -0.4, 0, -2.2, 0, 1.8, 0.8]}}
+goal_constraints:
+  - joint_constraints:
+      - {joint_name: panda_joint7, position: 0.7}
+      - {joint_name: panda_joint1, position: 0.1}
+      - {joint_name: panda_joint2, position: 0.2}
+      - {joint_name: panda_joint3, position: 0.3}
+      - {joint_name: panda_joint4, position: -0.4}
+      - {joint_name: panda_joint5, position: 0.5}
+      - {joint_name: panda_joint6, position: 0.6}
+)" + further;
+}
+
+const models::LoadedRobot& panda() {
+  static const models::LoadedRobot robot =
+      models::load_robot({.source = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda"})
+          .value_or_throw();
+  return robot;
+}
+
+Result<Conversion> convert(const std::string& scene, const std::string& request,
+                           const std::optional<Eigen::Isometry3d>& T_task_base = std::nullopt) {
+  const test::TemporaryDirectory folder;
+  const auto scene_file = folder.path() / "scene.yaml";
+  const auto request_file = folder.path() / "request.yaml";
+  std::ofstream(scene_file) << scene;
+  std::ofstream(request_file) << request;
+  return read_problem({.scene = scene.empty() ? "" : scene_file,
+                       .request = request_file,
+                       .T_task_base = T_task_base,
+                       .name = "first"},
+                      panda().chain);
+}
+
+Eigen::Isometry3d translation(double x, double y, double z) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
+}
+
+void expect_pose(const Eigen::Isometry3d& expected, const Eigen::Isometry3d& found) {
+  EXPECT_TRUE(expected.isApprox(found, 1e-6)) << expected.matrix() << "\nfound\n" << found.matrix();
+}
+
+/// The message of what cannot be converted.
+std::string refusal(const std::string& scene, const std::string& request) {
+  const auto conversion = convert(scene, request);
+  return conversion ? "converted" : conversion.error().message;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t place = text.find(what);
+  EXPECT_NE(place, std::string::npos) << what;
+  return text.replace(place, what.size(), with);
+}
+
+TEST(MoveItConversion, StartsWhereTheRequestSaysAndElseWhereTheSceneDoes) {
+  const Problem problem = convert(kEchoedScene, kEchoedRequest).value_or_throw().problem;
+  Eigen::VectorXd start(7);
+  start << 0.3, -0.4, 0, -2.2, 0, 1.8, 0.8;
+  EXPECT_EQ(problem.start, start);
+  EXPECT_EQ(problem.name, "first");
+  EXPECT_EQ(problem.time_limit_s, 3.5);
+}
+
+TEST(MoveItConversion, PlacesEachSolidOfAnObjectThroughItsFrames) {
+  const Scene scene = convert(kEchoedScene, kEchoedRequest).value_or_throw().problem.scene;
+  ASSERT_EQ(scene.objects.size(), 2U);
+  const Eigen::Isometry3d T_task_shelf =
+      translation(0.5, 0.1, 0.2) *
+      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(scene.objects[0].name, "shelf/1");
+  expect_pose(T_task_shelf * translation(0.3, 0, 0), scene.objects[0].T_task_object);
+  EXPECT_EQ(std::get<BoxShape>(scene.objects[0].shape).size, Eigen::Vector3d(0.4, 0.2, 0.02));
+  EXPECT_EQ(scene.objects[1].name, "shelf/2");
+  expect_pose(T_task_shelf * translation(0, 0, 0.5), scene.objects[1].T_task_object);
+}
+
+TEST(MoveItConversion, TheGoalIsThatOfTheTransferFrameWhicheverLinkOfTheHandIsMeant) {
+  const Problem problem = convert(kEchoedScene, kEchoedRequest).value_or_throw().problem;
+  const kinematics::Chain& chain = panda().chain;
+  Eigen::Isometry3d T_base_palm =
+      translation(0.4, -0.3, 0.5) * Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
+  // The palm hangs at the tip: the same for every configuration.
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(7, -0.5);
+  const auto links = kinematics::link_poses(chain, q);
+  const Eigen::Isometry3d T_palm_transfer =
+      links[static_cast<std::size_t>(chain.find_link("palm"))].inverse() *
+      kinematics::T_base_transfer(chain, q);
+  ASSERT_TRUE(problem.T_task_goal);
+  expect_pose(T_base_palm * T_palm_transfer, *problem.T_task_goal);
+}
+
+TEST(MoveItConversion, WhatIsHeldHangsAtItsLink) {
+  const Conversion conversion = convert(kEchoedScene, kEchoedRequest).value_or_throw();
+  ASSERT_EQ(conversion.problem.attached.size(), 1U);
+  const AttachedObject& cup = conversion.problem.attached.front();
+  EXPECT_EQ(cup.link, "panda_link8");
+  EXPECT_EQ(std::get<CylinderShape>(cup.shape).radius_m, 0.03);
+  EXPECT_EQ(std::get<CylinderShape>(cup.shape).length_m, 0.1);
+  expect_pose(translation(0, 0, 0.12), cup.T_link_object);
+  EXPECT_EQ(cup.touch_links, std::vector<std::string>{"finger_left"});
+}
+
+TEST(MoveItConversion, AllowedPairsNameEachPartAndOnlyWhatIsThere) {
+  using Pairs = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(convert(kEchoedScene, kEchoedRequest).value_or_throw().problem.allowed_collisions,
+            (Pairs{{"panda_link0", "shelf/1"}, {"panda_link0", "shelf/2"}}));
+}
+
+TEST(MoveItConversion, TellsWhatItLeftOut) {
+  const auto left_out = convert(kEchoedScene, kEchoedRequest).value_or_throw().left_out;
+  EXPECT_EQ(left_out, (std::vector<std::string>{
+                          "'panda_leftfinger' may touch 'cup', but the robot has no such link",
+                          "padding and scale of links",
+                          "tolerances of the goal: a problem's goal is exact"}));
+}
+
+TEST(MoveItConversion, ReadsBenchmarkSets) {
+  const Conversion conversion = convert(kListedScene, listed_request()).value_or_throw();
+  const Problem& problem = conversion.problem;
+  ASSERT_EQ(problem.scene.objects.size(), 2U);
+  expect_pose(translation(0.5, -0.1, 0.2), problem.scene.objects[1].T_task_object);
+  EXPECT_EQ(std::get<CylinderShape>(problem.scene.objects[1].shape).length_m, 0.2);
+  ASSERT_EQ(problem.scene.meshes.size(), 1U);
+  EXPECT_EQ(problem.scene.meshes[0].mesh.file, "package://set/bowl.stl");
+  EXPECT_EQ(problem.scene.meshes[0].mesh.scale, Eigen::Vector3d(2, 2, 2));
+  Eigen::VectorXd goal(7);
+  goal << 0.1, 0.2, 0.3, -0.4, 0.5, 0.6, 0.7;
+  ASSERT_EQ(problem.goal_configurations.cols(), 1);
+  EXPECT_EQ(problem.goal_configurations.col(0), goal);
+  EXPECT_TRUE(conversion.meshes.empty());
+}
+
+TEST(MoveItConversion, APlacementMovesWhatStandsInTheWorld) {
+  const Eigen::Isometry3d T_task_base = translation(0, 0, 0.6);
+  const Problem problem =
+      convert(kListedScene, listed_request(), T_task_base).value_or_throw().problem;
+  expect_pose(T_task_base, *problem.T_task_base);
+  expect_pose(translation(0.5, 0.1, 0.8), problem.scene.objects[0].T_task_object);
+}
+
+TEST(MoveItConversion, TrianglesBecomeAFile) {
+  const Conversion conversion = convert(R"(
+world:
+  collision_objects:
+  - id: parts/wedge
+    meshes:
+    - vertices: [{x: 0, y: 0, z: 0}, {x: 1, y: 0, z: 0}, {x: 0, y: 0.1, z: 0}]
+      triangles: [{vertex_indices: [0, 1, 2]}]
+    mesh_poses: [{}]
+)",
+                                        listed_request())
+                                    .value_or_throw();
+  ASSERT_EQ(conversion.meshes.size(), 1U);
+  EXPECT_EQ(conversion.meshes[0].name, "parts_wedge.obj");
+  EXPECT_EQ(conversion.meshes[0].obj, "v 0 0 0\nv 1 0 0\nv 0 0.10000000000000001 0\nf 1 2 3\n");
+  ASSERT_EQ(conversion.problem.scene.meshes.size(), 1U);
+  EXPECT_EQ(conversion.problem.scene.meshes[0].name, "parts/wedge");
+  EXPECT_EQ(conversion.problem.scene.meshes[0].mesh.file, "parts_wedge.obj");
+}
+
+TEST(MoveItConversion, AnOrientationToKeepBecomesARegion) {
+  const Problem problem = convert("", listed_request(R"(
+path_constraints:
+  orientation_constraints:
+  - header: {frame_id: panda_link0}
+    link_name: panda_link8
+    orientation: [1, 0, 0, 0]
+    absolute_x_axis_tolerance: 0.1
+    absolute_y_axis_tolerance: 0.2
+    absolute_z_axis_tolerance: 6.3
+)"))
+                              .value_or_throw()
+                              .problem;
+  ASSERT_TRUE(problem.constraint);
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  Eigen::Vector<double, 6> upper;
+  upper << kNoBound, kNoBound, kNoBound, 0.1, 0.2, kNoBound;
+  EXPECT_EQ(problem.constraint->bounds.row(1).transpose(), upper);
+  EXPECT_EQ(problem.constraint->bounds.row(0).transpose(), -upper);
+  expect_pose(panda().chain.T_tip_transfer(), problem.constraint->T_region_end);
+  EXPECT_TRUE(problem.constraint->T_task_region.linear().isApprox(
+      Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix(), 1e-12));
+}
+
+TEST(MoveItConversion, ReadsWhatAServiceAnsweredAndAnActionWasAsked) {
+  std::string scene = "scene:\n", request = "request:\n";
+  std::istringstream lines(kListedScene), request_lines(listed_request());
+  for (std::string line; std::getline(lines, line);)
+    scene += "  " + line + "\n";
+  for (std::string line; std::getline(request_lines, line);)
+    request += "  " + line + "\n";
+  EXPECT_EQ(convert(scene, request).value_or_throw().problem.scene.objects.size(), 2U);
+}
+
+TEST(MoveItConversion, RefusesWhatMustNotVanish) {
+  EXPECT_NE(refusal(replaced(kListedScene, "type: box", "type: cone"), listed_request())
+                .find("scene.yaml' line 6, world.collision_objects[0].primitives[0].type: 'cone'"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(std::string(kListedScene) + "  octomap: {octomap: {data: [1]}}\n", listed_request())
+          .find("world.octomap.octomap.data: an octomap cannot be taken"),
+      std::string::npos);
+  EXPECT_NE(refusal(replaced(kListedScene, "- id: can", "- operation: 1\n      id: can"),
+                    listed_request())
+                .find("'1' is a change to another scene"),
+            std::string::npos);
+  EXPECT_NE(refusal(replaced(kListedScene, "frame_id: world", "frame_id: camera"), listed_request())
+                .find("frame 'camera' is not known"),
+            std::string::npos);
+  EXPECT_NE(refusal("", listed_request("path_constraints: {position_constraints: [{}]}"))
+                .find("path_constraints.position_constraints: a problem cannot say this"),
+            std::string::npos);
+}
+
+TEST(MoveItConversion, RefusesWhatIsNotThere) {
+  EXPECT_NE(refusal("", "goal_constraints: []").find("nothing is said of joint 'panda_joint1'"),
+            std::string::npos);
+  EXPECT_NE(refusal("", replaced(listed_request(), "panda_joint6, position: 0.6",
+                                 "panda_joint1, position: 0.6"))
+                .find("goal_constraints[0].joint_constraints: nothing is said of joint "
+                      "'panda_joint6'"),
+            std::string::npos);
+  EXPECT_NE(refusal(replaced(kListedScene, "[0.1, 0.2, 0.3]", "[0.1, 0.2]"), listed_request())
+                .find("dimensions: 2 numbers instead of 3"),
+            std::string::npos);
+  EXPECT_NE(refusal(replaced(kListedScene, "[0.1, 0.2, 0.3]", "'...'"), listed_request())
+                .find("--full-length"),
+            std::string::npos);
+  EXPECT_NE(refusal("a: [", listed_request()).find("is no YAML"), std::string::npos);
+  EXPECT_NE(refusal(replaced(kEchoedScene, "object:\n      header: {frame_id: panda_link8}",
+                             "object:\n      header: {frame_id: nowhere}"),
+                    kEchoedRequest)
+                .find("frame 'nowhere' is not known"),
+            std::string::npos);
+}
+
+TEST(MoveItConversion, AVirtualJointThatMovesTheRobotAsksForItsPlacement) {
+  const std::string moved =
+      replaced(kEchoedScene, "  attached_collision_objects:",
+               "  multi_dof_joint_state:\n    transforms: [{translation: {x: 1, y: 0, z: 0}}]\n"
+               "  attached_collision_objects:");
+  EXPECT_NE(refusal(moved, kEchoedRequest).find("--placement"), std::string::npos);
+  EXPECT_TRUE(convert(moved, kEchoedRequest, translation(1, 0, 0)));
+}
+
+}  // namespace
+}  // namespace kinship::moveit::conversion_test
