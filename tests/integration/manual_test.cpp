@@ -88,13 +88,13 @@ TEST_F(Manual, PagesAreAsManWantsThem) {
   for (const auto& [program, section] : kPrograms) {
     const std::string page = (folder_.path() / (program + ".man")).string();
     EXPECT_EQ(said_by("mandoc -T lint -W warning " + page), "") << program;
-    EXPECT_EQ(said_by("man --warnings -l " + page + " > /dev/null"), "") << program;
-    const std::string text = said_by("MANWIDTH=80 man -l " + page + " | col -b");
+    EXPECT_EQ(said_by("LC_ALL=C man --warnings -l " + page + " > /dev/null"), "") << program;
+    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man -l " + page + " | col -b");
     EXPECT_NE(text.find(program + " - "), std::string::npos) << text.substr(0, 400);
     EXPECT_NE(text.find("--completion bash|zsh|fish"), std::string::npos) << program;
   }
   const std::string text =
-      said_by("MANWIDTH=80 man -l " + (folder_ / "kinship.man").string() + " | col -b");
+      said_by("LC_ALL=C MANWIDTH=80 man -l " + (folder_ / "kinship.man").string() + " | col -b");
   EXPECT_NE(text.find("kinship paths list [OPTIONS]"), std::string::npos);
   EXPECT_NE(text.find("KINSHIP_SERVER"), std::string::npos);
   EXPECT_EQ(text.find("candidates"), std::string::npos) << "is hidden";
