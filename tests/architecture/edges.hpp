@@ -64,13 +64,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
+  const std::string guided = "client/guided";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
   const std::set<std::string> planner_programs = {
-      link,     arguments,  files,  planning, ompl, evidence, inverse, collision,
-      geometry, kinematics, models, mixture,  json, manual,   types};
-  std::set<std::string> experiments = planner_programs;
-  experiments.insert(planner);
+      guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
+      collision, geometry, kinematics, models, mixture,  json, manual,   types};
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -101,23 +100,26 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
+      {guided,
+       {{ompl, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {"client/cli",
        {{link, arguments, files, moveit, inverse, collision, geometry, kinematics, models, mixture,
          json, manual, types},
         {"Eigen", "CLI11"}}},
-      {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
+      {"client/c", {{link, json, mixture, models, collision, kinematics, types}, {"Eigen"}}},
       {"client/library",
-       {{link, ompl, planning, collision, models, inverse, mixture, kinematics, types}, {}}},
+       {{guided, link, ompl, planning, collision, models, inverse, mixture, kinematics, types},
+        {}}},
       // A project of its own: what is installed, and files beside its own, which have no folder.
       {"client/examples", {{""}, {"OMPL"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/python",
-       {{link, files, planning, inverse, collision, geometry, kinematics, models, mixture, json,
-         types},
+       {{guided, link, files, planning, inverse, collision, geometry, kinematics, models, mixture,
+         json, types},
         {"Eigen", "pybind11"}}},
-      {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
+      {"client/experiments", {planner_programs, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };
 }();
 

@@ -1,4 +1,4 @@
-#include "client/planner/problem_mismatch.hpp"
+#include "client/guided/problem_mismatch.hpp"
 
 #include <cstddef>
 

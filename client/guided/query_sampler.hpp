@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "client/planner/plan_settings.hpp"
+#include "client/guided/plan_settings.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"

@@ -1,4 +1,4 @@
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "client/guided/problem_mismatch.hpp"
 #include "client/ompl/ompl_planner.hpp"
-#include "client/planner/problem_mismatch.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/cbirrt2.hpp"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "client/planner/planner_choice.hpp"
+#include "client/guided/planner_choice.hpp"
 #include "robots/planning/guided_sampler.hpp"
 
 namespace kinship::planner {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "client/planner/plan_problem.hpp"
-#include "client/planner/sampling_mode_choice.hpp"
+#include "client/guided/plan_problem.hpp"
+#include "client/guided/sampling_mode_choice.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"

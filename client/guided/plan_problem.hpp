@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "client/planner/plan_settings.hpp"
-#include "client/planner/query_sampler.hpp"
+#include "client/guided/plan_settings.hpp"
+#include "client/guided/query_sampler.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"

@@ -1,4 +1,4 @@
-#include "client/planner/query_sampler.hpp"
+#include "client/guided/query_sampler.hpp"
 
 #include <utility>
 

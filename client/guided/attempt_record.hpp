@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "client/planner/plan_problem.hpp"
-#include "client/planner/plan_settings.hpp"
+#include "client/guided/plan_problem.hpp"
+#include "client/guided/plan_settings.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/problem.hpp"
 
