@@ -13,6 +13,7 @@
 #include "proto/manual/suggestion.hpp"
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
+#include "server/app/metrics_address.hpp"
 
 namespace kinship::app {
 namespace {
@@ -29,6 +30,7 @@ Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
+  kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
@@ -57,6 +59,14 @@ CLI::Validator is_number_up_to(int highest) {
                        : "'" + text + "' is not a number from 0 to " + range;
           },
           "FLOAT in [0 - " + range + "]"};
+}
+
+CLI::Validator is_metrics_address() {
+  return {[](std::string& text) {
+            const Result<MetricsAddress> address = read_metrics_address(text);
+            return address ? std::string() : address.error().message;
+          },
+          "ADDRESS:PORT"};
 }
 
 /// What the store may take of its disk.
@@ -145,6 +155,10 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "second; 0: not at all")
       ->check(is_number_up_to(kMaxScrubMbPerS))
       ->capture_default_str();
+  app.add_option("--metrics", options.metrics,
+                 "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
+                 "access control; default: nowhere")
+      ->check(is_metrics_address());
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();

@@ -102,7 +102,9 @@ struct StoreStatus {
   std::uint64_t distribution_bytes = 0;      ///< of them, about
   std::uint64_t max_distribution_bytes = 0;  ///< 0: no limit
   std::uint64_t queued = 0;
+  std::uint64_t wal_bytes = 0;  ///< in use, of changes that are not yet in the file
   bool writable = true;
+  bool damaged = false;  ///< something was found that cannot be read any more; `message` names it
   std::int64_t scrubbed_ms =
       0;                  ///< when all of the file was last read in search of damage; 0: never
   double scrub_part = 0;  ///< how far the search for damage is since then

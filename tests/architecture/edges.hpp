@@ -19,6 +19,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
     {"libcrypto", {"openssl/"}},
     {"Boost.Random", {"boost/random/"}},
+    {"Boost.Beast", {"boost/asio/", "boost/beast/"}},
     {"Cyclone DDS", {"dds/"}},
     {"nlohmann-json", {"nlohmann/"}},
     {"urdfdom",
@@ -52,6 +53,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
+  const std::string metrics = "server/metrics";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -85,6 +87,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {metrics, {{}, {}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -95,8 +98,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
       {service,
-       {{rehearsal, catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
-      {"server/app", {{service, dds, codec, json, manual, types, store}, {"CLI11", "spdlog"}}},
+       {{rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence, types},
+        {"Eigen"}}},
+      {"server/app",
+       {{service, metrics, dds, codec, json, manual, types, store},
+        {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},

@@ -111,6 +111,7 @@ class SqliteStore : public Store {
     status.epoch = history_.epoch();
     status.rollbacks = history_.rollbacks();
     status.queued = writer_->queued();
+    status.wal_bytes = writer_->wal_bytes();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
     describe_disk(status);
@@ -119,6 +120,7 @@ class SqliteStore : public Store {
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
+    status.damaged = damaged_robots_ > 0 || !scrub_->findings().empty();
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
     if (const std::string damaged = scrub_->findings(); !damaged.empty())
