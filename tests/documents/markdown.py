@@ -80,8 +80,10 @@ class Document:
         return found
 
     def spans(self) -> "list[tuple[int, str]]":
-        """(line, text) of each code span."""
-        return [(line, text) for line, prose in self.prose for text in re.findall(r"`([^`]+)`", prose)]
+        """(line, text) of each code span; one may go on in the next line."""
+        text = "\n".join(prose for _, prose in self.prose)
+        return [(self.prose[text.count("\n", 0, found.start())][0], " ".join(found[1].split()))
+                for found in re.finditer(r"`((?:[^`\n]|\n(?!\s*\n))+)`", text)]
 
     def links(self) -> "list[tuple[int, str]]":
         """(line, target) of each link and picture; also across a line's end, and of HTML's tags."""

@@ -8,7 +8,8 @@ from markdown import Document
 TEXT = """# One `two`: three
 
 See [a](b.md#c), ![d
-e](f.svg) and `[no](link.md)`.
+e](f.svg) and `[no](link.md)`, `in two
+lines`.
 
 <!-- exit code 3 -->
 ```console
@@ -39,19 +40,19 @@ class Parts(unittest.TestCase):
 
     def test_of_blocks_are_commands_with_their_output(self):
         (block,) = self.read(TEXT).blocks
-        self.assertEqual((block.line, block.language, block.mark), (7, "console", "exit code 3"))
+        self.assertEqual((block.line, block.language, block.mark), (8, "console", "exit code 3"))
         first, second = block.commands()
-        self.assertEqual((first.line, first.text, first.output, first.output_line), (8, "first \\\n  --more", ["out"], 10))
-        self.assertEqual((second.line, second.text, second.output), (11, "second", []))
+        self.assertEqual((first.line, first.text, first.output, first.output_line), (9, "first \\\n  --more", ["out"], 11))
+        self.assertEqual((second.line, second.text, second.output), (12, "second", []))
 
     def test_outside_are_links_spans_and_headings(self):
         document = self.read(TEXT)
         self.assertEqual(document.links(), [(3, "b.md#c"), (4, "f.svg")])
-        self.assertEqual(document.spans(), [(1, "two"), (4, "[no](link.md)")])
+        self.assertEqual(document.spans(), [(1, "two"), (4, "[no](link.md)"), (4, "in two lines")])
         self.assertEqual(document.anchors(), {"one-two-three", "one-two-three-1"})
 
     def test_indented_code_is_found_and_items_of_lists_are_not(self):
-        self.assertEqual(self.read(TEXT).indented_code(), [(20, "    indented")])
+        self.assertEqual(self.read(TEXT).indented_code(), [(21, "    indented")])
 
     def test_a_block_without_an_end_is_refused(self):
         with self.assertRaisesRegex(ValueError, "text.md:3"):
