@@ -266,12 +266,10 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
                                   catalog::with_experience(experience_, request, std::move(done)));
   if (!options_.on_event)
     return catalog_.fetch(request, waiter, std::move(done));
-  catalog_.fetch(request, waiter,
-                 [this, robot = request.robot, task = request.task,
-                  done = std::move(done)](const FetchReply& reply) {
-                   done(reply);
-                   publish_fetch(events_, name_of(robots_, robot), task, reply);
-                 });
+  catalog_.fetch(request, waiter, [this, request, done = std::move(done)](const FetchReply& reply) {
+    done(reply);
+    publish_fetch(events_, robots_, request, reply);
+  });
 }
 
 void Service::administer(AdminRequest request, const std::string& request_key,

@@ -45,6 +45,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string codec = "proto/codec";
   const std::string json = "proto/json";
   const std::string dds = "proto/dds";
+  const std::string manual = "proto/manual";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
@@ -66,8 +67,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
   const std::set<std::string> planner_programs = {
-      link,      arguments, files,      planning, ompl,    evidence, inverse,
-      collision, geometry,  kinematics, models,   mixture, json,     types};
+      link,     arguments,  files,  planning, ompl, evidence, inverse, collision,
+      geometry, kinematics, models, mixture,  json, manual,   types};
   std::set<std::string> experiments = planner_programs;
   experiments.insert(planner);
   return std::map<std::string, AllowedEdges>{
@@ -78,6 +79,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {codec, {{types, idl}, {"Eigen"}}},
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
+      {manual, {{types}, {"CLI11"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
@@ -95,7 +97,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
         {"Eigen"}}},
       {service,
        {{rehearsal, catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
-      {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
+      {"server/app", {{service, dds, codec, json, manual, types, store}, {"CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
@@ -103,7 +105,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {"client/cli",
        {{link, arguments, files, moveit, inverse, collision, geometry, kinematics, models, mixture,
-         json, types},
+         json, manual, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
       {"client/library",
