@@ -69,9 +69,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string guided = "client/guided";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
+  const std::string page = "client/page";
   const std::set<std::string> planner_programs = {
       guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
       collision, geometry, kinematics, models, mixture,  json, manual,   types};
+  std::set<std::string> experiments = planner_programs;
+  experiments.insert(page);
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -110,9 +113,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{ompl, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
+      {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, inverse, collision, geometry, kinematics, models, mixture,
-         json, manual, types},
+       {{link, arguments, files, moveit, page, inverse, collision, geometry, kinematics, models,
+         mixture, json, manual, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, models, collision, kinematics, types}, {"Eigen"}}},
       {"client/library",
@@ -125,7 +129,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{guided, link, files, planning, inverse, collision, geometry, kinematics, models, mixture,
          json, types},
         {"Eigen", "pybind11"}}},
-      {"client/experiments", {planner_programs, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
+      {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };
 }();
 
