@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/guided/contact_notes.hpp"
 #include "client/guided/problem_mismatch.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "robots/collision/collision_world.hpp"
@@ -19,6 +20,7 @@
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
 #include "robots/planning/shortcut.hpp"
+#include "robots/planning/start_configuration.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -91,6 +93,36 @@ Outcome outcome_of(const planning::PlanSummary& summary) {
   return is_used_up ? Outcome::Timeout : Outcome::Failed;
 }
 
+/// Why no search was begun; empty for what ends a search.
+std::optional<NotPlanned> not_planned_by(NoPath reason) {
+  switch (reason) {
+    case NoPath::StartOutOfReach:
+      return NotPlanned::StartOutOfReach;
+    case NoPath::StartBeyondLimits:
+      return NotPlanned::StartBeyondLimits;
+    case NoPath::StartNotFound:
+      return NotPlanned::StartNotFound;
+    case NoPath::StartCollides:
+      return NotPlanned::StartCollides;
+    case NoPath::StartOffConstraint:
+      return NotPlanned::StartOffConstraint;
+    case NoPath::GoalOutOfReach:
+      return NotPlanned::GoalOutOfReach;
+    case NoPath::GoalBeyondLimits:
+    case NoPath::GoalOutsideBounds:
+      return NotPlanned::GoalBeyondLimits;
+    case NoPath::NoGoal:
+    case NoPath::GoalNotFound:
+      return NotPlanned::GoalNotFound;
+    case NoPath::GoalsCollide:
+      return NotPlanned::GoalCollides;
+    case NoPath::GoalsOffConstraint:
+      return NotPlanned::GoalOffConstraint;
+    default:
+      return std::nullopt;
+  }
+}
+
 /// One problem under way.
 class Planning {
  public:
@@ -107,13 +139,14 @@ class Planning {
                                      if (stop())
                                        throw Interrupted();
                                    })),
-        bounds_(planning::planning_bounds(robot.chain, problem.start)),
-        generator_(problem.seed) {
-    if (problem.constraint)
-      constraint_.emplace(robot.chain, *problem.constraint, T_task_base_, bounds_);
-  }
+        generator_(problem.seed) {}
 
   void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
+    if (!find_start(planned.result))
+      return;
+    bounds_ = planning::planning_bounds(robot_.chain, start_);
+    if (problem_.constraint)
+      constraint_.emplace(robot_.chain, *problem_.constraint, T_task_base_, bounds_);
     const Eigen::MatrixXd goals = find_goals(planned.result);
     if (goals.cols() == 0)
       return;
@@ -124,12 +157,13 @@ class Planning {
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     options.track_check_fraction = settings_.tracks.check_fraction;
     const double begin_s = planning::thread_time_s();
-    const auto sampler =
-        make_query_sampler(robot_.chain, {T_task_base_, bounds_, problem_.start, goals}, guidance,
-                           settings_, planned.result);
+    const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
+                                            guidance, settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
+    planned.result.not_planned.reset();
     const planning::PlanSummary summary = search(planner, goals, sampler, options);
     planned.outcome = outcome_of(summary);
+    planned.result.not_planned = not_planned_by(summary.reason);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks = summary.collision_checks;
     planned.result.projections = summary.projections;
@@ -145,7 +179,7 @@ class Planning {
   planning::PlanSummary search(const PlannerChoice& planner, const Eigen::MatrixXd& goals,
                                const planning::ConfigurationSampler& sampler,
                                const planning::BirrtOptions& options) {
-    const Eigen::VectorXd& start = problem_.start;
+    const Eigen::VectorXd& start = start_;
     if (planner.kind == PlannerKind::Roadmap) {
       planning::RoadmapOptions roadmap;
       roadmap.tree = options;
@@ -166,12 +200,39 @@ class Planning {
                        : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
   }
 
+  /// \return whether there is one; the result says which, or why not.
+  bool find_start(ProblemResult& result) {
+    if (!problem_.T_task_start) {
+      start_ = problem_.start;
+      result.start = start_;
+      return true;
+    }
+    ContactNotes contacts(world_);
+    const planning::IsFree watched = contacts.watched(is_free_);
+    planning::StartConfiguration found = planning::start_configuration(
+        robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_start,
+        problem_.goal_configurations, watched);
+    result.goal_checks = found.collision_checks;
+    result.not_planned = not_planned_by(found.reason);
+    if (!found.q) {
+      result.reason = found.reason == NoPath::StartCollides
+                          ? "every configuration of the start collides: " + contacts.text()
+                          : explain(found.reason);
+      return false;
+    }
+    start_ = *std::move(found.q);
+    result.start = start_;
+    return true;
+  }
+
   /// All of them count: the nearest may lie behind an obstacle.
   Eigen::MatrixXd find_goals(ProblemResult& result) {
     if (!problem_.T_task_goal) {
       Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
       if (goals.cols() > 0)
         first_goal_ = goals.col(0);
+      else
+        refuse(NoPath::GoalOutsideBounds, result);
       return goals;
     }
     const auto remember = [this](const Eigen::Ref<const Eigen::VectorXd>& q) {
@@ -196,9 +257,15 @@ class Planning {
     planning::GoalConfigurations goals = planning::goal_configurations(
         robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_goal, bounds_,
         is_free, options);
-    result.goal_checks = goals.collision_checks;
-    result.reason = explain(goals.reason);
+    result.goal_checks += goals.collision_checks;
+    if (goals.reason != NoPath::None)
+      refuse(goals.reason, result);
     return std::move(goals.configurations);
+  }
+
+  void refuse(NoPath reason, ProblemResult& result) {
+    result.reason = explain(reason);
+    result.not_planned = not_planned_by(reason);
   }
 
   void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
@@ -218,11 +285,11 @@ class Planning {
     const std::string text(describe(reason));
     switch (reason) {
       case NoPath::StartCollides:
-        return text + contact_text(": ", problem_.start);
+        return text + contact_text(": ", start_);
       case NoPath::GoalsCollide:
         return text + (first_goal_ ? contact_text(", at the first one ", *first_goal_) : "");
       case NoPath::StartOffConstraint:
-        return text + ": " + described(constraint_->excess(problem_.start));
+        return text + ": " + described(constraint_->excess(start_));
       case NoPath::MaxChecks:
         return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
       case NoPath::TimeLimit:
@@ -245,7 +312,8 @@ class Planning {
   const Eigen::Isometry3d T_task_base_;
   collision::CollisionWorld world_;
   planning::IsFree is_free_;
-  Eigen::Matrix2Xd bounds_;
+  Eigen::VectorXd start_;    // dof; from find_start on
+  Eigen::Matrix2Xd bounds_;  // around it
   std::optional<planning::RegionConstraint> constraint_;
   std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
   std::mt19937_64 generator_;
@@ -267,12 +335,15 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   planned.result.guidance_reason = why_unguided(query);
   const Result<PlannerChoice> planner =
       planner_for(settings.planner, problem.constraint.has_value());
-  const auto mismatch =
-      planner ? find_mismatch(robot.chain, problem) : std::optional(planner.error().message);
+  const std::optional<Mismatch> mismatch =
+      planner ? find_mismatch(robot.chain, problem)
+              : Mismatch{NotPlanned::UnfitPlanner, planner.error().message};
   if (mismatch) {
-    planned.result.reason = *mismatch;
+    planned.result.not_planned = mismatch->kind;
+    planned.result.reason = mismatch->text;
     return planned;
   }
+  planned.result.not_planned = NotPlanned::Error;  // until it gets further
   try {
     Planning planning(robot, problem, settings, stop);
     planned.attempted = true;

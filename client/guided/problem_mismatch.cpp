@@ -29,19 +29,23 @@ std::string joint_names(const kinematics::Chain& chain) {
 
 }  // namespace
 
-std::optional<std::string> find_mismatch(const kinematics::Chain& chain, const Problem& problem) {
+std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem) {
   const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };
   const auto of_robot = [&] { return std::to_string(chain.dof()) + ": " + joint_names(chain); };
-  if (problem.start.size() != chain.dof())
-    return "start has " + joints(problem.start.size()) + ", the robot " + of_robot();
+  if (!problem.T_task_start && problem.start.size() != chain.dof())
+    return Mismatch{NotPlanned::DofMismatch,
+                    "start has " + joints(problem.start.size()) + ", the robot " + of_robot()};
   if (!problem.T_task_goal && problem.goal_configurations.rows() != chain.dof())
-    return "goal configurations have " + joints(problem.goal_configurations.rows()) +
-           ", the robot " + of_robot();
-  if (const auto outside = beyond_limits(chain, problem.start))
-    return "start: " + *outside;
+    return Mismatch{NotPlanned::DofMismatch, "goal configurations have " +
+                                                 joints(problem.goal_configurations.rows()) +
+                                                 ", the robot " + of_robot()};
+  if (!problem.T_task_start)
+    if (const auto outside = beyond_limits(chain, problem.start))
+      return Mismatch{NotPlanned::StartBeyondLimits, "start: " + *outside};
   for (Eigen::Index i = 0; i < problem.goal_configurations.cols(); ++i)
     if (const auto outside = beyond_limits(chain, problem.goal_configurations.col(i)))
-      return "goal " + std::to_string(i + 1) + ": " + *outside;
+      return Mismatch{NotPlanned::GoalBeyondLimits,
+                      "goal " + std::to_string(i + 1) + ": " + *outside};
   return std::nullopt;
 }
 

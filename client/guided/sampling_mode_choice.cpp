@@ -87,9 +87,10 @@ std::uint64_t sampling_mode_seed(const Problem& problem) {
     fingerprint.add(q);
   for (const double q : problem.goal_configurations.reshaped())
     fingerprint.add(q);
-  if (problem.T_task_goal)
-    for (const double number : to_pose_array(*problem.T_task_goal))
-      fingerprint.add(number);
+  for (const auto& pose : {problem.T_task_start, problem.T_task_goal})
+    if (pose)
+      for (const double number : to_pose_array(*pose))
+        fingerprint.add(number);
   return fingerprint.value();
 }
 

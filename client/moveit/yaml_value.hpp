@@ -12,9 +12,10 @@ namespace kinship::moveit {
 /// of a missing place is missing too.
 class YamlValue {
  public:
-  /// Reads a file's first document; later ones, as of an echoed topic, are left.
+  /// Reads a file's documents; those that say nothing, as after the last line of an echoed topic,
+  /// are left.
   /// \throws Failure(NotFound or InvalidInput) that names the file, and the line of a syntax error.
-  static YamlValue read(const std::filesystem::path& file);
+  static std::vector<YamlValue> read_all(const std::filesystem::path& file);
 
   /// A member of a map; missing if there is none.
   YamlValue operator[](const std::string& member) const;

@@ -14,6 +14,7 @@
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
 #include "client/planner/server_line.hpp"
+#include "client/planner/transfer_warning.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/models/loaded_robot.hpp"
@@ -90,6 +91,7 @@ PlannedProblem unread(const Problem& problem, const Error& error) {
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
   planned.result.reason = error.message;
+  planned.result.not_planned = NotPlanned::Unreadable;
   return planned;
 }
 
@@ -177,6 +179,8 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
                     const std::function<bool()>& stop) {
   const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
+  if (!models::says_transfer(options.robot))
+    streams.messages << transfer_warning(lines, robot.chain.tip_link());
   ServerLine server(
       options, robot.description,
       [&robot] { return collision::fit_robot(robot.chain, robot.shapes); }, streams.messages, stop);

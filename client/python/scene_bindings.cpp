@@ -84,7 +84,11 @@ void bind_problem(py::module_& module) {
           "The line of a problem file.")
       .def_readonly("name", &Problem::name, "What messages call it.")
       .def_property_readonly(
-          "start", [](const Problem& self) { return to_vector(self.start); }, "(dof,)")
+          "start", [](const Problem& self) { return to_vector(self.start); },
+          "(dof,); (0,) if a pose is given.")
+      .def_property_readonly(
+          "T_task_start", [](const Problem& self) { return to_matrix(self.T_task_start); },
+          "Where the transfer frame begins: (4, 4), or None if a configuration is given.")
       .def_property_readonly(
           "goal_configurations",
           [](const Problem& self) { return to_rows(self.goal_configurations); },

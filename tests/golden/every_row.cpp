@@ -252,6 +252,14 @@ Problem every_pose_problem() {
   return problem;
 }
 
+Problem every_problem_from_pose() {
+  Problem problem = every_pose_problem();
+  Distinct next(1950);
+  problem.start.resize(0);
+  problem.T_task_start = next.pose();
+  return problem;
+}
+
 ProblemResult every_problem_result() {
   Distinct next(2000);
   ProblemResult result;
@@ -263,6 +271,8 @@ ProblemResult every_problem_result() {
   result.projections = next.count();
   result.planning_time_s = next.real();
   result.time_limit_s = next.real();
+  result.start = Eigen::VectorXd::LinSpaced(kJoints, 0.25, 0.5);
+  result.not_planned = NotPlanned::StartOffConstraint;
   result.waypoints = next.matrix(kJoints, 3);
   result.distribution_id = next.id<Digest>();
   result.distribution_revision = next.count();

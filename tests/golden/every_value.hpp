@@ -78,8 +78,9 @@ Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();
 
-Problem every_problem();       ///< to configurations, in a scene
-Problem every_pose_problem();  ///< to a pose
+Problem every_problem();            ///< to configurations, in a scene
+Problem every_pose_problem();       ///< to a pose
+Problem every_problem_from_pose();  ///< to a pose, too
 ProblemResult every_problem_result();
 InverseAnswer every_inverse_answer();
 RobotCheck every_robot_check();

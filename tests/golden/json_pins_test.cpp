@@ -89,6 +89,7 @@ std::vector<Case> cases() {
       {"eviction", eviction_to_json(every_distribution().id), eviction_again},
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),
+      readable("problem_from_pose", every_problem_from_pose(), problem_from_json, false),
       readable("problem_result", every_problem_result(), problem_result_from_json),
       {"event", to_json(every_event())},
       {"store_check", to_json(every_store_check())},

@@ -175,7 +175,8 @@ void add_samples(const models::LoadedRobot& robot, const Problem& problem, PageD
 std::vector<double> checks_of(const std::vector<ProblemResult>& results) {
   std::vector<double> checks;
   for (const ProblemResult& result : results)
-    checks.push_back(static_cast<double>(result.collision_checks));
+    if (!result.not_planned)
+      checks.push_back(static_cast<double>(result.collision_checks));
   return checks;
 }
 
