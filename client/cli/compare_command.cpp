@@ -7,6 +7,7 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/json/summaries_json.hpp"
@@ -152,10 +153,10 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
 
 void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
   constexpr int kDigits = 2;
-  std::vector<std::string> headings{"TARGET \\ SOURCE"};
+  std::vector<Column> headings{"TARGET \\ SOURCE"};
   for (const Transferability& pair : pairs)
     if (pair.target == pairs.front().target)
-      headings.push_back(pair.source_label);
+      headings.emplace_back(pair.source_label, Fit::Cut);
   const std::size_t sources = headings.size() - 1;
   Table table(std::move(headings));
   for (std::size_t row = 0; row < pairs.size(); row += sources) {
@@ -197,12 +198,15 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
     return code;
 
   std::vector<Transferability> pairs;
+  StatusLine progress(err, options.progress);
   for (const Target& target : targets)
     for (const TaskRobotSummary& source : sources) {
-      err << "rehearsing " << pairs.size() + 1 << " of " << targets.size() * sources.size() << ": "
-          << target.label << " with the experience of " << source.label << '\n';
+      progress.show("rehearsing " + std::to_string(pairs.size() + 1) + " of " +
+                    std::to_string(targets.size() * sources.size()) + ": " + target.label +
+                    " with the experience of " + source.label);
       pairs.push_back(compare_pair(server, options, target, source));
     }
+  progress.clear();
   if (options.json) {
     out << json::to_json(options.task, pairs) << '\n';
   } else {

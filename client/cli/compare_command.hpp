@@ -16,6 +16,7 @@ struct CompareOptions {
   std::vector<std::string> placements;     ///< "LABEL=x y z qx qy qz qw", before what was reported
   std::chrono::milliseconds wait{120000};  ///< for one pair of robots
   bool json = false;
+  bool progress = false;  ///< each pair is named on `err`
 };
 
 /// A matrix, a target a row: what each source is worth, the best one of a row with an asterisk.

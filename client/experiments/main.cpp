@@ -7,6 +7,8 @@
 #include "client/experiments/commands.hpp"
 #include "client/experiments/study_options.hpp"
 #include "client/files/output_file.hpp"
+#include "proto/manual/manual.hpp"
+#include "proto/manual/suggestion.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
@@ -120,9 +122,10 @@ void write_page_file(const CommandLine& line) {
 
 int run(int argc, char** argv) {
   CommandLine line;
-  CLI::App app{"kinship-experiments: planning problems and comparisons for experiments"};
+  CLI::App app{"kinship-experiments: planning problems and comparisons for experiments",
+               "kinship-experiments"};
+  manual::add_manual(app);
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("kinship-experiments ") + KINSHIP_VERSION);
   app.require_subcommand(1);
   add_shelf(app, line);
   add_placement(app, line);
@@ -134,7 +137,7 @@ int run(int argc, char** argv) {
     if (!line.placement.empty())
       line.shelf.T_task_base = read_placement(line.placement);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kWrongUsage;
+    return manual::explain(app, error, std::cout, std::cerr);
   }
   if (!line.study.study.empty())
     run_study_command(line.study, std::cout, std::cerr);

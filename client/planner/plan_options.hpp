@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "client/planner/plan_settings.hpp"
-#include "client/planner/sampling_mode_choice.hpp"
+#include "client/guided/plan_settings.hpp"
+#include "client/guided/sampling_mode_choice.hpp"
 #include "proto/types/selection.hpp"
 #include "robots/models/robot_arguments.hpp"
 

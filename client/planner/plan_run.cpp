@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "client/planner/attempt_record.hpp"
+#include "client/guided/attempt_record.hpp"
+#include "client/guided/scene_record.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
-#include "client/planner/scene_record.hpp"
 #include "client/planner/server_line.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/collision/fitted_links.hpp"

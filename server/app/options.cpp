@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "proto/dds/participant.hpp"
+#include "proto/manual/manual.hpp"
+#include "proto/manual/suggestion.hpp"
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/metrics_address.hpp"
@@ -119,6 +121,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
+      ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
@@ -167,7 +170,9 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
                        const char* example) {
     CLI::App* const command = app.add_subcommand(name, description)->configurable(false);
     command->footer(std::string(kVerbFooter) + example);
-    command->add_option("--store", options.store, "SQLite file")->capture_default_str();
+    command->add_option("--store", options.store, "SQLite file")
+        ->type_name("FILE")
+        ->capture_default_str();
     command->callback([&options, verb] { options.verb = verb; });
     return command;
   };
@@ -178,11 +183,13 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
   add("backup", OfflineVerb::Backup, "Copy the store into a new file",
       "kinshipd backup --store fleet.db copy.db")
       ->add_option("FILE", options.file, "The copy; must not be there yet")
+      ->type_name("FILE")
       ->required();
   add("restore", OfflineVerb::Restore, "Put a backup in the place of the store; keeps the old one",
       "kinshipd restore --store fleet.db copy.db      keeps the old one as "
       "fleet.db.replaced-<time>")
       ->add_option("FILE", options.file, "The backup; it stays as it is")
+      ->type_name("FILE")
       ->required();
   add("repair", OfflineVerb::Repair,
       "Write a damaged store anew from all of it that can be read; keeps the old one",
@@ -218,8 +225,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   offline.store = options.store;
 
   CLI::App app(kDescription, "kinshipd");
+  manual::add_manual(app, 8);
   app.footer(kFooter);
-  app.set_version_flag("--version", std::string("kinshipd ") + KINSHIP_VERSION);
   add_server_options(app, options);
   bool print_config = false;
   app.add_flag("--print-config", print_config,
@@ -241,9 +248,13 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
                 suggestion(word.substr(2, word.find('=') - 2), option_names(app));
             !near.empty() && app.get_option_no_throw(std::string(word)) == nullptr)
           err << word << near << '\n';
+    for (const std::string& word : app.remaining(true))
+      if (const std::string near = manual::suggestion_for(app, word);
+          !word.starts_with("-") && !near.empty())
+        err << word << near << '\n';
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
+    return manual::explain(app, error, out, err);
   }
   const bool is_offline = !app.get_subcommands().empty();
   const bool store_given = app.count("--store") > 0;

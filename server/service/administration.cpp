@@ -111,7 +111,7 @@ AdminPage Administration::list_distributions(const AdminRequest& request) {
   check_task_filter(request);
   store::Page<DistributionSummary> page =
       parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request));
-  mark_retired(parts_.store, page.rows);
+  complete_summaries(parts_.store, page.rows);
   return page_of(std::move(page));
 }
 

@@ -272,12 +272,11 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
         rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
                                   catalog::with_experience(experience_, request, std::move(done)));
   catalog_.fetch(request, waiter,
-                 [this, watch, robot = request.robot, task = request.task,
-                  done = std::move(done)](const FetchReply& reply) {
+                 [this, watch, request, done = std::move(done)](const FetchReply& reply) {
                    watch->set_answered();
                    done(reply);
                    if (options_.on_event)
-                     publish_fetch(events_, name_of(robots_, robot), task, reply);
+                     publish_fetch(events_, robots_, request, reply);
                  });
   watch->set_asked();
 }

@@ -224,7 +224,7 @@ class Store {
   virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
-  /// By task, robot and arrival, retired and dropped ones too. Empty robot or task: all.
+  /// The last to arrive first, retired and dropped ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
   /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path if
@@ -236,6 +236,7 @@ class Store {
   virtual Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                         std::string_view cursor, std::size_t limit,
                                         std::size_t max_bytes) const = 0;
+  /// The last to be fitted first; one that is fitted again between two pages goes to the front.
   virtual Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
                                                        std::string_view task,
                                                        std::string_view cursor,

@@ -79,6 +79,10 @@ TaskSummary every_task_summary() {
   task.dropped = next.count();
   for (TaskRobotSummary& robot : task.robots)
     robot.dropped = next.count();
+  for (TaskRobotSummary& robot : task.robots) {
+    robot.guided = ModeEvidence{next.count(), next.count(), next.real()};
+    robot.control = ModeEvidence{next.count(), next.count(), next.real()};
+  }
   return task;
 }
 
@@ -115,6 +119,8 @@ DistributionSummary every_distribution_summary() {
   distribution.configurations = next.count();
   distribution.paths = next.count();
   distribution.fitted_ms = next.time_ms();
+  distribution.T_task_base = next.pose();
+  distribution.selection = {{next.id<Digest>()}, Weighting::Paths, next.time_ms()};
   return distribution;
 }
 

@@ -1,4 +1,4 @@
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/planner/sampling_mode_choice.hpp"
+#include "client/guided/sampling_mode_choice.hpp"
 
 #include <gtest/gtest.h>
 

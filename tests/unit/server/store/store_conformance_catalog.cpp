@@ -252,7 +252,7 @@ TEST_P(StoreConformance, ListsPathsOnceEachUnderEveryFilter) {
   EXPECT_EQ(list(std::nullopt, "table").size(), 6U);
   const auto paths = list(iiwa_.digest, "table");
   ASSERT_EQ(paths.size(), 3U);
-  EXPECT_EQ(paths[0].report_uuid, test::id_from<Uuid>(10));
+  EXPECT_EQ(paths[0].report_uuid, test::id_from<Uuid>(12)) << "the newest first";
   EXPECT_EQ(paths[0].label, "iiwa");
   EXPECT_EQ(paths[0].task, "table");
   EXPECT_EQ(paths[0].machine, "cell 7");
@@ -286,9 +286,9 @@ TEST_P(StoreConformance, ListsDistributionsUnderEveryFilter) {
 }
 
 TEST_P(StoreConformance, RefusesACursorOfSomethingElse) {
-  for (const char* const cursor : {"x", "1", "1.2", "1.2.", "1.2.3.4", "1.2.x", "..", "1.2.3 "})
+  for (const char* const cursor : {"x", "1.2", "1.2.3", "-1", "1 ", "99999999999999999999"})
     EXPECT_THROW(store_->list_paths({}, "", cursor, 2), Failure) << cursor;
-  EXPECT_THROW(store_->list_distributions({}, "", "12", 2), Failure);
+  EXPECT_THROW(store_->list_distributions({}, "", "1a", 2), Failure);
 }
 
 }  // namespace
