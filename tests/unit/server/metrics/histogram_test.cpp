@@ -48,7 +48,7 @@ TEST(Histogram, LosesNothingOfSeveralThreads) {
   for (std::thread& thread : threads)
     thread.join();
   EXPECT_EQ(all_of(histogram), std::uint64_t{kThreads} * kEach);
-  EXPECT_NEAR(histogram.sum_s(), kThreads * kEach / 2 * 0.001, 1e-6);
+  EXPECT_NEAR(histogram.sum_s(), 0.0005 * kThreads * kEach, 1e-6);
 }
 
 }  // namespace
