@@ -65,11 +65,12 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string ompl = "client/ompl";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
+  const std::string page = "client/page";
   const std::set<std::string> planner_programs = {
       link,      arguments, files,      planning, ompl,    evidence, inverse,
       collision, geometry,  kinematics, models,   mixture, json,     types};
   std::set<std::string> experiments = planner_programs;
-  experiments.insert(planner);
+  experiments.insert({planner, page});
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -101,9 +102,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
+      {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, inverse, collision, geometry, kinematics, models, mixture,
-         json, types},
+       {{link, arguments, files, moveit, page, inverse, collision, geometry, kinematics, models,
+         mixture, json, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
       {"client/library",

@@ -1,18 +1,10 @@
 // Fills the page from its data.
 "use strict";
 (() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
+  const {data, byId, count, fixed, percent, seconds, several, listed, total, metres, fillTable, fillTiles, color} = kinshipPage;
   const {comparison, distribution, fleet} = data;
-  const byId = (id) => document.getElementById(id);
-  const count = (n) => (n === null ? "unsolved" : Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, "\u202f"));
-  const fixed = (n, digits) => (n === null ? "\u2013" : n.toFixed(digits));
-  const percent = (n) => Math.round(100 * n) + " %";
-  const listed = (words) => (words.length < 2 ? words.join("") : words.slice(0, -1).join(", ") + " and " + words[words.length - 1]);
-  const total = (numbers) => numbers.reduce((a, b) => a + b, 0);
   const pText = (p) => (p === null ? "\u2013" : p < 0.001 ? p.toExponential(1) : p.toFixed(4));
 
-  const seconds = (s) => (s === null ? "\u2013" : s < 1 ? fixed(1000 * s, 1) + " ms" : fixed(s, 2) + " s");
-  const several = (n, word) => `${count(n)} ${word}${n === 1 ? "" : "s"}`;
 
   const names = listed(fleet.map((robot) => robot.label));
   const paths = total(fleet.map((robot) => robot.paths.length));
@@ -32,30 +24,8 @@
       [pText(comparison.wilcoxon_checks.p), "p of a two-sided Wilcoxon signed-rank test" +
         (comparison.wilcoxon_checks.p < 0.05 ? "" : ": not a clear difference")],
       [`${percent(data.uniform_free_share)} \u2192 ${percent(data.free_share)}`, "samples free of collision, uniform \u2192 guided"]];
-    for (const [figure, text] of tiles) {
-      const tile = document.createElement("div");
-      const number = document.createElement("b");
-      const label = document.createElement("span");
-      tile.className = "tile";
-      number.textContent = figure;
-      label.textContent = text;
-      tile.append(number, label);
-      byId("tiles").append(tile);
-    }
+    fillTiles(byId("tiles"), tiles);
   }
-
-  function tableOf(id, rows) {
-    rows.forEach((cells, row) => {
-      const line = byId(id).insertRow();
-      for (const cell of cells) {
-        const element = document.createElement(row === 0 ? "th" : "td");
-        element.textContent = cell;
-        line.append(element);
-      }
-    });
-  }
-
-  const metres = (numbers) => numbers.map((n) => n / 1000);
 
   /// Each path as segments between its poses.
   function segments(robot) {
@@ -77,21 +47,19 @@
     return positions;
   }
 
-  const target = [0.24, 0, 0.3];
-
   function showFleet() {
     const poses = total(fleet.flatMap((robot) => robot.paths.map((path) => path.positions.length / 3)));
     byId("fleet-text").textContent =
       `Where the palm of the gripper was along the recorded paths, in the frame of the station: ${count(poses)} poses of ` +
       `${several(paths, "path")}. Each stroke points back out of the palm. The obstacles are those of one instance; they stand a little elsewhere in each.`;
-    kinshipScene.show(byId("fleet-view"), {
-      eye: [-1.55, -2.3, 1.6], target, obstacles: data.scene, arms: [],
-      lines: fleet.flatMap((robot, i) => [
-        {positions: segments(robot), color: "robot-" + i % 4, opacity: 0.3},
-        {positions: robot.paths.flatMap((path) => approaches(path, 0.035)), color: "robot-" + i % 4, opacity: 0.55}]),
-      points: fleet.map((robot, i) => ({
-        positions: robot.paths.flatMap((path) => metres(path.positions)), color: "robot-" + i % 4, size: 0.032, opacity: 0.95})),
-      legend: fleet.map((robot, i) => ["robot-" + i % 4, `${robot.label}, ${several(robot.paths.length, "path")}`])});
+    kinshipView.show(byId("fleet-view"), {
+      label: `The station with the ways of the hand of ${names}`, from: [-1.8, -2.3, 1.3], layers: [
+        {name: "scene", text: "obstacles", color: "scene", objects: data.scene},
+        ...fleet.map((robot, i) => ({
+          name: robot.label, text: `${robot.label}, ${several(robot.paths.length, "path")}`, color: "robot-" + i % 4,
+          lines: [{positions: segments(robot), opacity: 0.3},
+                  {positions: robot.paths.flatMap((path) => approaches(path, 0.035)), opacity: 0.45}],
+          points: [{positions: robot.paths.flatMap((path) => metres(path.positions)), size: 0.022, opacity: 0.8}]}))]});
   }
 
   function showSamples() {
@@ -102,11 +70,13 @@
       `${distribution.components} Gaussians in its ${distribution.joints} joints, fitted to ${count(distribution.configurations)} ` +
       `configurations. ${data.postures.length} of them, free of collision and far from each other, are drawn as the whole arm. ` +
       `The planner still checks every sample: about ${percent(data.free_share)} of these are free in the scene shown, of uniform ones ${percent(data.uniform_free_share)}.`;
-    kinshipScene.show(byId("samples-view"), {
-      eye: [-1.75, -2.5, 1.75], target, obstacles: data.scene, lines: [],
-      arms: data.postures.map((bones, i) => ({bones, color: "arm", opacity: i === 0 ? 1 : 0.5})),
-      points: [{positions: metres(data.samples.positions), color: "sample", size: 0.036, opacity: 0.9}],
-      legend: [["sample", "palm, one dot per sample"], ["arm", `${data.robot} in ${data.postures.length} samples`]]});
+    kinshipView.show(byId("samples-view"), {
+      label: `${data.robot} in samples of its distribution`, from: [-1.8, -2.4, 1.4], layers: [
+        {name: "scene", text: "obstacles", color: "scene", objects: data.scene},
+        {name: "arms", text: `${data.robot} in ${data.postures.length} samples`, color: "arm",
+         arms: data.postures.map((bones, i) => ({bones, opacity: i === 0 ? 1 : 0.35}))},
+        {name: "samples", text: "palm, one dot per sample", color: "sample",
+         points: [{positions: metres(data.samples.positions), size: 0.022, opacity: 0.5}]}]});
   }
 
   function showBars() {
@@ -115,37 +85,26 @@
     byId("worth-text").textContent =
       `Collision checks of both planners over the same ${comparison.pairs} instances with the same seeds; bars are means, ` +
       `whiskers their 95 % intervals (bootstrap).`;
-    const vega = kinshipVega();
-    const draw = () => {
-      byId("bars").textContent = "";
-      const width = Math.max(260, byId("bars").clientWidth - 150);
-      new vega.View(vega.parse(barsOf(rows, width)), {renderer: "svg", container: byId("bars")}).run();
-    };
-    draw();
-    window.addEventListener("resize", draw);
-    matchMedia("(prefers-color-scheme: dark)").addListener(draw);
+    kinshipCharts.show(byId("bars"), "Mean collision checks, uniform and guided", () => barsOf(rows));
   }
 
-  function barsOf(rows, width) {
-    const ink = kinshipScene.color("ink"), soft = kinshipScene.color("soft"), line = kinshipScene.color("line");
-    const font = "system-ui, 'DejaVu Sans', sans-serif";
+  function barsOf(rows) {
+    const ink = color("ink"), font = kinshipCharts.font;
     const whisker = (x, x2, band) => ({
       type: "rule", from: {data: "rows"}, encode: {update: {
         x: {scale: "x", field: x}, x2: {scale: "x", field: x2}, stroke: {value: ink}, strokeWidth: {value: 1.5},
         y: {scale: "y", field: "planner", band: band[0]}, y2: {scale: "y", field: "planner", band: band[1]}}}});
     return {
-      width, height: 132, padding: 6, background: null,
+      width: byId("bars").clientWidth, height: 132,
       data: [{name: "rows", values: rows}],
       scales: [
         {name: "y", type: "band", domain: {data: "rows", field: "planner"}, range: "height", padding: 0.32},
         {name: "x", domain: {data: "rows", field: "high"}, range: "width", zero: true, nice: true},
-        {name: "hue", type: "ordinal", domain: ["uniform", "guided"], range: [kinshipScene.color("uniform"), kinshipScene.color("guided")]}],
+        {name: "hue", type: "ordinal", domain: ["uniform", "guided"], range: [color("uniform"), color("guided")]}],
       axes: [
-        {orient: "bottom", scale: "x", grid: true, gridColor: line, domain: false, ticks: false, tickCount: 6,
-         encode: {labels: {update: {text: {signal: "replace(format(datum.value, ','), regexp(',', 'g'), '\u202f')"}}}},
-         labelColor: soft, labelFont: font, labelFontSize: 12, labelPadding: 6, title: "collision checks per query", titleColor: soft,
-         titleFont: font, titleFontSize: 12, titleFontWeight: "normal", titlePadding: 8},
-        {orient: "left", scale: "y", domain: false, ticks: false, labelColor: ink, labelFont: font, labelFontSize: 14, labelPadding: 10}],
+        {orient: "bottom", scale: "x", grid: true, tickCount: 6, title: "collision checks per query",
+         encode: {labels: {update: {text: {signal: "replace(format(datum.value, ','), regexp(',', 'g'), '\u202f')"}}}}},
+        {orient: "left", scale: "y", labelColor: ink, labelFontSize: 14, labelPadding: 10}],
       marks: [
         {type: "rect", from: {data: "rows"}, encode: {update: {
           x: {scale: "x", value: 0}, x2: {scale: "x", field: "mean"}, y: {scale: "y", field: "planner"},
@@ -153,18 +112,12 @@
         whisker("low", "high", [0.5, 0.5]), whisker("low", "low", [0.36, 0.64]), whisker("high", "high", [0.36, 0.64]),
         {type: "text", from: {data: "rows"}, encode: {update: {
           x: {scale: "x", value: 0, offset: 10}, y: {scale: "y", field: "planner", band: 0.5}, baseline: {value: "middle"},
-          text: {field: "label"}, fill: {value: kinshipScene.color("card")}, font: {value: font}, fontSize: {value: 15}, fontWeight: {value: 600}}}}]};
-  }
-
-  function kinshipVega() {
-    const part = (name) => kinshipModules.require("vega-" + name);
-    Object.assign(part("dataflow").transforms, part("transforms"), part("view-transforms"), part("encode"));
-    return {View: part("view").View, parse: part("parser").parse};
+          text: {field: "label"}, fill: {value: color("card")}, font: {value: font}, fontSize: {value: 15}, fontWeight: {value: 600}}}}]};
   }
 
   function showTables() {
     const {uniform: u, guided: g, ratio: r} = comparison;
-    tableOf("comparison", [
+    fillTable(byId("comparison"), [
       ["", "uniform", "guided", "ratio", "p"],
       ["solved", `${u.solved}/${comparison.pairs}`, `${g.solved}/${comparison.pairs}`, "", ""],
       ["collision checks, mean", count(u.mean_checks), count(g.mean_checks), fixed(r.mean_checks, 2), pText(comparison.wilcoxon_checks.p)],
@@ -176,7 +129,7 @@
       "Ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test over the pairs, unsolved ranked worst. One run of " +
       `${comparison.pairs} instances is one draw: another seed gives another ratio.` +
       (u.solved < comparison.pairs || g.solved < comparison.pairs ? " An unsolved attempt counts in a mean with what it had used when it gave up." : "");
-    tableOf("sources", [
+    fillTable(byId("sources"), [
       ["robot", "paths", "poses", "reached by " + data.robot, "of the poses"],
       ...distribution.sources.map((s) => [s.label, count(s.paths), count(s.poses), count(s.poses_solved),
                                           s.poses ? percent(s.poses_solved / s.poses) : ""])]);

@@ -6,7 +6,6 @@
 #include <random>
 #include <utility>
 
-#include "client/experiments/page/bones.hpp"
 #include "client/experiments/result_file.hpp"
 #include "client/files/lines.hpp"
 #include "proto/json/distribution_json.hpp"
@@ -170,7 +169,7 @@ void add_samples(const models::LoadedRobot& robot, const Problem& problem, PageD
   data.free_share = share_of(free, samples.cols());
   data.uniform_free_share = share_of(free_ones(world, uniform), uniform.cols());
   for (const Eigen::Index index : far_apart(free, data.samples.positions))
-    data.postures.push_back(bones_of(robot, T_task_base, samples.col(index)));
+    data.postures.push_back(page::bones_of(robot, T_task_base, samples.col(index)));
 }
 
 std::vector<double> checks_of(const std::vector<ProblemResult>& results) {

@@ -8,6 +8,7 @@
 
 #include "client/experiments/comparison.hpp"
 #include "client/experiments/statistics.hpp"
+#include "client/page/bones.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/scene.hpp"
 
@@ -37,23 +38,18 @@ struct FleetMember {
   std::vector<Poses> paths;  ///< resampled
 };
 
-/// A capsule of a drawn robot: what is within `radius_m` of a segment, in the task frame.
-struct Bone {
-  Eigen::Vector3d from, to;
-  double radius_m = 0;
-};
-
 /// Everything a page shows.
 struct PageData {
   std::vector<FleetMember> fleet;
   std::string robot;  ///< label of the new robot
   Scene scene;        ///< one instance of its problems
   Distribution distribution;
-  Advice advice;                            ///< what the server makes of the new robot's attempts
-  Poses samples;                            ///< of the distribution
-  double free_share = 0;                    ///< of the samples, in the scene, 0 to 1
-  double uniform_free_share = 0;            ///< of as many uniform ones
-  std::vector<std::vector<Bone>> postures;  ///< five samples that are free, far from each other
+  Advice advice;                  ///< what the server makes of the new robot's attempts
+  Poses samples;                  ///< of the distribution
+  double free_share = 0;          ///< of the samples, in the scene, 0 to 1
+  double uniform_free_share = 0;  ///< of as many uniform ones
+  std::vector<std::vector<page::Bone>>
+      postures;  ///< five samples that are free, far from each other
   Comparison comparison;
   MeanInterval uniform_checks, guided_checks;  ///< means with 95 % intervals
 };

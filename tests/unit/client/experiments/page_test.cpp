@@ -6,10 +6,8 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 
-#include "client/experiments/page/bones.hpp"
 #include "client/experiments/page/page_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
@@ -133,20 +131,6 @@ TEST_F(Page, CarriesItsDataAsOneDocument) {
   EXPECT_EQ(data["scene"][0]["name"], "</script><b>");
 }
 
-TEST_F(Page, NeedsNothingElse) {
-  const std::string page = written();
-  EXPECT_LT(page.size(), 3'000'000U);
-  EXPECT_EQ(page.find("<!--insert"), std::string::npos);
-  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
-  EXPECT_NE(page.find("WebGLRenderer"), std::string::npos) << "three.js";
-  EXPECT_NE(page.find("kinshipModules.add(\"vega-parser\""), std::string::npos);
-  // An element that would load something; the programs in the page may speak of such.
-  const std::regex loads("<(script|link|img|iframe|object|embed)\\b[^>]{0,200}\\b(src|href|data)=");
-  std::smatch found;
-  EXPECT_FALSE(std::regex_search(page, found, loads)) << found.str();
-  EXPECT_EQ(page.find("@import"), std::string::npos);
-}
-
 TEST_F(Page, AMissingFileIsNamed) {
   std::filesystem::remove(run_.folder / "distribution.json");
   try {
@@ -161,21 +145,6 @@ TEST_F(Page, AMissingFileIsNamed) {
 TEST_F(Page, APathOfAnotherRobotIsRefused) {
   write_results("ur10e", "panda", {1, 1});
   EXPECT_THROW(read_run(run_), Failure);
-}
-
-TEST(Bones, AreAsManyAsShapesAndMoveWithTheRobot) {
-  const models::LoadedRobot robot = load("ur10e");
-  const Eigen::VectorXd q = Eigen::VectorXd::Zero(robot.chain.dof());
-  const Eigen::Vector3d shift(1, 2, 3);
-  const auto here = bones_of(robot, Eigen::Isometry3d::Identity(), q);
-  const auto there = bones_of(robot, Eigen::Isometry3d(Eigen::Translation3d(shift)), q);
-  ASSERT_EQ(here.size(), robot.shapes.shapes.size());
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    EXPECT_TRUE((there[i].from - here[i].from).isApprox(shift));
-    EXPECT_TRUE((there[i].to - here[i].to).isApprox(shift));
-    EXPECT_GT(here[i].radius_m, 0);
-    EXPECT_LT(here[i].from.norm(), 2.5);
-  }
 }
 
 }  // namespace

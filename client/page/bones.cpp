@@ -1,11 +1,12 @@
-#include "client/experiments/page/bones.hpp"
+#include "client/page/bones.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <variant>
 
 #include "robots/kinematics/forward_kinematics.hpp"
 
-namespace kinship::experiments {
+namespace kinship::page {
 namespace {
 
 /// A shape in its own frame: an axis, half the length along it, and a radius.
@@ -51,4 +52,22 @@ std::vector<Bone> bones_of(const models::LoadedRobot& robot, const Eigen::Isomet
   return bones;
 }
 
-}  // namespace kinship::experiments
+std::vector<SceneObject> held_objects(const models::LoadedRobot& robot,
+                                      const std::vector<AttachedObject>& attached,
+                                      const Eigen::Isometry3d& T_task_base,
+                                      const Eigen::Ref<const Eigen::VectorXd>& q) {
+  const std::vector<Eigen::Isometry3d> links = kinematics::link_poses(robot.chain, q);
+  std::vector<SceneObject> held;
+  for (const AttachedObject& each : attached) {
+    if (each.mesh)
+      continue;
+    const int link = robot.chain.find_link(each.link);
+    if (link < 0)
+      throw std::invalid_argument("held_objects: no link '" + each.link + "'");
+    held.push_back({each.name, each.shape,
+                    T_task_base * links[static_cast<std::size_t>(link)] * each.T_link_object});
+  }
+  return held;
+}
+
+}  // namespace kinship::page
