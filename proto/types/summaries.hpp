@@ -114,6 +114,27 @@ inline constexpr std::tuple kFieldsOf<PathSummary>{
     Field{"retired_ms", &PathSummary::retired_ms},
     Field{"dropped", &PathSummary::dropped, {.may_be_missing = true}}};
 
+/// A query that was reported, solved or not, without what it was and what answered it.
+struct AttemptSummary {
+  Uuid report_uuid;
+  Digest robot;
+  std::string label;
+  std::string task;
+  std::string machine;
+  PlanningRecord record;
+  std::int64_t received_ms = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<AttemptSummary>{
+    Field{"report_uuid", &AttemptSummary::report_uuid},
+    Field{"robot", &AttemptSummary::robot},
+    Field{"label", &AttemptSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"task", &AttemptSummary::task, {.limit = kMaxTaskBytes}},
+    Field{"machine", &AttemptSummary::machine, {.limit = kMaxMachineBytes}},
+    Field{"record", &AttemptSummary::record},
+    Field{"received_ms", &AttemptSummary::received_ms}};
+
 struct DistributionSummary {
   Digest id;
   std::uint64_t revision = 0;

@@ -35,9 +35,10 @@ struct TextLine {
 /// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
 /// Retirement; JobRows TextLines; the other verbs of jobs a Job each.
-using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
-                              PathSummary, Attempt, DistributionSummary, Distribution, Explanation,
-                              Eviction, ExportedRobot, Retirement, Job, TextLine>;
+using AdminRow =
+    std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
+                 AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
+                 ExportedRobot, Retirement, Job, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {

@@ -86,6 +86,8 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return page_of(parts_.jobs.cancel(request.argument));
     case AdminVerb::JobRows:
       return job_rows(parts_.jobs, request);
+    case AdminVerb::ListAttempts:
+      return list_attempts(request);
     default:
       break;
   }
@@ -104,6 +106,13 @@ AdminPage Administration::list_paths(const AdminRequest& request) {
   const std::optional<Digest> robot = robot_filter(request);
   check_task_filter(request);
   return page_of(parts_.store.list_paths(robot, request.task, request.cursor, page_size(request)));
+}
+
+AdminPage Administration::list_attempts(const AdminRequest& request) {
+  const std::optional<Digest> robot = robot_filter(request);
+  check_task_filter(request);
+  return page_of(
+      parts_.store.list_attempts(robot, request.task, request.cursor, page_size(request)));
 }
 
 AdminPage Administration::list_distributions(const AdminRequest& request) {

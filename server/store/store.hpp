@@ -227,6 +227,10 @@ class Store {
   /// The last to arrive first, retired and dropped ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
+  /// By arrival, unsolved ones and those of retired paths too. Empty robot or task: all.
+  virtual Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot,
+                                             std::string_view task, std::string_view cursor,
+                                             std::size_t limit) const = 0;
   /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path if
   /// that one is damaged or dropped, without its scene if that one is damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;

@@ -104,6 +104,19 @@ PathSummary every_path_summary() {
   return path;
 }
 
+AttemptSummary every_attempt_summary() {
+  Distinct next(1150);
+  AttemptSummary attempt;
+  attempt.report_uuid = next.id<Uuid>();
+  attempt.robot = next.id<Digest>();
+  attempt.label = next.name("label");
+  attempt.task = next.name("task");
+  attempt.machine = next.text("machine");
+  attempt.record = every_record(next);
+  attempt.received_ms = next.time_ms();
+  return attempt;
+}
+
 DistributionSummary every_distribution_summary() {
   Distinct next(1200);
   DistributionSummary distribution;

@@ -71,6 +71,7 @@ Rehearsal every_rehearsal();
 RobotSummary every_robot_summary();
 TaskSummary every_task_summary();
 PathSummary every_path_summary();
+AttemptSummary every_attempt_summary();
 DistributionSummary every_distribution_summary();
 Explanation every_explanation();
 Retirement every_retirement();

@@ -80,6 +80,7 @@ std::vector<Case> cases() {
       readable("robot_summary", every_robot_summary(), robot_summary_from_json),
       readable("task_summary", every_task_summary(), task_summary_from_json),
       readable("path_summary", every_path_summary(), path_summary_from_json),
+      readable("attempt_summary", every_attempt_summary(), attempt_summary_from_json),
       readable("distribution_summary", every_distribution_summary(),
                distribution_summary_from_json),
       readable("server_status", every_status(), server_status_from_json),

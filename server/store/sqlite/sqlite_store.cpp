@@ -284,6 +284,12 @@ class SqliteStore : public Store {
     return page_of_paths(*reader, robot, task, cursor, limit);
   }
 
+  Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                     std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_attempts(*reader, robot, task, cursor, limit);
+  }
+
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     const ReaderPool::Lease reader = readers_.lease();
     const ReportRows report = find_report(*reader, report_uuid);

@@ -135,6 +135,8 @@ TEST_F(QueryPlans, NoStatementOfAServingStoreReadsWhatOthersHave) {
     store_->find_task(task);
     store_->list_paths(robot, task, "", 2);
     store_->list_paths({}, "", "2", 2);
+    store_->list_attempts({}, "", "", 2);
+    store_->list_attempts(robot, task, "", 2);
     store_->list_distributions({}, "", "", 2);
     store_->list_distributions(robot, task, "", 2);
     store_->list_distributions({}, task, "", 2);

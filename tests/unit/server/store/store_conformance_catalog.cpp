@@ -263,6 +263,37 @@ TEST_P(StoreConformance, ListsPathsOnceEachUnderEveryFilter) {
   EXPECT_TRUE(paths[0].T_task_base->isApprox(test::make_pose(), 1e-15));
 }
 
+TEST_P(StoreConformance, ListsAttemptsByArrivalUnderEveryFilter) {
+  std::uint64_t number = 0;
+  for (int i = 0; i < 3; ++i)
+    for (const RobotRecord* robot : {&panda_, &iiwa_})
+      for (const char* const task : {"shelf", "table"})
+        report(i == 1 ? test::make_unsolved(robot->digest, task, ++number)
+                      : test::make_attempt(robot->digest, task, ++number));
+  static_cast<void>(store_->retire_path(test::id_from<Uuid>(1)));
+  const auto list = [this](const std::optional<Digest>& robot, const char* task) {
+    return all_pages<AttemptSummary>(
+        [&](const std::string& cursor) { return store_->list_attempts(robot, task, cursor, 2); });
+  };
+  const auto all = list(std::nullopt, "");
+  ASSERT_EQ(all.size(), 12U) << "also unsolved ones and those of retired paths";
+  for (std::uint64_t i = 0; i < 12; ++i)
+    EXPECT_EQ(all[i].report_uuid, test::id_from<Uuid>(i + 1));
+  EXPECT_EQ(list(panda_.digest, "").size(), 6U);
+  EXPECT_EQ(list(std::nullopt, "table").size(), 6U);
+  const auto attempts = list(iiwa_.digest, "table");
+  ASSERT_EQ(attempts.size(), 3U);
+  EXPECT_EQ(attempts[0].label, "iiwa");
+  EXPECT_EQ(attempts[0].robot, iiwa_.digest);
+  EXPECT_EQ(attempts[0].task, "table");
+  EXPECT_EQ(attempts[0].machine, "cell 7");
+  EXPECT_EQ(attempts[0].record.outcome, Outcome::Solved);
+  EXPECT_EQ(attempts[0].record.collision_checks, 1234U);
+  EXPECT_NE(attempts[1].record.outcome, Outcome::Solved);
+  EXPECT_GT(attempts[0].received_ms, 0);
+  EXPECT_THROW(store_->list_attempts({}, "", "1.2", 2), Failure);
+}
+
 TEST_P(StoreConformance, ListsDistributionsUnderEveryFilter) {
   for (std::uint64_t i = 1; i <= 3; ++i)
     store_->put_distribution(test::make_distribution(panda_.digest, "shelf", i));
