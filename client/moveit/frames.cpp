@@ -22,7 +22,7 @@ YamlValue virtual_joints(const YamlValue& scene, const YamlValue& request) {
 }
 
 /// Where a virtual joint puts the root link in the planning frame; identity if there is none.
-Eigen::Isometry3d read_T_planning_root(const YamlValue& joints) {
+Eigen::Isometry3d read_root_pose(const YamlValue& joints) {
   const std::vector<YamlValue> transforms = joints["transforms"].items();
   if (transforms.size() > 1)
     joints["transforms"].refuse(std::to_string(transforms.size()) +
@@ -41,7 +41,7 @@ Frames::Frames(const kinematics::Chain& chain, const std::optional<Eigen::Isomet
     if (chain.links()[index].parent < 0)
       T_base_root = T_base_links_[index];
   const YamlValue joints = virtual_joints(scene, request);
-  const Eigen::Isometry3d T_root_planning = read_T_planning_root(joints).inverse();
+  const Eigen::Isometry3d T_root_planning = read_root_pose(joints).inverse();
   T_task_base_ = T_task_base.value_or((T_base_root * T_root_planning).inverse());
   T_task_planning_ = T_task_base_ * T_base_root * T_root_planning;
   planning_frame_ = without_slash(joints["header"]["frame_id"].text_or(""));

@@ -44,8 +44,8 @@ class YamlValue {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
-  YamlValue(YAML::Node node, std::string file, std::string way)
-      : node_(std::move(node)), file_(std::move(file)), way_(std::move(way)) {}
+  YamlValue(const YAML::Node& node, std::string file, std::string way)
+      : node_(node), file_(std::move(file)), way_(std::move(way)) {}
 
   YAML::Node node_;
   std::string file_;
