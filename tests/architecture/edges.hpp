@@ -66,6 +66,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
   const std::string page = "client/page";
+  const std::string plots = "client/plots";
   const std::set<std::string> planner_programs = {
       link,      arguments, files,      planning, ompl,    evidence, inverse,
       collision, geometry,  kinematics, models,   mixture, json,     types};
@@ -103,8 +104,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
+      {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, page, inverse, collision, geometry, kinematics, models,
+       {{link, arguments, files, moveit, plots, inverse, collision, geometry, kinematics, models,
          mixture, json, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
