@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/page_file.hpp"
 #include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
+#include "client/plots/plot_pages.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/task_experience.hpp"
@@ -149,6 +151,16 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
   }
 }
 
+void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
+                      std::ostream& out) {
+  out << "What the experience of each source is worth to each target on '" << task
+      << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
+         "source's recorded queries; * the best of a row\n\n";
+  print_worths(pairs, out);
+  out << '\n';
+  print_remarks(pairs, out);
+}
+
 }  // namespace
 
 void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
@@ -179,6 +191,13 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
   const auto placements = parse_placements(options.placements);
   if (!placements)
     return refuse(kCompare, placements.error(), err);
+  if (options.json && options.output == "-")
+    return refuse(kCompare,
+                  {ErrorCode::InvalidInput, "--json and --output - are both for standard output"},
+                  err);
+  std::optional<PageFile> page;  // refuses before the server has worked for it
+  if (!options.output.empty())
+    page.emplace(options.output, out);
   int code = kDone;
   const auto rows = show_rows(server, AdminVerb::ShowTask, options.task, kCompare, err, code);
   if (rows.empty())
@@ -207,16 +226,14 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
       pairs.push_back(compare_pair(server, options, target, source));
     }
   progress.clear();
-  if (options.json) {
-    out << json::to_json(options.task, pairs) << '\n';
-  } else {
-    out << "What the experience of each source is worth to each target on '" << options.task
-        << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
-           "source's recorded queries; * the best of a row\n\n";
-    print_worths(pairs, out);
-    out << '\n';
-    print_remarks(pairs, out);
+  if (page) {
+    plots::write_page(options.task, pairs, page->stream());
+    page->keep(err);
   }
+  if (options.json)
+    out << json::to_json(options.task, pairs) << '\n';
+  else if (options.output != "-")
+    print_comparison(options.task, pairs, out);
   const bool all_told = std::ranges::all_of(
       pairs, [](const Transferability& pair) { return pair.rehearsal.has_value(); });
   return all_told ? kDone : kFailed;

@@ -5,6 +5,7 @@
 #include "client/cli/groups.hpp"
 #include "client/cli/import_command.hpp"
 #include "client/cli/listings.hpp"
+#include "client/cli/plot_commands.hpp"
 #include "client/cli/retire_commands.hpp"
 
 namespace kinship::cli {
@@ -60,6 +61,20 @@ void add_experience(CLI::App& group, Session& session) {
   });
 }
 
+void add_task_plot(CLI::App& group, Session& session) {
+  const auto task = std::make_shared<std::string>();
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = add_command(
+      group, "plot", "A page that shows a task's experience and the benefit of guidance over time",
+      "kinship tasks plot box_to_shelf --output box_to_shelf.html");
+  command->add_option("task", *task, "Its name")->required();
+  add_page_output(*command, options->output)->required();
+  on_run_with_server(*command, session, [&session, task, options](link::Client& server) {
+    options->progress = session.is_on_terminal();
+    return plot_task(server, *task, *options, session.out, session.err);
+  });
+}
+
 }  // namespace
 
 void add_paths(CLI::App& app, Session& session) {
@@ -86,6 +101,7 @@ void add_tasks(CLI::App& app, Session& session) {
           {"show", "task", "Its name", "A task by name", "kinship tasks show box_to_shelf"},
           show_task);
   add_experience(*tasks, session);
+  add_task_plot(*tasks, session);
 
   struct Options {
     std::string task;

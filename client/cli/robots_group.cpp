@@ -121,7 +121,8 @@ void add_compare(CLI::App& group, Session& session) {
       group, "compare", "What the experience of each robot is worth to each other one on a task",
       "kinship robots compare --task box_to_shelf\n"
       "kinship robots compare --task box_to_shelf --targets ur10e --placement \"ur10e=0 0 0.6 0 0 "
-      "0 1\"");
+      "0 1\"\n"
+      "kinship robots compare --task box_to_shelf --output worths.html");
   command->add_option("--task", options->task, "Task whose experience is meant")
       ->required()
       ->type_name("TASK");
@@ -137,6 +138,7 @@ void add_compare(CLI::App& group, Session& session) {
   const auto wait_s = std::make_shared<double>(120);
   command->add_option("--wait", *wait_s, "Seconds for one pair (default 120)")
       ->check(arguments::between(0.0, 3600.0));
+  add_page_output(*command, options->output);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options, wait_s](link::Client& server) {
     options->wait = milliseconds(*wait_s);

@@ -57,6 +57,11 @@ void add_json(CLI::App& command, Session& session, const std::string& what) {
       ->excludes(json);
 }
 
+CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output) {
+  return command.add_option("--output", output,
+                            "HTML file, replaced once it is whole; - is standard output");
+}
+
 void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
   const auto options = std::make_shared<ListOptions>();
   CLI::App* command = add_command(group, "list", "List " + group.get_name(),

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <iosfwd>
 #include <memory>
@@ -48,6 +49,9 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
 /// --json, and -o, which also asks for it or for wide tables.
 void add_json(CLI::App& command, Session& session,
               const std::string& what = "One JSON document on standard output");
+
+/// --output of a command that writes a page. \return it.
+CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output);
 
 /// Has the command run `run` if it is the one that was named.
 template <typename Run>

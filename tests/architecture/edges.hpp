@@ -70,6 +70,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
   const std::string page = "client/page";
+  const std::string plots = "client/plots";
   const std::set<std::string> planner_programs = {
       guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
       collision, geometry, kinematics, models, mixture,  json, manual,   types};
@@ -114,9 +115,10 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
+      {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, page, inverse, collision, geometry, kinematics, models,
-         mixture, json, manual, types},
+       {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
+         models, mixture, json, manual, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, models, collision, kinematics, types}, {"Eigen"}}},
       {"client/library",

@@ -107,6 +107,9 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"distributions", "fetch", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"--domain", "300", "status"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"configurations", "export"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "plot", "--output", "-"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "plot", "3f9a"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"tasks", "plot", "pick"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "explain", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(
       run_command({"distributions", "explain", "--task", "pick", "--distribution", "3f9a"}).code,
