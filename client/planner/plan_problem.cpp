@@ -95,7 +95,7 @@ Outcome outcome_of(const planning::PlanSummary& summary) {
 class Planning {
  public:
   Planning(const PlannedRobot& robot, const Problem& problem, const PlanSettings& settings,
-           const std::function<bool()>& stop)
+           const std::function<bool()>& stop, planning::SearchRecorder* recorder)
       : robot_(robot),
         problem_(problem),
         settings_(settings),
@@ -108,6 +108,7 @@ class Planning {
                                        throw Interrupted();
                                    })),
         bounds_(planning::planning_bounds(robot.chain, problem.start)),
+        recorder_(recorder),
         generator_(problem.seed) {
     if (problem.constraint)
       constraint_.emplace(robot.chain, *problem.constraint, T_task_base_, bounds_);
@@ -123,6 +124,7 @@ class Planning {
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     options.track_check_fraction = settings_.tracks.check_fraction;
+    options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
     const auto sampler =
         make_query_sampler(robot_.chain, {T_task_base_, bounds_, problem_.start, goals}, guidance,
@@ -248,6 +250,7 @@ class Planning {
   Eigen::Matrix2Xd bounds_;
   std::optional<planning::RegionConstraint> constraint_;
   std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
+  planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
 };
 
@@ -255,7 +258,7 @@ class Planning {
 
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,
-                            const std::function<bool()>& stop) {
+                            const std::function<bool()>& stop, planning::SearchRecorder* recorder) {
   PlannedProblem planned;
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
@@ -274,7 +277,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
     return planned;
   }
   try {
-    Planning planning(robot, problem, settings, stop);
+    Planning planning(robot, problem, settings, stop, recorder);
     planned.attempted = true;
     planned.planner = name_of(*planner);
     planned.result.planner = planned.planner;
