@@ -30,7 +30,7 @@ def _test_of(path):
 
 
 for _path in DOCUMENTS:
-    setattr(Commands, f"test_of_{_path.relative_to(SOURCE).stem.lower()}_{_path.parent.name}", _test_of(_path))
+    setattr(Commands, "test_" + "_".join(_path.relative_to(SOURCE).with_suffix("").parts).lower(), _test_of(_path))
 
 if __name__ == "__main__":
     unittest.main()

@@ -12,7 +12,7 @@ PATTERNS = (
     (r"\b(?=[0-9a-f]*[a-f])(?=[0-9a-f]*\d)[0-9a-f]{6,}\b", "#"),  # a digest may be all digits
     (r"(?<![\w.])\d{1,3}( \d{3})+(?![\w.])", "#"),
     (r"(?<![\w.])[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d+)?(?![\w])", "#"),
-    (r"(?<![\w.])[-+]?\d+(\.\d+)?(us|ms|s|min|h|kB|MB|x|%)(?!\w)", "#"),
+    (r"(?<![\w.])[-+]?\d+(\.\d+)?(us|ms|s|min|m|h|d|kB|MB|x|%)(?!\w)", "#"),
     (r"# ?(us|µs|ms|s|min|h)\b", "# TIME"),
     (r"#\*", "#"),  # the best of a row
     (r"\s+chosen$", ""),  # the guide that a rehearsal found best
