@@ -74,6 +74,7 @@ PathSummary every_path_summary();
 DistributionSummary every_distribution_summary();
 Explanation every_explanation();
 Retirement every_retirement();
+RobotRemoval every_robot_removal();
 Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();

@@ -69,7 +69,7 @@ std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
   }
 }
 
-/// Nothing if it lies on a damaged page, which is noted.
+/// Nothing if its robot is removed, or it lies on a damaged page, which is noted.
 std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
   std::optional<AttemptRow> row;
   try {
@@ -81,6 +81,8 @@ std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRe
     return std::nullopt;
   }
   name_robot_and_task(database, *row);
+  if (row->is_robot_removed)
+    return std::nullopt;
   return row;
 }
 
