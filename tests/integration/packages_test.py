@@ -69,9 +69,17 @@ class Packages(unittest.TestCase):
         root = self.folder / "control"
         run("dpkg-deb", "--control", self.packages["kinship-server"], root)
         self.assertEqual((root / "conffiles").read_text().split(), ["/etc/kinship/kinshipd.toml"])
-        for script in ("postinst", "prerm", "postrm"):
-            self.assertEqual((root / script).stat().st_mode & 0o777, 0o755)
-            run("sh", "-n", root / script)
+
+    def test_bring_their_scripts(self):
+        for name, scripts in {"kinship-server": {"postinst", "prerm", "postrm"}, "kinship-client": set(), "libkinship-dev": set(),
+                              "python3-kinship": {"postinst", "prerm"}}.items():
+            root = self.folder / f"scripts-of-{name}"
+            run("dpkg-deb", "--control", self.packages[name], root)
+            found = [file for file in root.iterdir() if file.name in ("preinst", "postinst", "prerm", "postrm")]
+            self.assertEqual({file.name for file in found}, scripts, name)
+            for file in found:
+                self.assertEqual(file.stat().st_mode & 0o777, 0o755, file)
+                run("sh", "-n", file)
 
     def test_units_name_what_is_installed(self):
         paths = {row.split()[5].removeprefix(".") for name in ("kinship-server", "kinship-client")
