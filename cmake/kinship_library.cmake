@@ -68,6 +68,22 @@ function(kinship_library name)
   add_library(kinship::${name} ALIAS kinship_${name})
 endfunction()
 
+# kinship_embed_texts(VARIABLE header.hpp kinship::name FUNCTION FILE ...)
+#
+# Sets VARIABLE to a source that defines `std::span<const page::EmbeddedText> kinship::name::FUNCTION()`, which header.hpp
+# declares: the files of a page (client/page), carried by the program that writes it.
+function(kinship_embed_texts variable header namespace function)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  add_custom_command(
+    OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${source} -DHEADER=${header} -DNAMESPACE=${namespace}
+            -DTYPE=kinship::page::EmbeddedText -DFUNCTION=${function}
+            -P ${PROJECT_SOURCE_DIR}/cmake/embed_texts.cmake -- ${ARGN}
+    DEPENDS ${ARGN} ${PROJECT_SOURCE_DIR}/cmake/embed_texts.cmake
+    VERBATIM)
+  set(${variable} ${source} PARENT_SCOPE)
+endfunction()
+
 # kinship_program(NAME SOURCES main.cpp DEPENDS kinship::app ...)
 function(kinship_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")

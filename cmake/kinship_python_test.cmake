@@ -5,3 +5,14 @@ function(kinship_python_test name file label)
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 300 ENVIRONMENT
     "PYTHONPATH=${CMAKE_BINARY_DIR}/python:${PROJECT_SOURCE_DIR}/tests/support;KINSHIP_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};KINSHIP_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
 endfunction()
+
+# kinship_browser_test(NAME FILE): a file of unittest tests that look at pages in headless Chromium (tests/support/browser.py),
+# with Debian's Python; one test of CTest, label story. Not beside sanitizers, which would watch a browser.
+function(kinship_browser_test name file)
+  if(KINSHIP_SANITIZE)
+    return()
+  endif()
+  add_test(NAME ${name} COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  set_tests_properties(${name} PROPERTIES LABELS story TIMEOUT 300 ENVIRONMENT
+    "PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/support;KINSHIP_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};KINSHIP_TESTS_DIR=${CMAKE_BINARY_DIR}/tests;KINSHIP_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+endfunction()

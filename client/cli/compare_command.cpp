@@ -6,8 +6,11 @@
 #include <utility>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/page_file.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
+#include "client/plots/plot_pages.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/task_experience.hpp"
@@ -148,14 +151,24 @@ void print_remarks(const std::vector<Transferability>& pairs, std::ostream& out)
   }
 }
 
+void print_comparison(const std::string& task, const std::vector<Transferability>& pairs,
+                      std::ostream& out) {
+  out << "What the experience of each source is worth to each target on '" << task
+      << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
+         "source's recorded queries; * the best of a row\n\n";
+  print_worths(pairs, out);
+  out << '\n';
+  print_remarks(pairs, out);
+}
+
 }  // namespace
 
 void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
   constexpr int kDigits = 2;
-  std::vector<std::string> headings{"TARGET \\ SOURCE"};
+  std::vector<Column> headings{"TARGET \\ SOURCE"};
   for (const Transferability& pair : pairs)
     if (pair.target == pairs.front().target)
-      headings.push_back(pair.source_label);
+      headings.emplace_back(pair.source_label, Fit::Cut);
   const std::size_t sources = headings.size() - 1;
   Table table(std::move(headings));
   for (std::size_t row = 0; row < pairs.size(); row += sources) {
@@ -178,6 +191,13 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
   const auto placements = parse_placements(options.placements);
   if (!placements)
     return refuse(kCompare, placements.error(), err);
+  if (options.json && options.output == "-")
+    return refuse(kCompare,
+                  {ErrorCode::InvalidInput, "--json and --output - are both for standard output"},
+                  err);
+  std::optional<PageFile> page;  // refuses before the server has worked for it
+  if (!options.output.empty())
+    page.emplace(options.output, out);
   int code = kDone;
   const auto rows = show_rows(server, AdminVerb::ShowTask, options.task, kCompare, err, code);
   if (rows.empty())
@@ -197,22 +217,23 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
     return code;
 
   std::vector<Transferability> pairs;
+  StatusLine progress(err, options.progress);
   for (const Target& target : targets)
     for (const TaskRobotSummary& source : sources) {
-      err << "rehearsing " << pairs.size() + 1 << " of " << targets.size() * sources.size() << ": "
-          << target.label << " with the experience of " << source.label << '\n';
+      progress.show("rehearsing " + std::to_string(pairs.size() + 1) + " of " +
+                    std::to_string(targets.size() * sources.size()) + ": " + target.label +
+                    " with the experience of " + source.label);
       pairs.push_back(compare_pair(server, options, target, source));
     }
-  if (options.json) {
-    out << json::to_json(options.task, pairs) << '\n';
-  } else {
-    out << "What the experience of each source is worth to each target on '" << options.task
-        << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
-           "source's recorded queries; * the best of a row\n\n";
-    print_worths(pairs, out);
-    out << '\n';
-    print_remarks(pairs, out);
+  progress.clear();
+  if (page) {
+    plots::write_page(options.task, pairs, page->stream());
+    page->keep(err);
   }
+  if (options.json)
+    out << json::to_json(options.task, pairs) << '\n';
+  else if (options.output != "-")
+    print_comparison(options.task, pairs, out);
   const bool all_told = std::ranges::all_of(
       pairs, [](const Transferability& pair) { return pair.rehearsal.has_value(); });
   return all_told ? kDone : kFailed;

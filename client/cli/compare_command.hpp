@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct CompareOptions {
   std::vector<std::string> placements;     ///< "LABEL=x y z qx qy qz qw", before what was reported
   std::chrono::milliseconds wait{120000};  ///< for one pair of robots
   bool json = false;
+  bool progress = false;              ///< each pair is named on `err`
+  std::filesystem::path output = {};  ///< of a page; "-": `out`, without a matrix; empty: no page
 };
 
 /// A matrix, a target a row: what each source is worth, the best one of a row with an asterisk.

@@ -4,6 +4,7 @@
 #include "client/cli/export_commands.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
+#include "client/cli/plot_commands.hpp"
 #include "client/cli/retire_commands.hpp"
 
 namespace kinship::cli {
@@ -11,9 +12,11 @@ namespace {
 
 /// What names a distribution by what it is for. \return the required options.
 std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query) {
-  CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted");
+  CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted")
+                          ->type_name("TASK");
   CLI::Option* robot =
-      command.add_option("--robot", query.robot, "Label, or beginning of its digest");
+      command.add_option("--robot", query.robot, "Label, or beginning of its digest")
+          ->type_name("ROBOT");
   command.add_option("--placement", query.placement,
                      "Robot's base in the task frame, \"x y z qx qy qz qw\"");
   arguments::add_profile_options(command, query.profile);
@@ -27,14 +30,16 @@ std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query)
 }
 
 /// The same, or its id.
-void add_query_or_id(CLI::App& command, DistributionQuery& query) {
-  CLI::Option* id = command.add_option("--distribution", query.id,
-                                       "Beginning of its id, instead of --task and --robot");
+/// \param id_names  of the option, e.g. "--distribution".
+void add_query_or_id(CLI::App& command, DistributionQuery& query, const std::string& id_names) {
+  CLI::Option* id =
+      command.add_option(id_names, query.id, "Beginning of its id, instead of --task and --robot")
+          ->type_name("DISTRIBUTION");
   for (CLI::Option* option : add_query(command, query))
     option->excludes(id);
-  command.parse_complete_callback([&query] {
+  command.parse_complete_callback([&query, id] {
     if (query.id.empty() && (query.task.empty() || query.robot.empty()))
-      throw CLI::ValidationError("give --task and --robot, or --distribution");
+      throw CLI::ValidationError("give --task and --robot, or " + id->get_name());
   });
 }
 
@@ -57,7 +62,8 @@ void add_fetch(CLI::App& group, Session& session) {
       ->needs(samples)
       ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
-  command->get_option("--json")->excludes(samples);
+  for (const char* const format : {"--json", "-o"})
+    command->get_option(format)->excludes(samples);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;
     return fetch_distribution(server, *options, session.out, session.err);
@@ -70,10 +76,25 @@ void add_explain(CLI::App& group, Session& session) {
       group, "explain", "What a distribution is made of, why it failed, how far it is behind",
       "kinship distributions explain --task box_to_shelf --robot ur10e\n"
       "  kinship distributions explain --distribution 3f9a0c");
-  add_query_or_id(*command, *query);
+  add_query_or_id(*command, *query, "--distribution");
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, query](link::Client& server) {
     return explain_distribution(server, *query, session.json, session.out, session.err);
+  });
+}
+
+void add_plot(CLI::App& group, Session& session) {
+  const auto query = std::make_shared<DistributionQuery>();
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = add_command(
+      group, "plot", "A page that shows a distribution over its robot, its joints and its sources",
+      "kinship distributions plot --task box_to_shelf --robot ur10e --output ur10e.html\n"
+      "  kinship distributions plot 3f9a0c --output - > ur10e.html");
+  add_query_or_id(*command, *query, "id");
+  add_page_output(*command, options->output)->required();
+  on_run_with_server(*command, session, [&session, query, options](link::Client& server) {
+    options->progress = session.is_on_terminal();
+    return plot_distribution(server, *query, *options, session.out, session.err);
   });
 }
 
@@ -88,6 +109,7 @@ void add_distributions(CLI::App& app, Session& session) {
           show_distribution);
   add_fetch(*group, session);
   add_explain(*group, session);
+  add_plot(*group, session);
   add_one(*group, session,
           {"evict", "id", "Four digits of it or more",
            "Forget a distribution: the next fetch has it made anew",
@@ -102,10 +124,11 @@ void add_configurations(CLI::App& app, Session& session) {
       *group, "export", "Exactly the rows that a distribution's fit saw, as CSV",
       "kinship configurations export --task box_to_shelf --robot ur10e --output rows.csv\n"
       "  kinship configurations export --distribution 3f9a0c");
-  add_query_or_id(*command, options->query);
-  command->add_option("--output", options->output, "File (default: standard output)");
+  add_query_or_id(*command, options->query, "--distribution");
+  command->add_option("--output", options->output, "File (default: standard output)")
+      ->type_name("FILE");
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
-    options->waiting.progress = session.is_on_terminal();
+    options->waiting.progress = session.shows_progress();
     return export_configurations(server, *options, session.out, session.err);
   });
 }

@@ -15,7 +15,8 @@ namespace {
 void add_robot_arguments(CLI::App& command, models::RobotArguments& robot) {
   command
       .add_option("robot", robot.source, "URDF file, or a folder with chain.toml and robot.urdf")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   arguments::add_robot_options(command, robot);
 }
 
@@ -82,7 +83,8 @@ void add_inverse(CLI::App& group, Session& session) {
   add_robot_arguments(*command, options->robot);
   CLI::Option_group* poses = command->add_option_group("poses");
   poses->add_option("--pose", options->pose, "Of the frame in base link, \"x y z qx qy qz qw\"");
-  poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]");
+  poses->add_option("--poses", options->poses, "File with lines [x, y, z, qx, qy, qz, qw]")
+      ->type_name("FILE");
   poses->require_option(1);
   command
       ->add_option("--frame", options->frame,
@@ -122,12 +124,16 @@ void add_compare(CLI::App& group, Session& session) {
       group, "compare", "What the experience of each robot is worth to each other one on a task",
       "kinship robots compare --task box_to_shelf\n"
       "kinship robots compare --task box_to_shelf --targets ur10e --placement \"ur10e=0 0 0.6 0 0 "
-      "0 1\"");
-  command->add_option("--task", options->task, "Task whose experience is meant")->required();
+      "0 1\"\n"
+      "kinship robots compare --task box_to_shelf --output worths.html");
+  command->add_option("--task", options->task, "Task whose experience is meant")
+      ->required()
+      ->type_name("TASK");
   command
       ->add_option(
           "--targets", options->targets,
           "Robots that would use it: labels or digests, separated by commas (default: all)")
+      ->type_name("ROBOT")
       ->delimiter(',');
   command->add_option("--placement", options->placements,
                       "\"LABEL=x y z qx qy qz qw\": where a robot's base stands in the task frame "
@@ -135,10 +141,12 @@ void add_compare(CLI::App& group, Session& session) {
   const auto wait_s = std::make_shared<double>(120);
   command->add_option("--wait", *wait_s, "Seconds for one pair (default 120)")
       ->check(arguments::between(0.0, 3600.0));
+  add_page_output(*command, options->output);
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options, wait_s](link::Client& server) {
     options->wait = milliseconds(*wait_s);
     options->json = session.json;
+    options->progress = session.shows_progress();
     return compare_robots(server, *options, session.out, session.err);
   });
 }

@@ -117,6 +117,7 @@ enum class AdminVerb {
   ShowJob,      ///< answers when the job has ended or `deadline` has passed
   CancelJob,    ///< row: Job
   JobRows,      ///< the rows of a job that is done, page by page
+  ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
   RenameRobot,  ///< `robot` gets the label `argument`; row: RobotSummary
   RemoveRobot   ///< row: RobotRemoval
 };

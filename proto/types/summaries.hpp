@@ -7,12 +7,14 @@
 #include <tuple>
 #include <vector>
 
+#include "proto/types/advice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/field.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/rehearsal.hpp"
+#include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
 /// The rows that admin verbs list: what the store knows, without waypoints and mixtures.
@@ -52,6 +54,8 @@ struct TaskRobotSummary {
   std::uint64_t attempts = 0;
   std::uint64_t generation = 0;
   std::uint64_t dropped = 0;  ///< paths that were beyond the cap
+  /// What guided and control attempts cost, all of them; missing: none, or an older server.
+  std::optional<ModeEvidence> guided = {}, control = {};
 };
 
 template <>
@@ -61,7 +65,9 @@ inline constexpr std::tuple kFieldsOf<TaskRobotSummary>{
     Field{"paths", &TaskRobotSummary::paths},
     Field{"attempts", &TaskRobotSummary::attempts},
     Field{"generation", &TaskRobotSummary::generation},
-    Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}}};
+    Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}},
+    Field{"guided", &TaskRobotSummary::guided},
+    Field{"control", &TaskRobotSummary::control}};
 
 struct TaskSummary {
   std::string task;
@@ -108,6 +114,27 @@ inline constexpr std::tuple kFieldsOf<PathSummary>{
     Field{"retired_ms", &PathSummary::retired_ms},
     Field{"dropped", &PathSummary::dropped, {.may_be_missing = true}}};
 
+/// A query that was reported, solved or not, without what it was and what answered it.
+struct AttemptSummary {
+  Uuid report_uuid;
+  Digest robot;
+  std::string label;
+  std::string task;
+  std::string machine;
+  PlanningRecord record;
+  std::int64_t received_ms = 0;
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<AttemptSummary>{
+    Field{"report_uuid", &AttemptSummary::report_uuid},
+    Field{"robot", &AttemptSummary::robot},
+    Field{"label", &AttemptSummary::label, {.limit = kMaxLabelBytes}},
+    Field{"task", &AttemptSummary::task, {.limit = kMaxTaskBytes}},
+    Field{"machine", &AttemptSummary::machine, {.limit = kMaxMachineBytes}},
+    Field{"record", &AttemptSummary::record},
+    Field{"received_ms", &AttemptSummary::received_ms}};
+
 struct DistributionSummary {
   Digest id;
   std::uint64_t revision = 0;
@@ -122,6 +149,8 @@ struct DistributionSummary {
   std::uint64_t paths = 0;
   std::int64_t fitted_ms = 0;
   bool retired = false;  ///< made of paths that were retired since: it is not served any more
+  std::optional<Eigen::Isometry3d> T_task_base = {};  ///< snapped; missing also from older servers
+  Selection selection = {};                           ///< as in Distribution
 };
 
 template <>
@@ -138,7 +167,9 @@ inline constexpr std::tuple kFieldsOf<DistributionSummary>{
     Field{"configurations", &DistributionSummary::configurations},
     Field{"paths", &DistributionSummary::paths},
     Field{"fitted_ms", &DistributionSummary::fitted_ms},
-    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}}};
+    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}},
+    Field{"T_task_base", &DistributionSummary::T_task_base},
+    Field{"selection", &DistributionSummary::selection, {.may_be_missing = true}}};
 
 /// What is kept of a distribution, and how it stands to the experience of now.
 struct Explanation {

@@ -149,6 +149,11 @@ Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
   return from_pose_array(pose);
 }
 
+bool says_transfer(const RobotArguments& arguments) {
+  std::error_code unreadable;
+  return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
+}
+
 Result<RobotDescription> describe_robot(const RobotArguments& arguments) {
   try {
     return put_together(arguments);

@@ -24,7 +24,8 @@ std::size_t bytes_of(const AdminReply& reply) {
 bool is_listing(AdminVerb verb) {
   return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
          verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
-         verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs;
+         verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs ||
+         verb == AdminVerb::ListAttempts;
 }
 
 template <typename Value>

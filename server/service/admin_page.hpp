@@ -36,9 +36,10 @@ struct TextLine {
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
 /// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; JobRows TextLines; the other
 /// verbs of jobs a Job each.
-using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
-                              PathSummary, Attempt, DistributionSummary, Distribution, Explanation,
-                              Eviction, ExportedRobot, Retirement, RobotRemoval, Job, TextLine>;
+using AdminRow =
+    std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
+                 AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
+                 ExportedRobot, Retirement, RobotRemoval, Job, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {

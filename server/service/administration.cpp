@@ -101,6 +101,8 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return page_of(parts_.jobs.cancel(request.argument));
     case AdminVerb::JobRows:
       return job_rows(parts_.jobs, request);
+    case AdminVerb::ListAttempts:
+      return list_attempts(request);
     default:
       break;
   }
@@ -121,12 +123,19 @@ AdminPage Administration::list_paths(const AdminRequest& request) {
   return page_of(parts_.store.list_paths(robot, request.task, request.cursor, page_size(request)));
 }
 
+AdminPage Administration::list_attempts(const AdminRequest& request) {
+  const std::optional<Digest> robot = robot_filter(request);
+  check_task_filter(request);
+  return page_of(
+      parts_.store.list_attempts(robot, request.task, request.cursor, page_size(request)));
+}
+
 AdminPage Administration::list_distributions(const AdminRequest& request) {
   const std::optional<Digest> robot = robot_filter(request);
   check_task_filter(request);
   store::Page<DistributionSummary> page =
       parts_.store.list_distributions(robot, request.task, request.cursor, page_size(request));
-  mark_retired(parts_.store, page.rows);
+  complete_summaries(parts_.store, page.rows);
   return page_of(std::move(page));
 }
 

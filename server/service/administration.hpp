@@ -65,6 +65,7 @@ class Administration {
   AdminPage dispatch(const AdminRequest& request, const std::string& request_key);
   AdminPage list_robots(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
+  AdminPage list_attempts(const AdminRequest& request);
   AdminPage list_distributions(const AdminRequest& request);
   AdminPage show_robot(const std::string& name);
   AdminPage show_task(const std::string& task);

@@ -109,7 +109,9 @@ struct StoreStatus {
   std::uint64_t distribution_bytes = 0;      ///< of them, about
   std::uint64_t max_distribution_bytes = 0;  ///< 0: no limit
   std::uint64_t queued = 0;
+  std::uint64_t wal_bytes = 0;  ///< in use, of changes that are not yet in the file
   bool writable = true;
+  bool damaged = false;  ///< something was found that cannot be read any more; `message` names it
   std::int64_t scrubbed_ms =
       0;                  ///< when all of the file was last read in search of damage; 0: never
   double scrub_part = 0;  ///< how far the search for damage is since then
@@ -247,9 +249,13 @@ class Store {
   virtual Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const = 0;
   virtual Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const = 0;
   virtual std::optional<TaskSummary> find_task(std::string_view task) const = 0;
-  /// By task, robot and arrival, retired and dropped ones too. Empty robot or task: all.
+  /// The last to arrive first, retired and dropped ones too. Empty robot or task: all.
   virtual Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit) const = 0;
+  /// By arrival, unsolved ones and those of retired paths too. Empty robot or task: all.
+  virtual Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot,
+                                             std::string_view task, std::string_view cursor,
+                                             std::size_t limit) const = 0;
   /// An attempt with its path and scene, by report UUID; unsolved ones too. Without its path if
   /// that one is damaged or dropped, without its scene if that one is damaged.
   virtual std::optional<Attempt> find_attempt(const Uuid& report_uuid) const = 0;
@@ -259,6 +265,7 @@ class Store {
   virtual Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                         std::string_view cursor, std::size_t limit,
                                         std::size_t max_bytes) const = 0;
+  /// The last to be fitted first; one that is fitted again between two pages goes to the front.
   virtual Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
                                                        std::string_view task,
                                                        std::string_view cursor,

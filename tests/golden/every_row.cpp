@@ -79,6 +79,10 @@ TaskSummary every_task_summary() {
   task.dropped = next.count();
   for (TaskRobotSummary& robot : task.robots)
     robot.dropped = next.count();
+  for (TaskRobotSummary& robot : task.robots) {
+    robot.guided = ModeEvidence{next.count(), next.count(), next.real()};
+    robot.control = ModeEvidence{next.count(), next.count(), next.real()};
+  }
   return task;
 }
 
@@ -100,6 +104,19 @@ PathSummary every_path_summary() {
   return path;
 }
 
+AttemptSummary every_attempt_summary() {
+  Distinct next(1150);
+  AttemptSummary attempt;
+  attempt.report_uuid = next.id<Uuid>();
+  attempt.robot = next.id<Digest>();
+  attempt.label = next.name("label");
+  attempt.task = next.name("task");
+  attempt.machine = next.text("machine");
+  attempt.record = every_record(next);
+  attempt.received_ms = next.time_ms();
+  return attempt;
+}
+
 DistributionSummary every_distribution_summary() {
   Distinct next(1200);
   DistributionSummary distribution;
@@ -115,6 +132,8 @@ DistributionSummary every_distribution_summary() {
   distribution.configurations = next.count();
   distribution.paths = next.count();
   distribution.fitted_ms = next.time_ms();
+  distribution.T_task_base = next.pose();
+  distribution.selection = {{next.id<Digest>()}, Weighting::Paths, next.time_ms()};
   return distribution;
 }
 
@@ -258,6 +277,14 @@ Problem every_pose_problem() {
   return problem;
 }
 
+Problem every_problem_from_pose() {
+  Problem problem = every_pose_problem();
+  Distinct next(1950);
+  problem.start.resize(0);
+  problem.T_task_start = next.pose();
+  return problem;
+}
+
 ProblemResult every_problem_result() {
   Distinct next(2000);
   ProblemResult result;
@@ -269,6 +296,8 @@ ProblemResult every_problem_result() {
   result.projections = next.count();
   result.planning_time_s = next.real();
   result.time_limit_s = next.real();
+  result.start = Eigen::VectorXd::LinSpaced(kJoints, 0.25, 0.5);
+  result.not_planned = NotPlanned::StartOffConstraint;
   result.waypoints = next.matrix(kJoints, 3);
   result.distribution_id = next.id<Digest>();
   result.distribution_revision = next.count();

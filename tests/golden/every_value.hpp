@@ -71,6 +71,7 @@ Rehearsal every_rehearsal();
 RobotSummary every_robot_summary();
 TaskSummary every_task_summary();
 PathSummary every_path_summary();
+AttemptSummary every_attempt_summary();
 DistributionSummary every_distribution_summary();
 Explanation every_explanation();
 Retirement every_retirement();
@@ -79,8 +80,9 @@ Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();
 
-Problem every_problem();       ///< to configurations, in a scene
-Problem every_pose_problem();  ///< to a pose
+Problem every_problem();            ///< to configurations, in a scene
+Problem every_pose_problem();       ///< to a pose
+Problem every_problem_from_pose();  ///< to a pose, too
 ProblemResult every_problem_result();
 InverseAnswer every_inverse_answer();
 RobotCheck every_robot_check();

@@ -113,6 +113,7 @@ class SqliteStore : public Store {
     status.epoch = history_.epoch();
     status.rollbacks = history_.rollbacks();
     status.queued = writer_->queued();
+    status.wal_bytes = writer_->wal_bytes();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
     describe_disk(status);
@@ -121,6 +122,7 @@ class SqliteStore : public Store {
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
+    status.damaged = damaged_robots_ > 0 || !scrub_->findings().empty();
     if (const std::size_t damaged = damaged_robots_; damaged > 0)
       status.message += std::to_string(damaged) + " damaged robots left out; ";
     if (const std::string damaged = scrub_->findings(); !damaged.empty())
@@ -310,6 +312,12 @@ class SqliteStore : public Store {
                                std::string_view cursor, std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
     return page_of_paths(*reader, robot, task, cursor, limit);
+  }
+
+  Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                     std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_attempts(*reader, robot, task, cursor, limit);
   }
 
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {

@@ -126,6 +126,11 @@ class TroubledStore final : public store::Store {
                                       std::string_view cursor, std::size_t limit) const override {
     return store_.list_paths(robot, task, cursor, limit);
   }
+  store::Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot,
+                                            std::string_view task, std::string_view cursor,
+                                            std::size_t limit) const override {
+    return store_.list_attempts(robot, task, cursor, limit);
+  }
   std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
     return store_.find_attempt(report_uuid);
   }

@@ -273,10 +273,11 @@ PlanningRecord read_record(const Statement& row, int first_column) {
 }
 
 AttemptRow select_attempt(Database& database, std::int64_t id) {
-  constexpr int kFirstOfRecord = 7;
+  constexpr int kFirstOfRecord = 8;
   AttemptRow row;
   const auto query = database.cached(
-      "SELECT report_uuid, robot_id, task_id, machine, T_task_base, path_id, scene_id, " +
+      "SELECT report_uuid, robot_id, task_id, machine, T_task_base, path_id, scene_id, "
+      "received_ms, " +
       std::string(kRecordColumns) + "FROM attempt WHERE id = ?");
   if (!query->bind(1, id).step())
     throw Failure(ErrorCode::Storage, "attempt " + std::to_string(id) + " is in an index alone");
@@ -289,6 +290,7 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
     row.path_id = query->column_integer(5);
   if (!query->column_is_null(6))
     row.scene_id = query->column_integer(6);
+  row.received_ms = query->column_integer(7);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;
 }

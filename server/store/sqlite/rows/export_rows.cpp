@@ -69,6 +69,37 @@ std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
   }
 }
 
+/// Those of a robot, a task, both, or all of them.
+std::vector<std::int64_t> next_ids(Database& database, const std::optional<Digest>& robot,
+                                   std::string_view task, std::int64_t after_id,
+                                   std::int64_t count) {
+  return robot || !task.empty()
+             ? next_of(database, select_experience(database, robot, task), after_id, count)
+             : next_of_all(database, after_id, count);
+}
+
+/// Nothing if its robot is removed, or it lies on a damaged page.
+std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names, std::int64_t id) {
+  try {
+    AttemptRow row = select_attempt(database, id);
+    name_robot_and_task(database, row);
+    if (row.is_robot_removed)
+      return std::nullopt;
+    const RobotNames::Name* const robot = names.find(row.robot_id);
+    return AttemptSummary{row.attempt.report_uuid,
+                          row.attempt.robot,
+                          robot ? robot->label : "",
+                          std::move(row.attempt.task),
+                          std::move(row.attempt.machine),
+                          std::move(row.attempt.record),
+                          row.received_ms};
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return std::nullopt;
+  }
+}
+
 /// Nothing if its robot is removed, or it lies on a damaged page, which is noted.
 std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
   std::optional<AttemptRow> row;
@@ -119,16 +150,12 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
                        std::size_t max_bytes) {
   constexpr std::int64_t kCandidates = 64;
   const std::size_t rows = std::max<std::size_t>(limit, 1);
-  const bool filtered = robot || !task.empty();
-  const std::vector<ExperienceKey> keys =
-      filtered ? select_experience(database, robot, task) : std::vector<ExperienceKey>();
   ExportRead read;
   std::int64_t last_id = parse_cursor(cursor);
   std::size_t bytes = 0;
   while (true) {
-    const std::vector<std::int64_t> candidates = filtered
-                                                     ? next_of(database, keys, last_id, kCandidates)
-                                                     : next_of_all(database, last_id, kCandidates);
+    const std::vector<std::int64_t> candidates =
+        next_ids(database, robot, task, last_id, kCandidates);
     if (candidates.empty())
       return read;
     for (const std::int64_t id : candidates) {
@@ -144,6 +171,25 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
       last_id = id;
     }
   }
+}
+
+Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Digest>& robot,
+                                      std::string_view task, std::string_view cursor,
+                                      std::size_t limit) {
+  const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
+  RobotNames names(database);
+  Page<AttemptSummary> page;
+  const std::vector<std::int64_t> ids =
+      next_ids(database, robot, task, parse_cursor(cursor), rows + 1);
+  for (const std::int64_t id : ids) {
+    if (std::ssize(page.rows) == rows)
+      return page;
+    if (std::optional<AttemptSummary> summary = read_summary(database, names, id))
+      page.rows.push_back(std::move(*summary));
+    page.next_cursor = std::to_string(id);
+  }
+  page.next_cursor.clear();
+  return page;
 }
 
 }  // namespace kinship::store

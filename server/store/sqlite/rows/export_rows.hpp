@@ -24,4 +24,11 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
                        std::string_view task, std::string_view cursor, std::size_t limit,
                        std::size_t max_bytes);
 
+/// A page of Store::list_attempts(), with a cursor of the same kind. Those that cannot be read are
+/// left out.
+/// \throws Failure(InvalidInput) for a cursor of another listing.
+Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Digest>& robot,
+                                      std::string_view task, std::string_view cursor,
+                                      std::size_t limit);
+
 }  // namespace kinship::store

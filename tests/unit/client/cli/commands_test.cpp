@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -42,6 +43,13 @@ Answer run_without_server(std::vector<std::string> command, const char* timeout_
   return run_command(command);
 }
 
+TEST(Commands, APageAndADocumentAreNotBothForStandardOutput) {
+  const Answer answer =
+      run_without_server({"robots", "compare", "--task", "pick", "--json", "--output", "-"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("--json and --output -"), std::string::npos) << answer.err;
+}
+
 TEST(Commands, HelpIsAnAnswer) {
   for (const std::string group : {"robots", "tasks", "paths", "distributions"}) {
     const Answer answer = run_command({group, "list", "--help"});
@@ -61,6 +69,44 @@ TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
   EXPECT_EQ(error({"frobnicate"}).find("did you mean"), std::string::npos);
 }
 
+TEST(Commands, AHostThatNobodyKnowsIsNamedAtOnce) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = run_command({"--server", "nobody..invalid", "--timeout", "30", "status"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
+  EXPECT_EQ(answer.code, kNoServer);
+  EXPECT_TRUE(answer.err.starts_with("kinship: --server 'nobody..invalid': ")) << answer.err;
+}
+
+TEST(Commands, ABackupOnAnotherMachineIsNotNamedByAFolderHere) {
+  const Answer answer = run_command({"--server", "192.0.2.1", "backup", "./copy.db"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("'./copy.db' begins with a folder of this machine"), std::string::npos)
+      << answer.err;
+}
+
+TEST(Commands, HelpIsOfWordsThatOneCanType) {
+  const Answer answer = run_command({"backup", "--help"});
+  EXPECT_NE(answer.out.find("  --no-wait  "), std::string::npos) << answer.out;
+  for (const char* const inner : {"{false}", "Excludes", "Needs"})
+    EXPECT_EQ(answer.out.find(inner), std::string::npos) << answer.out;
+  EXPECT_EQ(answer.out.find("candidates"), std::string::npos) << "is hidden";
+}
+
+TEST(Commands, AnOutputFormatIsOneOfThree) {
+  EXPECT_EQ(run_command({"paths", "list", "-o", "yaml"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"paths", "list", "-o", "wide", "--json"}).code, kWrongUsage);
+}
+
+TEST(Commands, CandidatesAreNothingAndNoComplaintWithoutAServer) {
+  const test::ReservedDomain domain;
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer =
+      run_command({"--domain", std::to_string(domain.number()), "candidates", "ROBOT"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+  EXPECT_EQ(answer.code, kDone);
+  EXPECT_EQ(answer.out + answer.err, "");
+}
+
 TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({}).code, kWrongUsage);
   EXPECT_EQ(run_command({"paths"}).code, kWrongUsage);
@@ -68,6 +114,9 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"distributions", "fetch", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"--domain", "300", "status"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"configurations", "export"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "plot", "--output", "-"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"distributions", "plot", "3f9a"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"tasks", "plot", "pick"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "explain", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(
       run_command({"distributions", "explain", "--task", "pick", "--distribution", "3f9a"}).code,

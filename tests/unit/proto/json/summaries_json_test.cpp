@@ -61,6 +61,17 @@ TEST(SummariesJson, PathIsReadBack) {
   expect_same_text_again(path, path_summary_from_json);
 }
 
+TEST(SummariesJson, AttemptIsReadBack) {
+  AttemptSummary attempt;
+  attempt.robot = digest_of(4);
+  attempt.label = "panda";
+  attempt.task = "bin_to_shelf";
+  attempt.record.outcome = Outcome::Timeout;
+  attempt.record.collision_checks = 12;
+  attempt.received_ms = 5;
+  expect_same_text_again(attempt, attempt_summary_from_json);
+}
+
 TEST(SummariesJson, DistributionIsReadBack) {
   expect_same_text_again(
       DistributionSummary{digest_of(6), 2, "bin_to_shelf", digest_of(7), "ur10e",

@@ -176,6 +176,24 @@ TEST_F(AdministrationTest, PathsAreListedByRobotAndTaskInPages) {
   EXPECT_EQ(pages, 3U);
 }
 
+TEST_F(AdministrationTest, AttemptsAreListedByRobotAndTaskInPages) {
+  report(fleet::solved(teacher_, "shelf", 3, 1));
+  report(fleet::solved(pupil_, "shelf", 2, 1));
+  AdminRequest request = fleet::question(AdminVerb::ListAttempts);
+  request.task = "shelf";
+  request.limit = 4;
+  const AdminPage first = administration_.answer(request);
+  ASSERT_EQ(first.rows.size(), 4U) << first.message;
+  EXPECT_EQ(row<AttemptSummary>(first, 3).label, "pupil");
+  request.cursor = first.next_cursor;
+  EXPECT_EQ(administration_.answer(request).rows.size(), 1U);
+  request = fleet::question(AdminVerb::ListAttempts);
+  request.robot = "teacher";
+  EXPECT_EQ(administration_.answer(request).rows.size(), 3U);
+  request.task = "bin";
+  EXPECT_EQ(administration_.answer(request).message, "no task 'bin'");
+}
+
 TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefused) {
   AdminRequest request = fleet::question(AdminVerb::ListPaths);
   request.robot = "nobody";

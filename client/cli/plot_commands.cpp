@@ -1,0 +1,102 @@
+#include "client/cli/plot_commands.hpp"
+
+#include <ostream>
+#include <sstream>
+#include <vector>
+
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/page_file.hpp"
+#include "client/cli/table.hpp"
+#include "client/plots/plot_pages.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "proto/json/robot_description_json.hpp"
+#include "proto/json/summaries_json.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::cli {
+namespace {
+
+constexpr std::string_view kPlotDistribution = "distributions plot";
+constexpr std::string_view kPlotTask = "tasks plot";
+
+/// The distribution that a query means, by its id or by what it is for. Empty with an exit code in
+/// `code` if there is none.
+std::optional<Distribution> find_distribution(link::Client& server, const DistributionQuery& query,
+                                              bool shows_progress, std::ostream& err, int& code) {
+  if (query.id.empty()) {
+    if (shows_progress)
+      err << "having it made, if need be ..." << std::flush;
+    std::ostringstream trouble;
+    auto distribution = fetch_query(server, query, kPlotDistribution, true, trouble, code);
+    err << (shows_progress ? "\r\033[K" : "") << trouble.str();
+    return distribution;
+  }
+  const auto rows =
+      show_rows(server, AdminVerb::ShowDistribution, query.id, kPlotDistribution, err, code);
+  if (code != kDone)
+    return std::nullopt;
+  return json::distribution_from_json(rows.front()).value_or_throw();
+}
+
+/// All rows of a listing of one task. \throws Failure for a row that cannot be read.
+template <typename Parse, typename Row>
+int read_rows(link::Client& server, AdminVerb verb, const std::string& task, Parse parse,
+              std::vector<Row>& rows, const PlotOptions& options, std::ostream& err) {
+  constexpr std::size_t kStep = 1000;  // rows between two signs of progress
+  ListOptions filter;
+  filter.task = task;
+  const int code = for_each_row(server, verb, filter, kPlotTask, err, [&](const std::string& row) {
+    rows.push_back(parse(row).value_or_throw());
+    if (options.progress && rows.size() % kStep == 0)
+      err << "\r\033[K" << rows.size() << " rows" << std::flush;
+    return true;
+  });
+  if (options.progress && rows.size() >= kStep)
+    err << "\r\033[K" << std::flush;
+  return code;
+}
+
+}  // namespace
+
+int plot_distribution(link::Client& server, const DistributionQuery& query,
+                      const PlotOptions& options, std::ostream& out, std::ostream& err) {
+  PageFile page(options.output, out);  // refuses before the server has worked for it
+  int code = kDone;
+  auto distribution = find_distribution(server, query, options.progress, err, code);
+  if (code != kDone)
+    return code;
+  const auto rows = show_rows(server, AdminVerb::ShowRobot, distribution->robot.hex(),
+                              kPlotDistribution, err, code);
+  if (code != kDone)
+    return code;
+  const auto description = json::robot_description_from_json(rows.back()).value_or_throw();
+  try {
+    plots::write_page(plots::plot_of(*std::move(distribution), description), page.stream());
+  } catch (const Failure& failure) {
+    return refuse(kPlotDistribution, failure.error(), err);
+  }
+  page.keep(err);
+  return kDone;
+}
+
+int plot_task(link::Client& server, const std::string& task, const PlotOptions& options,
+              std::ostream& out, std::ostream& err) {
+  PageFile page(options.output, out);
+  std::vector<AttemptSummary> attempts;
+  std::vector<DistributionSummary> distributions;
+  int code = read_rows(server, AdminVerb::ListAttempts, task, json::attempt_summary_from_json,
+                       attempts, options, err);
+  if (code == kDone)
+    code = read_rows(server, AdminVerb::ListDistributions, task,
+                     json::distribution_summary_from_json, distributions, options, err);
+  if (code != kDone)
+    return code;
+  if (attempts.empty())
+    return refuse(kPlotTask,
+                  {ErrorCode::NotFound, "nothing to plot: no attempt of task '" + task + "'"}, err);
+  plots::write_page(plots::history_of(task, attempts, distributions), page.stream());
+  page.keep(err);
+  return kDone;
+}
+
+}  // namespace kinship::cli

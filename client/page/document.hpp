@@ -1,0 +1,29 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinship::page {
+
+/// One HTML page that needs nothing else.
+struct Document {
+  std::string title;                      ///< of the browser's tab; plain text
+  std::string body;                       ///< HTML, what stands in <main>
+  std::string data;                       ///< one JSON document: kinshipPage.data
+  std::vector<std::string_view> styles;   ///< CSS after page.css
+  std::vector<std::string_view> scripts;  ///< run in order once the body is there
+  bool draws_scenes = false;              ///< three.js and kinshipView
+  bool draws_charts = false;              ///< Vega and kinshipCharts
+};
+
+/// Writes the page: style, programs and data are in it, and it forbids the browser to load
+/// anything (Content-Security-Policy).
+/// \throws std::invalid_argument if a style or script would end its own element.
+void write_document(const Document& document, std::ostream& out);
+
+/// Plain text as HTML.
+std::string escaped(std::string_view text);
+
+}  // namespace kinship::page

@@ -1,0 +1,99 @@
+#include "client/plots/distribution_plot.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "proto/mixture/distribution_sampler.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/geometry/known_shapes.hpp"
+#include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
+
+namespace kinship::plots {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+constexpr std::size_t kPostures = 3;
+
+/// The components' indices, heaviest first.
+std::vector<Eigen::Index> by_weight(const Mixture& mixture) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(mixture.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater{},
+                           [&](Eigen::Index k) { return mixture.weights()(k); });
+  return order;
+}
+
+Eigen::MatrixXd draw_samples(const Distribution& distribution) {
+  const mixture::DistributionSampler sampler(distribution);
+  std::mt19937_64 generator(kSeed);
+  Eigen::MatrixXd samples(sampler.dimension(), kSamplesShown);
+  for (auto column : samples.colwise()) {
+    const auto q = sampler.sample(generator);
+    if (!q)
+      throw Failure(ErrorCode::NotFound, "nothing to plot: distribution " +
+                                             distribution.id.short_hex() +
+                                             " lies outside the joint limits");
+    column = *q;
+  }
+  return samples;
+}
+
+models::LoadedRobot known_robot(const RobotDescription& description, std::string& shapes) {
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::KnownShapes known = geometry::read_known_shapes(description, chain).value_or_throw();
+  shapes = geometry::describe(known);
+  return {description, std::move(chain), std::move(known.shapes)};
+}
+
+}  // namespace
+
+std::vector<Component> heaviest_components(const Mixture& mixture) {
+  std::vector<Component> components;
+  double cumulated = 0;
+  for (const Eigen::Index k : by_weight(mixture)) {
+    if (components.size() == kMaxComponentsShown)
+      break;
+    cumulated += mixture.weights()(k);
+    components.push_back({mixture.weights()(k), std::min(cumulated, 1.0)});
+  }
+  return components;
+}
+
+DistributionPlot plot_of(Distribution distribution, const RobotDescription& description) {
+  if (!distribution.mixture)
+    throw Failure(ErrorCode::NotFound, "nothing to plot: distribution " +
+                                           distribution.id.short_hex() +
+                                           " has no mixture: " + distribution.reason);
+  DistributionPlot plot;
+  const models::LoadedRobot robot = known_robot(description, plot.shapes);
+  if (robot.chain.digest() != distribution.robot)
+    throw Failure(ErrorCode::InvalidInput,
+                  "robot '" + description.label + "' is " + robot.chain.digest().short_hex() +
+                      ", the distribution is for " + distribution.robot.short_hex());
+  const Eigen::Isometry3d T_task_base =
+      distribution.T_task_base.value_or(Eigen::Isometry3d::Identity());
+  const Eigen::MatrixXd samples = draw_samples(distribution);
+  plot.label = description.label;
+  plot.components = heaviest_components(*distribution.mixture);
+  plot.marginals = marginals_of(distribution, robot.chain, samples);
+  plot.hands.resize(3, samples.cols());
+  for (Eigen::Index i = 0; i < samples.cols(); ++i)
+    plot.hands.col(i) =
+        T_task_base * kinematics::T_base_transfer(robot.chain, samples.col(i)).translation();
+  const Mixture& mixture = *distribution.mixture;
+  for (const Eigen::Index k : by_weight(mixture)) {
+    if (plot.postures.size() == kPostures)
+      break;
+    const Eigen::VectorXd q = mixture.means().col(k);
+    plot.postures.push_back({mixture.weights()(k), page::bones_of(robot, T_task_base, q)});
+  }
+  plot.distribution = std::move(distribution);
+  return plot;
+}
+
+}  // namespace kinship::plots

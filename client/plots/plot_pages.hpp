@@ -1,0 +1,22 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "client/plots/distribution_plot.hpp"
+#include "client/plots/task_history.hpp"
+#include "proto/types/transferability.hpp"
+
+/// Pages that show what a server knows: one HTML document each, which needs no network
+/// (client/page), with its data as one JSON document in it.
+namespace kinship::plots {
+
+void write_page(const DistributionPlot& plot, std::ostream& out);
+void write_page(const TaskHistory& history, std::ostream& out);
+
+/// A matrix, a target a row. \param pairs  every target with the same sources in the same order.
+void write_page(const std::string& task, const std::vector<Transferability>& pairs,
+                std::ostream& out);
+
+}  // namespace kinship::plots

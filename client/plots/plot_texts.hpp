@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+
+#include "client/page/embedded_text.hpp"
+
+namespace kinship::plots {
+
+/// The files of this room's pages. Written while building (cmake/embed_texts.cmake).
+std::span<const page::EmbeddedText> plot_texts();
+
+}  // namespace kinship::plots

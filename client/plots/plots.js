@@ -1,0 +1,42 @@
+// What the pages of plots share: facts, keys, times.
+"use strict";
+const kinshipPlots = (() => {
+  const {make, byId} = kinshipPage;
+
+  /// A list of what is known: [[term, text or null], ...]; what is null or empty is left out.
+  function fillFacts(element, facts) {
+    for (const [term, text] of facts)
+      if (text) element.append(make("dt", {}, term), make("dd", {}, text));
+  }
+
+  /// What a figure's colours mean: [[colour of the style, text, class of the mark], ...].
+  const keys = (entries) => make("div", {class: "keys"}, ...entries.map(([name, text, mark]) =>
+    make("span", {}, make("i", {style: `--hue: var(--${name})`, class: mark || null}), text)));
+
+  /// A figure with a heading, and a note below it. \return {panel, chart}
+  function panel(title, note) {
+    const chart = make("div", {class: "chart"});
+    return {panel: make("figure", {}, make("h3", {}, title), chart, make("p", {class: "note"}, note || "")), chart};
+  }
+
+  /// Draws what `spec()` says, a Vega specification without a width, as wide as the element.
+  const chart = (element, label, spec) => kinshipCharts.show(element, label, (width) => ({width, ...spec()}));
+
+  const hueOf = (index) => "robot-" + index % 4;
+  const dashOf = (index) => (index < 4 ? [1, 0] : index < 8 ? [6, 3] : [2, 3]);
+
+  /// 2026-11-25 14:03:07 UTC
+  const timeText = (ms) => new Date(ms).toISOString().slice(0, 19).replace("T", " ") + " UTC";
+  const dayText = (ms) => new Date(ms).toISOString().slice(0, 10);
+
+  const lengthText = (ms) => {
+    const units = [[86400000, "day"], [3600000, "hour"], [60000, "minute"], [1000, "second"]];
+    const [unit, word] = units.find(([length]) => ms >= length && ms % length === 0) || [1000, "second"];
+    const n = ms / unit;
+    return n === 1 ? "a" + (word === "hour" ? "n " : " ") + word : `${n} ${word}s`;
+  };
+
+  const hide = (id) => { byId(id).hidden = true; };
+
+  return {fillFacts, keys, panel, chart, hueOf, dashOf, timeText, dayText, lengthText, hide};
+})();

@@ -1,0 +1,86 @@
+// What the experience of each robot is worth to each other one: a matrix of buttons, and a table of all its numbers.
+"use strict";
+(() => {
+  const {data, byId, make, count, fixed, listed, fillTable} = kinshipPage;
+  const {rows: pairs, task} = data;
+  const targets = [...new Set(pairs.map((pair) => pair.target_label))];
+  const sources = [...new Set(pairs.map((pair) => pair.source_label))];
+  const pairOf = (target, source) => pairs.find((pair) => pair.target_label === target && pair.source_label === source);
+  const bestOf = (target) => Math.max(0, ...pairs.filter((pair) => pair.target_label === target && pair.worth !== null).map((pair) => pair.worth));
+  const isOwn = (pair) => pair.target === pair.source;
+
+  // Blue saves, orange costs, in steps of lightness: told apart also by who sees few colours, and in grey. [from, text, shade, ink]
+  const steps = [
+    [0, "below 0.67", "#b35806", "#ffffff"], [0.67, "0.67 to 0.91", "#f1b16e", "#16202b"], [0.91, "0.91 to 1.1: no difference", "#e9ecf0", "#16202b"],
+    [1.1, "1.1 to 1.5", "#b8d3ee", "#16202b"], [1.5, "1.5 to 2.5", "#6ba3d6", "#16202b"], [2.5, "2.5 and more", "#1d5b99", "#ffffff"]];
+  const stepOf = (worth) => [...steps].reverse().find(([from]) => worth >= from);
+  const shading = ([, , shade, ink]) => `--shade: ${shade}; --on-shade: ${ink}`;
+
+  function costOf(pair, guide) {
+    const cost = pair.rehearsal && pair.rehearsal.costs.find((each) => each.guide === guide);
+    return cost || null;
+  }
+
+  /// What is known of a pair, in sentences.
+  function sentences(pair) {
+    const said = [`${pair.target_label} with the experience of ${isOwn(pair) ? "its own" : pair.source_label}: ` +
+                  (pair.worth === null ? "not known." : `${fixed(pair.worth, 2)}\u2009\u00d7 the collision checks without guidance to those with it.`)];
+    const {rehearsal} = pair;
+    if (rehearsal) {
+      const none = costOf(pair, "none"), guided = costOf(pair, rehearsal.guide);
+      said.push(`${rehearsal.is_complete ? "Rehearsed" : "Being rehearsed"} on ${count(rehearsal.queries)} recorded ${rehearsal.queries === 1 ? "query" : "queries"}` +
+        (rehearsal.left_out ? `; ${count(rehearsal.left_out)} left out, whose start or goal it cannot take where it stands.` : "."));
+      if (none && guided)
+        said.push(`Guide ${rehearsal.guide}: mean ${count(guided.mean_checks)} checks, ${count(guided.solved)} of ${count(guided.plans)} plans solved; ` +
+          `without: ${count(none.mean_checks)}, ${count(none.solved)} of ${count(none.plans)}.`);
+    }
+    if (pair.message) said.push(pair.message);
+    return said;
+  }
+
+  function showDetail(pair, button) {
+    for (const other of byId("matrix").querySelectorAll("button")) other.setAttribute("aria-pressed", String(other === button));
+    byId("detail").replaceChildren(...sentences(pair).map((text) => make("p", {}, text)));
+  }
+
+  function cellOf(target, source) {
+    const pair = pairOf(target, source);
+    if (!pair) return "";
+    const known = pair.worth !== null;
+    const isBest = known && pair.worth === bestOf(target);
+    const button = make("button", {
+      type: "button", "aria-pressed": "false", class: [isOwn(pair) ? "own" : "", isBest ? "best" : "", known ? "" : "unknown"].filter(Boolean).join(" ") || null,
+      style: known ? shading(stepOf(pair.worth)) : null,
+      "aria-label": `${target} from ${source}: ${known ? fixed(pair.worth, 2) : "not known"}${isBest ? ", the best of its row" : ""}${isOwn(pair) ? ", its own experience" : ""}`,
+      onclick: () => showDetail(pair, button), onfocus: () => showDetail(pair, button), onmouseenter: () => showDetail(pair, button)},
+      known ? fixed(pair.worth, 2) + (isBest ? "*" : "") : "\u2013");
+    return button;
+  }
+
+  byId("title").textContent = `Whose experience helps whom on \u201c${task}\u201d`;
+  byId("lead").textContent = `Predicted before anybody planned with it: the server planned the recorded queries of ${listed(sources)} again for ${listed(targets)}, ` +
+    "each time with the experience of one robot alone.";
+  byId("matrix-text").textContent = "A row is a robot that plans, a column the robot that it learns from. The number is how many times the collision checks of guided planning are needed " +
+    "without guidance (means): above 1 the experience saves. * is the best of a row; a dashed frame is a robot\u2019s own experience; \u2013 is not known. Point at a cell, or step through them with Tab, for its counts.";
+  byId("scale").append(...steps.map((step) => make("span", {style: shading(step)}, step[1])));
+  byId("scale").setAttribute("aria-label", "Colours from orange, where the experience costs, over grey to dark blue, where it saves most.");
+  fillTable(byId("matrix"), [["plans \\ teaches", ...sources], ...targets.map((target) => [target, ...sources.map((source) => cellOf(target, source))])]);
+  byId("detail").append(make("p", {class: "note"}, "The counts of a cell appear here."));
+
+  fillTable(byId("pairs"), [
+    ["target", "source", "worth", "guide", "queries", "left out", "checks without", "with", "solved without", "with"],
+    ...pairs.map((pair) => {
+      const {rehearsal} = pair;
+      if (!rehearsal) return [pair.target_label, pair.source_label, ...Array(8).fill("\u2013")];
+      const none = costOf(pair, "none"), guided = costOf(pair, rehearsal.guide);
+      const solved = (cost) => (cost ? `${count(cost.solved)} of ${count(cost.plans)}` : "\u2013");
+      const checks = (cost) => (cost ? count(cost.mean_checks) : "\u2013");
+      return [pair.target_label, pair.source_label, fixed(pair.worth, 2), rehearsal.guide, count(rehearsal.queries), count(rehearsal.left_out),
+              checks(none), checks(guided), solved(none), solved(guided)];
+    })]);
+  byId("pairs-note").textContent = "Checks: collision checks, mean of all plans of a rehearsal; one that was not solved counts what it had spent. Guide: what served best of ways of the hand, " +
+    "retreat and mixture. A rehearsal is one draw of seeds over the queries that the source recorded.";
+  byId("remarks").append(...pairs.filter((pair) => pair.message).map((pair) =>
+    make("li", {}, `${pair.target_label} from ${pair.source_label}: ${pair.message}`)));
+  byId("footer").textContent = "Written by kinship robots compare from the rehearsals of the server. The page holds everything it needs and loads nothing.";
+})();

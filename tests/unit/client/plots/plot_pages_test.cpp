@@ -1,0 +1,78 @@
+#include "client/plots/plot_pages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "client/plots/plot_json.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "tests/unit/client/plots/history_values.hpp"
+#include "tests/unit/client/plots/plot_values.hpp"
+
+namespace kinship::plots::plot_pages_test {
+namespace {
+
+using nlohmann::json;
+
+template <typename... Plot>
+std::string page_of(const Plot&... plot) {
+  std::ostringstream page;
+  write_page(plot..., page);
+  return page.str();
+}
+
+/// The document that a page carries.
+json data_of(const std::string& page) {
+  const std::string begin = "id=\"data\">";
+  const auto first = page.find(begin) + begin.size();
+  return json::parse(page.substr(first, page.find("</script>", first) - first));
+}
+
+DistributionPlot plot() {
+  return plot_of(test::distribution_for("ur10e"), kinship::test::model_description("ur10e"));
+}
+
+TEST(PlotPages, ADistributionIsThatOfFetchWithoutItsMixture) {
+  const json data = data_of(page_of(plot()));
+  json expected = json::parse(kinship::json::to_json(test::distribution_for("ur10e")));
+  for (const char* const part : {"weights", "means", "covariances"})
+    expected[part] = nullptr;
+  EXPECT_EQ(data["distribution"], expected);
+  EXPECT_EQ(data["mixture_size"], 2);
+  EXPECT_EQ(data["components"], json::parse("[[0.75,0.75],[0.25,1]]"));
+  EXPECT_EQ(data["hands"].size(), 3 * kSamplesShown);
+  EXPECT_EQ(data["marginals"].size(), 6U);
+  EXPECT_EQ(data["marginals"][0]["counts"].size(), kMarginalBins);
+}
+
+TEST(PlotPages, EqualPlotsAreEqualPages) { EXPECT_EQ(page_of(plot()), page_of(plot())); }
+
+TEST(PlotPages, ATaskTellsItsHistory) {
+  const json data = data_of(page_of(history_of("shelf", test::season(12, 100, 300), {})));
+  EXPECT_EQ(data["task"], "shelf");
+  EXPECT_EQ(data["bin_ms"], 1000);
+  EXPECT_EQ(data["robots"][0]["attempts"], 24);
+  EXPECT_EQ(data["robots"][0]["bins"][0]["modes"][0]["median"], 100);
+  EXPECT_EQ(data["robots"][0]["bins"][0]["modes"][1]["median"], nullptr);
+  EXPECT_EQ(data["robots"][0]["benefit"].back()["control"], 12);
+}
+
+TEST(PlotPages, AMatrixHasTheRowsOfCompare) {
+  const Rehearsal rehearsal{
+      .guide = Guide::Ways,
+      .is_complete = true,
+      .queries = 5,
+      .costs = {{Guide::None, 5, 5, 900, 900}, {Guide::Ways, 5, 5, 300, 300}}};
+  const json data = data_of(page_of(
+      std::string("shelf"),
+      std::vector<Transferability>{{Digest{{1}}, Digest{{2}}, "arm1", "arm2", rehearsal, ""},
+                                   {Digest{{1}}, Digest{{3}}, "arm1", "arm3", {}, "too late"}}));
+  EXPECT_EQ(data["task"], "shelf");
+  EXPECT_EQ(data["rows"][0]["worth"], 3);
+  EXPECT_EQ(data["rows"][1]["worth"], nullptr);
+  EXPECT_EQ(data["rows"][1]["message"], "too late");
+}
+
+}  // namespace
+}  // namespace kinship::plots::plot_pages_test
