@@ -147,13 +147,13 @@ std::string solids_text(const RobotLink& row) {
   return text.empty() ? "-" : text;
 }
 
-/// The links as a tree is read, each below its parent; and how deep they are.
+/// The links as a tree is read, each below its parent, with a dot for each link above it.
 void add_rows(const RobotLinks& links, const std::string& parent, std::size_t depth, Table& table) {
   for (const RobotLink& row : links.links) {
     if (row.parent != parent)
       continue;
     const bool is_base = row.link == links.base_link, is_tip = row.link == links.tip_link;
-    table.add_row({std::string(depth, ' ') + row.link +
+    table.add_row({std::string(depth, '.') + row.link +
                        (is_base  ? " (base)"
                         : is_tip ? " (tip)"
                                  : ""),
