@@ -1,13 +1,10 @@
 #include "client/arguments/command_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <iterator>
 
 #include "client/arguments/number_range.hpp"
 #include "proto/types/enum_text.hpp"
-#include "proto/types/nearest_name.hpp"
 
 namespace kinship::arguments {
 namespace {
@@ -48,7 +45,8 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
       ->allow_extra_args(false);
   app.add_option("--srdf", arguments.srdf,
                  "SRDF file; the links of its disable_collisions are never checked against each "
-                 "other");
+                 "other")
+      ->type_name("FILE");
   app.add_option("--package", arguments.packages,
                  "NAME=DIR, where meshes named package://NAME/... are; may be repeated")
       ->allow_extra_args(false);
@@ -57,6 +55,7 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
 void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
   app.add_option("--sources", arguments.sources,
                  "only experience of these robots: labels or digests, separated by commas")
+      ->type_name("ROBOT")
       ->check([](const std::string& text) { return complaint(parse_robot_names(text)); });
   app.add_option("--weighting", arguments.weighting,
                  "sources: every robot the same; paths: by number of paths (default: the "
@@ -79,25 +78,6 @@ void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain)
       ->envname("KINSHIP_DOMAIN")
       ->check(between<std::uint32_t>(0, kMaxDomain))
       ->capture_default_str();
-}
-
-std::string suggestion_for(const CLI::App& app, const std::string& word) {
-  std::vector<std::string> candidates;
-  const CLI::App* verb = &app;
-  for (;;) {
-    if (word.starts_with("--"))
-      for (const CLI::Option* const option : verb->get_options())
-        std::ranges::transform(option->get_lnames(), std::back_inserter(candidates),
-                               [](const std::string& name) { return "--" + name; });
-    const auto understood = verb->get_subcommands();
-    if (understood.empty())
-      break;
-    verb = understood.front();
-  }
-  if (!word.starts_with("--"))
-    for (const CLI::App* const other : verb->get_subcommands([](const CLI::App*) { return true; }))
-      candidates.push_back(other->get_name());
-  return suggestion(word.substr(0, word.find('=')), candidates);
 }
 
 }  // namespace kinship::arguments

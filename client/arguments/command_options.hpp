@@ -32,11 +32,6 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 /// is parsed; must outlive that.
 void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain);
 
-/// What a misspelt word of a command line may have meant, for the end of a line about it:
-/// " (did you mean 'register'?)"; empty if nothing is near. Verbs are sought among those of the
-/// deepest verb that was understood, options ("--...") among its own and those above it.
-std::string suggestion_for(const CLI::App& app, const std::string& word);
-
 /// Adds --sources, --weighting and --since. A malformed value is refused while the command line is
 /// parsed. \param arguments  filled when the command line is parsed; must outlive that.
 void add_selection_options(CLI::App& app, SelectionArguments& arguments);

@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include "client/c/errors.hpp"
 #include "client/c/handles.hpp"
 #include "client/link/environment.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/types/pose.hpp"
-#include "robots/kinematics/urdf.hpp"
+#include "proto/types/recorded_scene.hpp"
 
 namespace kinship::c_library {
 namespace {
-
-std::string text_or_empty(const char* text) { return text == nullptr ? std::string() : text; }
 
 link::ClientOptions read_options(const kinship_client_options& given) {
   link::ClientOptions options;
@@ -24,30 +24,6 @@ link::ClientOptions read_options(const kinship_client_options& given) {
   if (given.timeout_ms != 0)
     options.timeout = std::chrono::milliseconds(given.timeout_ms);
   return options;
-}
-
-RobotDescription read_description(const kinship_robot_description& given) {
-  require(given.urdf, "description->urdf");
-  require(given.base_link, "description->base_link");
-  require(given.tip_link, "description->tip_link");
-  require(given.label, "description->label");
-  RobotDescription description;
-  description.label = given.label;
-  description.urdf = given.urdf;
-  description.base_link = given.base_link;
-  description.tip_link = given.tip_link;
-  if (given.T_tip_transfer != nullptr)
-    description.T_tip_transfer = read_pose(given.T_tip_transfer, "description->T_tip_transfer");
-  if (given.never_colliding_pairs > 0)
-    require(given.never_colliding, "description->never_colliding");
-  for (std::size_t i = 0; i < given.never_colliding_pairs; ++i) {
-    const char* const first = given.never_colliding[2 * i];
-    const char* const second = given.never_colliding[2 * i + 1];
-    require(first, "a name in description->never_colliding");
-    require(second, "a name in description->never_colliding");
-    description.never_colliding.emplace_back(first, second);
-  }
-  return description;
 }
 
 Path read_path(const kinship_attempt& given) {
@@ -80,6 +56,46 @@ SamplingMode read_sampling(kinship_sampling given) {
                               std::to_string(KINSHIP_CONTROL)));
 }
 
+SceneObject read_object(const kinship_object& given) {
+  require(given.name, "a name in attempt->objects");
+  const std::string name = given.name;
+  if (given.shape < KINSHIP_BOX || given.shape > KINSHIP_CAPSULE)
+    throw Failure(invalid_input("object '" + name + "': its shape is " +
+                                std::to_string(given.shape) + ", must be 0 to " +
+                                std::to_string(KINSHIP_CAPSULE)));
+  ShapeNumbers shape;
+  shape.kind = static_cast<std::size_t>(given.shape);
+  std::copy_n(std::begin(given.sizes), shape.sizes.size(), shape.sizes.begin());
+  return {.name = name,
+          .shape = to_shape(shape),
+          .T_task_object = read_pose(std::begin(given.pose), ("object '" + name + "'").c_str())};
+}
+
+RecordedScene read_scene(const kinship_attempt& given) {
+  RecordedScene scene;
+  // A caller that was compiled with another version has objects of another size.
+  const auto* bytes = reinterpret_cast<const char*>(given.objects);  // NOLINT: steps of that size
+  const std::size_t step = given.objects->size;
+  for (std::size_t i = 0; i < given.object_count; ++i) {
+    const kinship_object object =  // NOLINTNEXTLINE: of the array that the caller has
+        read_structure(reinterpret_cast<const kinship_object*>(bytes + i * step), "object");
+    if (object.size != step)
+      throw Failure(invalid_input("object " + std::to_string(i) + ": its size is " +
+                                  std::to_string(object.size) + ", that of the first is " +
+                                  std::to_string(step)));
+    SceneObject read = read_object(object);
+    if (object.is_held == 0)
+      scene.objects.push_back(std::move(read));
+    else
+      scene.held.push_back({.name = std::move(read.name),
+                            .shape = read.shape,
+                            .T_transfer_object = read.T_task_object});
+  }
+  scene.allowed_collisions =
+      read_pairs(given.allowed_collisions, given.allowed_collision_pairs, "allowed_collisions");
+  return scene;
+}
+
 Attempt read_attempt(const kinship_attempt& given) {
   require(given.task, "attempt->task");
   Attempt attempt;
@@ -98,6 +114,8 @@ Attempt read_attempt(const kinship_attempt& given) {
   attempt.record.share = given.share;
   if (given.solved != 0)
     attempt.path = read_path(given);
+  if (given.objects != nullptr && given.object_count > 0)
+    attempt.scene = read_scene(given);
   return attempt;
 }
 
@@ -110,6 +128,22 @@ Eigen::Isometry3d read_pose(const double* numbers, const char* name) {
   if (!T_a_b)
     throw Failure(T_a_b.error().code, std::string(name) + ": " + T_a_b.error().message);
   return *T_a_b;
+}
+
+std::string text_or_empty(const char* text) { return text == nullptr ? std::string() : text; }
+
+std::vector<std::pair<std::string, std::string>> read_pairs(const char* const* names,
+                                                            std::size_t pairs, const char* name) {
+  const std::string which = std::string("a name in ") + name;
+  if (pairs > 0)
+    require(names, name);
+  std::vector<std::pair<std::string, std::string>> read;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    require(names[2 * i], which.c_str());
+    require(names[2 * i + 1], which.c_str());
+    read.emplace_back(names[2 * i], names[2 * i + 1]);
+  }
+  return read;
 }
 
 Digest read_robot(const kinship_robot* robot, const char* name) {
@@ -135,27 +169,6 @@ kinship_code kinship_client_open(const kinship_client_options* options, kinship_
 }
 
 void kinship_client_close(kinship_client* client) { delete client; }
-
-kinship_code kinship_register(kinship_client* client, const kinship_robot_description* description,
-                              kinship_robot* robot, size_t* dof) {
-  return guarded([&] {
-    require(client, "client");
-    require(robot, "robot");
-    const kinship::RobotDescription read =
-        read_description(read_structure(description, "description"));
-    const auto chain = kinship::kinematics::read_chain(read).value_or_throw();
-    const kinship::Digest digest = chain.digest();
-    std::ranges::copy(digest.bytes, robot->digest);
-    if (dof != nullptr)
-      *dof = static_cast<size_t>(chain.dof());
-    const auto reply = client->line.register_robot(read);
-    if (!reply)
-      return remember(reply.error());
-    return reply->status == kinship::RegisterStatus::Refused
-               ? remember(KINSHIP_REFUSED, reply->message)
-               : KINSHIP_OK;
-  });
-}
 
 kinship_code kinship_report(kinship_client* client, const kinship_attempt* attempt) {
   return guarded([&] {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "client/c/kinship.h"
 #include "client/link/client.hpp"
@@ -38,5 +42,11 @@ Eigen::Isometry3d read_pose(const double* numbers, const char* name);
 
 /// \throws Failure(InvalidInput) if it is NULL.
 Digest read_robot(const kinship_robot* robot, const char* name);
+
+std::string text_or_empty(const char* text);
+
+/// \param names  2 n, pair by pair. \throws Failure(InvalidInput) if one is NULL.
+std::vector<std::pair<std::string, std::string>> read_pairs(const char* const* names,
+                                                            std::size_t pairs, const char* name);
 
 }  // namespace kinship::c_library

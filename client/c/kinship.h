@@ -82,6 +82,13 @@ KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* optio
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */
 KINSHIP_API void kinship_client_close(kinship_client* client);
 
+/** A joint beside the chain that stands still. */
+typedef struct kinship_held_joint {
+  const char* name;
+  double value; /**< rad or m */
+} kinship_held_joint;
+
+/** A robot by the text of its URDF; kinship_register_file() reads files, meshes too. */
 typedef struct kinship_robot_description {
   size_t size;
   const char* label;     /**< for people; unique at a server */
@@ -92,6 +99,11 @@ typedef struct kinship_robot_description {
       T_tip_transfer; /**< pose of the frame that robots of a task place alike; NULL: the tip's */
   const char* const* never_colliding; /**< 2 n names of links, pair by pair; NULL: none */
   size_t never_colliding_pairs;       /**< n */
+  const char*
+      axes; /**< of the transfer frame that the task prescribes, e.g. "x,y,yaw"; NULL: all six
+             */
+  const kinship_held_joint* held_joints; /**< NULL: none */
+  size_t held_joint_count;
 } kinship_robot_description;
 
 /** Waits up to the client's timeout.
@@ -102,6 +114,29 @@ KINSHIP_API kinship_code kinship_register(kinship_client* client,
                                           const kinship_robot_description* description,
                                           kinship_robot* robot, size_t* dof);
 
+/** A robot in files, with all that `kinship robots register` takes. */
+typedef struct kinship_robot_file {
+  size_t size;
+  const char* source;           /**< a URDF file, or a folder with robot.urdf and chain.toml */
+  const char* base_link;        /**< NULL: the folder's */
+  const char* tip_link;         /**< NULL: the folder's */
+  const char* label;            /**< NULL: the folder's, or the file's name without ending */
+  const double* T_tip_transfer; /**< NULL: the folder's, or the tip's */
+  const char* axes;             /**< as above; NULL: the folder's, or all six */
+  const kinship_held_joint* held_joints;
+  size_t held_joint_count;
+  const char* srdf;            /**< a file whose disabled pairs never collide; NULL: none */
+  const char* const* packages; /**< "NAME=FOLDER" each, for meshes named package://NAME/... */
+  size_t package_count;
+} kinship_robot_file;
+
+/** Reads the files and registers the robot as kinship_register() does. A server has no meshes: it
+ * is told of solids around them, which are fitted here; that may take seconds. Meshes that cannot
+ * be read are an error. */
+KINSHIP_API kinship_code kinship_register_file(kinship_client* client,
+                                               const kinship_robot_file* file, kinship_robot* robot,
+                                               size_t* dof);
+
 /* ----------------------------------------------------------------------------------------------
  * report */
 
@@ -111,6 +146,25 @@ typedef enum kinship_sampling {
   KINSHIP_CONTROL = 2,
   KINSHIP_SAMPLING_WIDTH = 0x7fffffff
 } kinship_sampling;
+
+typedef enum kinship_shape {
+  KINSHIP_BOX = 0,      /**< full extents along x, y and z */
+  KINSHIP_CYLINDER = 1, /**< radius, length along z */
+  KINSHIP_SPHERE = 2,   /**< radius */
+  KINSHIP_CAPSULE = 3,  /**< radius, length of its cylindrical part along z */
+  KINSHIP_SHAPE_WIDTH = 0x7fffffff
+} kinship_shape;
+
+/** Something that was in the way: `{.size = sizeof(kinship_object), .name = "table", .shape =
+ * KINSHIP_BOX, .sizes = {0.8, 1.2, 0.1}, .pose = {0.6, 0, -0.05, 0, 0, 0, 1}}`. */
+typedef struct kinship_object {
+  size_t size; /**< the same in all of an array */
+  const char* name;
+  kinship_shape shape;
+  int is_held;     /**< not 0: the robot holds it */
+  double sizes[3]; /**< as the shape says, the others are not looked at */
+  double pose[7];  /**< of its centre, in the task's frame; if it is held in the transfer frame */
+} kinship_object;
 
 /** What a planner says about one query. */
 typedef struct kinship_attempt {
@@ -130,14 +184,30 @@ typedef struct kinship_attempt {
   uint64_t collision_checks; /**< configurations of which any collision question was asked */
   kinship_sampling sampling; /**< CONTROL: uniform on purpose although there was guidance */
   double share;              /**< of samples drawn from the distribution, 0 to 1 */
+  /** The scene, so that another robot's distribution keeps out of it; of meshes take solids around
+   * them. NULL: the scene is not told. */
+  const kinship_object* objects;
+  size_t object_count;
+  const char* const* allowed_collisions; /**< 2 n names of objects that may touch, pair by pair */
+  size_t allowed_collision_pairs;        /**< n */
 } kinship_attempt;
 
 /** Puts the attempt into the outbox: durable on return, sent in the background. Never waits for the
  * network. */
 KINSHIP_API kinship_code kinship_report(kinship_client* client, const kinship_attempt* attempt);
 
-/** The same of a line of an experience file, as `kinship paths export` writes them: with a scene,
- * if it has one. The robot stands there as digest, 64 hexadecimal digits. */
+/** The same of a line of an experience file, as `kinship paths export` writes them: what
+ * kinship_attempt has no member for, as the region that the hand had to stay in, can be said there.
+ * The robot stands there as digest, 64 hexadecimal digits.
+ *
+ *   {"report_uuid": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "carry", "robot": "30a1...",
+ *    "machine": "cell 3", "T_task_base": [0, 0, 0, 0, 0, 0, 1],
+ *    "waypoints": [[0, 0.5], [1, 0.5]], "record": {"outcome": "solved", "planner": "mine",
+ *    "planner_options": "", "planning_time_s": 0.5, "collision_checks": 1000, "projections": 0,
+ *    "time_limit_s": 10, "arm": "uniform", "share": 0, "distribution_id": null,
+ *    "distribution_revision": 0},
+ *    "scene": {"boxes": [{"name": "table", "pose": [0.6, 0, -0.05, 0, 0, 0, 1],
+ *    "size": [0.8, 1.2, 0.1]}]}} */
 KINSHIP_API kinship_code kinship_report_line(kinship_client* client, const char* line);
 
 typedef struct kinship_outbox {

@@ -8,6 +8,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/page_file.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "client/plots/plot_pages.hpp"
 #include "proto/json/robot_answers_json.hpp"
@@ -164,10 +165,10 @@ void print_comparison(const std::string& task, const std::vector<Transferability
 
 void print_worths(const std::vector<Transferability>& pairs, std::ostream& out) {
   constexpr int kDigits = 2;
-  std::vector<std::string> headings{"TARGET \\ SOURCE"};
+  std::vector<Column> headings{"TARGET \\ SOURCE"};
   for (const Transferability& pair : pairs)
     if (pair.target == pairs.front().target)
-      headings.push_back(pair.source_label);
+      headings.emplace_back(pair.source_label, Fit::Cut);
   const std::size_t sources = headings.size() - 1;
   Table table(std::move(headings));
   for (std::size_t row = 0; row < pairs.size(); row += sources) {
@@ -216,12 +217,15 @@ int compare_robots(link::Client& server, const CompareOptions& options, std::ost
     return code;
 
   std::vector<Transferability> pairs;
+  StatusLine progress(err, options.progress);
   for (const Target& target : targets)
     for (const TaskRobotSummary& source : sources) {
-      err << "rehearsing " << pairs.size() + 1 << " of " << targets.size() * sources.size() << ": "
-          << target.label << " with the experience of " << source.label << '\n';
+      progress.show("rehearsing " + std::to_string(pairs.size() + 1) + " of " +
+                    std::to_string(targets.size() * sources.size()) + ": " + target.label +
+                    " with the experience of " + source.label);
       pairs.push_back(compare_pair(server, options, target, source));
     }
+  progress.clear();
   if (page) {
     plots::write_page(options.task, pairs, page->stream());
     page->keep(err);

@@ -17,6 +17,7 @@ struct CompareOptions {
   std::vector<std::string> placements;     ///< "LABEL=x y z qx qy qz qw", before what was reported
   std::chrono::milliseconds wait{120000};  ///< for one pair of robots
   bool json = false;
+  bool progress = false;              ///< each pair is named on `err`
   std::filesystem::path output = {};  ///< of a page; "-": `out`, without a matrix; empty: no page
 };
 

@@ -77,13 +77,20 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 
 /// How the poses of each source became configurations.
 void print_source_transfers(const Distribution& distribution, std::ostream& out) {
-  Table table({"SOURCE", "POSES SOLVED", "ON TRACKS", "TRACKS KEPT", "THROUGH", "RANDOM",
-               "SELF-COLLIDING", "IN RECORDED SCENE", "PATHS WITH SCENE"});
+  Table table({{"SOURCE", Fit::Cut},
+               "POSES SOLVED",
+               "ON TRACKS",
+               "TRACKS KEPT",
+               "THROUGH",
+               "RANDOM",
+               "SELF COLLIDING",
+               "IN RECORDED SCENE",
+               "PATHS WITH SCENE"});
   for (const Source& source : distribution.sources)
     table.add_row({source.label, share_text(source.poses_solved, source.poses),
                    share_text(source.poses_on_tracks, source.poses_solved),
                    source.tracks_tried == 0 ? "-"
-                                            : std::to_string(source.tracks_kept) + " of " +
+                                            : std::to_string(source.tracks_kept) + "/" +
                                                   std::to_string(source.tracks_tried),
                    share_text(source.tracks_through, source.tracks_tried),
                    share_text(source.random_configurations, source.configurations),
@@ -194,8 +201,17 @@ void print_distribution(const Distribution& distribution, std::ostream& out) {
   out << '\n';
   if (!distribution.component_scores.empty())
     print_curve(distribution, out);
-  Table table({"SOURCE", "ROBOT", "RELATION", "PATHS", "USED", "GENERATION", "POSES", "SOLVED",
-               "LOST", "CONFIGURATIONS", "MASS"});
+  Table table({{"SOURCE", Fit::Cut},
+               {"ROBOT", Fit::Wide},
+               "RELATION",
+               "PATHS",
+               "USED",
+               {"GENERATION", Fit::Wide},
+               "POSES",
+               "SOLVED",
+               "LOST",
+               {"CONFIGURATIONS", Fit::Wide},
+               "MASS"});
   constexpr int kMassDigits = 3;
   for (const Source& source : distribution.sources)
     table.add_row({source.label, source.robot.short_hex(), std::string(to_text(source.relation)),

@@ -12,9 +12,11 @@ namespace {
 
 /// What names a distribution by what it is for. \return the required options.
 std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query) {
-  CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted");
+  CLI::Option* task = command.add_option("--task", query.task, "Task whose experience is wanted")
+                          ->type_name("TASK");
   CLI::Option* robot =
-      command.add_option("--robot", query.robot, "Label, or beginning of its digest");
+      command.add_option("--robot", query.robot, "Label, or beginning of its digest")
+          ->type_name("ROBOT");
   command.add_option("--placement", query.placement,
                      "Robot's base in the task frame, \"x y z qx qy qz qw\"");
   arguments::add_profile_options(command, query.profile);
@@ -31,7 +33,8 @@ std::vector<CLI::Option*> add_query(CLI::App& command, DistributionQuery& query)
 /// \param id_names  of the option, e.g. "--distribution".
 void add_query_or_id(CLI::App& command, DistributionQuery& query, const std::string& id_names) {
   CLI::Option* id =
-      command.add_option(id_names, query.id, "Beginning of its id, instead of --task and --robot");
+      command.add_option(id_names, query.id, "Beginning of its id, instead of --task and --robot")
+          ->type_name("DISTRIBUTION");
   for (CLI::Option* option : add_query(command, query))
     option->excludes(id);
   command.parse_complete_callback([&query, id] {
@@ -59,7 +62,8 @@ void add_fetch(CLI::App& group, Session& session) {
       ->needs(samples)
       ->check(CLI::NonNegativeNumber);
   add_json(*command, session);
-  command->get_option("--json")->excludes(samples);
+  for (const char* const format : {"--json", "-o"})
+    command->get_option(format)->excludes(samples);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;
     return fetch_distribution(server, *options, session.out, session.err);
@@ -89,7 +93,7 @@ void add_plot(CLI::App& group, Session& session) {
   add_query_or_id(*command, *query, "id");
   add_page_output(*command, options->output)->required();
   on_run_with_server(*command, session, [&session, query, options](link::Client& server) {
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return plot_distribution(server, *query, *options, session.out, session.err);
   });
 }
@@ -121,9 +125,10 @@ void add_configurations(CLI::App& app, Session& session) {
       "kinship configurations export --task box_to_shelf --robot ur10e --output rows.csv\n"
       "  kinship configurations export --distribution 3f9a0c");
   add_query_or_id(*command, options->query, "--distribution");
-  command->add_option("--output", options->output, "File (default: standard output)");
+  command->add_option("--output", options->output, "File (default: standard output)")
+      ->type_name("FILE");
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
-    options->waiting.progress = session.is_on_terminal();
+    options->waiting.progress = session.shows_progress();
     return export_configurations(server, *options, session.out, session.err);
   });
 }

@@ -13,6 +13,14 @@ namespace {
 
 constexpr const char* kExperienceCommand = "tasks experience";
 
+std::string position_text(const Eigen::Isometry3d& T_task_transfer) {
+  constexpr int kDigits = 2;
+  std::string text;
+  for (const double number : T_task_transfer.translation())
+    text += (text.empty() ? "" : " ") + number_text(number, kDigits);
+  return text;
+}
+
 /// The labels of the robots that the paths are from; digests of those that have none any more.
 std::map<Digest, std::string> labels_of(link::Client& server, const TaskExperience& experience) {
   std::map<Digest, std::string> labels;
@@ -49,9 +57,15 @@ int show_experience(link::Client& server, const ExperienceOptions& options, std:
     return kDone;
   }
   const std::map<Digest, std::string> labels = labels_of(server, experience);
-  Table table({"SOURCE", "PATH", "START", "GOAL"});
+  Table table({{"SOURCE", Fit::Cut},
+               "PATH",
+               "START",
+               "GOAL",
+               {"START POSE", Fit::Wide},
+               {"GOAL POSE", Fit::Wide}});
   for (const PosePath& path : experience.paths)
-    table.add_row({labels.at(path.source), path.path.text(), pose_text(path.poses.front()),
+    table.add_row({labels.at(path.source), path.path.text(), position_text(path.poses.front()),
+                   position_text(path.poses.back()), pose_text(path.poses.front()),
                    pose_text(path.poses.back())});
   table.print(out);
   out << experience.paths.size() << " of " << count_text(experience.paths_known, "path") << '\n';

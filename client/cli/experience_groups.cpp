@@ -16,10 +16,13 @@ void add_export(CLI::App& group, Session& session) {
   CLI::App* command = add_command(
       group, "export", "Attempts and the robots they need, as JSON Lines for `paths import`",
       "kinship paths export --task box_to_shelf --output box_to_shelf.jsonl");
-  command->add_option("--task", options->task, "Of this task (default: all)");
-  command->add_option("--robot", options->robot, "Of this robot: label or digest prefix");
-  command->add_option("--output", options->output, "File (default: standard output)");
+  command->add_option("--task", options->task, "Of this task (default: all)")->type_name("TASK");
+  command->add_option("--robot", options->robot, "Of this robot: label or digest prefix")
+      ->type_name("ROBOT");
+  command->add_option("--output", options->output, "File (default: standard output)")
+      ->type_name("FILE");
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    options->progress = session.shows_progress();
     return export_paths(server, *options, session.out, session.err);
   });
 }
@@ -29,11 +32,13 @@ void add_import(CLI::App& group, Session& session) {
   CLI::App* command = add_command(
       group, "import", "Hand over the lines of an experience file; may be repeated",
       "kinship paths import box_to_shelf.jsonl\n  zcat old.jsonl.gz | kinship paths import -");
-  command->add_option("file", options->file, "JSON Lines; - is standard input")->required();
+  command->add_option("file", options->file, "JSON Lines; - is standard input")
+      ->required()
+      ->type_name("FILE");
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options](link::Client& server) {
     options->json = session.json;
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return import_paths(server, *options, std::cin, session.out, session.err);
   });
 }
@@ -45,7 +50,7 @@ void add_experience(CLI::App& group, Session& session) {
                   "The paths that planners are given of a task, as ways of the transfer frame",
                   "kinship tasks experience box_to_shelf\n"
                   "  kinship tasks experience box_to_shelf --json --max-bytes 1048576");
-  command->add_option("task", options->task, "Its name")->required();
+  command->add_option("task", options->task, "Its name")->required()->type_name("TASK");
   command->add_option("--max-bytes", options->max_bytes, "At most, 96 + 28 for each pose a path")
       ->check(CLI::Range(std::uint32_t{1}, kMaxExperienceBytes))
       ->capture_default_str();
@@ -65,7 +70,7 @@ void add_task_plot(CLI::App& group, Session& session) {
   command->add_option("task", *task, "Its name")->required();
   add_page_output(*command, options->output)->required();
   on_run_with_server(*command, session, [&session, task, options](link::Client& server) {
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return plot_task(server, *task, *options, session.out, session.err);
   });
 }
@@ -106,7 +111,7 @@ void add_tasks(CLI::App& app, Session& session) {
   CLI::App* reset = add_command(
       *tasks, "reset", "Retire all paths of a task: out of every fit, kept for the record",
       "kinship tasks reset box_to_shelf\n  kinship tasks reset box_to_shelf --yes");
-  reset->add_option("task", options->task, "Its name")->required();
+  reset->add_option("task", options->task, "Its name")->required()->type_name("TASK");
   reset->add_flag("--yes", options->yes,
                   "Do it; without, it is only said what would happen (exit code 2)");
   add_json(*reset, session);

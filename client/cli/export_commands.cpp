@@ -4,6 +4,7 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/files/output_file.hpp"
 #include "client/link/admin_rows.hpp"
 
@@ -13,13 +14,17 @@ namespace {
 /// Writes rows as lines; the file has its name only if all came.
 /// \param file  of `output`; empty: a stream.
 int write_rows(link::Client& server, const AdminRequest& request, const std::filesystem::path& file,
-               files::OutputFile& output, std::string_view command, std::ostream& err) {
+               files::OutputFile& output, std::string_view command, StatusLine& progress,
+               std::ostream& err) {
+  constexpr std::size_t kLinesAtOnce = 100;
   std::size_t lines = 0;
   const auto error = link::for_each_row(server, request, [&](const std::string& row) {
     output.stream() << row << '\n';
-    ++lines;
+    if (++lines % kLinesAtOnce == 0)
+      progress.show(std::string(command) + ": " + count_text(lines, "line"));
     return output.stream().good();
   });
+  progress.clear();
   if (error)
     return refuse(command, *error, err);
   output.keep();
@@ -37,7 +42,8 @@ int export_paths(link::Client& server, const ExportOptions& options, std::ostrea
   request.verb = AdminVerb::ExportPaths;
   request.robot = options.robot;
   request.task = options.task;
-  return write_rows(server, request, options.output, output, "paths export", err);
+  StatusLine progress(err, options.progress && !(options.output.empty() && is_terminal(out)));
+  return write_rows(server, request, options.output, output, "paths export", progress, err);
 }
 
 int export_configurations(link::Client& server, const ConfigurationsOptions& options,
@@ -54,7 +60,9 @@ int export_configurations(link::Client& server, const ConfigurationsOptions& opt
     AdminRequest rows;
     rows.verb = AdminVerb::JobRows;
     rows.argument = job.id;
-    return write_rows(server, rows, options.output, output, kCommand, err);
+    StatusLine progress(err,
+                        options.waiting.progress && !(options.output.empty() && is_terminal(out)));
+    return write_rows(server, rows, options.output, output, kCommand, progress, err);
   });
 }
 

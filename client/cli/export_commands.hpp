@@ -14,6 +14,7 @@ namespace kinship::cli {
 struct ExportOptions {
   std::string robot, task;       ///< filters; empty: all
   std::filesystem::path output;  ///< empty: standard output
+  bool progress = false;         ///< on `err`, unless the rows go to a terminal themselves
 };
 
 /// `paths export`: attempts as JSON Lines, before them the robots they need.

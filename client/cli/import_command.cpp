@@ -10,6 +10,7 @@
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/files/lines.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/experience_line.hpp"
@@ -29,7 +30,7 @@ struct Counts {
 class Import {
  public:
   Import(link::Client& server, const ImportOptions& options, std::ostream& err)
-      : server_(server), options_(options), err_(err) {}
+      : server_(server), err_(err), progress_(err, options.progress) {}
 
   const Counts& counts() const noexcept { return counts_; }
   const std::optional<Error>& end() const noexcept { return end_; }  ///< why it cannot go on
@@ -67,6 +68,8 @@ class Import {
       count((*receipts)[i], numbers[i]);
     show_progress(numbers.back());
   }
+
+  void clear_progress() { progress_.clear(); }
 
  private:
   void refuse_line(std::size_t number, const std::string& why) {
@@ -147,19 +150,11 @@ class Import {
     }
   }
 
-  void show_progress(std::size_t number) {
-    if (options_.progress)
-      err_ << "\r\033[Kline " << number << std::flush;
-  }
-
-  void clear_progress() {
-    if (options_.progress)
-      err_ << "\r\033[K" << std::flush;
-  }
+  void show_progress(std::size_t number) { progress_.show("line " + std::to_string(number)); }
 
   link::Client& server_;
-  const ImportOptions& options_;
   std::ostream& err_;
+  StatusLine progress_;
   Counts counts_;
   std::optional<Error> end_;
   std::map<std::string, Digest> labels_;
@@ -193,8 +188,7 @@ int import_paths(link::Client& server, const ImportOptions& options, std::istrea
                        is_standard_input ? "standard input" : options.file.string(),
                        [&](const files::Line& line) { return import.take(line); });
   import.deliver();
-  if (options.progress)
-    err << "\r\033[K" << std::flush;
+  import.clear_progress();
   print(import.counts(), options.json, out);
   if (import.end())
     return refuse(kImport, *import.end(), err);

@@ -10,7 +10,7 @@ namespace kinship::cli {
 struct ImportOptions {
   std::filesystem::path file;  ///< "-": `standard_input`
   bool json = false;           ///< the counts as one document
-  bool progress = false;       ///< on a terminal: shown on one line that is written again
+  bool progress = false;       ///< the last line that arrived is named on `err`
 };
 
 /// `paths import`: hands the lines of an experience file to the server; registers the robots that

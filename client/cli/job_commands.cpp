@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
+#include "client/link/host_name.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/types/enum_text.hpp"
 
@@ -17,14 +19,13 @@ std::string said(const Job& job) { return job.message.empty() ? "" : ": " + job.
 /// Waits for a job's end. \return empty with an exit code in `code` if that cannot be known.
 std::optional<Job> wait(link::Client& server, const std::string& id, const WaitOptions& options,
                         std::string_view command, std::ostream& err, int& code) {
+  StatusLine progress(err, options.progress);
   const auto show = [&](const Job& job) {
-    if (options.progress)
-      err << "\r\033[K" << job.verb << " " << percent_text(job.progress) << std::flush;
+    progress.show(job.verb + " " + percent_text(job.progress));
   };
   const Result<Job> job =
       link::wait_for_job(server, id, std::chrono::steady_clock::now() + options.longest, show);
-  if (options.progress)
-    err << "\r\033[K" << std::flush;
+  progress.clear();
   if (!job) {
     code = refuse(command, job.error(), err);
     return std::nullopt;
@@ -92,13 +93,21 @@ int run_job(link::Client& server, const AdminRequest& begin, const WaitOptions& 
   return code == kDone ? done(*job) : code;
 }
 
+std::string why_unusable(const std::filesystem::path& file, const std::string& host) {
+  if (!file.has_parent_path() || file.is_absolute() || link::is_this_machine(host))
+    return {};
+  return "'" + file.string() + "' begins with a folder of this machine, but the server on '" +
+         host +
+         "' writes it: give a name alone, for its folder of backups, or the whole path there";
+}
+
 int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
             std::ostream& err) {
   constexpr const char* kCommand = "backup";
   AdminRequest request;
   request.verb = AdminVerb::Backup;
   // A name alone is one in the server's folder of backups.
-  const std::filesystem::path file(options.file);
+  const std::filesystem::path& file = options.file;
   request.argument = file.has_parent_path()
                          ? std::filesystem::absolute(file).lexically_normal().string()
                          : file.string();

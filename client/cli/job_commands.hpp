@@ -17,7 +17,7 @@ namespace kinship::cli {
 /// How a job is waited for.
 struct WaitOptions {
   std::chrono::milliseconds longest{std::chrono::hours(24)};
-  bool progress = false;  ///< on a terminal: shown on one line that is written again
+  bool progress = false;  ///< how far it is is told on `err`
 };
 
 /// `jobs wait`. \return kDone if it was done, kFailed if it failed, was cancelled or goes on.
@@ -39,6 +39,10 @@ struct BackupOptions {
   WaitOptions waiting;
   bool json = false;
 };
+
+/// Why a server on `host` cannot be asked for a file: it would be completed with the folder here,
+/// but is written there; empty if it can.
+std::string why_unusable(const std::filesystem::path& file, const std::string& host);
 
 /// `backup`: copies the store of a running server into a new file.
 int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,

@@ -29,43 +29,6 @@ Error in_line(const std::filesystem::path& file, std::size_t number, const Error
           "'" + file.string() + "' line " + std::to_string(number) + ": " + error.message};
 }
 
-/// T_task_base as --placement says it; empty if it says nothing.
-Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text) {
-  if (text.empty())
-    return std::optional<Eigen::Isometry3d>();
-  const auto pose = models::parse_pose(text);
-  if (!pose)
-    return Error{pose.error().code, "--placement: " + pose.error().message};
-  return std::optional(*pose);
-}
-
-Result<Eigen::VectorXd> parse_configuration(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<double> values;
-  for (double value = 0; stream >> value;)
-    values.push_back(value);
-  if (!stream.eof() || values.empty())
-    return Error{ErrorCode::InvalidInput, "--q: '" + text + "' is no list of joint values"};
-  return Eigen::VectorXd(
-      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-}
-
-/// Wants as many values as the robot has joints, and says which of them are outside the limits.
-std::optional<Error> find_fault(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
-  if (q.size() != chain.dof())
-    return Error{ErrorCode::InvalidInput, "a configuration of " + std::to_string(q.size()) +
-                                              " values, but the robot has " +
-                                              std::to_string(chain.dof()) + " joints"};
-  for (Eigen::Index joint = 0; joint < q.size(); ++joint)
-    if (!(q(joint) >= chain.lower()(joint) && q(joint) <= chain.upper()(joint)))
-      return Error{ErrorCode::InvalidInput,
-                   "joint '" + chain.joints()[static_cast<std::size_t>(joint)].name + "' at " +
-                       number_text(q(joint), kDigitsOfJoint) + " is outside " +
-                       number_text(chain.lower()(joint), kDigitsOfJoint) + " to " +
-                       number_text(chain.upper()(joint), kDigitsOfJoint)};
-  return std::nullopt;
-}
-
 void print_forward(const ForwardAnswer& answer, bool json, std::ostream& out) {
   if (json) {
     out << json::to_json(answer) << '\n';
@@ -188,7 +151,7 @@ int place_configurations(const ForwardCommandOptions& options, std::ostream& out
   if (!placement)
     return refuse(kForward, placement.error(), err);
   const auto place = [&](const Eigen::VectorXd& q) -> std::optional<Error> {
-    if (const auto fault = find_fault(robot->chain, q))
+    if (const auto fault = check_configuration(robot->chain, q))
       return fault;
     const Eigen::Isometry3d T_base_tip = kinematics::T_base_tip(robot->chain, q);
     const Eigen::Isometry3d T_frame_base = placement->value_or(Eigen::Isometry3d::Identity());

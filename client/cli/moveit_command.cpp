@@ -88,23 +88,27 @@ std::optional<Error> keep_meshes(moveit::Conversion& conversion,
   return std::nullopt;
 }
 
-/// One problem as a line, or why there is none.
-Result<std::string> convert_one(const moveit::ConversionInput& input,
-                                const kinematics::Chain& chain, const std::filesystem::path& output,
-                                std::set<std::string>& left_out) {
-  auto conversion = moveit::read_problem(input, chain);
-  if (!conversion)
-    return conversion.error();
-  moveit::Conversion made = *std::move(conversion);
-  if (const auto error = keep_meshes(made, output))
-    return *error;
-  left_out.insert(made.left_out.begin(), made.left_out.end());
-  std::string line = json::to_json(made.problem);
-  // What kinship-plan would refuse is refused here, where the message's file can be named.
-  if (const auto problem = json::problem_from_json(line); !problem)
-    return Error{problem.error().code,
-                 "'" + input.request.string() + "': " + problem.error().message};
-  return line;
+/// The problems of a file as lines, or why there are none.
+Result<std::vector<std::string>> convert_file(const moveit::ConversionInput& input,
+                                              const kinematics::Chain& chain,
+                                              const std::filesystem::path& output,
+                                              std::set<std::string>& left_out) {
+  auto conversions = moveit::read_problems(input, chain);
+  if (!conversions)
+    return conversions.error();
+  std::vector<moveit::Conversion> all = *std::move(conversions);
+  std::vector<std::string> lines;
+  for (moveit::Conversion& made : all) {
+    if (const auto error = keep_meshes(made, output))
+      return *error;
+    left_out.insert(made.left_out.begin(), made.left_out.end());
+    lines.push_back(json::to_json(made.problem));
+    // What kinship-plan would refuse is refused here, where the message's file can be named.
+    if (const auto problem = json::problem_from_json(lines.back()); !problem)
+      return Error{problem.error().code, "'" + input.request.string() + "', problem '" +
+                                             made.problem.name + "': " + problem.error().message};
+  }
+  return lines;
 }
 
 Result<std::optional<Eigen::Isometry3d>> said_placement(const std::string& text) {
@@ -131,18 +135,21 @@ int convert_moveit(const MoveItCommandOptions& options, std::ostream& out, std::
     return refuse(kFromMoveIt, pairs.error(), err);
   files::OutputFile output(options.output, out);
   std::set<std::string> left_out;
+  std::size_t count = 0;
   for (const FilePair& pair : *pairs) {
-    const auto line = convert_one({.scene = pair.scene,
-                                   .request = pair.request,
-                                   .T_task_base = *placement,
-                                   .name = pair.request.stem().string()},
-                                  robot->chain, options.output, left_out);
-    if (!line)
-      return refuse(kFromMoveIt, line.error(), err);
-    output.stream() << *line << '\n';
+    const auto lines = convert_file({.scene = pair.scene,
+                                     .request = pair.request,
+                                     .T_task_base = *placement,
+                                     .name = pair.request.stem().string()},
+                                    robot->chain, options.output, left_out);
+    if (!lines)
+      return refuse(kFromMoveIt, lines.error(), err);
+    for (const std::string& line : *lines)
+      output.stream() << line << '\n';
+    count += lines->size();
   }
   output.keep();
-  err << pairs->size() << (pairs->size() == 1 ? " problem" : " problems") << '\n';
+  err << count << (count == 1 ? " problem" : " problems") << '\n';
   for (const std::string& what : left_out)
     err << "left out: " << what << '\n';
   return kDone;

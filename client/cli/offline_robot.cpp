@@ -2,8 +2,11 @@
 
 #include <ctime>
 #include <ostream>
+#include <sstream>
+#include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/table.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
 
@@ -15,6 +18,8 @@ double cpu_time_s() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
+
+constexpr int kValueDigits = 4;
 
 const char* reason_text(inverse::NoSolution reason) {
   switch (reason) {
@@ -59,6 +64,41 @@ std::optional<geometry::RobotShapes> read_geometry(const char* command,
   if (shapes)
     return *std::move(shapes);
   err << command << ": without collision geometry: " << shapes.error().message << '\n';
+  return std::nullopt;
+}
+
+Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text) {
+  if (text.empty())
+    return std::optional<Eigen::Isometry3d>();
+  const auto pose = models::parse_pose(text);
+  if (!pose)
+    return Error{pose.error().code, "--placement: " + pose.error().message};
+  return std::optional(*pose);
+}
+
+Result<Eigen::VectorXd> parse_configuration(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<double> values;
+  for (double value = 0; stream >> value;)
+    values.push_back(value);
+  if (!stream.eof() || values.empty())
+    return Error{ErrorCode::InvalidInput, "--q: '" + text + "' is no list of joint values"};
+  return Eigen::VectorXd(
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+}
+
+std::optional<Error> check_configuration(const kinematics::Chain& chain, const Eigen::VectorXd& q) {
+  if (q.size() != chain.dof())
+    return Error{ErrorCode::InvalidInput, "a configuration of " + std::to_string(q.size()) +
+                                              " values, but the robot has " +
+                                              std::to_string(chain.dof()) + " joints"};
+  for (Eigen::Index joint = 0; joint < q.size(); ++joint)
+    if (!(q(joint) >= chain.lower()(joint) && q(joint) <= chain.upper()(joint)))
+      return Error{ErrorCode::InvalidInput,
+                   "joint '" + chain.joints()[static_cast<std::size_t>(joint)].name + "' at " +
+                       number_text(q(joint), kValueDigits) + " is outside " +
+                       number_text(chain.lower()(joint), kValueDigits) + " to " +
+                       number_text(chain.upper()(joint), kValueDigits)};
   return std::nullopt;
 }
 

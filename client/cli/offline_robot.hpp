@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <iosfwd>
 #include <optional>
+#include <string>
 
+#include "proto/types/result.hpp"
 #include "proto/types/robot_check.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
@@ -33,6 +35,15 @@ std::optional<geometry::RobotShapes> read_geometry(const char* command,
                                                    const models::RobotArguments& arguments,
                                                    const RobotDescription& description,
                                                    std::ostream& err);
+
+/// T_task_base as --placement says it; empty if it says nothing.
+Result<std::optional<Eigen::Isometry3d>> placement_of(const std::string& text);
+
+/// The values of --q, joint units, separated by spaces.
+Result<Eigen::VectorXd> parse_configuration(const std::string& text);
+
+/// Wants as many values as the robot has joints, and says which of them are outside the limits.
+std::optional<Error> check_configuration(const kinematics::Chain& chain, const Eigen::VectorXd& q);
 
 /// Inverse kinematics, and the processor time that it took.
 InverseAnswer solve(const inverse::Solver& solver, const Eigen::Isometry3d& T_base_tip,

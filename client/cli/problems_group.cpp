@@ -19,10 +19,12 @@ void add_problems(CLI::App& app, Session& session) {
       ->required();
   arguments::add_robot_options(*command, options->robot);
   CLI::Option_group* files = command->add_option_group("files");
-  CLI::Option* requests = files
-                              ->add_option("--request", options->requests,
-                                           "moveit_msgs/MotionPlanRequest as YAML; may be repeated")
-                              ->check(CLI::ExistingFile);
+  CLI::Option* requests =
+      files
+          ->add_option("--request", options->requests,
+                       "moveit_msgs/MotionPlanRequest as YAML, one or several documents; may "
+                       "be repeated")
+          ->check(CLI::ExistingFile);
   files
       ->add_option("--folder", options->folder,
                    "Folder of a benchmark set: request*.yaml, each with its scene*.yaml")
@@ -31,7 +33,8 @@ void add_problems(CLI::App& app, Session& session) {
   files->require_option(1);
   command
       ->add_option("--scene", options->scenes,
-                   "moveit_msgs/PlanningScene as YAML, for all requests or one for each")
+                   "moveit_msgs/PlanningScene as YAML, for all requests or one for each; of "
+                   "several documents one for each of the requests' file")
       ->check(CLI::ExistingFile)
       ->needs(requests);
   command->add_option("--placement", options->placement,

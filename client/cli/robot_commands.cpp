@@ -1,16 +1,20 @@
 #include "client/cli/robot_commands.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <ostream>
 #include <random>
+#include <system_error>
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/table.hpp"
 #include "proto/json/robot_answers_json.hpp"
+#include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
+#include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/solver.hpp"
@@ -111,6 +115,31 @@ void print_check(const RobotCheck& check, const RobotDescription& description,
   table.print(out);
 }
 
+/// Of a bare URDF: where nobody says otherwise poses are those of the tip link itself.
+void warn_without_transfer(const char* command, const models::RobotArguments& arguments,
+                           const RobotDescription& description, std::ostream& err) {
+  std::error_code unreadable;
+  if (!arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable))
+    return;
+  err << command << ": without --transfer goals and experience mean the tip link '"
+      << description.tip_link
+      << "' itself. If the robot holds a tool or gripper, give the frame that every robot puts "
+         "alike, in the tip link: --transfer \"x y z qx qy qz qw\", e.g. \"0 0 0.12 0 0 0 1\" for "
+         "0.12 m along its z ('kinship robots frames' shows where that is)\n";
+}
+
+/// Who names pairs has all others checked, also those that cannot but touch.
+void warn_of_touching(const char* command, const kinematics::Chain& chain,
+                      const geometry::RobotShapes& geometry, std::ostream& err) {
+  constexpr collision::TouchSamples kSamples{200, 190};
+  const collision::RobotSolids solids(chain, geometry);
+  for (const auto& [a, b] : collision::links_always_touching(solids.parts(), kSamples))
+    err << command << ": '" << chain.links()[static_cast<std::size_t>(a)].name << "' and '"
+        << chain.links()[static_cast<std::size_t>(b)].name
+        << "' touch in nearly every configuration and are checked, so nothing can be planned: "
+           "'kinship robots suggest-srdf' makes an SRDF that excepts them\n";
+}
+
 void print_same_arms(const std::vector<std::string>& labels, std::ostream& out) {
   if (labels.empty())
     return;
@@ -130,6 +159,9 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
     return code;
   const kinematics::Chain& chain = robot->chain;
   const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
+  warn_without_transfer(kCommand, options.robot, robot->description, err);
+  if (geometry)
+    warn_of_touching(kCommand, chain, *geometry, err);
   RobotCheck check;
   check.robot = chain.digest();
   check.base_link = chain.base_link();
@@ -159,6 +191,7 @@ int register_robot(link::Client& server, const models::RobotArguments& arguments
   if (!described)
     return refuse(kCommand, described.error(), err);
   RobotDescription description = *std::move(described);
+  warn_without_transfer(kCommand, arguments, description, err);
   add_mesh_solids(kCommand, arguments, description, err);
   const auto reply = server.register_robot(description);
   if (!reply)

@@ -1,3 +1,4 @@
+#include "client/arguments/number_range.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/watch_command.hpp"
@@ -24,17 +25,21 @@ void add_backup(CLI::App& app, Session& session) {
           "file", options->file,
           "New file, written by the server: on its machine, as its user, below its folder of "
           "backups (kinshipd --backup-folder). A name alone is a file in that folder; "
-          "one with a folder is completed with the folder here")
-      ->required();
+          "one with a folder is completed with the folder here, if the server runs here")
+      ->required()
+      ->type_name("FILE");
   CLI::Option* no_wait =
       command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");
   const auto waiting = add_job_wait(*command, session);
   command->get_option("--wait")->excludes(no_wait);
   add_json(*command, session);
-  on_run_with_server(*command, session, [&session, options, waiting](link::Client& server) {
+  on_run(*command, session, [&session, options, waiting] {
+    if (const std::string why = why_unusable(options->file, session.host); !why.empty())
+      return refuse("backup", {ErrorCode::InvalidInput, why}, session.err);
     options->waiting = waiting();
     options->json = session.json;
-    return back_up(server, *options, session.out, session.err);
+    return session.with_server(
+        [&](link::Client& server) { return back_up(server, *options, session.out, session.err); });
   });
 }
 
@@ -42,13 +47,26 @@ void add_watch(CLI::App& app, Session& session) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* command = add_command(
       app, "watch", "Reports, fetches, fits and refusals as they happen, until Control-C",
-      "kinship watch\n  kinship watch --task box_to_shelf --json");
-  command->add_option("--task", options->task, "Only events of this task");
-  command->add_option("--robot", options->robot,
-                      "Only events of this robot: label or digest prefix");
+      "kinship watch\n  kinship watch --task box_to_shelf --json\n"
+      "  kinship watch --every 60 >> fleet.log      rates and what guidance brought, each minute");
+  command->add_option("--task", options->task, "Only events of this task")->type_name("TASK");
+  command
+      ->add_option("--robot", options->robot, "Only events of this robot: label or digest prefix")
+      ->type_name("ROBOT");
+  const auto every_s = std::make_shared<int>(0);
+  constexpr int kDay_s = 86'400;
+  CLI::Option* every =
+      command
+          ->add_option("--every", *every_s,
+                       "Seconds between lines with rates and with what guidance brought; without, "
+                       "a terminal has them in its last line")
+          ->check(arguments::between(1, kDay_s));
   add_json(*command, session, "One JSON document a line on standard output, one an event");
-  on_run(*command, session, [&session, options] {
+  command->get_option("--json")->excludes(every);
+  on_run(*command, session, [&session, options, every_s] {
     options->json = session.json;
+    options->every = std::chrono::seconds(*every_s);
+    options->place = session.host + ", domain " + std::to_string(session.domain);
     const sigset_t until = block_end_signals();
     return session.with_server([&](link::Client& server) {
       return watch_events(server, *options, until, session.out, session.err);
@@ -71,7 +89,7 @@ void add_jobs(CLI::App& app, Session& session) {
   const auto id = std::make_shared<std::string>();
   CLI::App* wait =
       add_command(*jobs, "wait", "Wait for the end of a job", "kinship jobs wait 3f9a0c11");
-  wait->add_option("job", *id, kJob)->required();
+  wait->add_option("job", *id, kJob)->required()->type_name("JOB");
   const auto waiting = add_job_wait(*wait, session);
   add_json(*wait, session);
   on_run_with_server(*wait, session, [&session, id, waiting](link::Client& server) {

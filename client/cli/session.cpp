@@ -1,14 +1,17 @@
 #include "client/cli/session.hpp"
 
-#include <unistd.h>
-
-#include <iostream>
+#include <algorithm>
+#include <cctype>
 
 #include "client/arguments/number_range.hpp"
+#include "client/cli/terminal.hpp"
+#include "client/link/host_name.hpp"
 
 namespace kinship::cli {
 
 int Session::with_server(const std::function<int(link::Client&)>& use) const {
+  if (const std::string why = link::why_unknown(host); !why.empty())
+    throw Failure(ErrorCode::Unavailable, "--server '" + host + "': " + why);
   link::ClientOptions options;
   options.has_outbox = false;  // a look at a server delivers nothing to it
   options.server = host;
@@ -18,7 +21,7 @@ int Session::with_server(const std::function<int(link::Client&)>& use) const {
   return use(server);
 }
 
-bool Session::is_on_terminal() const { return &err == &std::cerr && isatty(STDERR_FILENO) == 1; }
+bool Session::shows_progress() const { return is_verbose || is_terminal(err); }
 
 std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -41,7 +44,17 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
 }
 
 void add_json(CLI::App& command, Session& session, const std::string& what) {
-  command.add_flag("--json", session.json, what);
+  CLI::Option* const json = command.add_flag("--json", session.json, what);
+  command
+      .add_option_function<std::string>(
+          "-o",
+          [&session](const std::string& format) {
+            session.json = format == "json";
+            session.is_wide = format == "wide";
+          },
+          "table: what fits the terminal; wide: every column; json: as --json")
+      ->check(CLI::IsMember({"table", "wide", "json"}))
+      ->excludes(json);
 }
 
 CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output) {
@@ -57,8 +70,9 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
   command->add_option("--limit", options->limit, "Rows at most (default: all)")
       ->check(CLI::Range(std::size_t{0}, kMostRows));
   if (can_filter) {
-    command->add_option("--task", options->task, "Of this task");
-    command->add_option("--robot", options->robot, "Of this robot: label or digest prefix");
+    command->add_option("--task", options->task, "Of this task")->type_name("TASK");
+    command->add_option("--robot", options->robot, "Of this robot: label or digest prefix")
+        ->type_name("ROBOT");
   }
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, options, list](link::Client& server) {
@@ -67,10 +81,26 @@ void add_list(CLI::App& group, Session& session, List list, bool can_filter) {
   });
 }
 
+namespace {
+
+/// What an argument names, as completions know it.
+std::string kind_of(const CLI::App& group, const std::string& argument) {
+  if (argument == "id")
+    return group.get_name() == "paths" ? "PATH" : "DISTRIBUTION";
+  std::string kind = argument;
+  std::ranges::transform(kind, kind.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return kind;
+}
+
+}  // namespace
+
 CLI::App* add_one(CLI::App& group, Session& session, const OneText& text, Show show) {
   const auto argument = std::make_shared<std::string>();
   CLI::App* command = add_command(group, text.name, text.what, text.example);
-  command->add_option(text.argument, *argument, text.meaning)->required();
+  command->add_option(text.argument, *argument, text.meaning)
+      ->required()
+      ->type_name(kind_of(group, text.argument));
   add_json(*command, session);
   on_run_with_server(*command, session, [&session, argument, show](link::Client& server) {
     return show(server, *argument, session.json, session.out, session.err);
@@ -84,7 +114,7 @@ std::function<WaitOptions()> add_job_wait(CLI::App& command, const Session& sess
   command.add_option("--wait", *wait_s, "Seconds to wait for its end (default: a day)")
       ->check(arguments::between(0.0, 30 * kDay_s));
   return [&session, wait_s] {
-    return WaitOptions{milliseconds(*wait_s), session.is_on_terminal()};
+    return WaitOptions{milliseconds(*wait_s), session.shows_progress()};
   };
 }
 

@@ -23,13 +23,15 @@ struct Session {
   std::uint32_t domain = 0;
   double timeout_s = 5;
   bool json = false;
+  bool is_wide = false;               ///< tables with every column
+  bool is_verbose = false;            ///< progress of long work also where `err` is no terminal
   std::function<int()> command = {};  ///< set by the subcommand that was named
 
   /// Runs a command that talks to a server.
   int with_server(const std::function<int(link::Client&)>& use) const;
 
-  /// Whether `err` is a terminal, where progress can be shown.
-  bool is_on_terminal() const;
+  /// Whether long work shows on `err` how far it is: on a terminal, or because it was asked for.
+  bool shows_progress() const;
 };
 
 std::chrono::milliseconds milliseconds(double seconds);
@@ -44,6 +46,7 @@ inline constexpr const char* kExitCodes =
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& what,
                       const std::string& examples);
 
+/// --json, and -o, which also asks for it or for wide tables.
 void add_json(CLI::App& command, Session& session,
               const std::string& what = "One JSON document on standard output");
 
@@ -65,7 +68,7 @@ void on_run_with_server(CLI::App& command, Session& session, Run run) {
 using List = int (*)(link::Client&, const ListOptions&, std::ostream&, std::ostream&);
 using Show = int (*)(link::Client&, const std::string&, bool, std::ostream&, std::ostream&);
 
-/// `list`, with --limit and --json.
+/// `list`, with --limit, --json and -o.
 /// \param can_filter  whether it has --task and --robot.
 void add_list(CLI::App& group, Session& session, List list, bool can_filter = false);
 

@@ -1,3 +1,4 @@
+#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -61,14 +62,26 @@ void print_robot(const RobotSummary& robot, const RobotDescription& description,
       << "registered  " << time_text(robot.registered_ms) << '\n';
 }
 
+/// Collision checks per solution of an arm; "-" without a solution.
+std::string checks_text(const std::optional<ModeEvidence>& mode) {
+  return mode && mode->solved > 0 ? number_text(mode->checks_per_solution, 0) : "-";
+}
+
 void print_task(const TaskSummary& task, std::ostream& out) {
   out << "task        " << task.task << '\n'
       << "experience  " << kept_text(task.paths, task.dropped) << " paths, " << task.attempts
       << " attempts\n\n";
-  Table table({"ROBOT", "LABEL", "PATHS", "ATTEMPTS", "GENERATION"});
+  Table table({"ROBOT",
+               {"LABEL", Fit::Cut},
+               "PATHS",
+               "ATTEMPTS",
+               "CHECKS GUIDED",
+               "CHECKS UNIFORM",
+               {"GENERATION", Fit::Wide}});
   for (const TaskRobotSummary& robot : task.robots)
     table.add_row({robot.robot.short_hex(), robot.label, kept_text(robot.paths, robot.dropped),
-                   std::to_string(robot.attempts), std::to_string(robot.generation)});
+                   std::to_string(robot.attempts), checks_text(robot.guided),
+                   checks_text(robot.control), std::to_string(robot.generation)});
   table.print(out);
 }
 
@@ -107,8 +120,8 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
 
 void print_status(const ServerStatus& status, std::ostream& out) {
   out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
-      << "store          " << status.store_file << ", " << status.store_bytes << " bytes, schema "
-      << status.schema_version << ", epoch " << status.store_epoch.text() << '\n'
+      << "store          " << status.store_file << ", " << size_text(status.store_bytes)
+      << ", schema " << status.schema_version << ", epoch " << status.store_epoch.text() << '\n'
       << "writable       " << (status.writable ? "yes" : "no") << '\n';
   if (!status.storage_message.empty())
     out << (status.writable ? "note           " : "because        ") << status.storage_message

@@ -1,12 +1,22 @@
 #include "client/cli/watch_command.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <ostream>
+#include <sstream>
+#include <utility>
 #include <vector>
 
+#include "client/cli/admin_rows.hpp"
+#include "client/cli/server_rates.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/event_json.hpp"
+#include "proto/json/summaries_json.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 
@@ -41,17 +51,190 @@ std::string printable(std::string text) {
   return text;
 }
 
-void print(const Event& event, bool json, std::ostream& out) {
-  if (json) {
-    out << json::to_json(event) << std::endl;  // a reader follows
-    return;
+/// What a kind of event is written in on a terminal.
+const char* colour_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::Refusal:
+      return "\033[31m";  // red
+    case EventKind::Fit:
+      return "\033[32m";  // green
+    case EventKind::Registered:
+    case EventKind::Administration:
+      return "\033[33m";  // yellow
+    default:
+      return "";
   }
-  out << time_text(event.time_ms) << "  " << to_text(event.kind);
-  for (const std::string& part : {event.task, event.robot, event.text})
-    if (!part.empty())
-      out << "  " << printable(part);
-  out << std::endl;
 }
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+constexpr std::size_t kTime = 20, kKind = 10, kName = 14;  // columns of text
+
+std::string line_of(const Event& event, bool is_coloured) {
+  const char* const colour = is_coloured ? colour_of(event.kind) : "";
+  return padded(time_text(event.time_ms), kTime) + "  " + colour +
+         padded(std::string(to_text(event.kind)), kKind) + (*colour == '\0' ? "" : "\033[0m") +
+         "  " + padded(printable(event.task.empty() ? "-" : event.task), kName) + "  " +
+         padded(printable(event.robot.empty() ? "-" : event.robot), kName) + "  " +
+         printable(event.text);
+}
+
+/// What is on the screen, written by the thread of the watcher and by the one that waits.
+class Watch {
+ public:
+  Watch(link::Client& server, const WatchOptions& options, std::ostream& out, std::ostream& err)
+      : server_(server),
+        options_(options),
+        out_(out),
+        err_(err),
+        is_coloured_(may_colour(out)),
+        has_status_line_(is_terminal(err) && is_terminal(out) && !options.json),
+        line_(err, has_status_line_) {
+    if (!options_.json)
+      out_ << padded("TIME", kTime) << "  " << padded("KIND", kKind) << "  "
+           << padded("TASK", kName) << "  " << padded("ROBOT", kName) << "  WHAT" << std::endl;
+  }
+
+  link::Watcher::Handlers handlers() {
+    return {.on_event = [this](const Event& event) { tell(event); },
+            .on_server = [this] { greet(); },
+            .on_server_gone = [this] { note_gone(); }};
+  }
+
+  /// Called once a second.
+  void tick() {
+    if (!is_there_) {
+      if (!has_said_so_.exchange(true))
+        say("no server at " + options_.place + " yet; waiting for one");
+      return;
+    }
+    if (!has_status_line_ && options_.every.count() == 0)
+      return;
+    read_rates();
+    if (options_.every.count() > 0 && ++ticks_ % options_.every.count() == 0)
+      tell_rates();
+  }
+
+ private:
+  void tell(const Event& event) {
+    const std::lock_guard lock(mutex_);
+    if (!is_wanted(event, options_.task, robot_))
+      return;
+    line_.clear();
+    if (options_.json)
+      out_ << json::to_json(event) << std::endl;  // a reader follows
+    else
+      out_ << line_of(event, is_coloured_) << std::endl;
+    line_.show(status_);
+  }
+
+  void say(const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    line_.clear();
+    err_ << "watch: " << what << std::endl;
+  }
+
+  /// A robot may be registered later, and a server come later: it is asked when it is there.
+  void greet() {
+    std::ostringstream trouble;
+    const RobotNames robot = names_of(server_, options_.robot, trouble);
+    {
+      const std::lock_guard lock(mutex_);
+      robot_ = robot;
+      line_.clear();
+      err_ << trouble.str();
+    }
+    say("the server is there: " + options_.place);
+    has_said_so_ = true;
+    is_there_ = true;
+  }
+
+  void note_gone() {
+    is_there_ = false;
+    {
+      const std::lock_guard lock(mutex_);
+      status_.clear();
+    }
+    say("the server has gone; waiting for it");
+  }
+
+  RobotNames robot() {
+    const std::lock_guard lock(mutex_);
+    return robot_;
+  }
+
+  void read_rates() {
+    int code = kDone;
+    std::ostringstream unsaid;  // that it goes is said when it has gone
+    const auto rows = show_rows(server_, AdminVerb::Status, "", "watch", unsaid, code);
+    const auto status =
+        rows.empty() ? std::nullopt : std::optional(json::server_status_from_json(rows.front()));
+    if (!status || !*status)
+      return;
+    rates_.add(**status, std::chrono::steady_clock::now());
+    constexpr int kGuidanceEvery = 5;  // ticks: it changes with reports alone, and is asked of all
+    if (readings_++ % kGuidanceEvery == 0)
+      read_guidance();
+    const std::lock_guard lock(mutex_);
+    status_ = rates_.text() + (guidance_.empty() ? "" : "; " + guidance_.back());
+    line_.show(status_);
+  }
+
+  /// Robots and tasks whose evidence changed since it was read before; at first, of those wanted.
+  void read_guidance() {
+    std::ostringstream unsaid;
+    std::vector<std::string> changed;
+    const RobotNames wanted = robot();
+    for_each_row(server_, AdminVerb::ListTasks, {}, "watch", unsaid, [&](const std::string& row) {
+      const auto task = json::task_summary_from_json(row);
+      if (!task || (!options_.task.empty() && task->task != options_.task))
+        return true;
+      for (const TaskRobotSummary& robot : task->robots) {
+        if (!wanted.empty() && std::ranges::find(wanted, robot.label) == wanted.end())
+          continue;
+        std::string text = printable(guidance_text(task->task, robot));
+        std::string& known = known_guidance_[{task->task, robot.label}];
+        if (!text.empty() && text != known)
+          changed.push_back(known = std::move(text));
+      }
+      return true;
+    });
+    if (!changed.empty())
+      guidance_ = std::move(changed);
+  }
+
+  void tell_rates() {
+    const std::lock_guard lock(mutex_);
+    line_.clear();
+    const std::string now = padded(time_text(now_ms()), kTime) + "  ";
+    if (const std::string rates = rates_.text(); !rates.empty())
+      out_ << now << padded("rates", kKind) << "  " << rates << std::endl;
+    for (const std::string& guidance : std::exchange(guidance_, {}))
+      out_ << now << padded("guidance", kKind) << "  " << guidance << std::endl;
+  }
+
+  link::Client& server_;
+  const WatchOptions& options_;
+  std::ostream& out_;
+  std::ostream& err_;
+  const bool is_coloured_, has_status_line_;
+  std::atomic<bool> is_there_ = false, has_said_so_ = false;
+
+  std::mutex mutex_;  // guards the streams and what both threads use:
+  StatusLine line_;
+  std::string status_;
+  RobotNames robot_;
+
+  // Of the thread that waits.
+  ServerRates rates_{std::chrono::seconds(10)};
+  std::int64_t ticks_ = 0;
+  int readings_ = 0;
+  std::vector<std::string> guidance_;
+  std::map<std::pair<std::string, std::string>, std::string> known_guidance_;
+};
 
 }  // namespace
 
@@ -66,17 +249,11 @@ sigset_t block_end_signals() {
 
 int watch_events(link::Client& server, const WatchOptions& options, const sigset_t& until,
                  std::ostream& out, std::ostream& err) {
-  const RobotNames robot = names_of(server, options.robot, err);
-  const auto watcher =
-      server.watch({.on_event =
-                        [&](const Event& event) {
-                          if (is_wanted(event, options.task, robot))
-                            print(event, options.json, out);
-                        },
-                    .on_server = [&] { err << "watch: the server is there" << std::endl; },
-                    .on_server_gone = [&] { err << "watch: the server has gone" << std::endl; }});
-  int number = 0;
-  sigwait(&until, &number);
+  Watch watch(server, options, out, err);
+  const auto watcher = server.watch(watch.handlers());
+  constexpr timespec kTick{1, 0};
+  while (sigtimedwait(&until, nullptr, &kTick) < 0)
+    watch.tick();
   return kDone;
 }
 

@@ -65,6 +65,10 @@ Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
       comparison.unpaired.push_back(name);
       continue;
     }
+    if (result->not_planned || other->second->not_planned) {
+      comparison.unplanned.add(result->not_planned ? *result : *other->second);
+      continue;
+    }
     uniform_figures.add(*result);
     guided_figures.add(*other->second);
     ++comparison.pairs;
@@ -73,7 +77,10 @@ Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
     if (!uniform_by_name->contains(name))
       comparison.unpaired.push_back(name);
   if (comparison.pairs == 0)
-    return Error{ErrorCode::InvalidInput, "no problem was answered by both sides"};
+    return Error{ErrorCode::InvalidInput,
+                 comparison.unplanned.size() == 0
+                     ? "no problem was answered by both sides"
+                     : "no problem could be planned (" + comparison.unplanned.reasons() + ")"};
 
   uniform_figures.summarize();
   guided_figures.summarize();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/experiments/wilcoxon.hpp"
+#include "client/guided/unplanned_problems.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/result.hpp"
 
@@ -24,7 +25,8 @@ struct PlannerStatistics {
   double median_time_s = 0;
 };
 
-/// Uniform against guided planning over the same problems.
+/// Uniform against guided planning over the same problems. A problem that a side began no search
+/// for is no pair.
 struct Comparison {
   std::size_t pairs = 0;
   PlannerStatistics uniform;
@@ -35,11 +37,12 @@ struct Comparison {
   double median_time_ratio = 0;
   WilcoxonSummary checks_test;  ///< unsolved = infinite; both unsolved = no difference
   WilcoxonSummary time_test;
-  std::vector<std::string> unpaired;  ///< names that only one side answered
+  std::vector<std::string> unpaired;     ///< names that only one side answered
+  planner::UnplannedProblems unplanned;  ///< answered by both, and by one without a search
 };
 
 /// Pairs results by name and compares them.
-/// \return InvalidInput if a name occurs twice on one side or no name is on both.
+/// \return InvalidInput if a name occurs twice on one side, or no problem was planned by both.
 Result<Comparison> compare(const std::vector<ProblemResult>& uniform,
                            const std::vector<ProblemResult>& guided);
 

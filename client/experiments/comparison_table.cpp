@@ -6,19 +6,23 @@
 #include <string>
 
 #include "client/experiments/formatted.hpp"
+#include "proto/types/duration_text.hpp"
 
 namespace kinship::experiments {
 namespace {
 
+/// \param width  in characters; of UTF-8, a text's bytes that begin one.
 std::string padded(const std::string& text, std::size_t width) {
-  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+  const auto characters = static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
-/// 12345 as "12 345"; what is infinite as "unsolved".
+/// 12345 as "12 345", a half as one more (the page does); what is infinite as "unsolved".
 std::string count_text(double value) {
   if (!std::isfinite(value))
     return "unsolved";
-  std::string digits = formatted("%.0f", value);
+  std::string digits = formatted("%.0f", std::round(value));
   constexpr std::size_t kGroup = 3;
   for (std::size_t i = digits.size(); i > kGroup; i -= kGroup)
     digits.insert(i - kGroup, " ");
@@ -26,7 +30,7 @@ std::string count_text(double value) {
 }
 
 std::string seconds_text(double value) {
-  return std::isfinite(value) ? formatted("%.3f", value) : "unsolved";
+  return std::isfinite(value) ? duration_text(value) : "unsolved";
 }
 
 /// Uniform / guided; both unsolved says nothing.
@@ -38,16 +42,15 @@ std::string ratio_text(double ratio) {
 
 std::string p_text(double p) { return formatted(p < 1e-3 ? "%.1e" : "%.4f", p); }
 
-void write_row(std::ostream& out, const std::string& name, const std::string& uniform,
-               const std::string& guided, const std::string& ratio, const std::string& p) {
+void write_row(std::ostream& out, const ComparisonRow& row) {
   constexpr std::size_t kName = 26;
   constexpr std::size_t kColumn = 11;
-  out << "  " << name << std::string(kName - std::min(kName, name.size()), ' ')
-      << padded(uniform, kColumn) << padded(guided, kColumn);
-  if (!ratio.empty())
-    out << padded(ratio, kColumn - 2);
-  if (!p.empty())
-    out << padded(p, kColumn);
+  out << "  " << row.name << std::string(kName - std::min(kName, row.name.size()), ' ')
+      << padded(row.uniform, kColumn) << padded(row.guided, kColumn);
+  if (!row.ratio.empty())
+    out << padded(row.ratio, kColumn - 2);
+  if (!row.p.empty())
+    out << padded(row.p, kColumn);
   out << '\n';
 }
 
@@ -76,6 +79,15 @@ std::string json_of(const PlannerStatistics& planner) {
          ",\"median_time_s\":" + json_number(planner.median_time_s) + "}";
 }
 
+/// {"start_collides": 3}; an empty object if all was planned.
+std::string json_of(const planner::UnplannedProblems& unplanned) {
+  std::string members;
+  for (const auto& [reason, count] : unplanned.by_reason())
+    members += (members.empty() ? "\"" : ",\"") + std::string(to_text(reason)) +
+               "\":" + std::to_string(count);
+  return "{" + members + "}";
+}
+
 std::string json_of(const WilcoxonSummary& test) {
   const bool exact = test.method == WilcoxonMethod::Exact;
   return "{\"p\":" + json_number(test.p) + ",\"pairs\":" + std::to_string(test.pairs) +
@@ -87,35 +99,58 @@ std::string json_of(const WilcoxonSummary& test) {
 
 }  // namespace
 
-void write_table(const Comparison& comparison, std::ostream& out) {
+std::vector<ComparisonRow> comparison_rows(const Comparison& comparison) {
   const PlannerStatistics& u = comparison.uniform;
   const PlannerStatistics& g = comparison.guided;
-  out << comparison.pairs << " problems, each planned with both\n\n";
-  write_row(out, "", "uniform", "guided", "ratio", "p");
-  write_row(out, "solved", solved_text(u, comparison.pairs), solved_text(g, comparison.pairs), "",
-            "");
-  write_row(out, "collision checks, mean", count_text(u.mean_checks), count_text(g.mean_checks),
-            ratio_text(comparison.mean_checks_ratio), p_text(comparison.checks_test.p));
-  write_row(out, "collision checks, median", count_text(u.median_checks),
-            count_text(g.median_checks), ratio_text(comparison.median_checks_ratio), "");
-  write_row(out, "planning time s, mean", seconds_text(u.mean_time_s), seconds_text(g.mean_time_s),
-            ratio_text(comparison.mean_time_ratio), p_text(comparison.time_test.p));
-  write_row(out, "planning time s, median", seconds_text(u.median_time_s),
-            seconds_text(g.median_time_s), ratio_text(comparison.median_time_ratio), "");
+  std::vector<ComparisonRow> rows = {
+      {"solved", solved_text(u, comparison.pairs), solved_text(g, comparison.pairs), "", ""},
+      {"collision checks, mean", count_text(u.mean_checks), count_text(g.mean_checks),
+       ratio_text(comparison.mean_checks_ratio), p_text(comparison.checks_test.p)},
+      {"collision checks, median", count_text(u.median_checks), count_text(g.median_checks),
+       ratio_text(comparison.median_checks_ratio), ""},
+      {"planning time, mean", seconds_text(u.mean_time_s), seconds_text(g.mean_time_s),
+       ratio_text(comparison.mean_time_ratio), p_text(comparison.time_test.p)},
+      {"planning time, median", seconds_text(u.median_time_s), seconds_text(g.median_time_s),
+       ratio_text(comparison.median_time_ratio), ""}};
+  return rows;
+}
 
-  out << "\nratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst "
-         "("
-      << method_text(comparison.checks_test) << ").\n";
+std::vector<std::string> comparison_notes(const Comparison& comparison) {
+  const PlannerStatistics& u = comparison.uniform;
+  const PlannerStatistics& g = comparison.guided;
+  std::vector<std::string> notes = {
+      "ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst (" +
+      method_text(comparison.checks_test) + ")."};
   if (u.solved < comparison.pairs || g.solved < comparison.pairs)
-    out << "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
-           "is a lower bound.\n";
+    notes.emplace_back(
+        "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
+        "is a lower bound. In a median it is worse than all that are solved.");
   if (g.with_guidance < comparison.pairs)
-    out << "Only " << g.with_guidance << " of the " << comparison.pairs
-        << " guided attempts drew from a distribution.\n";
+    notes.push_back("Only " + std::to_string(g.with_guidance) + " of the " +
+                    std::to_string(comparison.pairs) +
+                    " guided attempts drew from a distribution.");
   if (u.with_guidance > 0)
-    out << u.with_guidance << " of the uniform attempts drew from a distribution.\n";
+    notes.push_back(std::to_string(u.with_guidance) +
+                    " of the uniform attempts drew from a distribution.");
   if (!comparison.unpaired.empty())
-    out << comparison.unpaired.size() << " problems were answered by one side only and left out.\n";
+    notes.push_back(std::to_string(comparison.unpaired.size()) +
+                    " problems were answered by one side only and left out.");
+  if (comparison.unplanned.size() > 0)
+    notes.push_back(std::to_string(comparison.unplanned.size()) +
+                    " problems could not be planned and are left out (" +
+                    comparison.unplanned.reasons() + ").");
+  return notes;
+}
+
+void write_table(const Comparison& comparison, std::ostream& out) {
+  out << comparison.pairs << " problems, each planned with both\n\n";
+  write_row(out, {"", "uniform", "guided", "ratio", "p"});
+  for (const ComparisonRow& row : comparison_rows(comparison))
+    write_row(out, row);
+  out << '\n';
+  for (const std::string& note : comparison_notes(comparison))
+    out << note << '\n';
+  comparison.unplanned.write_first(out);
 }
 
 void write_json(const Comparison& comparison, std::ostream& out) {
@@ -127,7 +162,8 @@ void write_json(const Comparison& comparison, std::ostream& out) {
       << ",\"median_time\":" << json_number(comparison.median_time_ratio)
       << "},\"wilcoxon_checks\":" << json_of(comparison.checks_test)
       << ",\"wilcoxon_time\":" << json_of(comparison.time_test)
-      << ",\"unpaired\":" << comparison.unpaired.size() << "}\n";
+      << ",\"unpaired\":" << comparison.unpaired.size()
+      << ",\"not_planned\":" << json_of(comparison.unplanned) << "}\n";
 }
 
 }  // namespace kinship::experiments

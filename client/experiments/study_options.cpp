@@ -59,7 +59,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                   "their own, <study>-N")
       ->check(CLI::Range(1, 10'000));
   command.add_flag("--quick", options.quick,
-                   "few instances, at most five minutes: shows that everything works");
+                   "few instances (" + std::to_string(kQuickLearning) + " learning, " +
+                       std::to_string(kQuickInstances) +
+                       " test), at most five minutes: shows that everything works");
 }
 
 void add_tuning_options(CLI::App& command, StudyOptions& options) {

@@ -18,42 +18,82 @@ YamlValue unwrapped(const YamlValue& document, std::initializer_list<const char*
   return value;
 }
 
-/// A base that moves (a virtual joint) has to be said as a placement.
-void refuse_moved_base(const YamlValue& scene, const ConversionInput& input) {
-  if (input.T_task_base)
-    return;
-  for (const YamlValue& transform :
-       scene["robot_state"]["multi_dof_joint_state"]["transforms"].items())
-    if (!read_pose(transform).isApprox(Eigen::Isometry3d::Identity()))
-      transform.refuse(
-          "a virtual joint moves the robot; say with --placement where its base stands");
+void refuse_difference(const YamlValue& scene) {
+  if (!scene["is_diff"].is_missing() && scene["is_diff"].flag())
+    scene["is_diff"].refuse(
+        "a change to another scene, which says not all that is there; ask /get_planning_scene for "
+        "the whole one, or say false if this is all");
 }
 
-Conversion convert(const ConversionInput& input, const kinematics::Chain& chain) {
-  const YamlValue request =
-      unwrapped(YamlValue::read(input.request), {"goal", "request", "motion_plan_request"});
-  // Without a scene nothing is asked of one: members of a missing place are missing.
-  const YamlValue scene = input.scene.empty() ? request["scene"]["none"]
-                                              : unwrapped(YamlValue::read(input.scene), {"scene"});
-  refuse_moved_base(scene, input);
+/// What a problem does not ask for, but a path may be judged by.
+void note_unread(const YamlValue& request, std::vector<std::string>& left_out) {
+  const auto note = [&](const char* member, const std::string& why) {
+    const YamlValue value = request[member];
+    if (!value.is_missing() && !value.text().empty())
+      left_out.push_back(std::string(member) + " '" + value.text() + "': " + why);
+  };
+  note("group_name", "the robot's chain says which joints move");
+  note("pipeline_id", "kinship-plan --planner says which planner");
+  note("planner_id", "kinship-plan --planner says which planner");
+  const YamlValue workspace = request["workspace_parameters"];
+  if (!read_vector(workspace["min_corner"]).isZero() ||
+      !read_vector(workspace["max_corner"]).isZero())
+    left_out.emplace_back("workspace_parameters: it bounds a base that moves, not the arm");
+  for (const char* member :
+       {"max_velocity_scaling_factor", "max_acceleration_scaling_factor", "max_cartesian_speed"})
+    if (const double value = request[member].number_or(0); value != 0 && value != 1)
+      left_out.push_back(std::string(member) + ": a path has no times");
+  if (!request["reference_trajectories"].items().empty())
+    left_out.emplace_back("reference_trajectories");
+}
+
+Conversion convert(const YamlValue& scene, const YamlValue& request, const ConversionInput& input,
+                   const kinematics::Chain& chain) {
+  refuse_difference(scene);
   Conversion conversion;
   Problem& problem = conversion.problem;
-  problem.name = input.name;
-  problem.start = read_start(scene, request, chain);
-  const Frames frames(chain, input.T_task_base, problem.start, scene);
+  problem.start = read_start(scene, request, chain, conversion.left_out);
+  const Frames frames(chain, input.T_task_base, problem.start, scene, request);
   problem.T_task_base = frames.T_task_base();
   read_objects(scene, request, chain, frames, conversion);
   read_goals(request, chain, frames, conversion);
+  note_unread(request, conversion.left_out);
   if (const double limit_s = request["allowed_planning_time"].number_or(0); limit_s > 0)
     problem.time_limit_s = limit_s;
   return conversion;
 }
 
+std::vector<Conversion> convert_all(const ConversionInput& input, const kinematics::Chain& chain) {
+  std::vector<YamlValue> requests = YamlValue::read_all(input.request);
+  if (requests.empty())
+    throw Failure(ErrorCode::InvalidInput, "'" + input.request.string() + "' holds no request");
+  for (YamlValue& request : requests)
+    request = unwrapped(request, {"goal", "request", "motion_plan_request"});
+  // Without a scene nothing is asked of one: members of a missing place are missing.
+  std::vector<YamlValue> scenes = {requests.front()["scene"]["none"]};
+  if (!input.scene.empty())
+    scenes = YamlValue::read_all(input.scene);
+  if (scenes.size() != 1 && scenes.size() != requests.size())
+    throw Failure(ErrorCode::InvalidInput, "'" + input.scene.string() + "' holds " +
+                                               std::to_string(scenes.size()) + " scenes for " +
+                                               std::to_string(requests.size()) +
+                                               " requests; one, or as many as requests");
+  std::vector<Conversion> conversions;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const YamlValue& scene = scenes[scenes.size() == 1 ? 0 : i];
+    conversions.push_back(convert(unwrapped(scene, {"scene"}), requests[i], input, chain));
+    conversions.back().problem.name =
+        input.name + (requests.size() == 1 ? "" : "-" + std::to_string(i + 1));
+  }
+  return conversions;
+}
+
 }  // namespace
 
-Result<Conversion> read_problem(const ConversionInput& input, const kinematics::Chain& chain) {
+Result<std::vector<Conversion>> read_problems(const ConversionInput& input,
+                                              const kinematics::Chain& chain) {
   try {
-    return convert(input, chain);
+    return convert_all(input, chain);
   } catch (const Failure& failure) {
     return failure.error();
   }

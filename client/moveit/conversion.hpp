@@ -27,19 +27,22 @@ struct Conversion {
 };
 
 struct ConversionInput {
-  std::filesystem::path scene;    ///< moveit_msgs/PlanningScene; empty: nothing is around the robot
-  std::filesystem::path request;  ///< moveit_msgs/MotionPlanRequest
+  /// moveit_msgs/PlanningScene, one for all requests or one for each; empty: nothing is around the
+  /// robot.
+  std::filesystem::path scene;
+  std::filesystem::path request;  ///< moveit_msgs/MotionPlanRequest, one a document
   /// The robot's base in the task frame; empty: the task frame is MoveIt's planning frame, that of
   /// the URDF's root link.
   std::optional<Eigen::Isometry3d> T_task_base;
-  std::string name;  ///< of the problem
+  std::string name;  ///< of the problem; of several NAME-1, NAME-2 ...
 };
 
-/// Reads a planning scene and a request as one problem for a robot: obstacles and what it holds,
-/// pairs that may touch, start, goal, time limit and an orientation to be kept on the way.
+/// Reads planning scenes and requests as problems for a robot, one a request: obstacles and what it
+/// holds, pairs that may touch, start, goal, time limit and an orientation to be kept on the way.
 /// \return NotFound or InvalidInput that names file, line and member; also for what a problem
-/// cannot
-///         say and that must not be left out: an octomap, a cone, a plane, another path constraint.
-Result<Conversion> read_problem(const ConversionInput& input, const kinematics::Chain& chain);
+///         cannot say and that must not be left out: an octomap, a cone, a plane, a change to
+///         another scene, another path constraint.
+Result<std::vector<Conversion>> read_problems(const ConversionInput& input,
+                                              const kinematics::Chain& chain);
 
 }  // namespace kinship::moveit

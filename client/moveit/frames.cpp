@@ -14,17 +14,37 @@ std::string without_slash(std::string name) {
   return name;
 }
 
+/// sensor_msgs/MultiDOFJointState of where planning starts: of the request, else of the scene.
+YamlValue virtual_joints(const YamlValue& scene, const YamlValue& request) {
+  const YamlValue of_start = request["start_state"]["multi_dof_joint_state"];
+  return of_start["transforms"].items().empty() ? scene["robot_state"]["multi_dof_joint_state"]
+                                                : of_start;
+}
+
+/// Where a virtual joint puts the root link in the planning frame; identity if there is none.
+Eigen::Isometry3d read_root_pose(const YamlValue& joints) {
+  const std::vector<YamlValue> transforms = joints["transforms"].items();
+  if (transforms.size() > 1)
+    joints["transforms"].refuse(std::to_string(transforms.size()) +
+                                " joints of several degrees of freedom; one, the virtual joint of "
+                                "the robot's root, can be taken");
+  return transforms.empty() ? Eigen::Isometry3d::Identity() : read_pose(transforms.front());
+}
+
 }  // namespace
 
 Frames::Frames(const kinematics::Chain& chain, const std::optional<Eigen::Isometry3d>& T_task_base,
-               const Eigen::VectorXd& start, const YamlValue& scene)
+               const Eigen::VectorXd& start, const YamlValue& scene, const YamlValue& request)
     : chain_(chain), T_base_links_(kinematics::link_poses(chain, start)) {
   Eigen::Isometry3d T_base_root = Eigen::Isometry3d::Identity();
   for (std::size_t index = 0; index < chain.links().size(); ++index)
     if (chain.links()[index].parent < 0)
       T_base_root = T_base_links_[index];
-  T_task_base_ = T_task_base.value_or(T_base_root.inverse());
-  T_task_planning_ = T_task_base_ * T_base_root;
+  const YamlValue joints = virtual_joints(scene, request);
+  const Eigen::Isometry3d T_root_planning = read_root_pose(joints).inverse();
+  T_task_base_ = T_task_base.value_or((T_base_root * T_root_planning).inverse());
+  T_task_planning_ = T_task_base_ * T_base_root * T_root_planning;
+  planning_frame_ = without_slash(joints["header"]["frame_id"].text_or(""));
   for (const YamlValue& carried : scene["fixed_frame_transforms"].items())
     carried_[without_slash(carried["child_frame_id"].text())] = {
         .parent = without_slash(carried["header"]["frame_id"].text_or("")),
@@ -68,7 +88,7 @@ std::optional<Eigen::Isometry3d> Frames::find(const std::string& name, int depth
       return *parent * carried->second.T_parent_frame;
     return std::nullopt;
   }
-  if (name.empty() || name == "world")
+  if (name.empty() || name == "world" || name == planning_frame_)
     return T_task_planning_;
   return std::nullopt;
 }

@@ -15,12 +15,15 @@ namespace kinship::moveit {
 /// planning frame, and those that the scene carries along.
 class Frames {
  public:
-  /// The planning frame is that of the URDF's root link; so are `world` and a frame without name.
+  /// The planning frame is that of the URDF's root link, unless a virtual joint of the start moves
+  /// that; so are `world`, the virtual joint's frame and a frame without name.
   /// \param T_task_base  empty: the task frame is the planning frame.
   /// \param start        dof, joint units: where links are that joints move.
   /// \param scene        moveit_msgs/PlanningScene
+  /// \param request      moveit_msgs/MotionPlanRequest
+  /// \throws Failure(InvalidInput) if several joints move the root link
   Frames(const kinematics::Chain& chain, const std::optional<Eigen::Isometry3d>& T_task_base,
-         const Eigen::VectorXd& start, const YamlValue& scene);
+         const Eigen::VectorXd& start, const YamlValue& scene, const YamlValue& request);
 
   /// \param name  a scalar, or missing. \throws Failure(InvalidInput) for a frame that is not
   /// known.
@@ -53,6 +56,7 @@ class Frames {
   std::vector<Eigen::Isometry3d> T_base_links_;
   Eigen::Isometry3d T_task_base_;
   Eigen::Isometry3d T_task_planning_;
+  std::string planning_frame_;  // its other name; empty: none is known
   std::map<std::string, CarriedFrame> carried_;
 };
 

@@ -1,10 +1,11 @@
 #include "client/moveit/goals.hpp"
 
-#include <limits>
+#include <algorithm>
 #include <map>
-#include <numbers>
 
 #include "client/moveit/geometry_messages.hpp"
+#include "client/moveit/kept_orientation.hpp"
+#include "proto/types/number_text.hpp"
 
 namespace kinship::moveit {
 namespace {
@@ -34,6 +35,15 @@ Eigen::VectorXd in_order(const JointValues& values, const kinematics::Chain& cha
     q(joint) = value->second;
   }
   return q;
+}
+
+/// Tells of joints that a state names and the chain does not have.
+void note_others(const JointValues& values, const kinematics::Chain& chain, const std::string& of,
+                 const std::string& advice, std::vector<std::string>& left_out) {
+  for (const auto& [name, value] : values)
+    if (std::ranges::find(chain.joints(), name, &kinematics::Joint::name) == chain.joints().end())
+      left_out.push_back(of + " of joint '" + name + "', " + number_text(value) +
+                         ": not of the chain" + advice);
 }
 
 /// A list with exactly one element.
@@ -69,10 +79,12 @@ Eigen::Isometry3d read_goal_pose(const YamlValue& constraints, const Frames& fra
   return T_task_link * frames.T_link_transfer(position["link_name"]);
 }
 
-Eigen::VectorXd read_goal_joints(const YamlValue& list, const kinematics::Chain& chain) {
+Eigen::VectorXd read_goal_joints(const YamlValue& list, const kinematics::Chain& chain,
+                                 std::vector<std::string>& left_out) {
   JointValues values;
   for (const YamlValue& joint : list.items())
     values[joint["joint_name"].text()] = joint["position"].number();
+  note_others(values, chain, "goal", "", left_out);
   return in_order(values, chain, list);
 }
 
@@ -81,36 +93,15 @@ void append_column(Eigen::MatrixXd& columns, const Eigen::VectorXd& column) {
   columns.rightCols(1) = column;
 }
 
-/// An orientation to be kept: roll, pitch and yaw of the link in the frame wanted stay within the
-/// tolerances; from half a turn on there is no bound. Source: moveit_msgs/OrientationConstraint,
-/// parametrisation XYZ_EULER_ANGLES, whose order of turns is the other one; small ones agree.
-TaskSpaceRegion read_kept_orientation(const YamlValue& constraint, const Frames& frames) {
-  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  TaskSpaceRegion region;
-  region.T_task_region.linear() = frames.T_task_header(constraint).linear() *
-                                  read_rotation(constraint["orientation"]).toRotationMatrix();
-  region.T_region_end = frames.T_link_transfer(constraint["link_name"]);
-  Eigen::Vector<double, 6> tolerance = Eigen::Vector<double, 6>::Constant(kUnbounded);
-  constexpr const char* kTolerances[] = {"absolute_x_axis_tolerance", "absolute_y_axis_tolerance",
-                                         "absolute_z_axis_tolerance"};
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double value = constraint[kTolerances[axis]].number();
-    if (value < std::numbers::pi)
-      tolerance(3 + axis) = value;
-  }
-  region.bounds.row(0) = -tolerance;
-  region.bounds.row(1) = tolerance;
-  return region;
-}
-
 }  // namespace
 
 Eigen::VectorXd read_start(const YamlValue& scene, const YamlValue& request,
-                           const kinematics::Chain& chain) {
+                           const kinematics::Chain& chain, std::vector<std::string>& left_out) {
   JointValues values;
   read_joints(scene["robot_state"]["joint_state"], values);
   const YamlValue start = request["start_state"]["joint_state"];
   read_joints(start, values);
+  note_others(values, chain, "start", "; --hold says where it stands", left_out);
   return in_order(values, chain, start);
 }
 
@@ -125,7 +116,7 @@ void read_goals(const YamlValue& request, const kinematics::Chain& chain, const 
     if (!goal["joint_constraints"].items().empty()) {
       refuse_others(goal, {"position_constraints", "orientation_constraints"});
       append_column(problem.goal_configurations,
-                    read_goal_joints(goal["joint_constraints"], chain));
+                    read_goal_joints(goal["joint_constraints"], chain, conversion.left_out));
       continue;
     }
     if (problem.T_task_goal)
@@ -138,7 +129,8 @@ void read_goals(const YamlValue& request, const kinematics::Chain& chain, const 
   const YamlValue kept = request["path_constraints"];
   refuse_others(kept, {"joint_constraints", "position_constraints", "visibility_constraints"});
   if (!kept["orientation_constraints"].items().empty())
-    problem.constraint = read_kept_orientation(only_one(kept["orientation_constraints"]), frames);
+    problem.constraint = read_kept_orientation(only_one(kept["orientation_constraints"]), frames,
+                                               conversion.left_out);
   if (!request["trajectory_constraints"]["constraints"].items().empty())
     request["trajectory_constraints"]["constraints"].refuse("a problem cannot say this");
 }

@@ -1,9 +1,10 @@
 #include "client/moveit/objects.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <array>
+#include <iterator>
 #include <map>
-#include <set>
+#include <string_view>
 
 #include "client/moveit/geometry_messages.hpp"
 
@@ -48,14 +49,32 @@ Mesh take_mesh(const YamlValue& value, const std::string& name, std::vector<Mesh
   return {.file = file};
 }
 
+/// CollisionObject.operation by number, by word, and as ros2 topic echo writes a byte: itself, or
+/// in base 64.
+void require_addition(const YamlValue& operation) {
+  using Names = std::array<std::string_view, 4>;
+  static constexpr std::array<Names, 4> kOperations = {
+      {{"0", "add", std::string_view("\0", 1), "AA=="},
+       {"1", "remove", "\x01", "AQ=="},
+       {"2", "append", "\x02", "Ag=="},
+       {"3", "move", "\x03", "Aw=="}}};
+  const std::string said = operation.text_or("0");
+  const auto found = std::ranges::find_if(
+      kOperations, [&](const Names& names) { return std::ranges::count(names, said) > 0; });
+  if (found == kOperations.begin())
+    return;
+  const std::string name = found == kOperations.end()
+                               ? said
+                               : std::string((*found)[0]) + ", " + std::string((*found)[1]);
+  operation.refuse("'" + name +
+                   "' is a change to another scene; 0 (add) is expected, as in what "
+                   "/get_planning_scene answers");
+}
+
 /// moveit_msgs/CollisionObject
 std::vector<Part> read_parts(const YamlValue& object, std::vector<MeshFile>& files) {
   const std::string id = object["id"].text();
-  const std::string operation = object["operation"].text_or("0");
-  if (operation != "0" && operation != "add")
-    object["operation"].refuse("'" + operation +
-                               "' is a change to another scene; 0 (add) is expected, as in what "
-                               "/get_planning_scene answers");
+  require_addition(object["operation"]);
   refuse_what_is_there(object["planes"], "planes are not known; make '" + id + "' a box");
   const std::vector<YamlValue> solids = object["primitives"].items();
   const std::vector<YamlValue> meshes = object["meshes"].items();
@@ -143,52 +162,66 @@ std::vector<YamlValue> row_items(const YamlValue& row) {
   return row.is_map() ? row["enabled"].items() : row.items();
 }
 
-/// Calls `allow` with the names of two entries that may touch.
-void for_each_allowed(const YamlValue& matrix,
-                      const std::function<void(const std::string&, const std::string&)>& allow) {
+using NamePair = std::pair<std::string, std::string>;  // in order
+
+NamePair pair_of(const std::string& first, const std::string& second) {
+  return std::minmax(first, second);
+}
+
+/// What the matrix says of pairs of its entries.
+std::map<NamePair, bool> read_matrix(const YamlValue& matrix) {
   const std::vector<YamlValue> entries = matrix["entry_names"].items();
   const std::vector<YamlValue> rows = matrix["entry_values"].items();
   if (rows.size() != entries.size())
     matrix["entry_values"].refuse(std::to_string(rows.size()) + " rows of " +
                                   std::to_string(entries.size()) + " entries");
+  std::map<NamePair, bool> said;
   for (std::size_t first = 0; first < rows.size(); ++first) {
     const std::vector<YamlValue> row = row_items(rows[first]);
     if (row.size() != entries.size())
       rows[first].refuse(std::to_string(row.size()) + " values of " +
                          std::to_string(entries.size()) + " entries");
     for (std::size_t second = first + 1; second < row.size(); ++second)
-      if (row[second].flag())
-        allow(entries[first].text(), entries[second].text());
+      said[pair_of(entries[first].text(), entries[second].text())] = row[second].flag();
   }
+  return said;
 }
 
-/// moveit_msgs/AllowedCollisionMatrix. Entries of links and objects that are not here are left.
+std::map<std::string, bool> read_defaults(const YamlValue& matrix) {
+  const std::vector<YamlValue> names = matrix["default_entry_names"].items();
+  const std::vector<YamlValue> values = matrix["default_entry_values"].items();
+  if (values.size() != names.size())
+    matrix["default_entry_values"].refuse(std::to_string(values.size()) + " values of " +
+                                          std::to_string(names.size()) + " entries");
+  std::map<std::string, bool> defaults;
+  for (std::size_t index = 0; index < names.size(); ++index)
+    defaults[names[index].text()] = values[index].flag();
+  return defaults;
+}
+
+/// moveit_msgs/AllowedCollisionMatrix: what it says of a pair counts, else both their defaults.
+/// Entries of links and objects that are not here are left.
 void read_allowed(const YamlValue& matrix, const kinematics::Chain& chain, const PartNames& names,
                   Conversion& conversion) {
-  const auto parts_of = [&](const std::string& entry) -> std::vector<std::string> {
-    if (const auto object = names.find(entry); object != names.end())
-      return object->second;
-    return chain.find_link(entry) >= 0 ? std::vector{entry} : std::vector<std::string>();
+  std::map<std::string, std::vector<std::string>> bodies(names);
+  for (const auto& link : chain.links())
+    bodies.try_emplace(link.name, std::vector{link.name});
+  const std::map<NamePair, bool> said = read_matrix(matrix);
+  const std::map<std::string, bool> defaults = read_defaults(matrix);
+  const auto is_allowed = [&](const std::string& first, const std::string& second) {
+    if (const auto known = said.find(pair_of(first, second)); known != said.end())
+      return known->second;
+    const auto of_first = defaults.find(first), of_second = defaults.find(second);
+    const bool is_known = of_first != defaults.end() || of_second != defaults.end();
+    return is_known && (of_first == defaults.end() || of_first->second) &&
+           (of_second == defaults.end() || of_second->second);
   };
-  std::set<std::pair<std::string, std::string>> allowed;
-  const auto allow = [&](const std::string& first, const std::string& second) {
-    for (const std::string& a : parts_of(first))
-      for (const std::string& b : parts_of(second))
-        if (a != b && !allowed.contains({b, a}))
-          allowed.emplace(a, b);
-  };
-  for_each_allowed(matrix, allow);
-  const std::vector<YamlValue> defaults = matrix["default_entry_values"].items();
-  const std::vector<YamlValue> default_names = matrix["default_entry_names"].items();
-  for (std::size_t index = 0; index < std::min(defaults.size(), default_names.size()); ++index) {
-    if (!defaults[index].flag())
-      continue;
-    for (const auto& link : chain.links())
-      allow(default_names[index].text(), link.name);
-    for (const auto& [object, parts] : names)
-      allow(default_names[index].text(), object);
-  }
-  conversion.problem.allowed_collisions.assign(allowed.begin(), allowed.end());
+  for (auto first = bodies.begin(); first != bodies.end(); ++first)
+    for (auto second = std::next(first); second != bodies.end(); ++second)
+      if (is_allowed(first->first, second->first))
+        for (const std::string& a : first->second)
+          for (const std::string& b : second->second)
+            conversion.problem.allowed_collisions.emplace_back(a, b);
 }
 
 bool is_padded(const YamlValue& list, const char* member, double neutral) {
@@ -197,16 +230,31 @@ bool is_padded(const YamlValue& list, const char* member, double neutral) {
       items, [&](const YamlValue& item) { return item[member].number_or(neutral) != neutral; });
 }
 
+/// A state that says by itself what the robot holds: it has joints, and calls itself no difference.
+bool is_whole_state(const YamlValue& state) {
+  const YamlValue difference = state["is_diff"];
+  return !difference.is_missing() && !difference.flag() &&
+         !state["joint_state"]["name"].items().empty();
+}
+
 }  // namespace
 
 void read_objects(const YamlValue& scene, const YamlValue& request, const kinematics::Chain& chain,
                   const Frames& frames, Conversion& conversion) {
   PartNames names;
   read_world(scene["world"], frames, conversion, names);
-  for (const YamlValue& state : {scene["robot_state"], request["start_state"]})
-    for (const YamlValue& attached : state["attached_collision_objects"].items())
-      if (!names.contains(attached["object"]["id"].text()))  // a start state often repeats them
-        read_attached(attached, chain, frames, conversion, names);
+  const YamlValue start = request["start_state"];
+  for (const YamlValue& attached : start["attached_collision_objects"].items())
+    read_attached(attached, chain, frames, conversion, names);
+  for (const YamlValue& attached : scene["robot_state"]["attached_collision_objects"].items()) {
+    const std::string id = attached["object"]["id"].text();
+    if (is_whole_state(start) && !names.contains(id))
+      conversion.left_out.push_back("'" + id +
+                                    "', attached in the scene: the start state is no change to "
+                                    "that (is_diff: false) and does not hold it");
+    else if (!names.contains(id))  // a start state often repeats them
+      read_attached(attached, chain, frames, conversion, names);
+  }
   read_allowed(scene["allowed_collision_matrix"], chain, names, conversion);
   if (is_padded(scene["link_padding"], "padding", 0) || is_padded(scene["link_scale"], "scale", 1))
     conversion.left_out.push_back("padding and scale of links");

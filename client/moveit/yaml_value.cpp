@@ -13,12 +13,16 @@ constexpr const char* kTruncated = "...";
 
 }  // namespace
 
-YamlValue YamlValue::read(const std::filesystem::path& file) {
+std::vector<YamlValue> YamlValue::read_all(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream)
     throw Failure(ErrorCode::NotFound, "'" + file.string() + "' cannot be read");
   try {
-    return {YAML::Load(stream), file.string(), ""};
+    std::vector<YamlValue> documents;
+    for (const YAML::Node& node : YAML::LoadAll(stream))
+      if (!node.IsNull())
+        documents.push_back({node, file.string(), ""});
+    return documents;
   } catch (const YAML::Exception& error) {
     throw Failure(ErrorCode::InvalidInput, "'" + file.string() + "' line " +
                                                std::to_string(error.mark.line + 1) +
@@ -47,10 +51,15 @@ std::vector<YamlValue> YamlValue::items() const {
   std::vector<YamlValue> items;
   if (is_missing())
     return items;
-  if (node_.IsScalar() && node_.Scalar() == kTruncated)
+  const auto is_truncated = [](const YAML::Node& node) {
+    return node.IsScalar() && node.Scalar() == kTruncated;
+  };
+  if (is_truncated(node_))
     refuse("the list was left out when this was written; ros2 topic echo has --full-length");
   if (!node_.IsSequence())
     refuse("is no list");
+  if (node_.size() > 0 && is_truncated(node_[node_.size() - 1]))
+    refuse("the list was cut when this was written; ros2 topic echo has --full-length");
   for (std::size_t index = 0; index < node_.size(); ++index)
     items.push_back({node_[index], file_, way_ + "[" + std::to_string(index) + "]"});
   return items;

@@ -12,9 +12,10 @@ namespace kinship::moveit {
 /// of a missing place is missing too.
 class YamlValue {
  public:
-  /// Reads a file's first document; later ones, as of an echoed topic, are left.
+  /// Reads a file's documents; those that say nothing, as after the last line of an echoed topic,
+  /// are left.
   /// \throws Failure(NotFound or InvalidInput) that names the file, and the line of a syntax error.
-  static YamlValue read(const std::filesystem::path& file);
+  static std::vector<YamlValue> read_all(const std::filesystem::path& file);
 
   /// A member of a map; missing if there is none.
   YamlValue operator[](const std::string& member) const;
@@ -43,8 +44,8 @@ class YamlValue {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
-  YamlValue(YAML::Node node, std::string file, std::string way)
-      : node_(std::move(node)), file_(std::move(file)), way_(std::move(way)) {}
+  YamlValue(const YAML::Node& node, std::string file, std::string way)
+      : node_(node), file_(std::move(file)), way_(std::move(way)) {}
 
   YAML::Node node_;
   std::string file_;

@@ -8,6 +8,8 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
+#include "proto/manual/manual.hpp"
+#include "proto/manual/suggestion.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
@@ -61,10 +63,12 @@ struct RawOptions {
 void add_inputs(CLI::App& app, PlanOptions& options) {
   app.add_option("--problems,problems", options.problems,
                  "problems, JSON Lines; - is standard input")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   app.add_option("--robot,--model,robot", options.robot.source,
                  "URDF file of the robot, or its model folder (robot.urdf and chain.toml)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   arguments::add_robot_options(app, options.robot);
 }
 
@@ -102,14 +106,20 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
                  "added to the seed of every problem (of one without: 0)")
       ->check(between(std::uint64_t{0}, kMax))
       ->capture_default_str();
-  app.add_option("--output", options.output, "file for the results; standard output if missing");
+  app.add_option("--output", options.output, "file for the results; standard output if missing")
+      ->type_name("FILE");
+  app.add_option(
+         "--searches", options.searches,
+         "file for how the trees of each search grew, which kinship-experiments page draws; "
+         "makes planning a little slower")
+      ->type_name("FILE");
   app.add_flag("--json", options.json,
                "results as JSON Lines also on a terminal; files and pipes get them anyway");
 }
 
 void add_guidance_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   using arguments::between;
-  app.add_option("--task", options.task, "task under which experience is kept");
+  app.add_option("--task", options.task, "task under which experience is kept")->type_name("TASK");
   app.add_option(
          "--guidance", raw.guidance,
          "uniform (or none): no guidance; auto: guided where that is cheaper, by what both "
@@ -158,7 +168,8 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
   app.add_option("--timeout", raw.timeout_s, "seconds to wait for a server")
       ->check(between(0.01, 3600.0))
       ->capture_default_str();
-  app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged");
+  app.add_option("--outbox", options.outbox, "folder of reports not yet acknowledged")
+      ->type_name("FOLDER");
 }
 
 /// Options that say which distribution is wanted and how it is used.
@@ -294,8 +305,8 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
   RawOptions raw;
   CLI::App app{"kinship-plan: plans motions of one robot, guided by the experience of its fleet",
                "kinship-plan"};
+  manual::add_manual(app);
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("kinship-plan ") + KINSHIP_VERSION);
   add_inputs(app, options);
   add_planning_options(app, options, raw);
   add_guidance_options(app, options, raw);
@@ -303,15 +314,8 @@ std::variant<PlanOptions, int> parse_plan_options(int argc, const char* const* a
   try {
     app.parse(reversed_arguments(argc, argv));
     complete(app, raw, options, err);
-  } catch (const CLI::ExtrasError& error) {
-    app.exit(error, out, err);
-    for (const std::string& word : app.remaining())
-      if (const std::string near = arguments::suggestion_for(app, word); !near.empty())
-        err << word << near << '\n';
-    return kWrongUsage;
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error, out, err);
-    return code == 0 ? kDone : kWrongUsage;
+    return manual::explain(app, error, out, err);
   }
   return options;
 }

@@ -9,11 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "client/planner/attempt_record.hpp"
+#include "client/guided/attempt_record.hpp"
+#include "client/guided/scene_record.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
-#include "client/planner/scene_record.hpp"
 #include "client/planner/server_line.hpp"
+#include "client/planner/transfer_warning.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/models/loaded_robot.hpp"
@@ -39,6 +40,16 @@ int exit_code_without(NoGuidance why_not) {
       break;
   }
   return kFailed;
+}
+
+/// An empty one of a problem that was not searched for.
+void write_search(const std::string& name, const planning::SearchRecorder& recorder,
+                  std::ostream& searches) {
+  RecordedSearch search = recorder.search();
+  search.name = name;
+  searches << json::to_json(search) << '\n';
+  if (!searches)
+    throw Failure(ErrorCode::Storage, "cannot write the searches");
 }
 
 void write_result(const ProblemResult& result, const RunStreams& streams) {
@@ -90,6 +101,7 @@ PlannedProblem unread(const Problem& problem, const Error& error) {
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
   planned.result.reason = error.message;
+  planned.result.not_planned = NotPlanned::Unreadable;
   return planned;
 }
 
@@ -137,6 +149,9 @@ class Run {
         planned.result = broken_line_result(line.number, line.problem.error());
       if (planned.interrupted)
         return false;
+      if (streams_.searches != nullptr)
+        write_search(planned.result.name, recorder_, *streams_.searches);
+      recorder_ = {};
       write_result(planned.result, streams_);  // after: what has a result is in the outbox
       progress.add(planned.result, planned.attempted);
     }
@@ -149,7 +164,8 @@ class Run {
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
     PlannedProblem planned =
-        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop);
+        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
+                     streams_.searches != nullptr ? &recorder_ : nullptr);
     if (planned.interrupted || !planned.attempted)
       return planned;
     server_.add(planned);
@@ -169,6 +185,7 @@ class Run {
   const Reporter reporter_;
   models::SceneMeshes meshes_;
   SceneRecorder scenes_;
+  planning::SearchRecorder recorder_;  // of the search under way
 };
 
 }  // namespace
@@ -177,6 +194,8 @@ RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
                     const std::function<bool()>& stop) {
   const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
+  if (!models::says_transfer(options.robot))
+    streams.messages << transfer_warning(lines, robot.chain.tip_link());
   ServerLine server(
       options, robot.description,
       [&robot] { return collision::fit_robot(robot.chain, robot.shapes); }, streams.messages, stop);

@@ -21,6 +21,7 @@ ProblemResult broken_line_result(std::size_t number, const Error& error) {
   ProblemResult result;
   result.name = "line " + std::to_string(number);
   result.reason = result.name + ": " + error.message;
+  result.not_planned = NotPlanned::Unreadable;
   return result;
 }
 

@@ -4,15 +4,12 @@
 #include <ostream>
 #include <string>
 
+#include "proto/types/duration_text.hpp"
+
 namespace kinship::planner {
 namespace {
 
 constexpr std::size_t kLines = 10;  // where the output is not a terminal
-
-/// "shelf-1-0003: every goal collides"; why a line could not be read begins with its name already.
-std::string named(const ProblemResult& result, const std::string& outcome) {
-  return outcome.starts_with(result.name + ":") ? outcome : result.name + ": " + outcome;
-}
 
 std::string with_digits(double value, int digits) {
   char text[40];
@@ -34,54 +31,59 @@ std::string guidance_text(const ProblemResult& result) {
 void Progress::add(const ProblemResult& result, bool attempted) {
   const std::size_t lines_before = done_ * kLines / total_;
   ++done_;
-  if (result.solved)
-    ++solved_;
-  checks_ += result.collision_checks;
-  planning_time_s_ += result.planning_time_s;
-  gated_ += attempted && result.gate_fired ? 1 : 0;
-  if (attempted)
+  attempted_ += attempted ? 1 : 0;
+  unplanned_.add(result);
+  if (!result.not_planned) {
+    solved_ += result.solved ? 1 : 0;
+    checks_ += result.collision_checks;
+    planning_time_s_ += result.planning_time_s;
+    gated_ += result.gate_fired ? 1 : 0;
     ++(result.sampling_mode == SamplingMode::Guided    ? guided_
        : result.sampling_mode == SamplingMode::Control ? control_
                                                        : uniform_);
+  }
   if (!terminal_ && done_ * kLines / total_ == lines_before)
     return;
   const std::string outcome =
       result.solved ? std::to_string(result.collision_checks) + " checks" : result.reason;
   stream_ << (terminal_ ? "\r\033[K" : "") << "planned " << done_ << "/" << total_ << ", solved "
-          << solved_ << ", last: " << named(result, outcome) << (terminal_ ? "" : "\n")
+          << solved_ << ", last: " << named_outcome(result, outcome) << (terminal_ ? "" : "\n")
           << std::flush;
 }
 
 void Progress::finish() {
   if (terminal_)
     stream_ << "\r\033[K";
-  const std::size_t attempted = this->attempted();
-  stream_ << "planned " << attempted << " of " << total_ << " problems, " << solved_ << " solved";
-  if (attempted > 0) {
-    char text[96];
-    std::snprintf(text, sizeof text, "; on average %.0f checks and %.3f s",
-                  static_cast<double>(checks_) / static_cast<double>(attempted),
-                  planning_time_s_ / static_cast<double>(attempted));
+  const std::size_t planned = done_ - unplanned_.size();
+  if (unplanned_.size() > 0) {
+    stream_ << "could not be planned:\n";
+    unplanned_.write_first(stream_);
+  }
+  stream_ << "planned " << planned << " of " << total_ << " problems, " << solved_ << " solved";
+  if (planned > 0) {
+    const auto count = static_cast<double>(planned);
     stream_ << "; " << guided_ << " guided"
             << (gated_ > 0 ? " (" + std::to_string(gated_) + " uniform by the gate)" : "") << ", "
-            << control_ << " control, " << uniform_ << " uniform" << text;
+            << control_ << " control, " << uniform_ << " uniform; on average "
+            << with_digits(static_cast<double>(checks_) / count, 0) << " checks and "
+            << duration_text(planning_time_s_ / count);
   }
-  if (done_ > attempted)
-    stream_ << "; " << done_ - attempted << " could not be attempted";
+  if (unplanned_.size() > 0)
+    stream_ << "; " << unplanned_.size() << " could not be planned (" << unplanned_.reasons()
+            << ")";
   stream_ << std::endl;
 }
 
 std::string result_text(const ProblemResult& result) {
-  constexpr int kTimeDigits = 3;
-  if (result.planner.empty())  // no planner was started
-    return named(result, result.reason);
+  if (result.not_planned)
+    return named_outcome(result, result.reason);
   std::string text = result.name + ": ";
   text += result.solved && result.waypoints
               ? "solved, " + std::to_string(result.waypoints->cols()) + " waypoints"
               : "not solved, " + result.reason;
   text += "; " + result.planner + ", " + std::to_string(result.collision_checks) + " checks in " +
-          with_digits(result.planning_time_s, kTimeDigits) + " s of " +
-          with_digits(result.time_limit_s, 0) + " s";
+          duration_text(result.planning_time_s) + " of " + with_digits(result.time_limit_s, 0) +
+          " s";
   return text + "; " + guidance_text(result);
 }
 

@@ -5,6 +5,7 @@
 #include <iosfwd>
 #include <string>
 
+#include "client/guided/unplanned_problems.hpp"
 #include "proto/types/problem.hpp"
 
 namespace kinship::planner {
@@ -16,27 +17,26 @@ class Progress {
   Progress(std::ostream& stream, bool terminal, std::size_t total)
       : stream_(stream), terminal_(terminal), total_(total) {}
 
-  /// \param attempted  false: answered without planning.
+  /// \param attempted  false: the problem is none of this robot, or could not be read.
   void add(const ProblemResult& result, bool attempted);
 
-  /// Ends the line and writes the sums.
+  /// Ends the line and writes the first problems that could not be planned, and the sums, of those
+  /// that could, last.
   void finish();
 
-  /// Whether there were problems, and none of them could be planned at all.
-  bool nothing_attempted() const noexcept { return done_ > 0 && attempted() == 0; }
+  /// Whether there were problems, and none of them fits the robot.
+  bool nothing_attempted() const noexcept { return done_ > 0 && attempted_ == 0; }
 
  private:
-  std::size_t attempted() const noexcept { return guided_ + control_ + uniform_; }
-
   std::ostream& stream_;
   bool terminal_;
   std::size_t total_;
-  std::size_t done_ = 0;
-  std::size_t solved_ = 0;
-  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // attempts by arm
+  std::size_t done_ = 0, attempted_ = 0, solved_ = 0;
+  std::size_t guided_ = 0, control_ = 0, uniform_ = 0;  // searches by arm
   std::size_t gated_ = 0;                               // of the guided ones
-  std::uint64_t checks_ = 0;
-  double planning_time_s_ = 0;
+  UnplannedProblems unplanned_;
+  std::uint64_t checks_ = 0;    // of searches
+  double planning_time_s_ = 0;  // of searches
 };
 
 /// A result as one line for people, without line end: what came of it, what it cost, guided by what

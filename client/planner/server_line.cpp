@@ -5,6 +5,7 @@
 #include <ostream>
 #include <utility>
 
+#include "client/link/host_name.hpp"
 #include "client/link/robot_names.hpp"
 
 namespace kinship::planner {
@@ -40,6 +41,8 @@ ServerLine::ServerLine(const PlanOptions& options, RobotDescription description,
   client.has_outbox = options_.report;  // who only looks delivers nothing
   client.outbox = options_.outbox;
   client.timeout = options_.timeout;
+  if (const std::string why = link::why_unknown(options_.server); !why.empty())
+    messages_ << "--server '" << options_.server << "': " << why << '\n';  // it may be, later
   try {
     client_ = std::make_unique<link::Client>(client);
     register_robot();

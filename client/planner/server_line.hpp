@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "client/guided/guidance.hpp"
 #include "client/link/client.hpp"
-#include "client/planner/guidance.hpp"
 #include "client/planner/plan_options.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "proto/types/attempt.hpp"

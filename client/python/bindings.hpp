@@ -19,6 +19,7 @@ void bind_worlds(pybind11::module_& module);
 void bind_distributions(pybind11::module_& module);
 void bind_attempts(pybind11::module_& module);
 void bind_experience(pybind11::module_& module);
+void bind_planning(pybind11::module_& module);
 void bind_client(pybind11::module_& module);
 
 /// A robot as Python names it: itself, its digest (64 hexadecimal digits) or a label.

@@ -6,19 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include "client/link/admin_rows.hpp"
+#include "client/python/administration.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
 #include "client/python/client_handle.hpp"
 #include "client/python/errors.hpp"
 #include "client/python/follower_handle.hpp"
+#include "client/python/guidance_handle.hpp"
 #include "client/python/robot_names.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::python {
 namespace {
 
-using ClientClass = py::class_<ClientHandle>;
 using OutboxState = link::Client::OutboxState;
 
 /// What fetch and follow have in common, as Python says it.
@@ -49,16 +49,12 @@ FetchRequest request_of(const ClientHandle& client, const Wish& wish) {
   return request;
 }
 
-/// \throws the exception that stands for a reply without a distribution.
-std::shared_ptr<SampledDistribution> distribution_of(Result<FetchReply> fetched,
-                                                     const FetchRequest& request) {
-  FetchReply reply = std::move(fetched).value_or_throw();
+/// \throws the exception that stands for a reply with nothing to plan with.
+[[noreturn]] void raise_status(FetchStatus status, const FetchRequest& request,
+                               const std::string& message) {
   const std::string about = "task '" + request.task + "', robot " + request.robot.short_hex();
-  const std::string why = reply.message.empty() ? "" : ": " + reply.message;
-  switch (reply.status) {
-    case FetchStatus::Ready:
-      return std::make_shared<SampledDistribution>(
-          std::make_shared<const Distribution>(*std::move(reply.distribution)));
+  const std::string why = message.empty() ? "" : ": " + message;
+  switch (status) {
     case FetchStatus::Pending:
       raise_error("NotReady", about + ": still being made at the deadline" + why);
     case FetchStatus::Busy:
@@ -67,6 +63,7 @@ std::shared_ptr<SampledDistribution> distribution_of(Result<FetchReply> fetched,
       raise_error("NoExperience", about + ": no experience" + why);
     case FetchStatus::UnknownRobot:
       raise_error("UnknownRobot", about + ": the server does not know the robot" + why);
+    case FetchStatus::Ready:  // with what is of no use
     case FetchStatus::Failed:
       raise_error("FitFailed", about + ": failed" + why);
     case FetchStatus::Refused:
@@ -75,13 +72,61 @@ std::shared_ptr<SampledDistribution> distribution_of(Result<FetchReply> fetched,
   raise_error("Refused", about + ": refused" + why);
 }
 
+std::shared_ptr<SampledDistribution> distribution_of(Result<FetchReply> fetched,
+                                                     const FetchRequest& request) {
+  FetchReply reply = std::move(fetched).value_or_throw();
+  if (reply.status != FetchStatus::Ready)
+    raise_status(reply.status, request, reply.message);
+  return std::make_shared<SampledDistribution>(
+      std::make_shared<const Distribution>(*std::move(reply.distribution)));
+}
+
+/// How a planner is to be guided, as Python says it.
+struct GuidanceWish {
+  double deadline = 0;
+  std::string guide;
+  std::optional<double> share, control_share;
+  bool is_rehearsed = false;
+};
+
+std::shared_ptr<GuidanceHandle> guidance_of(const ClientHandle& client, const Robot& robot,
+                                            const FetchRequest& request, const GuidanceWish& wish) {
+  planner::GuidanceOptions wanted;
+  wanted.task = request.task;
+  wanted.robot = robot.digest();
+  wanted.dof = robot.chain().dof();
+  wanted.chain = robot.chain();
+  wanted.profile = request.profile;
+  wanted.selection = request.selection;
+  wanted.sampling = {.guided_fraction = wish.share, .control_fraction = wish.control_share};
+  if (!wish.guide.empty())
+    wanted.guide = parse_word<Guide>(wish.guide).value_or_throw();
+  wanted.rehearsed = wish.is_rehearsed;
+  wanted.wait = to_milliseconds(wish.deadline, "deadline");
+  FetchStatus status = FetchStatus::Ready;
+  const auto fetch = [&](const FetchRequest& asked) -> Result<FetchReply> {
+    FetchReply reply = client.fetch(asked).value_or_throw();
+    status = reply.status;
+    return reply;
+  };
+  planner::GuidanceAnswer answer = planner::fetch_guidance(fetch, wanted, request.T_task_base);
+  if (!answer.guidance)
+    raise_status(status, request, answer.message);
+  return std::make_shared<GuidanceHandle>(robot.digest(), std::move(answer));
+}
+
 RegisterReply register_robot(const ClientHandle& client, const Robot& robot) {
-  const std::shared_ptr<link::Client> line = client.line();
-  RegisterReply reply;
+  RobotDescription description;
   {
-    const py::gil_scoped_release unlocked;
-    reply = line->register_robot(robot.description_for_server()).value_or_throw();
+    const py::gil_scoped_release unlocked;  // solids are fitted around meshes
+    description = robot.description_for_server();
   }
+  const RegisterReply reply = client
+                                  .wait_for<Result<RegisterReply>>(
+                                      [description = std::move(description)](link::Client& line) {
+                                        return line.register_robot(description);
+                                      })
+                                  .value_or_throw();
   if (reply.status == RegisterStatus::Refused)
     raise_error("Refused", "robot '" + robot.description().label + "': " + reply.message);
   return reply;
@@ -101,9 +146,10 @@ std::vector<Receipt> deliver(const ClientHandle& client,
   attempts.reserve(named.size());
   for (const json::NamedAttempt& attempt : named)
     attempts.push_back(attempt_of(attempt));
-  const std::shared_ptr<link::Client> line = client.line();
-  const py::gil_scoped_release unlocked;
-  return line->deliver(std::move(attempts)).value_or_throw();
+  return client
+      .wait_for<Result<std::vector<Receipt>>>(
+          [attempts = std::move(attempts)](link::Client& line) { return line.deliver(attempts); })
+      .value_or_throw();
 }
 
 std::string receipt_word(const Receipt& receipt) {
@@ -122,23 +168,6 @@ std::string receipt_word(const Receipt& receipt) {
       break;
   }
   return "try_again";
-}
-
-/// The rows of a listing, as Python objects.
-py::list rows_of(const ClientHandle& client, AdminVerb verb) {
-  const std::shared_ptr<link::Client> line = client.line();
-  AdminRequest request;
-  request.verb = verb;
-  std::vector<std::string> rows;
-  {
-    const py::gil_scoped_release unlocked;
-    rows = link::rows_of(*line, request).value_or_throw();
-  }
-  const py::object loads = py::module_::import("json").attr("loads");
-  py::list documents;
-  for (const std::string& row : rows)
-    documents.append(loads(row));
-  return documents;
 }
 
 void bind_answers(py::module_& module) {
@@ -301,17 +330,33 @@ Raises NotReady, NoExperience, UnknownRobot, FitFailed, Refused or NoServer.)")
           "outlive the client.");
 }
 
-void bind_listings(ClientClass& client) {
-  client
-      .def(
-          "status", [](const ClientHandle& self) { return rows_of(self, AdminVerb::Status)[0]; },
-          "What the server says of itself, as `kinship status --json`.")
-      .def(
-          "robots", [](const ClientHandle& self) { return rows_of(self, AdminVerb::ListRobots); },
-          "The robots that the server knows, as `kinship robots list --json`.")
-      .def(
-          "tasks", [](const ClientHandle& self) { return rows_of(self, AdminVerb::ListTasks); },
-          "The tasks that it has experience of, as `kinship tasks list --json`.");
+void bind_guidance(ClientClass& client) {
+  client.def(
+      "guidance",
+      [](const ClientHandle& self, const std::string& task, const std::shared_ptr<Robot>& robot,
+         double deadline, const std::optional<Array>& T_task_base, const std::string& profile,
+         const std::vector<RobotName>& sources, const std::string& weighting, std::int64_t since_ms,
+         const std::string& guide, std::optional<double> share, std::optional<double> control_share,
+         bool rehearsed) {
+        const FetchRequest request =
+            request_of(self, {task, robot, T_task_base, profile, sources, weighting, since_ms});
+        return guidance_of(self, *robot, request,
+                           {deadline, guide, share, control_share, rehearsed});
+      },
+      py::arg("task"), py::arg("robot"), py::kw_only(), py::arg("deadline") = 30.0,
+      py::arg("T_task_base") = py::none(), py::arg("profile") = "default",
+      py::arg("sources") = std::vector<RobotName>(), py::arg("weighting") = "",
+      py::arg("since_ms") = 0, py::arg("guide") = "", py::arg("share") = py::none(),
+      py::arg("control_share") = py::none(), py::arg("rehearsed") = false,
+      R"(What kinship-plan would guide the robot with: distribution, stored ways, advice.
+
+As fetch() for what it shares with it; plan() takes what it returns. Raises as fetch().
+
+robot          a Robot: its chain follows the stored ways
+guide          what of them is used, e.g. 'retreat+ways'; empty: what the server found best
+share          of guided samples, 0 to 1; by default what the server advises
+control_share  of queries planned uniformly to compare; by default as the evidence says
+rehearsed      True: waits until the server knows which guide is best)");
 }
 
 }  // namespace
@@ -326,7 +371,8 @@ void bind_client(py::module_& module) {
   bind_life(client);
   bind_reports(client);
   bind_fetching(client);
-  bind_listings(client);
+  bind_guidance(client);
+  bind_administration(client);
 }
 
 }  // namespace kinship::python

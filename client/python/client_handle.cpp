@@ -17,12 +17,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kSlice = 500ms;  // so long a signal may have to wait
 
-/// Lets Python handle signals. \throws what the handler raises: KeyboardInterrupt.
-void hear_signals() {
-  if (PyErr_CheckSignals() != 0)
-    throw py::error_already_set();
-}
-
 milliseconds left_until(Clock::time_point deadline) {
   return std::max(0ms, std::chrono::duration_cast<milliseconds>(deadline - Clock::now()));
 }
@@ -54,9 +48,11 @@ std::shared_ptr<link::Client> ClientHandle::line() const {
 void ClientHandle::close() {
   std::shared_ptr<link::Client> client = std::move(client_);
   client_.reset();
+  auto abandoned = std::exchange(abandoned_, {});
   const py::gil_scoped_release unlocked;
   if (client)
     client->cancel();
+  abandoned.clear();  // waits for them, which does not take long now
   client.reset();
 }
 
@@ -106,9 +102,10 @@ Digest ClientHandle::find(const RobotName& robot) const {
   const auto& name = std::get<std::string>(robot);
   if (const auto digest = Digest::from_hex(name))
     return *digest;
-  const std::shared_ptr<link::Client> client = line();
-  const py::gil_scoped_release unlocked;
-  return link::find_robot(*client, name).value_or_throw().robot;
+  return wait_for<Result<RobotSummary>>(
+             [name](link::Client& client) { return link::find_robot(client, name); })
+      .value_or_throw()
+      .robot;
 }
 
 std::shared_ptr<const Distribution> wait_for_newer(const link::Follower& follower,

@@ -1,12 +1,16 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
+#include <functional>
+#include <future>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/link/client.hpp"
 #include "client/python/bindings.hpp"
+#include "client/python/waiting.hpp"
 
 namespace kinship::python {
 
@@ -30,12 +34,29 @@ class ClientHandle {
   Result<FetchReply> fetch(FetchRequest request) const;
   link::Client::OutboxState flush(std::chrono::milliseconds deadline) const;
 
+  /// What a call brings that cannot be taken in slices. One that a signal ends goes on by itself
+  /// until it has its answer or its time has passed, and nobody hears what came of it.
+  /// \param call  made on another thread: has values of its own, and nothing of Python.
+  template <typename Reply>
+  Reply wait_for(std::function<Reply(link::Client&)> call) const {
+    const auto reply = std::make_shared<std::future<Reply>>(std::async(
+        std::launch::async, [client = line(), call = std::move(call)] { return call(*client); }));
+    abandoned_.push_back(reply);  // until it is known that it was not
+    wait_until([&](std::chrono::milliseconds slice) {
+      return reply->wait_for(slice) == std::future_status::ready;
+    });
+    std::erase(abandoned_, reply);
+    return reply->get();
+  }
+
   /// The robot that is meant: a label is looked up at the server.
   /// \throws Failure as link::find_robot says.
   Digest find(const RobotName& robot) const;
 
  private:
   std::shared_ptr<link::Client> client_;  // null: closed
+  /// Calls that are waited for, or were until a signal came; an end of them waits for its call.
+  mutable std::vector<std::shared_ptr<void>> abandoned_;
 };
 
 /// Waits for newer than what is held, as link::Follower, in slices too.

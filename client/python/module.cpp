@@ -1,5 +1,6 @@
 #include <pybind11/pybind11.h>
 
+#include "client/python/administration.hpp"
 #include "client/python/bindings.hpp"
 #include "client/python/errors.hpp"
 
@@ -13,5 +14,7 @@ PYBIND11_MODULE(_kinship, module) {
   bind_distributions(module);
   bind_attempts(module);
   bind_experience(module);
+  bind_planning(module);
+  bind_events(module);
   bind_client(module);
 }

@@ -72,13 +72,13 @@ Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std:
   return solver_.solve(T_base_tip, options).configurations;
 }
 
-collision::RobotSolids Robot::solids() const {
+std::shared_ptr<const planner::PlannedRobot> Robot::planned() const {
   if (!shapes_)
     throw Failure(shapes_.error());
   const std::scoped_lock lock(mutex_);
-  if (!solids_)
-    solids_.emplace(chain_, *shapes_);
-  return *solids_;
+  if (!planned_)
+    planned_ = std::make_shared<const planner::PlannedRobot>(chain_, *shapes_);
+  return planned_;
 }
 
 RobotDescription Robot::description_for_server() const {

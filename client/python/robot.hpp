@@ -3,14 +3,13 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "client/guided/plan_problem.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
-#include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -48,9 +47,9 @@ class Robot {
   Eigen::MatrixXd inverse(const Eigen::Isometry3d& T_base_frame, const std::string& frame,
                           const inverse::InverseOptions& options) const;
 
-  /// What all its worlds share, made when it is first asked for.
+  /// What planning and all its worlds share, made when it is first asked for.
   /// \throws Failure if its collision geometry is not known.
-  collision::RobotSolids solids() const;
+  std::shared_ptr<const planner::PlannedRobot> planned() const;
 
   /// The description with solids around its meshes, if it has any that are known.
   RobotDescription description_for_server() const;
@@ -62,7 +61,7 @@ class Robot {
   Result<geometry::RobotShapes> shapes_;
   inverse::Solver solver_;
   mutable std::mutex mutex_;  // guards what follows
-  mutable std::optional<collision::RobotSolids> solids_;
+  mutable std::shared_ptr<const planner::PlannedRobot> planned_;
 };
 
 }  // namespace kinship::python

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace kinship::python {
 namespace {
 
 using Packages = std::map<std::string, std::string>;
+using NamePairs = std::vector<std::pair<std::string, std::string>>;
 
 models::PackageFolders folders_of(const Packages& packages) {
   return {packages.begin(), packages.end()};
@@ -67,8 +69,64 @@ std::vector<Problem> read_problems(const std::filesystem::path& file, const Pack
   return problems;
 }
 
+/// Goals of a problem, as Python says them: configurations, or where the hand is to get.
+struct Goals {
+  std::optional<Array> configurations, pose;
+};
+
+Problem make_problem(const std::string& name, const Array& start, const Goals& goals,
+                     const std::optional<Array>& T_task_base) {
+  if (start.ndim() != 1)
+    throw std::invalid_argument("start: must be one configuration");
+  if (goals.configurations.has_value() == goals.pose.has_value())
+    throw std::invalid_argument("Problem: give goal or goal_pose, one of the two");
+  Problem problem;
+  problem.name = name;
+  problem.start = Eigen::Map<const Eigen::VectorXd>(start.data(), start.size());
+  problem.goal_configurations.resize(start.size(), 0);
+  if (goals.configurations)
+    problem.goal_configurations =
+        read_configurations(*goals.configurations, start.size(), "goal").columns;
+  if (!problem.start.allFinite() || !problem.goal_configurations.allFinite())
+    throw std::invalid_argument("Problem '" + name + "': start and goal must be finite");
+  problem.T_task_goal = read_pose(goals.pose, "goal_pose");
+  problem.T_task_base = read_pose(T_task_base, "T_task_base");
+  return problem;
+}
+
 void bind_problem(py::module_& module) {
-  py::class_<Problem>(module, "Problem", "A planning problem, a line of a problem file.")
+  py::class_<Problem>(module, "Problem", R"(A planning problem, a line of a problem file.
+
+>>> problem = kinship.Problem("over", [0.0, 0.5], [[1.0, 0.5], [1.0, -0.5]], seed=3)
+>>> problem.goal_configurations.shape
+(2, 2)
+>>> kinship.Problem.from_json(problem.to_json()).start
+array([0. , 0.5]))")
+      .def(
+          py::init([](const std::string& name, const Array& start, const std::optional<Array>& goal,
+                      const std::optional<Array>& goal_pose, const Scene& scene,
+                      const std::optional<Array>& T_task_base, const NamePairs& allowed_collisions,
+                      double time_limit_s, std::uint64_t seed) {
+            Problem problem = make_problem(name, start, {goal, goal_pose}, T_task_base);
+            problem.scene = scene;
+            problem.allowed_collisions = allowed_collisions;
+            problem.time_limit_s = time_limit_s;
+            problem.seed = seed;
+            return problem;
+          }),
+          py::arg("name"), py::arg("start"), py::arg("goal") = py::none(), py::kw_only(),
+          py::arg("goal_pose") = py::none(), py::arg("scene") = Scene(),
+          py::arg("T_task_base") = py::none(), py::arg("allowed_collisions") = NamePairs(),
+          py::arg("time_limit_s") = Problem{}.time_limit_s, py::arg("seed") = 0,
+          R"(A query of one robot.
+
+start               (dof,)
+goal                (dof,), or (n, dof): any of them
+goal_pose           instead of goal, where the transfer frame is to get in the task's frame
+scene               what is around the robot
+T_task_base         where its base stands in the task's frame
+allowed_collisions  pairs of names, of links or obstacles, that may touch
+time_limit_s        of wall-clock time)")
       .def_static(
           "from_json",
           [](const std::string& text) {
@@ -84,7 +142,11 @@ void bind_problem(py::module_& module) {
           "The line of a problem file.")
       .def_readonly("name", &Problem::name, "What messages call it.")
       .def_property_readonly(
-          "start", [](const Problem& self) { return to_vector(self.start); }, "(dof,)")
+          "start", [](const Problem& self) { return to_vector(self.start); },
+          "(dof,); (0,) if a pose is given.")
+      .def_property_readonly(
+          "T_task_start", [](const Problem& self) { return to_matrix(self.T_task_start); },
+          "Where the transfer frame begins: (4, 4), or None if a configuration is given.")
       .def_property_readonly(
           "goal_configurations",
           [](const Problem& self) { return to_rows(self.goal_configurations); },
@@ -106,7 +168,12 @@ void bind_scenes(py::module_& module) {
   const Array identity = to_matrix(Eigen::Isometry3d::Identity());
   const std::vector<double> ones = {1, 1, 1};
   py::class_<Scene>(module, "Scene",
-                    "Obstacles in the task's frame. Poses are those of centres: (4, 4), or (7,).")
+                    R"(Obstacles in the task's frame. Poses are those of centres: (4, 4), or (7,).
+
+>>> scene = kinship.Scene()
+>>> scene.add_box("table", [0.6, 0, -0.05, 0, 0, 0, 1], [0.8, 1.2, 0.1])
+>>> len(scene)
+1)")
       .def(py::init<>(), "An empty scene.")
       .def(
           "add_box",

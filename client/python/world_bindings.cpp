@@ -13,13 +13,13 @@
 namespace kinship::python {
 namespace {
 
-using NamePairs = std::vector<std::pair<std::string, std::string>>;
+using AllowedPairs = std::vector<std::pair<std::string, std::string>>;
 
 /// A collision world that threads may share: one asks at a time.
 class World {
  public:
   World(const std::shared_ptr<Robot>& robot, const collision::Surroundings& surroundings)
-      : robot_(robot), world_(robot->solids(), surroundings) {}
+      : robot_(robot), world_(robot->planned()->solids, surroundings) {}
 
   const Robot& robot() const noexcept { return *robot_; }
 
@@ -92,7 +92,7 @@ void bind_worlds(py::module_& module) {
                     "A robot among obstacles that says which configurations are free. Threads may "
                     "share it, and ask one after the other.")
       .def(py::init([](const std::shared_ptr<Robot>& robot, const Scene& scene,
-                       const std::optional<Array>& T_task_base, const NamePairs& allowed) {
+                       const std::optional<Array>& T_task_base, const AllowedPairs& allowed) {
              collision::Surroundings surroundings;
              surroundings.scene = scene;
              surroundings.allowed_collisions = allowed;
@@ -102,7 +102,7 @@ void bind_worlds(py::module_& module) {
              return std::make_unique<World>(robot, surroundings);
            }),
            py::arg("robot"), py::arg("scene") = Scene(), py::kw_only(),
-           py::arg("T_task_base") = py::none(), py::arg("allowed_collisions") = NamePairs(),
+           py::arg("T_task_base") = py::none(), py::arg("allowed_collisions") = AllowedPairs(),
            R"(Puts a robot into a scene.
 
 T_task_base         where its base stands in the task's frame; by default at its origin

@@ -70,6 +70,8 @@ class Replier<Conversation>::Implementation {
     loop.attach(line_->reader(), [this] { return serve_some(); });
   }
 
+  std::size_t clients() const { return line_->clients(); }
+
  private:
   using WireRequest = typename Wire<Conversation>::Request;
   using Decoded = Result<typename Conversation::Request>;
@@ -144,6 +146,11 @@ Replier<Conversation>::Replier(const Participant& participant, WaitLoop& loop, H
 
 template <typename Conversation>
 Replier<Conversation>::~Replier() = default;
+
+template <typename Conversation>
+std::size_t Replier<Conversation>::clients() const {
+  return implementation_->clients();
+}
 
 template class Answer<codec::RegisterConversation>;
 template class Answer<codec::ReportConversation>;

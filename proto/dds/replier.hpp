@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 
@@ -45,6 +46,8 @@ class Replier {
   ~Replier();
   Replier(const Replier&) = delete;
   Replier& operator=(const Replier&) = delete;
+
+  std::size_t clients() const;  ///< that could send a request now. Callable from any thread
 
  private:
   class Implementation;

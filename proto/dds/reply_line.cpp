@@ -25,6 +25,11 @@ ReplyLine::ReplyLine(const Participant& participant, const Topics& topics)
   }
 }
 
+std::size_t ReplyLine::clients() const {
+  const dds_return_t matched = dds_get_matched_publications(reader_.get(), nullptr, 0);
+  return matched > 0 ? static_cast<std::size_t>(matched) : 0;
+}
+
 bool ReplyLine::begin(const codec::Head& head) {
   const std::lock_guard lock(mutex_);
   return being_answered_.insert(head).second;

@@ -22,6 +22,8 @@ class ReplyLine {
   bool begin(const codec::Head& head);  ///< false: it is being answered already
   void end(const codec::Head& head);
 
+  std::size_t clients() const;  ///< whose requests would reach it now
+
   /// \param reply  the message, with `head` in it.
   void send(const codec::Head& head, const void* reply) const noexcept;
 

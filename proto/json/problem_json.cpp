@@ -12,6 +12,17 @@ namespace {
 constexpr std::size_t kMaxAttached = 64;
 constexpr double kMaxTimeLimit = 86400;  // s
 
+void read_start(const Reader& reader, Problem& problem) {
+  if (reader.is_object()) {
+    reader.allow_only({"pose"});
+    problem.T_task_start = reader.at("pose").pose();
+    return;
+  }
+  problem.start = reader.vector(kMaxDof);
+  if (problem.start.size() == 0)
+    reader.refuse("is empty");
+}
+
 void read_goal(const Reader& reader, Problem& problem) {
   reader.allow_only({"configurations", "pose"});
   const auto configurations = reader.find("configurations");
@@ -25,7 +36,7 @@ void read_goal(const Reader& reader, Problem& problem) {
   problem.goal_configurations = configurations->columns(kMaxDof, kMaxWaypoints);
   if (problem.goal_configurations.cols() == 0)
     configurations->refuse("is empty");
-  if (problem.goal_configurations.rows() != problem.start.size())
+  if (!problem.T_task_start && problem.goal_configurations.rows() != problem.start.size())
     configurations->refuse(std::to_string(problem.goal_configurations.rows()) +
                            " joints, start has " + std::to_string(problem.start.size()));
 }
@@ -37,9 +48,7 @@ Problem read_problem(const Reader& reader) {
   problem.name = reader.at("name").text(kMaxTaskBytes);
   if (const auto placement = reader.find("T_task_base"))
     problem.T_task_base = placement->pose();
-  problem.start = reader.at("start").vector(kMaxDof);
-  if (problem.start.size() == 0)
-    reader.at("start").refuse("is empty");
+  read_start(reader.at("start"), problem);
   read_goal(reader.at("goal"), problem);
   if (const auto scene = reader.find("scene"))
     problem.scene = read_scene(*scene);
@@ -85,11 +94,14 @@ constexpr std::tuple kReasons{
           &ProblemResult::guidance_reason,
           {.limit = kMaxMessageBytes, .may_be_missing = true}},
     Field{"planner", &ProblemResult::planner, {.limit = kMaxPlannerBytes, .may_be_missing = true}},
-    Field{"reason", &ProblemResult::reason, {.limit = kMaxMessageBytes, .may_be_missing = true}}};
+    Field{"reason", &ProblemResult::reason, {.limit = kMaxMessageBytes, .may_be_missing = true}},
+    Field{"not_planned", &ProblemResult::not_planned, {.may_be_missing = true}}};
 
 ProblemResult read_problem_result(const Reader& reader) {
   ProblemResult result;
   read_members(reader, kEffort, result);
+  if (const auto start = reader.find("start"))
+    result.start = start->vector(kMaxDof);
   if (const auto waypoints = reader.find("waypoints"))
     result.waypoints = waypoints->columns(kMaxDof, kMaxWaypoints);
   if (const auto guidance = reader.find("guidance")) {
@@ -108,7 +120,10 @@ std::string to_json(const Problem& problem) {
   OrderedJson object;
   object["name"] = problem.name;
   object["T_task_base"] = pose_or_null(problem.T_task_base);
-  object["start"] = list(problem.start);
+  if (problem.T_task_start)
+    object["start"]["pose"] = pose_list(*problem.T_task_start);
+  else
+    object["start"] = list(problem.start);
   if (problem.T_task_goal)
     object["goal"]["pose"] = pose_list(*problem.T_task_goal);
   else
@@ -133,6 +148,7 @@ Result<Problem> problem_from_json(std::string_view text) {
 std::string to_json(const ProblemResult& result) {
   OrderedJson object;
   add_members(result, kEffort, object);
+  object["start"] = result.start ? list(*result.start) : OrderedJson(nullptr);
   object["waypoints"] =
       result.waypoints ? list_of_columns(*result.waypoints) : OrderedJson(nullptr);
   object["guidance"] = nullptr;

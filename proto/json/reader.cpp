@@ -140,6 +140,8 @@ std::vector<Reader> Reader::elements(std::size_t max_count) const {
 
 bool Reader::is_null() const { return value_->is_null(); }
 
+bool Reader::is_object() const { return value_->is_object(); }
+
 bool Reader::boolean() const {
   if (!value_->is_boolean())
     refuse(std::string("must be true or false, is ") + value_->type_name());

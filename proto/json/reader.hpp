@@ -44,6 +44,7 @@ class Reader {
   std::vector<Reader> elements(std::size_t max_count) const;  ///< of an array
 
   bool is_null() const;
+  bool is_object() const;
   bool boolean() const;
   double number(double lowest = std::numeric_limits<double>::lowest(),
                 double highest = std::numeric_limits<double>::max()) const;  ///< always finite

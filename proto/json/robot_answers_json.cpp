@@ -60,6 +60,10 @@ std::string to_json(const RobotCheck& check) {
   return write(document);
 }
 
+std::string to_json(const RobotLinks& links) { return write_fields(links); }
+std::string to_json(const RobotFrames& frames) { return write_fields(frames); }
+std::string to_json(const SrdfSuggestion& suggestion) { return write_fields(suggestion); }
+
 std::string to_json(const RegisterReply& reply, const std::string& label) {
   OrderedJson document;
   document["robot"] = reply.robot.hex();

@@ -8,9 +8,10 @@
 #include "proto/types/pose.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/robot_check.hpp"
+#include "proto/types/robot_links.hpp"
 #include "proto/types/transferability.hpp"
 
-/// What `robots register`, `check`, `fk`, `ik` and `compare` print and read.
+/// What `robots register`, `check`, `fk`, `ik`, `links`, `frames` and `compare` print and read.
 namespace kinship::json {
 
 std::string to_json(const InverseAnswer& answer);  ///< reason null if there are solutions
@@ -20,6 +21,10 @@ std::string to_json(const ForwardAnswer& answer);
 
 /// `robots compare`: {"task": ..., "rows": [...]}, a pair a row; worth null where it is not known.
 std::string to_json(const std::string& task, const std::vector<Transferability>& pairs);
+
+std::string to_json(const RobotLinks& links);
+std::string to_json(const RobotFrames& frames);
+std::string to_json(const SrdfSuggestion& suggestion);
 
 /// `robots register`.
 std::string to_json(const RegisterReply& reply, const std::string& label);

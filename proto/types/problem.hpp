@@ -10,6 +10,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
+#include "proto/types/not_planned.hpp"
 #include "proto/types/rehearsal.hpp"
 #include "proto/types/scene.hpp"
 #include "proto/types/task_space_region.hpp"
@@ -19,10 +20,11 @@ namespace kinship {
 /// One planning problem for kinship-plan (a line of a problem file).
 struct Problem {
   std::string name;
-  std::optional<Eigen::Isometry3d> T_task_base;  ///< missing: used as identity, told as missing
-  Eigen::VectorXd start;                         ///< dof, joint units
-  Eigen::MatrixXd goal_configurations;           ///< dof x n; empty if a pose is given
-  std::optional<Eigen::Isometry3d> T_task_goal;  ///< of the transfer frame
+  std::optional<Eigen::Isometry3d> T_task_base;   ///< missing: used as identity, told as missing
+  Eigen::VectorXd start;                          ///< dof, joint units; empty if a pose is given
+  std::optional<Eigen::Isometry3d> T_task_start;  ///< of the transfer frame
+  Eigen::MatrixXd goal_configurations;            ///< dof x n; empty if a pose is given
+  std::optional<Eigen::Isometry3d> T_task_goal;   ///< of the transfer frame
   Scene scene;
   std::vector<AttachedObject> attached;
   std::vector<std::pair<std::string, std::string>> allowed_collisions;
@@ -36,13 +38,15 @@ struct ProblemResult {
   std::string name;
   bool solved = false;
   std::uint64_t collision_checks = 0;  ///< of planning
-  std::uint64_t goal_checks = 0;       ///< of goal configurations, before planning
-  std::uint64_t shortcut_checks = 0;   ///< of shortening the path, after planning
+  std::uint64_t goal_checks = 0;  ///< of configurations of a start or goal pose, before planning
+  std::uint64_t shortcut_checks = 0;  ///< of shortening the path, after planning
   std::uint64_t projections = 0;
   double planning_time_s = 0;  ///< without goal configurations and shortcutting
   double time_limit_s = 0;
-  std::optional<Eigen::MatrixXd> waypoints;  ///< dof x n
-  std::optional<Digest> distribution_id;     ///< present if there was guidance, used or not
+  std::optional<Eigen::VectorXd> start = {};   ///< dof: where planning began; missing: nowhere
+  std::optional<NotPlanned> not_planned = {};  ///< why no search was begun; missing: one was
+  std::optional<Eigen::MatrixXd> waypoints;    ///< dof x n
+  std::optional<Digest> distribution_id;       ///< present if there was guidance, used or not
   std::uint64_t distribution_revision = 0;
   SamplingMode sampling_mode =
       SamplingMode::Uniform;              ///< with guidance: Guided, Control, or Uniform by wish

@@ -7,12 +7,14 @@
 #include <tuple>
 #include <vector>
 
+#include "proto/types/advice.hpp"
 #include "proto/types/attempt.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/field.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/rehearsal.hpp"
+#include "proto/types/selection.hpp"
 #include "proto/types/uuid.hpp"
 
 /// The rows that admin verbs list: what the store knows, without waypoints and mixtures.
@@ -52,6 +54,8 @@ struct TaskRobotSummary {
   std::uint64_t attempts = 0;
   std::uint64_t generation = 0;
   std::uint64_t dropped = 0;  ///< paths that were beyond the cap
+  /// What guided and control attempts cost, all of them; missing: none, or an older server.
+  std::optional<ModeEvidence> guided = {}, control = {};
 };
 
 template <>
@@ -61,7 +65,9 @@ inline constexpr std::tuple kFieldsOf<TaskRobotSummary>{
     Field{"paths", &TaskRobotSummary::paths},
     Field{"attempts", &TaskRobotSummary::attempts},
     Field{"generation", &TaskRobotSummary::generation},
-    Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}}};
+    Field{"dropped", &TaskRobotSummary::dropped, {.may_be_missing = true}},
+    Field{"guided", &TaskRobotSummary::guided},
+    Field{"control", &TaskRobotSummary::control}};
 
 struct TaskSummary {
   std::string task;
@@ -143,6 +149,8 @@ struct DistributionSummary {
   std::uint64_t paths = 0;
   std::int64_t fitted_ms = 0;
   bool retired = false;  ///< made of paths that were retired since: it is not served any more
+  std::optional<Eigen::Isometry3d> T_task_base = {};  ///< snapped; missing also from older servers
+  Selection selection = {};                           ///< as in Distribution
 };
 
 template <>
@@ -159,7 +167,9 @@ inline constexpr std::tuple kFieldsOf<DistributionSummary>{
     Field{"configurations", &DistributionSummary::configurations},
     Field{"paths", &DistributionSummary::paths},
     Field{"fitted_ms", &DistributionSummary::fitted_ms},
-    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}}};
+    Field{"retired", &DistributionSummary::retired, {.may_be_missing = true}},
+    Field{"T_task_base", &DistributionSummary::T_task_base},
+    Field{"selection", &DistributionSummary::selection, {.may_be_missing = true}}};
 
 /// What is kept of a distribution, and how it stands to the experience of now.
 struct Explanation {
@@ -193,6 +203,25 @@ template <>
 inline constexpr std::tuple kFieldsOf<Retirement>{
     Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
     Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
+
+/// A robot that was taken out, and what went with it.
+struct RobotRemoval {
+  Digest robot;
+  std::string label;                ///< that it had; another robot may have it now
+  std::uint64_t paths = 0;          ///< retired now
+  std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
+  std::uint64_t distributions = 0;  ///< for it, which are gone
+  bool is_deleted = false;          ///< it had no attempts: nothing is left of it
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<RobotRemoval>{
+    Field{"robot", &RobotRemoval::robot},
+    Field{"label", &RobotRemoval::label, {.limit = kMaxLabelBytes}},
+    Field{"paths", &RobotRemoval::paths},
+    Field{"attempts", &RobotRemoval::attempts},
+    Field{"distributions", &RobotRemoval::distributions},
+    Field{"is_deleted", &RobotRemoval::is_deleted}};
 
 enum class JobState { Queued, Running, Done, Failed, Cancelled };
 

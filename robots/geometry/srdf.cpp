@@ -57,4 +57,22 @@ Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_v
   return pairs;
 }
 
+std::string write_srdf(const std::string& robot, const std::vector<SrdfPair>& pairs,
+                       const std::string& comment) {
+  tinyxml2::XMLPrinter printer;
+  printer.PushHeader(false, true);
+  printer.PushComment((" " + comment + " ").c_str());
+  printer.OpenElement("robot");
+  printer.PushAttribute("name", robot.c_str());
+  for (const SrdfPair& pair : pairs) {
+    printer.OpenElement("disable_collisions");
+    printer.PushAttribute("link1", pair.link_a.c_str());
+    printer.PushAttribute("link2", pair.link_b.c_str());
+    printer.PushAttribute("reason", pair.reason.c_str());
+    printer.CloseElement();
+  }
+  printer.CloseElement();
+  return std::string(printer.CStr()) + "\n";
+}
+
 }  // namespace kinship::geometry

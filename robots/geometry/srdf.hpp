@@ -24,4 +24,15 @@ inline constexpr std::size_t kMaxSrdfBytes = 1'000'000;
 Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_view text,
                                                                    const kinematics::Chain& chain);
 
+/// Two links that an SRDF excepts, and why in a word, as MoveIt has it: Adjacent, Always, Default,
+/// Never, User.
+struct SrdfPair {
+  std::string link_a, link_b, reason;
+};
+
+/// An SRDF that says nothing but which pairs are excepted.
+/// \param comment  what made it; free of "--".
+std::string write_srdf(const std::string& robot, const std::vector<SrdfPair>& pairs,
+                       const std::string& comment);
+
 }  // namespace kinship::geometry

@@ -11,6 +11,7 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/nearest_name.hpp"
 #include "proto/types/number_text.hpp"
 #include "robots/kinematics/joint_motion.hpp"
 #include "robots/kinematics/urdf_model.hpp"
@@ -90,15 +91,33 @@ Joint read_joint(const urdf::Joint& source) {
   return joint;
 }
 
+/// With the link that is nearest to a misspelt one, or some of those that there are.
+Failure unknown_link(const std::string& what, const std::string& name,
+                     const urdf::ModelInterface& model) {
+  constexpr std::size_t kShown = 6;
+  std::vector<std::string> links;
+  for (const auto& [link, value] : model.links_)
+    links.push_back(link);
+  std::string advice = suggestion(name, links);
+  if (advice.empty()) {
+    advice = " (it has ";
+    for (std::size_t i = 0; i < std::min(kShown, links.size()); ++i)
+      advice += (i == 0 ? "'" : ", '") + links[i] + "'";
+    advice +=
+        links.size() > kShown ? " and " + std::to_string(links.size() - kShown) + " more)" : ")";
+  }
+  return refused(cut_text(what + name + "': not in the URDF" + advice, kMaxMessageBytes));
+}
+
 /// The joints from base link to tip link, fixed ones too.
 std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface& model,
                                                       const std::string& base,
                                                       const std::string& tip) {
   if (model.getLink(base) == nullptr)
-    throw refused("base link '" + base + "': not in the URDF");
+    throw unknown_link("base link '", base, model);
   urdf::LinkConstSharedPtr link = model.getLink(tip);
   if (link == nullptr)
-    throw refused("tip link '" + tip + "': not in the URDF");
+    throw unknown_link("tip link '", tip, model);
   std::vector<urdf::JointConstSharedPtr> joints;
   while (link->name != base) {
     if (link->parent_joint == nullptr)
@@ -108,6 +127,13 @@ std::vector<urdf::JointConstSharedPtr> joints_between(const urdf::ModelInterface
   }
   std::reverse(joints.begin(), joints.end());
   return joints;
+}
+
+std::set<std::string> names_of(const std::vector<urdf::JointConstSharedPtr>& joints) {
+  std::set<std::string> names;
+  for (const auto& joint : joints)
+    names.insert(joint->name);
+  return names;
 }
 
 void check_on_chain(const urdf::Joint& joint) {
@@ -144,6 +170,15 @@ class HeldJoints {
     if (has_one_value(joint))
       move(read_joint(joint), value_of(joint, model_.joints_.size()), T);
     return T;
+  }
+
+  /// Of all joints off the chain that have one value.
+  std::map<std::string, double> values() const {
+    std::map<std::string, double> values;
+    for (const auto& [name, joint] : model_.joints_)
+      if (has_one_value(*joint) && !on_chain_.contains(name))
+        values.emplace(name, value_of(*joint, model_.joints_.size()));
+    return values;
   }
 
  private:
@@ -269,9 +304,7 @@ ChainParts read_parts(const RobotDescription& description) {
   parts.T_tip_transfer = description.T_tip_transfer;
   parts.task_axes = description.task_axes;
   const auto joints = joints_between(*model, description.base_link, description.tip_link);
-  std::set<std::string> on_chain;
-  for (const auto& joint : joints)
-    on_chain.insert(joint->name);
+  const std::set<std::string> on_chain = names_of(joints);
   const HeldJoints held(*model, description.held_joints, on_chain);
   TreeWalk(held, joints, parts).walk(*model);
   if (const auto fault = find_fault(parts))
@@ -280,6 +313,18 @@ ChainParts read_parts(const RobotDescription& description) {
 }
 
 }  // namespace
+
+Result<std::map<std::string, double>> held_values(const RobotDescription& description) {
+  try {
+    check_description(description);
+    const UrdfModel model = parse_urdf(description.urdf).value_or_throw();
+    const std::set<std::string> on_chain =
+        names_of(joints_between(*model, description.base_link, description.tip_link));
+    return HeldJoints(*model, description.held_joints, on_chain).values();
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
+}
 
 Result<Chain> read_chain(const RobotDescription& description) {
   try {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -11,5 +14,9 @@ namespace kinship::kinematics {
 /// clamped into their limits, or at `held_joints`; the stricter of hard and soft limits holds.
 /// \return the chain, or InvalidInput or TooLarge with the link, joint, value and limit named.
 Result<Chain> read_chain(const RobotDescription& description);
+
+/// Where the joints of a description stand that are not on its chain: those with one value, by
+/// name, joint units. \return what read_chain() says.
+Result<std::map<std::string, double>> held_values(const RobotDescription& description);
 
 }  // namespace kinship::kinematics

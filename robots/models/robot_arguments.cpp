@@ -11,10 +11,10 @@
 #include "proto/types/pose.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/kinematics/urdf.hpp"
-#include "robots/kinematics/urdf_model.hpp"
 #include "robots/models/mesh_files.hpp"
 #include "robots/models/model_folder.hpp"
 #include "robots/models/text_file.hpp"
+#include "robots/models/xacro.hpp"
 
 namespace kinship::models {
 namespace {
@@ -45,10 +45,8 @@ std::optional<double> parse_number(std::string_view text) {
 RobotDescription read_urdf_file(const std::filesystem::path& file) {
   RobotDescription description;
   description.urdf = read_text(file, kMaxUrdfBytes);
-  if (description.urdf.find("<xacro:") != std::string::npos &&
-      !kinematics::parse_urdf(description.urdf))
-    throw Failure(ErrorCode::InvalidInput,
-                  "'" + file.string() + "' is a xacro file: expand it into a URDF first");
+  if (const auto error = check_expanded(file, description.urdf, ".urdf"))
+    throw Failure(*error);
   description.label = file.stem().string();
   return description;
 }
@@ -83,10 +81,17 @@ void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& d
 /// \throws Failure with what is wrong.
 void add_pairs(const std::filesystem::path& srdf, RobotDescription& description) {
   const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
+  if (const auto error = check_expanded(srdf, text, ".srdf"))
+    throw Failure(*error);
   const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   const auto pairs = geometry::read_srdf(text, chain);
   if (!pairs)
     throw Failure(pairs.error().code, srdf.string() + ": " + pairs.error().message);
+  if (pairs->empty())
+    throw Failure(ErrorCode::InvalidInput,
+                  srdf.string() +
+                      ": has no disable_collisions element, so it says nothing of this robot; "
+                      "'kinship robots suggest-srdf' makes one that does");
   auto& all = description.never_colliding;
   all.insert(all.end(), pairs->begin(), pairs->end());
   if (all.size() > kMaxCollisionPairs)
@@ -105,7 +110,9 @@ RobotDescription put_together(const RobotArguments& arguments) {
     throw Failure(
         ErrorCode::InvalidInput,
         "'" + arguments.source.string() +
-            "' is a URDF file: needs --base LINK and --tip LINK (or give a model folder)");
+            "' is a URDF file: needs --base LINK and --tip LINK (or give a model folder); "
+            "'kinship robots links " +
+            arguments.source.string() + "' shows its links and which could be these");
   if (!arguments.base_link.empty())
     description.base_link = arguments.base_link;
   if (!arguments.tip_link.empty())
@@ -140,6 +147,11 @@ Result<Eigen::Isometry3d> parse_pose(std::string_view text) {
     pose[i] = *value;
   }
   return from_pose_array(pose);
+}
+
+bool says_transfer(const RobotArguments& arguments) {
+  std::error_code unreadable;
+  return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
 }
 
 Result<RobotDescription> describe_robot(const RobotArguments& arguments) {

@@ -30,6 +30,10 @@ struct RobotArguments {
 /// \return InvalidInput, NotFound or TooLarge with the argument or file named.
 Result<RobotDescription> describe_robot(const RobotArguments& arguments);
 
+/// Whether it is said where the transfer frame lies: by `transfer`, or by a model folder, whose
+/// chain.toml must say it. Otherwise it is the tip link's.
+bool says_transfer(const RobotArguments& arguments);
+
 /// "x y z qx qy qz qw" (spaces or commas) as a pose.
 Result<Eigen::Isometry3d> parse_pose(std::string_view text);
 

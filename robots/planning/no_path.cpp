@@ -8,6 +8,12 @@ std::string_view describe(NoPath reason) {
       break;
     case NoPath::NoGoal:
       return "no goal";
+    case NoPath::StartOutOfReach:
+      return "start out of reach";
+    case NoPath::StartBeyondLimits:
+      return "start only reached outside the joint limits";
+    case NoPath::StartNotFound:
+      return "no inverse kinematics solution of the start found";
     case NoPath::GoalOutOfReach:
       return "goal out of reach";
     case NoPath::GoalBeyondLimits:

@@ -8,6 +8,9 @@ namespace kinship::planning {
 enum class NoPath {
   None,  ///< it has one
   NoGoal,
+  StartOutOfReach,    ///< a start pose, as inverse kinematics says
+  StartBeyondLimits,  ///< a start pose reached only outside the joint limits
+  StartNotFound,      ///< a start pose of which no configuration was found
   GoalOutOfReach,     ///< a goal pose, as inverse kinematics says
   GoalBeyondLimits,   ///< a goal pose reached only outside the joint limits
   GoalNotFound,       ///< a goal pose of which no configuration was found

@@ -1,5 +1,6 @@
 #include "server/app/endpoints.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,6 +68,11 @@ class Endpoints::Implementation {
               administer(service, request, answer);
             }) {}
 
+  /// A client joins the conversations that it needs.
+  std::size_t clients() const {
+    return std::max({register_.clients(), report_.clients(), fetch_.clients(), admin_.clients()});
+  }
+
  private:
   dds::Replier<RegisterConversation> register_;
   dds::Replier<ReportConversation> report_;
@@ -79,5 +85,7 @@ Endpoints::Endpoints(const dds::Participant& participant, dds::WaitLoop& loop,
     : implementation_(std::make_unique<Implementation>(participant, loop, service)) {}
 
 Endpoints::~Endpoints() = default;
+
+std::size_t Endpoints::clients() const { return implementation_->clients(); }
 
 }  // namespace kinship::app

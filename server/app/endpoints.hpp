@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "proto/dds/participant.hpp"
@@ -18,6 +19,9 @@ class Endpoints {
   ~Endpoints();
   Endpoints(const Endpoints&) = delete;
   Endpoints& operator=(const Endpoints&) = delete;
+
+  /// Clients on the network that could ask for something now. Callable from any thread.
+  std::size_t clients() const;
 
  private:
   class Implementation;

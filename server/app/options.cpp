@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "proto/dds/participant.hpp"
+#include "proto/manual/manual.hpp"
+#include "proto/manual/suggestion.hpp"
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
+#include "server/app/metrics_address.hpp"
 
 namespace kinship::app {
 namespace {
@@ -27,6 +30,7 @@ Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
+  kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
@@ -55,6 +59,14 @@ CLI::Validator is_number_up_to(int highest) {
                        : "'" + text + "' is not a number from 0 to " + range;
           },
           "FLOAT in [0 - " + range + "]"};
+}
+
+CLI::Validator is_metrics_address() {
+  return {[](std::string& text) {
+            const Result<MetricsAddress> address = read_metrics_address(text);
+            return address ? std::string() : address.error().message;
+          },
+          "ADDRESS:PORT"};
 }
 
 /// What the store may take of its disk.
@@ -109,6 +121,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
+      ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
@@ -142,6 +155,10 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "second; 0: not at all")
       ->check(is_number_up_to(kMaxScrubMbPerS))
       ->capture_default_str();
+  app.add_option("--metrics", options.metrics,
+                 "Address and port where Prometheus reads /metrics, e.g. 127.0.0.1:9464, without "
+                 "access control; default: nowhere")
+      ->check(is_metrics_address());
   app.add_option("--log-level", options.log_level, "What goes to stderr")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -153,7 +170,9 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
                        const char* example) {
     CLI::App* const command = app.add_subcommand(name, description)->configurable(false);
     command->footer(std::string(kVerbFooter) + example);
-    command->add_option("--store", options.store, "SQLite file")->capture_default_str();
+    command->add_option("--store", options.store, "SQLite file")
+        ->type_name("FILE")
+        ->capture_default_str();
     command->callback([&options, verb] { options.verb = verb; });
     return command;
   };
@@ -164,11 +183,13 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
   add("backup", OfflineVerb::Backup, "Copy the store into a new file",
       "kinshipd backup --store fleet.db copy.db")
       ->add_option("FILE", options.file, "The copy; must not be there yet")
+      ->type_name("FILE")
       ->required();
   add("restore", OfflineVerb::Restore, "Put a backup in the place of the store; keeps the old one",
       "kinshipd restore --store fleet.db copy.db      keeps the old one as "
       "fleet.db.replaced-<time>")
       ->add_option("FILE", options.file, "The backup; it stays as it is")
+      ->type_name("FILE")
       ->required();
   add("repair", OfflineVerb::Repair,
       "Write a damaged store anew from all of it that can be read; keeps the old one",
@@ -204,8 +225,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   offline.store = options.store;
 
   CLI::App app(kDescription, "kinshipd");
+  manual::add_manual(app, 8);
   app.footer(kFooter);
-  app.set_version_flag("--version", std::string("kinshipd ") + KINSHIP_VERSION);
   add_server_options(app, options);
   bool print_config = false;
   app.add_flag("--print-config", print_config,
@@ -227,9 +248,13 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
                 suggestion(word.substr(2, word.find('=') - 2), option_names(app));
             !near.empty() && app.get_option_no_throw(std::string(word)) == nullptr)
           err << word << near << '\n';
+    for (const std::string& word : app.remaining(true))
+      if (const std::string near = manual::suggestion_for(app, word);
+          !word.starts_with("-") && !near.empty())
+        err << word << near << '\n';
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, out, err) == 0 ? kDone : kWrongUsage;
+    return manual::explain(app, error, out, err);
   }
   const bool is_offline = !app.get_subcommands().empty();
   const bool store_given = app.count("--store") > 0;

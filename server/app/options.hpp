@@ -33,6 +33,7 @@ struct ServerOptions {
   std::uint64_t max_wal_mb = 512;                ///< with more kept by readings, no report is taken
   /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
   double scrub_mb_per_s = 4;
+  std::string metrics;  ///< address and port to serve metrics at; empty: none
   std::string log_level = "info";
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,8 @@
 #include "server/app/endpoints.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
+#include "server/app/metrics_listener.hpp"
+#include "server/app/metrics_page.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/service/service.hpp"
@@ -73,8 +76,11 @@ int serve(const ServerOptions& options, std::ostream& out) {
 
   hold_termination_signals();
 
-  // Before the store: who cannot join the domain leaves no file behind.
+  // Before the store: who cannot join the domain, or has no port, leaves no file behind.
   const dds::Participant participant = join_domain(options);
+  std::optional<MetricsPort> metrics_port;
+  if (!options.metrics.empty())
+    metrics_port.emplace(read_metrics_address(options.metrics).value_or_throw());
   const dds::Publisher<codec::EventPublication> events(participant);
   const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
   dds::WaitLoop loop(participant);
@@ -102,6 +108,12 @@ int serve(const ServerOptions& options, std::ostream& out) {
                status.distributions);
   if (!status.storage_message.empty())
     spdlog::warn("store: {}", status.storage_message);
+  std::optional<MetricsListener> metrics;
+  if (metrics_port) {
+    spdlog::info("metrics at {}", metrics_port->url());
+    metrics.emplace(std::move(*metrics_port),
+                    [&service, &endpoints] { return metrics_page(service, endpoints.clients()); });
+  }
   out << "ready domain=" << options.domain << " store=" << options.store.string() << std::endl;
   notify_service_manager("READY=1");
   Watchdog watchdog;
@@ -113,6 +125,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   });
 
   notify_service_manager("STOPPING=1");
+  metrics.reset();
   service.shutdown();
   spdlog::info("ended");
   return kDone;

@@ -1,5 +1,6 @@
 #include "server/catalog/advice_book.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
@@ -62,6 +63,8 @@ Advice AdviceBook::advise(const std::string& task, const Digest& robot, const Co
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[key];
+    entry.context = context;
+    entry.profile_share = profile_share;
     if (entry.state == State::Read) {
       totals = entry.totals;
       judged = judged_attempts(context, contexts_, entry.totals.recent);
@@ -85,6 +88,46 @@ std::uint64_t AdviceBook::version(const std::string& task, const Digest& robot) 
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find({task, robot});
   return found == entries_.end() ? 0 : found->second.version;
+}
+
+/// Those whose attempts were read, in their order.
+std::vector<AdviceBook::Key> AdviceBook::keys_of_most_attempts(std::size_t max,
+                                                               std::size_t& left_out) const {
+  std::vector<std::pair<std::uint64_t, Key>> known;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, entry] : entries_)
+      if (entry.state == State::Read)
+        known.emplace_back(entry.totals.guided.attempts + entry.totals.control.attempts, key);
+  }
+  left_out = known.size() - std::min(max, known.size());
+  std::ranges::stable_sort(known, std::ranges::greater(),
+                           [](const auto& pair) { return pair.first; });
+  known.resize(std::min(max, known.size()));
+  std::vector<Key> keys;
+  for (auto& pair : known)
+    keys.push_back(std::move(pair.second));
+  std::ranges::sort(keys);
+  return keys;
+}
+
+GuidanceWorths AdviceBook::worths(std::size_t max) const {
+  GuidanceWorths worths;
+  for (const Key& key : keys_of_most_attempts(max, worths.left_out)) {
+    store::AttemptTotals totals;
+    JudgedAttempts judged;
+    double profile_share = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      const Entry& entry = entries_.at(key);
+      totals = entry.totals;
+      judged = judged_attempts(entry.context, contexts_, entry.totals.recent);
+      profile_share = entry.profile_share;
+    }
+    worths.pairs.push_back(
+        {key.first, key.second, catalog::advise(totals, std::move(judged), profile_share)});
+  }
+  return worths;
 }
 
 void AdviceBook::add(const AttemptCost& cost) {

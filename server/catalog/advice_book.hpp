@@ -30,6 +30,19 @@ struct AttemptCost {
 
 AttemptCost cost_of(const Attempt& attempt);
 
+/// What the attempts of a robot and task say about guidance by the context last asked for.
+struct GuidanceWorth {
+  std::string task;
+  Digest robot;
+  Advice advice;
+};
+
+/// Of the pairs with most attempts, in the order of their tasks and robots.
+struct GuidanceWorths {
+  std::vector<GuidanceWorth> pairs;
+  std::size_t left_out = 0;  ///< pairs beyond those
+};
+
 /// Knows what the attempts of each (task, robot) that somebody asked for recommend. The sums are
 /// read from the store once, in the background, and then kept up with what is committed. May be
 /// shared between threads; asking never waits for the store.
@@ -61,6 +74,10 @@ class AdviceBook {
   /// Grows whenever advise() may say something else than before; 0: nothing is known yet.
   std::uint64_t version(const std::string& task, const Digest& robot) const;
 
+  /// What is advised now, of at most `max` of the (task, robot) that somebody asked for. Holds the
+  /// lock for one pair at a time; not for the path of a fetch.
+  GuidanceWorths worths(std::size_t max) const;
+
   /// An attempt was committed, Stored or Recorded.
   void add(const AttemptCost& cost);
 
@@ -71,9 +88,12 @@ class AdviceBook {
     bool is_overtaken = false;  // something was committed since the reading began
     std::uint64_t version = 0;
     store::AttemptTotals totals;
+    Context context;  // last asked for, and its profile's share
+    double profile_share = 0;
   };
   using Key = std::pair<std::string, Digest>;
 
+  std::vector<Key> keys_of_most_attempts(std::size_t max, std::size_t& left_out) const;
   void read_totals(const Key& key);
   bool end_reading(const Key& key, const store::AttemptTotals* totals, bool is_last_try);
   void find_contexts(const Key& key, const std::vector<Digest>& distributions);

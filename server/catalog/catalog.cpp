@@ -145,7 +145,9 @@ CatalogUse Catalog::use() const {
   const std::lock_guard lock(mutex_);
   return {.waiters = state_.waiters(),
           .holds = state_.holds(),
-          .memory_bytes = state_.memory_bytes(),
+          .in_memory = state_.memory().size(),
+          .memory_bytes = state_.memory().bytes(),
+          .dropped = state_.memory().dropped(),
           .fit_memory_bytes = maker_.memory_bytes()};
 }
 

@@ -26,7 +26,9 @@ namespace kinship::catalog {
 struct CatalogUse {
   std::size_t waiters = 0;           ///< fetches that wait
   std::size_t holds = 0;             ///< on leases
+  std::size_t in_memory = 0;         ///< distributions
   std::size_t memory_bytes = 0;      ///< of distributions in memory, about
+  std::uint64_t dropped = 0;         ///< distributions from memory for want of room, so far
   std::size_t fit_memory_bytes = 0;  ///< that fits left behind for the next ones, about
 };
 

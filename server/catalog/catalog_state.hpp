@@ -105,7 +105,7 @@ class CatalogState {
   /// Why the last fit made nothing; empty: it did.
   std::string trouble_of(const Digest& id) const;
 
-  std::size_t memory_bytes() const { return memory_.bytes(); }
+  const DistributionCache& memory() const { return memory_; }
   std::size_t waiters() const { return pending_.waiters(); }
   std::size_t holds() const { return leases_.holds(); }
   std::size_t followed() const { return leases_.count(clock_.now()); }

@@ -26,8 +26,10 @@ std::size_t size_of(const FetchReply& reply) {
 void DistributionCache::put(const Digest& id, Entry entry) {
   const std::size_t bytes = size_of(*entry.reply.reply);
   replies_.put(id, std::move(entry), bytes);
-  while (size() > 1 && (size() > limits_.entries || this->bytes() > limits_.bytes))
+  while (size() > 1 && (size() > limits_.entries || this->bytes() > limits_.bytes)) {
     replies_.drop_oldest();
+    ++dropped_;
+  }
 }
 
 void DistributionCache::replace(const Digest& id, const SharedReply& before,

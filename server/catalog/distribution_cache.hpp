@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
@@ -45,10 +46,12 @@ class DistributionCache {
 
   std::size_t size() const noexcept { return replies_.size(); }
   std::size_t bytes() const noexcept { return replies_.bytes(); }  ///< of the replies, about
+  std::uint64_t dropped() const noexcept { return dropped_; }      ///< for want of room, so far
 
  private:
   Limits limits_;
   fitting::LastUsed<Entry> replies_;
+  std::uint64_t dropped_ = 0;
 };
 
 }  // namespace kinship::catalog

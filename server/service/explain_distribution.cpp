@@ -62,12 +62,15 @@ std::string next_fit(const Distribution& distribution, const Explanation& explan
 
 }  // namespace
 
-void mark_retired(const store::Store& store, std::vector<DistributionSummary>& distributions) {
+void complete_summaries(const store::Store& store,
+                        std::vector<DistributionSummary>& distributions) {
   std::map<std::string, std::vector<store::ExperienceSummary>> experience;  // by task
   for (DistributionSummary& summary : distributions) {
     const std::optional<Distribution> distribution = store.find_distribution(summary.id);
     if (!distribution)
       continue;  // damaged, or evicted meanwhile
+    summary.T_task_base = distribution->T_task_base;
+    summary.selection = distribution->selection;
     const auto [known, is_new] = experience.try_emplace(summary.task);
     if (is_new)
       known->second = store.experience(summary.task);

@@ -11,9 +11,10 @@ namespace kinship::service {
 inline constexpr const char* kNotServed =
     "paths that it may be made of were retired, it is not served any more";
 
-/// Marks those of the distributions that were made of paths which are retired: they are in the
-/// store and not served. \throws Failure(Storage)
-void mark_retired(const store::Store& store, std::vector<DistributionSummary>& distributions);
+/// Adds what the store lists without: placement and selection, and whether a distribution was made
+/// of paths which are retired, so that it is in the store and not served.
+/// \throws Failure(Storage)
+void complete_summaries(const store::Store& store, std::vector<DistributionSummary>& distributions);
 
 /// How a distribution stands to the experience of now, and when it is fitted next. Its mixture is
 /// left out, and so is what was rehearsed.

@@ -22,16 +22,18 @@ Result<std::size_t> first_row(const std::string& cursor) {
 
 AdminPage list_jobs(const Jobs& jobs, const AdminRequest& request) {
   const std::vector<Job> all = jobs.list();
-  // The oldest are forgotten first: if the last one of the page before is gone, so are those before
-  // it, and what is left begins with the next.
-  const auto last = std::find_if(all.begin(), all.end(),
+  // The oldest are forgotten first: if the last one of the page before is gone, so are those that
+  // would come after it.
+  const auto last = std::find_if(all.rbegin(), all.rend(),
                                  [&](const Job& job) { return job.id == request.cursor; });
-  auto next = last == all.end() ? all.begin() : last + 1;
+  auto next = all.rbegin();
+  if (!request.cursor.empty())
+    next = last == all.rend() ? all.rend() : last + 1;
   AdminPage page;
   page.status = AdminStatus::Ok;
-  for (; next != all.end() && page.rows.size() < page_size(request); ++next)
+  for (; next != all.rend() && page.rows.size() < page_size(request); ++next)
     page.rows.emplace_back(*next);
-  if (next != all.end())
+  if (next != all.rend())
     page.next_cursor = (next - 1)->id;
   return page;
 }

@@ -137,11 +137,16 @@ void publish_refused(EventFeed& feed, std::span<const Receipt> receipts) {
   });
 }
 
-void publish_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
-                   const FetchReply& reply) {
+void publish_fetch(EventFeed& feed, const runtime::RobotRegistry& robots,
+                   const FetchRequest& request, const FetchReply& reply) {
+  if (request.robot == Digest() && request.experience_bytes > 0 &&
+      reply.status == FetchStatus::UnknownRobot)
+    return feed.tell(EventKind::Fetch, request.task, {},
+                     [] { return std::string("the task's experience, for no robot"); });
   const bool is_refused =
       reply.status == FetchStatus::Refused || reply.status == FetchStatus::UnknownRobot;
-  feed.tell(is_refused ? EventKind::Refusal : EventKind::Fetch, task, robot,
+  feed.tell(is_refused ? EventKind::Refusal : EventKind::Fetch, request.task,
+            name_of(robots, request.robot),
             [&] { return is_refused ? "fetch: " + describe(reply) : describe(reply); });
 }
 

@@ -24,8 +24,10 @@ void publish_report(EventFeed& feed, const runtime::RobotRegistry& robots,
 /// Attempts that broke a rule before anybody knew whose they are.
 void publish_refused(EventFeed& feed, std::span<const Receipt> receipts);
 
-void publish_fetch(EventFeed& feed, const std::string& robot, const std::string& task,
-                   const FetchReply& reply);
+/// A fetch of a task's experience alone names no robot: it is answered UnknownRobot, with what was
+/// asked for, and is no refusal.
+void publish_fetch(EventFeed& feed, const runtime::RobotRegistry& robots,
+                   const FetchRequest& request, const FetchReply& reply);
 
 void publish_fit(EventFeed& feed, const runtime::RobotRegistry& robots,
                  const Distribution& distribution);

@@ -85,6 +85,7 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
   catalog.limits = options.catalog;
   catalog.fit = options.fit;
   catalog.on_fit = [this](const Distribution& distribution) {
+    measures_.count(distribution);
     log_fit(distribution);
     publish_fit(events_, robots_, distribution);
   };
@@ -121,9 +122,11 @@ rehearsal::RehearsalBookOptions Service::rehearsal_options() const {
 }
 
 Jobs::Options Service::job_options(const ServiceOptions& options) {
-  return {.limits = options.jobs,
-          .niceness = options.fit_niceness,
-          .on_end = [this](const Job& job) { publish_job(events_, job); }};
+  return {
+      .limits = options.jobs, .niceness = options.fit_niceness, .on_end = [this](const Job& job) {
+        measures_.count(job);
+        publish_job(events_, job);
+      }};
 }
 
 Administration::Parts Service::administration_parts() {
@@ -230,12 +233,13 @@ void Service::take_in(ReportRequest request, std::function<void(const ReportRepl
   publish_refused(events_, request.refused);
   ingest_.submit(
       std::move(request.attempts),
-      [this, refused = std::move(request.refused),
-       done = std::move(done)](const std::vector<Receipt>& receipts) {
+      [this, refused = std::move(request.refused), done = std::move(done),
+       began = options_.clock.now()](const std::vector<Receipt>& receipts) {
         store::StorePoint point = store_->point();
         ReportReply reply{point.epoch, receipts, std::move(point.mark)};
         reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
         count_refused(reply.receipts);
+        measures_.count(reply.receipts, options_.clock.now() - began);
         done(reply);
       },
       client);
@@ -255,8 +259,11 @@ catalog::FetchDone Service::of_this_epoch(catalog::FetchDone done) const {
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
-  done = [this, done = std::move(done)](const FetchReply& reply) {
+  // Shared by those who ask and answer: they may be on two threads, in either order.
+  const auto watch = std::make_shared<FetchWatch>(options_.clock);
+  done = [this, watch, done = std::move(done)](const FetchReply& reply) {
     count_fetch(reply);
+    measures_.count(reply, *watch);
     done(reply);
   };
   done = of_this_epoch(std::move(done));
@@ -264,14 +271,14 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     done =
         rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
                                   catalog::with_experience(experience_, request, std::move(done)));
-  if (!options_.on_event)
-    return catalog_.fetch(request, waiter, std::move(done));
   catalog_.fetch(request, waiter,
-                 [this, robot = request.robot, task = request.task,
-                  done = std::move(done)](const FetchReply& reply) {
+                 [this, watch, request, done = std::move(done)](const FetchReply& reply) {
+                   watch->set_answered();
                    done(reply);
-                   publish_fetch(events_, name_of(robots_, robot), task, reply);
+                   if (options_.on_event)
+                     publish_fetch(events_, robots_, request, reply);
                  });
+  watch->set_asked();
 }
 
 void Service::administer(AdminRequest request, const std::string& request_key,
@@ -280,8 +287,10 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
-  // A reset takes long, and nobody else's request waits for it.
-  runtime::WorkerPool& pool = request.verb == AdminVerb::ResetTask ? reset_pool_ : short_task_pool_;
+  // These may take long, and nobody else's request waits for them.
+  const bool is_long =
+      request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot;
+  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
   auto run = [this, request = std::move(request), request_key, done] {
     const AdminPage page = administration_.answer(request, request_key);
     count_admin(page);

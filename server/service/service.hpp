@@ -14,6 +14,7 @@
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
 #include "server/catalog/experience_book.hpp"
+#include "server/metrics/exposition.hpp"
 #include "server/rehearsal/rehearsal_book.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -23,6 +24,7 @@
 #include "server/service/event_feed.hpp"
 #include "server/service/ingest.hpp"
 #include "server/service/jobs.hpp"
+#include "server/service/measures.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -88,6 +90,10 @@ class Service {
   void expire(catalog::Catalog::TimePoint now);
 
   ServerStatus status() const;
+  /// Everything that is measured, for who watches many servers (service_metrics.cpp). Reads the
+  /// store's status; where that fails, its families are left out and one says so. Not for the
+  /// thread that waits on the network.
+  void expose(metrics::Exposition& page) const;
 
   /// Accepts nothing more, makes what was reported durable and answers it, answers waiting
   /// fetches Busy, gives up fits and jobs, and returns when all of that is done. A second call
@@ -110,11 +116,14 @@ class Service {
   void count_admin(const AdminPage& page);
   std::vector<BoundUse> bounds(const store::StoreStatus& store) const;
   void log_fit(const Distribution& distribution) const;
+  void expose_use(metrics::Exposition& page) const;
+  void expose_guidance(metrics::Exposition& page) const;
 
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
   runtime::TroubleBook troubles_;
+  Measures measures_;
   std::stop_source stop_source_;
   runtime::RobotRegistry robots_;
   catalog::ExperienceBook experience_;

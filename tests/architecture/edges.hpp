@@ -19,6 +19,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"Eigen", {"Eigen/", "unsupported/Eigen/"}},
     {"libcrypto", {"openssl/"}},
     {"Boost.Random", {"boost/random/"}},
+    {"Boost.Beast", {"boost/asio/", "boost/beast/"}},
     {"Cyclone DDS", {"dds/"}},
     {"nlohmann-json", {"nlohmann/"}},
     {"urdfdom",
@@ -45,12 +46,14 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string codec = "proto/codec";
   const std::string json = "proto/json";
   const std::string dds = "proto/dds";
+  const std::string manual = "proto/manual";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
+  const std::string metrics = "server/metrics";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
@@ -63,15 +66,16 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string arguments = "client/arguments";
   const std::string link = "client/link";
   const std::string ompl = "client/ompl";
+  const std::string guided = "client/guided";
   const std::string planner = "client/planner";
   const std::string moveit = "client/moveit";
   const std::string page = "client/page";
   const std::string plots = "client/plots";
   const std::set<std::string> planner_programs = {
-      link,      arguments, files,      planning, ompl,    evidence, inverse,
-      collision, geometry,  kinematics, models,   mixture, json,     types};
+      guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
+      collision, geometry, kinematics, models, mixture,  json, manual,   types};
   std::set<std::string> experiments = planner_programs;
-  experiments.insert({planner, page});
+  experiments.insert(page);
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},
@@ -80,12 +84,14 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {codec, {{types, idl}, {"Eigen"}}},
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
+      {manual, {{types}, {"CLI11"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {metrics, {{}, {}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
@@ -96,28 +102,34 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
       {service,
-       {{rehearsal, catalog, fitting, runtime, store, density, inverse, types}, {"Eigen"}}},
-      {"server/app", {{service, dds, codec, json, types, store}, {"CLI11", "spdlog"}}},
+       {{rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence, types},
+        {"Eigen"}}},
+      {"server/app",
+       {{service, metrics, dds, codec, json, manual, types, store},
+        {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
       {ompl, {{planning, kinematics, types}, {"Eigen", "OMPL"}}},
+      {guided,
+       {{ompl, planning, evidence, inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {link, {{dds, codec, kinematics, json, types}, {"Eigen"}}},
       {moveit, {{kinematics, types}, {"Eigen", "yaml-cpp"}}},
       {page, {{geometry, kinematics, models, types}, {"Eigen"}}},
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {"client/cli",
-       {{link, arguments, files, moveit, plots, inverse, collision, geometry, kinematics, models,
-         mixture, json, types},
+       {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
+         models, mixture, json, manual, types},
         {"Eigen", "CLI11"}}},
-      {"client/c", {{link, json, mixture, kinematics, types}, {"Eigen"}}},
+      {"client/c", {{link, json, mixture, models, collision, kinematics, types}, {"Eigen"}}},
       {"client/library",
-       {{link, ompl, planning, collision, models, inverse, mixture, kinematics, types}, {}}},
+       {{guided, link, ompl, planning, collision, models, inverse, mixture, kinematics, types},
+        {}}},
       // A project of its own: what is installed, and files beside its own, which have no folder.
       {"client/examples", {{""}, {"OMPL"}}},
       {planner, {planner_programs, {"Eigen", "CLI11"}}},
       {"client/python",
-       {{link, files, planning, inverse, collision, geometry, kinematics, models, mixture, json,
-         types},
+       {{guided, link, files, planning, inverse, collision, geometry, kinematics, models, mixture,
+         json, types},
         {"Eigen", "pybind11"}}},
       {"client/experiments", {experiments, {"Eigen", "CLI11", "nlohmann-json", "zstd"}}},
   };

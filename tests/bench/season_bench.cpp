@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/planner/sampling_mode_choice.hpp"
+#include "client/guided/sampling_mode_choice.hpp"
 #include "tests/bench/figure.hpp"
 
 namespace kinship::bench {

@@ -79,6 +79,10 @@ TaskSummary every_task_summary() {
   task.dropped = next.count();
   for (TaskRobotSummary& robot : task.robots)
     robot.dropped = next.count();
+  for (TaskRobotSummary& robot : task.robots) {
+    robot.guided = ModeEvidence{next.count(), next.count(), next.real()};
+    robot.control = ModeEvidence{next.count(), next.count(), next.real()};
+  }
   return task;
 }
 
@@ -128,6 +132,8 @@ DistributionSummary every_distribution_summary() {
   distribution.configurations = next.count();
   distribution.paths = next.count();
   distribution.fitted_ms = next.time_ms();
+  distribution.T_task_base = next.pose();
+  distribution.selection = {{next.id<Digest>()}, Weighting::Paths, next.time_ms()};
   return distribution;
 }
 
@@ -157,6 +163,18 @@ Retirement every_retirement() {
   retirement.paths = next.count();
   retirement.robots = {next.id<Digest>(), next.id<Digest>()};
   return retirement;
+}
+
+RobotRemoval every_robot_removal() {
+  Distinct next(1450);
+  RobotRemoval removal;
+  removal.robot = next.id<Digest>();
+  removal.label = next.name("label");
+  removal.paths = next.count();
+  removal.attempts = next.count();
+  removal.distributions = next.count();
+  removal.is_deleted = true;
+  return removal;
 }
 
 Job every_job() {
@@ -259,6 +277,14 @@ Problem every_pose_problem() {
   return problem;
 }
 
+Problem every_problem_from_pose() {
+  Problem problem = every_pose_problem();
+  Distinct next(1950);
+  problem.start.resize(0);
+  problem.T_task_start = next.pose();
+  return problem;
+}
+
 ProblemResult every_problem_result() {
   Distinct next(2000);
   ProblemResult result;
@@ -270,6 +296,8 @@ ProblemResult every_problem_result() {
   result.projections = next.count();
   result.planning_time_s = next.real();
   result.time_limit_s = next.real();
+  result.start = Eigen::VectorXd::LinSpaced(kJoints, 0.25, 0.5);
+  result.not_planned = NotPlanned::StartOffConstraint;
   result.waypoints = next.matrix(kJoints, 3);
   result.distribution_id = next.id<Digest>();
   result.distribution_revision = next.count();

@@ -75,12 +75,14 @@ AttemptSummary every_attempt_summary();
 DistributionSummary every_distribution_summary();
 Explanation every_explanation();
 Retirement every_retirement();
+RobotRemoval every_robot_removal();
 Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();
 
-Problem every_problem();       ///< to configurations, in a scene
-Problem every_pose_problem();  ///< to a pose
+Problem every_problem();            ///< to configurations, in a scene
+Problem every_pose_problem();       ///< to a pose
+Problem every_problem_from_pose();  ///< to a pose, too
 ProblemResult every_problem_result();
 InverseAnswer every_inverse_answer();
 RobotCheck every_robot_check();

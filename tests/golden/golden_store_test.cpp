@@ -77,7 +77,7 @@ TEST_P(GoldenStore, KnowsWhenItsPathsArrivedAndWhatItsArmsCost) {
   ASSERT_EQ(listed.size(), 2U);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     EXPECT_GT(paths[i].received_ms, 1'790'000'000'000);
-    EXPECT_EQ(paths[i].received_ms, listed[i].received_ms);
+    EXPECT_EQ(paths[i].received_ms, listed[1 - i].received_ms) << "the newest is listed first";
     EXPECT_EQ(listed[i].retired_ms, 0);
   }
   const store::AttemptTotals totals = store_->attempt_totals(robot, "shelf");

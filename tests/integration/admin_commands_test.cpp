@@ -137,6 +137,42 @@ TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
   EXPECT_EQ(copy.out, test::read_text(folder_ / "all.jsonl"));
 }
 
+TEST_F(AdminCommands, ALabelIsFreedByARenameAndARobotTakenOutOnlyIfItIsSaidSo) {
+  teach(server_);
+  const Answer renamed = server_.kinship({"robots", "rename", "panda", "old_panda"});
+  ASSERT_EQ(renamed.code, 0) << renamed.err;
+  EXPECT_NE(renamed.out.find("is called 'old_panda' now"), std::string::npos) << renamed.out;
+  EXPECT_EQ(server_.kinship({"robots", "show", "panda"}).code, 3);
+  EXPECT_EQ(server_.kinship({"robots", "rename", "old_panda", "ur10e"}).code, 2);
+
+  const Answer asked = server_.kinship({"robots", "remove", "old_panda"});
+  EXPECT_EQ(asked.code, 2);
+  EXPECT_NE(asked.err.find("would retire 6 paths"), std::string::npos) << asked.err;
+  EXPECT_NE(asked.err.find("7 attempts would stay"), std::string::npos) << asked.err;
+  EXPECT_EQ(server_.kinship({"robots", "show", "old_panda"}).code, 0);
+  const Answer removed = server_.kinship({"robots", "remove", "old_panda", "--yes", "--json"});
+  ASSERT_EQ(removed.code, 0) << removed.err;
+  const auto removal = json::robot_removal_from_json(removed.out).value_or_throw();
+  EXPECT_EQ(removal.paths, 6U);
+  EXPECT_EQ(removal.attempts, 7U);
+  EXPECT_FALSE(removal.is_deleted);
+  EXPECT_EQ(server_.kinship({"robots", "remove", "old_panda"}).code, 3);
+
+  const Answer unused = server_.kinship({"robots", "remove", "ur10e"});
+  EXPECT_EQ(unused.code, 0) << unused.err;
+  EXPECT_NE(unused.out.find("deleted: it had no attempts"), std::string::npos) << unused.out;
+}
+
+TEST_F(AdminCommands, AClientOfARemovedRobotRegistersItAgainAndItsNewReportsCount) {
+  teach(server_);
+  const auto client = server_.client(folder_ / "outbox");
+  ASSERT_EQ(server_.kinship({"robots", "remove", "panda", "--yes"}).code, 0);
+  client->report(test::panda_attempt(attempts_.front().robot, "sweep", 1000));
+  EXPECT_EQ(client->flush(seconds(60)).accepted, 1U);
+  const Answer listed = server_.kinship({"robots", "list", "--json"});
+  EXPECT_NE(listed.out.find(R"("paths":1,"attempts":8)"), std::string::npos) << listed.out;
+}
+
 TEST_F(AdminCommands, ABrokenLineInTheMiddleIsNamedAndTheOthersArrive) {
   teach(server_);
   std::istringstream lines(server_.kinship({"paths", "export", "--task", "sweep"}).out);
@@ -380,7 +416,7 @@ TEST_F(AdminCommands, WhatWasRehearsedIsExplainedAndCounted) {
 TEST_F(AdminCommands, TheHostOfTheServerIsAnOptionOrComesFromTheEnvironment) {
   EXPECT_EQ(server_.kinship({"--server", "127.0.0.1", "status"}).code, 0);
   const Answer nobody = server_.kinship({"--server", "nobody.invalid", "status"}, "0.5");
-  EXPECT_NE(nobody.code, 0);
+  EXPECT_EQ(nobody.code, 4);
   EXPECT_NE(nobody.err.find("nobody.invalid"), std::string::npos) << nobody.err;
   setenv("KINSHIP_SERVER", "nobody.invalid", 1);
   EXPECT_EQ(server_.kinship({"status"}, "0.5").code, nobody.code);
@@ -392,7 +428,7 @@ TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
   teach(server_);
   const std::vector<std::string> compare = {"robots", "compare", "--task",
                                             "sweep",  "--wait",  "200"};
-  const Answer panda = server_.kinship(with(compare, {"--targets", "panda"}));
+  const Answer panda = server_.kinship(with(compare, {"--targets", "panda", "--progress"}));
   EXPECT_EQ(panda.code, 0) << panda.err;
   EXPECT_NE(panda.out.find("\nTARGET \\ SOURCE  panda\npanda            "), std::string::npos)
       << panda.out;
@@ -449,6 +485,64 @@ TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   watch.signal(SIGINT);
   EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, WatchTellsOfTheExperienceThatSomebodyAskedForAsAFetch) {
+  teach(server_);
+  test::Program watch("kinship", server_.with_domain({"watch", "--json"}), folder_ / "watch.err");
+  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(server_.kinship({"tasks", "experience", "sweep"}).code, 0);
+  const std::string event = watch.read_line();
+  EXPECT_NE(event.find("\"kind\":\"fetch\",\"task\":\"sweep\""), std::string::npos) << event;
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, WatchSaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
+  const test::ReservedDomain domain;
+  test::Program watch(
+      "kinship",
+      {"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"},
+      folder_ / "watch.err");
+  EXPECT_EQ(watch.read_line().substr(0, 28), "TIME                  KIND  ");
+  while (test::read_text(folder_ / "watch.err").find("no server at 127.0.0.1, domain ") ==
+         std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const test::ServerProcess late(
+      {.store = folder_ / "late.db", .domain = domain.number(), .arguments = {}});
+  const std::string line = watch.read_line();
+  EXPECT_NE(line.find("  rates       reports 0.0/s, fetches "), std::string::npos) << line;
+  EXPECT_NE(test::read_text(folder_ / "watch.err").find("the server is there"), std::string::npos);
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
+  teach(server_);
+  const std::vector<std::string> fetch = {"distributions", "fetch", "--task", "sweep",
+                                          "--robot",       "panda", "--wait", "120"};
+  const std::vector<std::string> elsewhere = {"--placement", "0.5 0 0.25 0 0 0 1"};
+  ASSERT_EQ(server_.kinship(with(fetch, elsewhere)).code, 0);
+  ASSERT_EQ(server_.kinship(with(fetch, {"--sources", "panda", "--since", "90m"})).code, 0);
+  const std::string table = server_.kinship({"distributions", "list"}).out;
+  const std::string wide = server_.kinship({"distributions", "list", "-o", "wide"}).out;
+  const std::size_t newer = wide.find("only panda, since 2"), older = wide.find("0.5 0 0.25 0");
+  ASSERT_NE(newer, std::string::npos) << wide;
+  ASSERT_NE(older, std::string::npos) << wide;
+  EXPECT_LT(newer, older) << wide;
+  const std::string rows = server_.kinship({"paths", "list", "-o", "json"}).out;
+  EXPECT_LT(rows.find(attempts_[5].report_uuid.text()), rows.find(attempts_[0].report_uuid.text()));
+  const std::string paths = server_.kinship({"paths", "list"}).out;
+  EXPECT_NE(paths.find(attempts_[0].report_uuid.text()), std::string::npos) << paths;
+  EXPECT_EQ(paths.find("MACHINE"), std::string::npos) << paths;
+  EXPECT_NE(server_.kinship({"paths", "list", "-o", "wide"}).out.find("MACHINE"),
+            std::string::npos);
+  std::istringstream lines(table + paths + server_.kinship({"robots", "list"}).out +
+                           server_.kinship({"tasks", "list"}).out +
+                           server_.kinship({"tasks", "show", "sweep"}).out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_LE(line.size(), 80U) << line;
 }
 
 TEST_F(AdminCommands, WatchTakesARobotByItsDigestAndTellsNothingOfOthers) {

@@ -175,6 +175,10 @@ TEST(JsonRoundTrip, ProblemWritesTheSameTextAgain) {
       written.goal_configurations = values.matrix(written.start.size(), 1 + values.below(5));
     else
       written.T_task_goal = Eigen::Isometry3d::Identity();
+    if (values.coin()) {
+      written.start.resize(0);
+      written.T_task_start = Eigen::Isometry3d(Eigen::Translation3d(values.share(), 0, 1));
+    }
     const double extent = 0.01 + values.share();
     for (const Shape& shape :
          {Shape(BoxShape{Eigen::Vector3d(extent, 1, 2)}), Shape(SphereShape{extent}),

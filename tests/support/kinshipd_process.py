@@ -44,16 +44,24 @@ class Kinshipd:
         self.folder = pathlib.Path(self._folder.name)
         self._process = None
 
-    def start(self) -> None:
+    def start(self, *arguments: str) -> None:
         """Returns when it serves."""
         program = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]) / "kinshipd"
         with open(self.folder / "log", "ab") as log:
             self._process = subprocess.Popen(
-                [program, "--store", self.folder / "store.db", "--domain", str(self.domain)],
+                [program, "--store", self.folder / "store.db", "--domain", str(self.domain), *arguments],
                 stdout=subprocess.PIPE, stderr=log, text=True)
         ready = self._process.stdout.readline()
         if not ready.startswith("ready "):
             raise RuntimeError(f"kinshipd: {ready}{(self.folder / 'log').read_text()}")
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def log(self) -> str:
+        """What it has said so far."""
+        return (self.folder / "log").read_text()
 
     def stop(self) -> None:
         """Ends it, if it runs."""

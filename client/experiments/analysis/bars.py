@@ -17,7 +17,7 @@ _BAR = 0.8  # of the width of a group is bars
 
 def write_bars(study: StudyFolder, cells: Cells, quantity: Callable[[Cell], np.ndarray], unit: str,
                file: pathlib.Path) -> None:
-    """A group of bars per robot, uniform and by each robot's experience, with 95 % intervals.
+    """A group of bars per robot, uniform and by each robot's experience, with 95 % intervals; its own experience is marked.
 
     Equal results, equal bytes.
     """
@@ -35,6 +35,11 @@ def write_bars(study: StudyFolder, cells: Cells, quantity: Callable[[Cell], np.n
             axes.bar([place + (index - (len(guidances) - 1) / 2) * width for place, _ in shown], means, 0.88 * width,
                      yerr=errors, color=COLOURS[index % len(COLOURS)], ecolor="#1c2733", error_kw={"elinewidth": 0.9},
                      label=guidance if index == 0 else f"by {guidance}")
+            for place, estimate in shown:
+                if guidance == study.robots[place]:
+                    axes.annotate("own", (place + (index - (len(guidances) - 1) / 2) * width, estimate.high), (0, 2),
+                                  textcoords="offset points", ha="center", va="bottom", fontsize=7, color="#1c2733")
+        axes.set_title(f"{study.study['study']}: a query of each robot, guided by whose experience", fontsize=10, loc="left")
         axes.set_xticks(range(len(study.robots)), study.robots)
         axes.tick_params(axis="x", length=0)
         axes.set_ylabel(unit)

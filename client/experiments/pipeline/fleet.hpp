@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/experiments/studies/study.hpp"
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 #include "proto/types/digest.hpp"
 
 namespace kinship::experiments {

@@ -1,6 +1,6 @@
 #include "client/experiments/pipeline/oracle.hpp"
 
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 #include "robots/planning/path_vertices.hpp"
 
 namespace kinship::experiments {

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "client/experiments/pipeline/fleet.hpp"
-#include "client/planner/plan_settings.hpp"
-#include "client/planner/query_sampler.hpp"
+#include "client/guided/plan_settings.hpp"
+#include "client/guided/query_sampler.hpp"
 #include "proto/types/problem.hpp"
 
 namespace kinship::experiments {

@@ -24,8 +24,6 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr std::uint32_t kQuickInstances = 6;
-
 /// Uniform planning, named after its overshoot.
 Cell uniform_cell(std::size_t robot, planner::PlanSettings settings, double overshoot) {
   settings.overshoot = overshoot;

@@ -12,6 +12,9 @@
 
 namespace kinship::experiments {
 
+/// Instances of a quick run: learning ones of each robot at most, and test ones, each planned once.
+inline constexpr std::uint32_t kQuickLearning = 20, kQuickInstances = 6;
+
 /// Where and how a study runs.
 struct RunOptions {
   std::filesystem::path folder;    ///< of learning sets, results and the store

@@ -11,8 +11,6 @@
 namespace kinship::experiments {
 namespace {
 
-constexpr std::uint32_t kQuickLearning = 20;
-
 void tell(const Distribution& distribution, const std::string& target, std::ostream& messages) {
   messages << "distribution " << distribution.id.short_hex() << " for " << target << ':';
   for (const Source& source : distribution.sources)

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/planner/plan_settings.hpp"
+#include "client/guided/plan_settings.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/models/loaded_robot.hpp"
 

@@ -1,9 +1,13 @@
 #pragma once
 
-/// All of the component `planning`: robots, collision, inverse kinematics, samplers, planners, and
-/// the hook into OMPL.
+/// All of the component `planning`: robots, collision, inverse kinematics, samplers, planners, the
+/// hook into OMPL, and queries planned as kinship-plan does.
 #include <kinship/client.hpp>
 
+#include "client/guided/attempt_record.hpp"
+#include "client/guided/guidance.hpp"
+#include "client/guided/plan_problem.hpp"
+#include "client/guided/scene_record.hpp"
 #include "client/ompl/guided_state_sampler.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "client/ompl/region_state_space.hpp"

@@ -76,8 +76,8 @@ def draw(distribution: kinship.Distribution, robot: kinship.Robot, picture: path
     samples = distribution.sample(SAMPLES, seed=1)
     figure = plt.figure(figsize=(11, 7), constrained_layout=True)
     grid = figure.add_gridspec(2 * robot.dof, 2)
-    hand = [figure.add_subplot(grid[:robot.dof, 0]), figure.add_subplot(grid[robot.dof:, 0])]
-    draw_hand(*hand, robot, samples, distribution.log_density(samples))
+    top, side = figure.add_subplot(grid[:robot.dof, 0]), figure.add_subplot(grid[robot.dof:, 0])
+    draw_hand(top, side, robot, samples, distribution.log_density(samples))
     for joint in range(robot.dof):
         draw_joint(figure.add_subplot(grid[2 * joint:2 * joint + 2, 1]), distribution, robot, samples, joint)
     figure.axes[-1].set_xlabel("samples and mixture, rad or m")

@@ -6,7 +6,9 @@
     with kinship.Client() as client:
         client.register(robot)
         distribution = client.fetch("box_to_shelf", robot, deadline=60)
+        guidance = client.guidance("box_to_shelf", robot)
     q = distribution.sample(1000, seed=1)          # (1000, dof)
+    path = kinship.plan(robot, kinship.Problem("mine", q[0], q[1]), guidance).waypoints
 
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
 (4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.
@@ -30,8 +32,11 @@ from ._kinship import (
     Attempt,
     Client,
     Distribution,
+    Events,
     Follower,
+    Guidance,
     OutboxState,
+    Plan,
     Problem,
     Receipt,
     Registration,
@@ -39,6 +44,7 @@ from ._kinship import (
     Sampler,
     Scene,
     World,
+    plan,
     read_experience,
     read_problems,
     write_experience,
@@ -50,8 +56,10 @@ __all__ = [
     "Conflict",
     "Distribution",
     "Error",
+    "Events",
     "FitFailed",
     "Follower",
+    "Guidance",
     "InternalError",
     "InvalidInput",
     "NoExperience",
@@ -59,6 +67,7 @@ __all__ = [
     "NotFound",
     "NotReady",
     "OutboxState",
+    "Plan",
     "Problem",
     "Receipt",
     "Refused",
@@ -70,6 +79,7 @@ __all__ = [
     "TooLarge",
     "UnknownRobot",
     "World",
+    "plan",
     "read_experience",
     "read_problems",
     "write_experience",

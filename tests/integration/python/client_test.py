@@ -99,6 +99,84 @@ class RoundTrip(WithServer):
             follower.newest()
 
 
+class Planning(WithServer):
+    START = [-0.9, -1.4, 1.9, -2.07, -1.57, 0]
+    GOAL = [0.9, -1.4, 1.9, -2.07, -1.57, 0]
+
+    def test_with_what_the_fleet_knows_and_reporting_what_came_of_it(self):
+        self.report_sweeps("planned", range(6))
+        self.client.register(self.ur10e)
+        guidance = self.client.guidance("planned", self.ur10e, deadline=120, control_share=0)
+        self.assertRegex(guidance.message, "components fitted.*panda .6 paths.; .* stored ways of the hand")
+        self.assertIsNotNone(guidance.distribution_id)
+        self.assertEqual(set(guidance.way_sources), {self.panda.digest})
+        # The ways are those of the Panda's hand.
+        starts = np.array([way[0, :3, 3] for way in guidance.ways])
+        hands = np.array([self.panda.fk(attempt(self.panda, "planned", seed).waypoints[0], frame="transfer")[:3, 3]
+                          for seed in range(6)])
+        nearest = np.linalg.norm(starts[:, None] - hands[None], axis=2).min(axis=1)
+        self.assertLess(nearest.max(), 1e-3)
+        scene = kinship.Scene()
+        scene.add_cylinder("post", [0.75, 0, 0.5, 0, 0, 0, 1], 0.05, 1.0)
+        plan = kinship.plan(self.ur10e, kinship.Problem("post", self.START, self.GOAL, scene=scene), guidance)
+        self.assertTrue(plan.solved, plan.reason)
+        self.assertEqual((plan.arm, plan.guide), ("guided", guidance.guide))
+        self.client.report(plan.attempt("planned"))
+        state = self.client.flush(60)
+        self.assertEqual((state.pending, state.refused), (0, 0), state.problem)
+        task, = [row for row in self.client.tasks() if row["task"] == "planned"]
+        self.assertEqual((task["paths"], len(task["robots"])), (7, 2))
+
+    def test_without_experience_there_is_no_guidance(self):
+        self.client.register(self.ur10e)
+        with self.assertRaisesRegex(kinship.NoExperience, "never_done"):
+            self.client.guidance("never_done", self.ur10e)
+
+
+class Administration(WithServer):
+    def test_what_happens_is_heard_of(self):
+        with self.client.watch() as events:
+            kinds = []
+
+            def listen():
+                for event in events:
+                    if event["task"] == "watched":
+                        kinds.append(event["kind"])
+
+            waiting = threading.Thread(target=listen)
+            waiting.start()
+            deadline = time.monotonic() + 60
+            for seed in range(100):  # who has just begun to listen may miss some
+                self.report_sweeps("watched", [seed])
+                if kinds or time.monotonic() > deadline:
+                    break
+            events.close()
+            waiting.join(30)
+            self.assertFalse(waiting.is_alive())
+        self.assertEqual(kinds[0], "report")
+
+    def test_a_retired_path_is_out_of_every_fit(self):
+        self.report_sweeps("retired", range(2))
+        wrong = attempt(self.panda, "retired", 3)
+        self.client.deliver([wrong])
+        self.assertEqual(self.client.retire(wrong.report_uuid)["paths"], 1)
+        self.assertEqual(self.client.retire(wrong.report_uuid)["paths"], 0)
+        task, = [row for row in self.client.tasks() if row["task"] == "retired"]
+        self.assertEqual(task["paths"], 2)
+        self.assertEqual(self.client.reset("retired")["paths"], 2)
+        with self.assertRaises(kinship.NotFound):
+            self.client.retire("00000000-0000-4000-8000-000000000000")
+
+    def test_a_backup_is_a_store(self):
+        self.report_sweeps("backed_up", range(2))
+        job = self.client.backup("monday.db", deadline=60)
+        self.assertEqual((job["verb"], job["state"]), ("backup", "done"))
+        copy, = self.server.folder.rglob("monday.db")
+        self.assertEqual(copy.read_bytes()[:15], b"SQLite format 3")
+        with self.assertRaisesRegex(kinship.Error, "monday.db"):
+            self.client.backup("monday.db", deadline=60)  # it is there
+
+
 class Errors(WithServer):
     def test_of_a_task_without_experience(self):
         self.client.register(self.panda)
@@ -173,6 +251,30 @@ class WithoutServer(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             self.client.fetch(TASK, self.panda, deadline=60)
         self.assertLess(time.monotonic() - begin, 30)
+
+    def test_control_c_ends_what_waits_for_one_answer_and_the_client_goes_on(self):
+        client = self.enterContext(kinship.Client(domain=self.server.domain, has_outbox=False, timeout=60))
+        calls = {"register": lambda: client.register(self.panda), "status": client.status,
+                 "robots by name": lambda: client.fetch(TASK, "panda", deadline=60),
+                 "deliver": lambda: client.deliver([attempt(self.panda, TASK, 1)]),
+                 "backup": lambda: client.backup("monday.db")}
+        for name, call in calls.items():
+            with self.subTest(name):
+                threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+                begin = time.monotonic()
+                with self.assertRaises(KeyboardInterrupt):
+                    call()
+                self.assertLess(time.monotonic() - begin, 20)
+        self.server.start()
+        self.assertEqual(client.register(self.panda).robot, self.panda.digest)
+
+    def test_control_c_ends_a_wait_for_events(self):
+        with self.client.watch() as events:
+            threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+            with self.assertRaises(KeyboardInterrupt):
+                next(events)
+            events.close()
+            self.assertEqual(list(events), [])
 
     def test_closing_ends_the_fetch_of_another_thread(self):
         errors = []

@@ -1,8 +1,9 @@
 #include "server/store/sqlite/rows/listings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
+#include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 
@@ -44,38 +46,41 @@ Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cur
                 "cursor '" + std::string(cursor) + "' is not one of this listing");
 }
 
-/// "12.3.4567": task, robot and path of the last row shown; zeros at the beginning.
-std::array<std::int64_t, 3> parse_path_cursor(std::string_view cursor) {
-  std::array<std::int64_t, 3> key{};
-  if (cursor.empty())
-    return key;
-  const char* position = cursor.data();
+/// The id of the last row shown; at the beginning one that no row reaches.
+std::int64_t parse_id_cursor(std::string_view cursor) {
+  std::int64_t id = std::numeric_limits<std::int64_t>::max();
   const char* const end = cursor.data() + cursor.size();
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const auto [after, error] = std::from_chars(position, end, key[i]);
-    const bool last = i + 1 == key.size();
-    if (error != std::errc() || (last ? after != end : after == end || *after != '.'))
-      refuse_cursor(cursor);
-    position = after + 1;
-  }
-  return key;
+  const auto [after, error] = std::from_chars(cursor.data(), end, id);
+  if (!cursor.empty() && (error != std::errc() || after != end || id < 0))
+    refuse_cursor(cursor);
+  return id;
 }
 
-std::string path_cursor(const ExperienceKey& key, std::int64_t path_id) {
-  return std::to_string(key.task_id) + "." + std::to_string(key.robot_id) + "." +
-         std::to_string(path_id);
+/// What an arm's attempts cost, by three columns: attempts, solved, checks.
+std::optional<ModeEvidence> evidence_of(const Statement& row, int first) {
+  if (row.column_integer(first) == 0)
+    return std::nullopt;
+  ModeEvidence mode{count_of(row, first), count_of(row, first + 1)};
+  if (mode.solved > 0)
+    mode.checks_per_solution = row.column_real(first + 2) / static_cast<double>(mode.solved);
+  return mode;
 }
 
 std::vector<TaskRobotSummary> robots_of_task(Database& database, RobotNames& names,
                                              std::int64_t task_id) {
   const auto query = database.cached(
-      "SELECT robot_id, paths, attempts, generation, dropped FROM experience WHERE task_id = ?");
+      "SELECT robot_id, paths, attempts, generation, dropped,"
+      " guided_attempts, guided_solved, guided_checks,"
+      " control_attempts, control_solved, control_checks FROM experience WHERE task_id = ?");
   query->bind(1, task_id);
+  constexpr int kGuided = 5, kControl = 8;
   std::vector<TaskRobotSummary> robots;
   while (query->step())
-    if (const RobotNames::Name* const robot = names.find(query->column_integer(0)))
+    if (const RobotNames::Name* const robot = names.find(query->column_integer(0));
+        robot != nullptr && !is_removed_label(robot->label))
       robots.push_back({robot->digest, robot->label, count_of(*query, 1), count_of(*query, 2),
-                        count_of(*query, 3), count_of(*query, 4)});
+                        count_of(*query, 3), count_of(*query, 4), evidence_of(*query, kGuided),
+                        evidence_of(*query, kControl)});
   std::ranges::sort(robots, {}, &TaskRobotSummary::label);
   return robots;
 }
@@ -145,20 +150,51 @@ void bind_filters(Statement& query, const std::optional<Digest>& robot, std::str
     query.bind(2, task);
 }
 
-/// The ids of undamaged paths, retired ones too, in the order of arrival.
-std::vector<std::int64_t> path_ids(Database& database, const ExperienceKey& key,
-                                   std::int64_t after_id, std::int64_t limit) {
-  const auto query = database.cached(
-      "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ?1 AND "
-      "robot_id = ?2 AND id > ?3 AND retired_ms IS NULL UNION ALL "
-      "SELECT id FROM path INDEXED BY path_retired WHERE task_id = ?1 AND robot_id = ?2 "
-      "AND id > ?3 AND retired_ms IS NOT NULL) AS path WHERE NOT EXISTS "
-      "(SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) ORDER BY id LIMIT ?4");
-  query->bind_all(key.task_id, key.robot_id, after_id, limit);
+constexpr std::string_view kNotAsidePath =
+    "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND set_aside.id = path.id) "
+    "ORDER BY id DESC LIMIT ";
+
+void append_path_ids(Statement& query, std::vector<std::int64_t>& ids) {
+  while (query.step())
+    ids.push_back(query.column_integer(0));
+}
+
+/// The newest undamaged paths before one, of some robots and tasks, retired ones too. Each brings
+/// its own, read from its indexes; the newest of them all are the newest of all.
+std::vector<std::int64_t> paths_before(Database& database, const std::vector<ExperienceKey>& keys,
+                                       std::int64_t before_id, std::int64_t count) {
   std::vector<std::int64_t> ids;
-  while (query->step())
-    ids.push_back(query->column_integer(0));
+  for (const ExperienceKey& key : keys) {
+    const auto query = database.cached(
+        "SELECT id FROM (SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ?1 AND "
+        "robot_id = ?2 AND id < ?3 AND retired_ms IS NULL UNION ALL "
+        "SELECT id FROM path INDEXED BY path_retired WHERE task_id = ?1 AND robot_id = ?2 "
+        "AND id < ?3 AND retired_ms IS NOT NULL) AS path WHERE " +
+        std::string(kNotAsidePath) + "?4");
+    query->bind_all(key.task_id, key.robot_id, before_id, count);
+    append_path_ids(*query, ids);
+  }
+  std::ranges::sort(ids, std::greater<>());
+  if (std::ssize(ids) > count)
+    ids.resize(static_cast<std::size_t>(count));
   return ids;
+}
+
+/// The same of all; where their rows cannot be read, from the indexes.
+std::vector<std::int64_t> all_paths_before(Database& database, std::int64_t before_id,
+                                           std::int64_t count) {
+  try {
+    std::vector<std::int64_t> ids;
+    const auto query = database.cached("SELECT id FROM path WHERE id < ?1 AND " +
+                                       std::string(kNotAsidePath) + "?2");
+    query->bind_all(before_id, count);
+    append_path_ids(*query, ids);
+    return ids;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return paths_before(database, select_experience(database, {}, ""), before_id, count);
+  }
 }
 
 /// Nothing if it lies on a damaged page, or lost its attempt in a repair.
@@ -190,7 +226,8 @@ Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, s
       " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(max(taken_ms), 0) FROM robot_geometry WHERE robot_id = robot.id) "
-      "FROM robot WHERE label > ? AND base_link <> '' ORDER BY label LIMIT ?");
+      "FROM robot WHERE label > ? AND base_link <> '' AND label NOT GLOB 'removed *' "
+      "ORDER BY label LIMIT ?");
   query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
   const auto read = [](const Statement& row) {
     RobotSummary summary;
@@ -231,21 +268,28 @@ std::optional<TaskSummary> summary_of_task(Database& database, std::string_view 
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
                                 std::string_view task, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  const auto [task_id, robot_id, path_id] = parse_path_cursor(cursor);
+  const bool is_filtered = robot || !task.empty();
+  const std::vector<ExperienceKey> keys =
+      is_filtered ? select_experience(database, robot, task) : std::vector<ExperienceKey>();
+  std::int64_t before_id = parse_id_cursor(cursor);
   Page<PathSummary> page;
-  for (const ExperienceKey& key : select_experience(database, robot, task, {task_id, robot_id})) {
-    const bool is_first = key.task_id == task_id && key.robot_id == robot_id;
-    const std::int64_t left = rows - std::ssize(page.rows);
-    for (const std::int64_t id : path_ids(database, key, is_first ? path_id : 0, left + 1)) {
-      if (std::ssize(page.rows) == rows)
+  while (true) {
+    const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
+    const std::vector<std::int64_t> ids = is_filtered
+                                              ? paths_before(database, keys, before_id, more)
+                                              : all_paths_before(database, before_id, more);
+    if (ids.empty())
+      return page;
+    for (const std::int64_t id : ids) {
+      if (std::ssize(page.rows) == rows) {
+        page.next_cursor = std::to_string(before_id);
         return page;
+      }
       if (std::optional<PathSummary> summary = select_path_summary(database, id))
         page.rows.push_back(std::move(*summary));
-      page.next_cursor = path_cursor(key, id);
+      before_id = id;
     }
   }
-  page.next_cursor.clear();
-  return page;
 }
 
 Page<DistributionSummary> page_of_distributions(Database& database,
@@ -253,25 +297,20 @@ Page<DistributionSummary> page_of_distributions(Database& database,
                                                 std::string_view task, std::string_view cursor,
                                                 std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  Digest after;
-  if (!cursor.empty()) {
-    const std::optional<Digest> parsed = Digest::from_hex(cursor);
-    if (!parsed)
-      refuse_cursor(cursor);
-    after = *parsed;
-  }
+  const std::int64_t before_id = parse_id_cursor(cursor);
+  // Each fit is a row of its own: the greatest id is the newest fit.
   const auto query = database.cached(
       "SELECT distribution.digest, revision, task.name, robot.digest, robot.label, profile, state,"
-      " reason, components, configurations, paths, fitted_ms FROM distribution "
+      " reason, components, configurations, paths, fitted_ms, distribution.id FROM distribution "
       "JOIN robot ON robot.id = distribution.robot_id JOIN task ON task.id = distribution.task_id "
-      "WHERE distribution.digest > ?3 AND NOT EXISTS "
+      "WHERE distribution.id < ?3 AND NOT EXISTS "
       "(SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)" +
-      filters(robot, task) + " ORDER BY distribution.digest LIMIT ?4");
+      filters(robot, task) + " ORDER BY distribution.id DESC LIMIT ?4");
   bind_filters(*query, robot, task);
-  query->bind(3, Bytes(after.bytes)).bind(4, rows + 1);
+  query->bind(3, before_id).bind(4, rows + 1);
   return read_page<DistributionSummary>(
       *query, rows, read_distribution_summary,
-      [](const Statement& row) { return id_of<Digest>(row.column_blob(0)).hex(); });
+      [](const Statement& row) { return std::to_string(row.column_integer(12)); });
 }
 
 void count_rows(Database& database, StoreStatus& status) {
@@ -288,7 +327,7 @@ void count_rows(Database& database, StoreStatus& status) {
     }
   };
   std::uint64_t schema = 0;
-  count(status.robots, "robots", "SELECT count(*) FROM robot");
+  count(status.robots, "robots", "SELECT count(*) FROM robot WHERE label NOT GLOB 'removed *'");
   count(status.tasks, "tasks", "SELECT count(*) FROM task");
   count(status.paths, "paths", "SELECT coalesce(sum(paths), 0) FROM experience");
   count(status.dropped_paths, "dropped paths", "SELECT coalesce(sum(dropped), 0) FROM experience");

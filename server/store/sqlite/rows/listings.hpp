@@ -19,10 +19,11 @@ Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std
 
 std::optional<TaskSummary> summary_of_task(Database& database, std::string_view task);
 
-/// By task, then robot, then arrival; retired paths too.
+/// Newest first; retired paths too.
 Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>& robot,
                                 std::string_view task, std::string_view cursor, std::size_t limit);
 
+/// The newest fit first. One that is fitted again meanwhile moves to the front.
 Page<DistributionSummary> page_of_distributions(Database& database,
                                                 const std::optional<Digest>& robot,
                                                 std::string_view task, std::string_view cursor,

@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <thread>
 
 #include "client/c/kinship.h"
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/client/planner/planar_problem.hpp"
 
 extern "C" int version_is_told_in_c(void);
 
@@ -121,6 +125,157 @@ TEST_F(CLibraryOffline, WhatBreaksARuleIsRefusedWithNameAndValue) {
   description_.tip_link = "nowhere";
   expect_refused(kinship_register(client_, &description_, &robot_, nullptr), "nowhere");
   expect_refused(kinship_report_line(client_, "{}"), "");
+}
+
+TEST_F(CLibraryOffline, HeldJointsAndAxesArePartOfARobot) {
+  const RobotDescription planar = planner::test::planar_description();
+  kinship_held_joint held = {"j4", 0.5};
+  description_.urdf = planar.urdf.c_str();
+  description_.base_link = "base";
+  description_.tip_link = "l3";
+  description_.label = "planar";
+  description_.axes = "x,y,yaw";
+  description_.held_joints = &held;
+  description_.held_joint_count = 1;
+  EXPECT_EQ(kinship_register(client_, &description_, &robot_, nullptr), KINSHIP_UNAVAILABLE);
+  RobotDescription same = planar;
+  same.tip_link = "l3";
+  same.T_tip_transfer.setIdentity();
+  same.held_joints = {{"j4", 0.5}};
+  EXPECT_TRUE(std::ranges::equal(robot_.digest,
+                                 kinematics::read_chain(same).value_or_throw().digest().bytes));
+  held.name = "j5";
+  expect_refused(kinship_register(client_, &description_, &robot_, nullptr), "'j5'");
+  held.name = nullptr;
+  expect_refused(kinship_register(client_, &description_, &robot_, nullptr), "held_joints is NULL");
+  description_.axes = "x,z,yam";
+  expect_refused(kinship_register(client_, &description_, &robot_, nullptr), "'yam'");
+}
+
+TEST_F(CLibraryOffline, ARobotInFilesIsTheOneThatACommandLineNames) {
+  kinship_robot_file file{};
+  file.size = sizeof file;
+  const std::string folder = KINSHIP_SOURCE_DIR "/robots/models/ur10e";
+  file.source = folder.c_str();
+  size_t dof = 0;
+  EXPECT_EQ(kinship_register_file(client_, &file, &robot_, &dof), KINSHIP_UNAVAILABLE);
+  EXPECT_EQ(dof, 6U);
+  EXPECT_TRUE(std::ranges::equal(
+      robot_.digest,
+      kinematics::read_chain(test::model_description("ur10e")).value_or_throw().digest().bytes));
+  const std::string urdf = folder + "/robot.urdf";
+  file.source = urdf.c_str();
+  expect_refused(kinship_register_file(client_, &file, &robot_, nullptr), "base");
+  file.source = nullptr;
+  expect_refused(kinship_register_file(client_, &file, &robot_, nullptr), "file->source is NULL");
+}
+
+TEST_F(CLibraryOffline, MeshesAreToldAsSolidsAroundThem) {
+  std::ofstream(directory_ / "box.stl") << test::BoxMesh({0.1, 0.1, 0.1}).text_stl();
+  std::ofstream(directory_ / "arm.urdf")
+      << "<robot name='arm'><link name='base'/><link name='tool'><collision><geometry><mesh "
+         "filename='package://arm/box.stl'/></geometry></collision></link><joint name='j' "
+         "type='revolute'><parent link='base'/><child link='tool'/><axis xyz='0 0 1'/><limit "
+         "lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>";
+  const std::string source = (directory_ / "arm.urdf").string();
+  const std::string package = "arm=" + directory_.path().string();
+  const char* const packages[] = {package.c_str()};
+  kinship_robot_file file{};
+  file.size = sizeof file;
+  file.source = source.c_str();
+  file.base_link = "base";
+  file.tip_link = "tool";
+  expect_refused(kinship_register_file(client_, &file, &robot_, nullptr), "package://arm/box.stl");
+  file.packages = packages;
+  file.package_count = 1;
+  EXPECT_EQ(kinship_register_file(client_, &file, &robot_, nullptr), KINSHIP_UNAVAILABLE)
+      << kinship_error_text();
+}
+
+/// A table, and a cup in the hand, which may touch it.
+struct TableAndCup {
+  kinship_object objects[2] = {};
+  const char* allowed[2] = {"table", "cup"};
+
+  explicit TableAndCup(kinship_attempt& attempt) {
+    objects[0] = {sizeof(kinship_object), "table", KINSHIP_BOX, 0, {1, 2, 0.1},
+                  {0, 0, -1, 0, 0, 0, 1}};
+    objects[1] = {sizeof(kinship_object),  "cup", KINSHIP_CYLINDER, 1, {0.04, 0.1, 0},
+                  {0, 0, 0.05, 0, 0, 0, 1}};
+    attempt.objects = objects;
+    attempt.object_count = 2;
+    attempt.allowed_collisions = allowed;
+    attempt.allowed_collision_pairs = 1;
+  }
+};
+
+TEST_F(CLibraryOffline, AnAttemptTellsItsScene) {
+  TableAndCup scene(attempt_);
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
+  scene.objects[1].shape = static_cast<kinship_shape>(4);
+  expect_refused(kinship_report(client_, &attempt_), "object 'cup': its shape is 4");
+  scene.objects[1].shape = KINSHIP_SPHERE;
+  scene.objects[1].sizes[0] = -1;
+  expect_refused(kinship_report(client_, &attempt_), "'cup'");
+  scene.objects[1].sizes[0] = 1;
+  scene.allowed[1] = "saucer";
+  expect_refused(kinship_report(client_, &attempt_), "saucer");
+  scene.allowed[1] = "cup";
+  scene.objects[1].pose[6] = 3;
+  expect_refused(kinship_report(client_, &attempt_), "object 'cup'");
+  scene.objects[1].pose[6] = 1;
+  scene.objects[1].size = sizeof(kinship_object) + 8;
+  expect_refused(kinship_report(client_, &attempt_), "object 1: its size is ");
+}
+
+TEST_F(CLibraryOffline, ObjectsOfANewerCallerAreSteppedOverByTheirSize) {
+  struct Newer {
+    kinship_object object;
+    double something_new;
+  } objects[2] = {};
+  for (Newer& each : objects) {
+    each.object = {sizeof(Newer), "box", KINSHIP_BOX, 0, {1, 1, 1}, {0, 0, 0, 0, 0, 0, 1}};
+    each.something_new = std::numeric_limits<double>::quiet_NaN();
+  }
+  objects[1].object.name = "other";
+  attempt_.objects = &objects[0].object;
+  attempt_.object_count = 2;
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
+}
+
+/// The line that kinship.h shows, for this robot.
+std::string line_of_the_header(const std::string& digest) {
+  const std::string header = test::read_text(KINSHIP_SOURCE_DIR "/client/c/kinship.h");
+  const std::size_t begin = header.find("{\"report_uuid\"");
+  std::string line = header.substr(begin, header.find("*/", begin) - begin);
+  std::erase(line, '*');
+  std::erase(line, '\n');
+  const std::string shortened = "30a1...";
+  return line.replace(line.find(shortened), shortened.size(), digest);
+}
+
+TEST_F(CLibraryOffline, TheLineInTheHeaderIsOne) {
+  EXPECT_EQ(kinship_report_line(client_, line_of_the_header(std::string(64, 'a')).c_str()),
+            KINSHIP_OK)
+      << kinship_error_text();
+  expect_refused(kinship_report_line(client_, line_of_the_header("panda").c_str()), "'panda'");
+}
+
+// Who was compiled with a release finds each member where it was. New ones come at the end: the
+// number of bytes grows, what stands here stays.
+TEST(CLibrary, MembersStayWhereTheyAre) {
+  EXPECT_EQ(offsetof(kinship_client_options, timeout_ms), 36U);
+  EXPECT_EQ(offsetof(kinship_robot_description, never_colliding_pairs), 56U);
+  EXPECT_EQ(offsetof(kinship_robot_description, held_joint_count), 80U);
+  EXPECT_EQ(offsetof(kinship_robot_file, package_count), 88U);
+  EXPECT_EQ(offsetof(kinship_object, pose), 48U);
+  EXPECT_EQ(sizeof(kinship_held_joint), 16U);
+  EXPECT_EQ(offsetof(kinship_attempt, share), 112U);
+  EXPECT_EQ(offsetof(kinship_attempt, allowed_collision_pairs), 144U);
+  EXPECT_EQ(offsetof(kinship_outbox, refused), 24U);
+  EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
+  EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);
+  EXPECT_EQ(sizeof(kinship_robot), 32U);
 }
 
 TEST_F(CLibraryOffline, AShorterStructureOfAnOlderCallerIsRead) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -68,6 +69,44 @@ TEST(Commands, AMisspeltWordIsAnsweredWithTheNearestOne) {
   EXPECT_EQ(error({"frobnicate"}).find("did you mean"), std::string::npos);
 }
 
+TEST(Commands, AHostThatNobodyKnowsIsNamedAtOnce) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = run_command({"--server", "nobody..invalid", "--timeout", "30", "status"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
+  EXPECT_EQ(answer.code, kNoServer);
+  EXPECT_TRUE(answer.err.starts_with("kinship: --server 'nobody..invalid': ")) << answer.err;
+}
+
+TEST(Commands, ABackupOnAnotherMachineIsNotNamedByAFolderHere) {
+  const Answer answer = run_command({"--server", "192.0.2.1", "backup", "./copy.db"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("'./copy.db' begins with a folder of this machine"), std::string::npos)
+      << answer.err;
+}
+
+TEST(Commands, HelpIsOfWordsThatOneCanType) {
+  const Answer answer = run_command({"backup", "--help"});
+  EXPECT_NE(answer.out.find("  --no-wait  "), std::string::npos) << answer.out;
+  for (const char* const inner : {"{false}", "Excludes", "Needs"})
+    EXPECT_EQ(answer.out.find(inner), std::string::npos) << answer.out;
+  EXPECT_EQ(answer.out.find("candidates"), std::string::npos) << "is hidden";
+}
+
+TEST(Commands, AnOutputFormatIsOneOfThree) {
+  EXPECT_EQ(run_command({"paths", "list", "-o", "yaml"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"paths", "list", "-o", "wide", "--json"}).code, kWrongUsage);
+}
+
+TEST(Commands, CandidatesAreNothingAndNoComplaintWithoutAServer) {
+  const test::ReservedDomain domain;
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer =
+      run_command({"--domain", std::to_string(domain.number()), "candidates", "ROBOT"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+  EXPECT_EQ(answer.code, kDone);
+  EXPECT_EQ(answer.out + answer.err, "");
+}
+
 TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({}).code, kWrongUsage);
   EXPECT_EQ(run_command({"paths"}).code, kWrongUsage);
@@ -128,6 +167,11 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"jobs", "wait"},
                                                           {"jobs", "cancel"},
                                                           {"robots", "register"},
+                                                          {"robots", "rename"},
+                                                          {"robots", "remove"},
+                                                          {"robots", "links"},
+                                                          {"robots", "frames"},
+                                                          {"robots", "suggest-srdf"},
                                                           {"tasks", "reset"},
                                                           {"tasks", "experience"},
                                                           {"paths", "export"},

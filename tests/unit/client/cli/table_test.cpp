@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+
+#include "client/cli/table_layout.hpp"
 
 namespace kinship::cli::table_test {
 namespace {
@@ -29,6 +33,58 @@ TEST(Table, SaysSoIfThereAreNoRows) {
 TEST(Table, RefusesARowOfAnotherWidth) {
   Table table({"TASK", "PATHS"});
   EXPECT_THROW(table.add_row({"pick"}), std::invalid_argument);
+}
+
+TEST(Table, GoesOnInASecondLineWhereItIsTooWideAndCutsWhatMayBeCut) {
+  Table table({"ID", {"ROBOT", Fit::Cut}, "MADE OF", {"MACHINE", Fit::Wide}});
+  table.add_row({"3f9a0c11", "a_robot_with_a_name", "default, only panda iiwa14", "cell 7"});
+  std::ostringstream narrow;
+  set_table_layout(narrow, {36, false});
+  table.print(narrow);
+  EXPECT_EQ(narrow.str(),
+            "ID        ROBOT        MADE OF\n"
+            "3f9a0c11  a_robot_w..  default, only\n"
+            "                       panda iiwa14\n");
+  std::ostringstream wide;
+  set_table_layout(wide, {36, true});
+  table.print(wide);
+  EXPECT_EQ(wide.str(),
+            "ID        ROBOT                MADE OF                     MACHINE\n"
+            "3f9a0c11  a_robot_with_a_name  default, only panda iiwa14  cell 7\n");
+}
+
+TEST(Table, NeverCutsAWordThatMustStayWhole) {
+  Table table({"PATH", {"TASK", Fit::Cut}});
+  table.add_row({"7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "schrank_gr\xC3\xBCn_einr\xC3\xA4umen"});
+  std::ostringstream out;
+  set_table_layout(out, {20, false});
+  table.print(out);
+  EXPECT_NE(out.str().find("7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55  schr..\n"), std::string::npos)
+      << out.str();
+}
+
+TEST(AgeText, HasOneUnit) {
+  constexpr std::int64_t kNow_ms = 1'795'226'587'000;
+  const auto age = [](std::int64_t seconds) { return age_text(kNow_ms - 1000 * seconds, kNow_ms); };
+  EXPECT_EQ(age(0), "0s");
+  EXPECT_EQ(age(119), "119s");
+  EXPECT_EQ(age(120), "2m");
+  EXPECT_EQ(age(7200), "2h");
+  EXPECT_EQ(age(86'400 * 3), "3d");
+  EXPECT_EQ(age(-5), "0s") << "of a machine whose clock is ahead";
+  EXPECT_EQ(age_text(0, kNow_ms), "-");
+}
+
+TEST(SizeText, HasOneDigitBehindThePoint) {
+  EXPECT_EQ(size_text(999), "999 B");
+  EXPECT_EQ(size_text(1234), "1.2 kB");
+  EXPECT_EQ(size_text(3'400'000'000), "3.4 GB");
+}
+
+TEST(ShortPoseText, IsWhatPlacementTakes) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << 0.5, -0.25, 10;
+  EXPECT_EQ(short_pose_text(T), "0.5 -0.25 10 0 0 0 1");
 }
 
 TEST(TimeText, IsUtcToTheSecond) {

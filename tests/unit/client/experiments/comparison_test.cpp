@@ -108,13 +108,67 @@ TEST(ComparisonTable, ShowsEveryFigureInItsColumn) {
       "  solved                            2/3        3/3\n"
       "  collision checks, mean         21 333      1 333    16.00     0.2500\n"
       "  collision checks, median        3 000      1 500     2.00\n"
-      "  planning time s, mean          18.000      1.333    13.50     0.2500\n"
-      "  planning time s, median         3.000      1.500     2.00\n"
+      "  planning time, mean            18.0 s     1.33 s    13.50     0.2500\n"
+      "  planning time, median          3.00 s     1.50 s     2.00\n"
       "\n"
       "ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst "
       "(exact, 3 pairs that differ).\n"
       "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
-      "is a lower bound.\n");
+      "is a lower bound. In a median it is worse than all that are solved.\n");
+}
+
+TEST(ComparisonTable, TimesHaveTheUnitThatFitsThemAndHalvesRoundUp) {
+  const std::string table = table_of(
+      compared({attempt("a", true, 1810, 0.00042), attempt("b", true, 1811, 0.00044)},
+               {guided_attempt("a", true, 10, 2e-6), guided_attempt("b", true, 11, 4e-6)}));
+  EXPECT_NE(table.find("  collision checks, median        1 811         11"), std::string::npos)
+      << table;
+  EXPECT_NE(table.find("  planning time, mean            430 µs    3.00 µs   143.33"),
+            std::string::npos)
+      << table;
+}
+
+ProblemResult not_planned(ProblemResult result, NotPlanned why, const std::string& reason) {
+  result.not_planned = why;
+  result.reason = reason;
+  return result;
+}
+
+TEST(Comparison, LeavesOutWhatASideBeganNoSearchFor) {
+  auto uniform = kUniform;
+  auto guided = kGuided;
+  uniform.push_back(not_planned(attempt("d", false, 1, 0), NotPlanned::StartCollides, "collides"));
+  guided.push_back(not_planned(attempt("d", false, 1, 0), NotPlanned::StartCollides, "collides"));
+  uniform.push_back(attempt("e", true, 7, 1));
+  guided.push_back(not_planned(attempt("e", false, 0, 0), NotPlanned::Error, "broken"));
+  const Comparison comparison = compared(uniform, guided);
+  EXPECT_EQ(comparison.pairs, 3U);
+  EXPECT_EQ(comparison.uniform.mean_checks, compared(kUniform, kGuided).uniform.mean_checks);
+  EXPECT_EQ(comparison.checks_test.p, 0.25);
+  const std::string table = table_of(comparison);
+  EXPECT_NE(table.find("\n2 problems could not be planned and are left out (start collides: 1, "
+                       "error: 1):\n  d: collides\n  e: broken\n"),
+            std::string::npos)
+      << table;
+  std::ostringstream json;
+  write_json(comparison, json);
+  EXPECT_NE(json.str().find(R"("not_planned":{"start_collides":1,"error":1}})"), std::string::npos)
+      << json.str();
+}
+
+TEST(Comparison, SaysWhyThereIsNothingToCompare) {
+  const std::vector<ProblemResult> colliding = {
+      not_planned(attempt("d", false, 1, 0), NotPlanned::StartCollides, "collides")};
+  EXPECT_EQ(compare(colliding, colliding).error().message,
+            "no problem could be planned (start collides: 1)");
+}
+
+TEST(ComparisonTable, ShortTimesAreInMilliseconds) {
+  const std::string table =
+      table_of(compared({attempt("a", true, 10, 0.00125)}, {guided_attempt("a", true, 5, 0.0005)}));
+  EXPECT_NE(table.find("  planning time ms, mean          1.250      0.500     2.50     1.0000\n"),
+            std::string::npos)
+      << table;
 }
 
 TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {
@@ -143,7 +197,7 @@ TEST(ComparisonJson, IsOneDocumentWithNullForInfinity) {
             "\"wilcoxon_checks\":{\"p\":1,\"pairs\":1,\"dropped\":0,\"rank_sum_plus\":1,"
             "\"rank_sum_minus\":0,\"method\":\"exact\"},"
             "\"wilcoxon_time\":{\"p\":1,\"pairs\":1,\"dropped\":0,\"rank_sum_plus\":1,"
-            "\"rank_sum_minus\":0,\"method\":\"exact\"},\"unpaired\":0}\n");
+            "\"rank_sum_minus\":0,\"method\":\"exact\"},\"unpaired\":0,\"not_planned\":{}}\n");
 }
 
 }  // namespace

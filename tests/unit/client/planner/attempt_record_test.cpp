@@ -1,4 +1,4 @@
-#include "client/planner/attempt_record.hpp"
+#include "client/guided/attempt_record.hpp"
 
 #include <gtest/gtest.h>
 

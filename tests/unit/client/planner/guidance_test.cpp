@@ -1,4 +1,4 @@
-#include "client/planner/guidance.hpp"
+#include "client/guided/guidance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/path_vertices.hpp"

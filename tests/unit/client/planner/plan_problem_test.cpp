@@ -1,4 +1,4 @@
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 
 #include <gtest/gtest.h>
 
@@ -229,6 +229,104 @@ TEST(PlanProblem, AGoalReachedOnlyBeyondTheLimitsIsSaid) {
   problem.T_task_goal =
       kinematics::T_base_transfer(planar_robot().chain, Eigen::Vector4d(3.1, 0, 0, 0));
   EXPECT_EQ(planned(problem).result.reason, "goal only reached outside the joint limits");
+}
+
+/// The wall's problem, its start a pose of the transfer frame, where the robot stands elsewhere.
+Problem posed_problem() {
+  Problem problem = wall_problem();
+  const Eigen::Isometry3d T_task_base(Eigen::Translation3d(0.1, -0.2, 0));
+  problem.T_task_base = T_task_base;
+  problem.scene.objects[0].T_task_object = T_task_base * problem.scene.objects[0].T_task_object;
+  problem.T_task_start =
+      T_task_base * kinematics::T_base_transfer(planar_robot().chain, problem.start);
+  problem.start.resize(0);
+  return problem;
+}
+
+TEST(PlanProblem, AStartPoseIsPlannedFromAFreeConfigurationThatTheResultNames) {
+  const Problem problem = posed_problem();
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  ASSERT_TRUE(answer.result.start);
+  EXPECT_EQ(answer.result.waypoints->col(0), *answer.result.start);
+  const Eigen::Isometry3d T_task_begin =
+      *problem.T_task_base *
+      kinematics::T_base_transfer(planar_robot().chain, *answer.result.start);
+  EXPECT_TRUE(T_task_begin.isApprox(*problem.T_task_start, 1e-5));
+  EXPECT_EQ(collisions_along(*answer.result.waypoints, problem), 0);
+  EXPECT_GT(answer.result.goal_checks, 0U);
+}
+
+TEST(PlanProblem, AStartPoseHasTheSameConfigurationUnderEverySeed) {
+  Problem problem = posed_problem();
+  const Eigen::VectorXd first = *planned(problem).result.start;
+  problem.seed += 1;
+  EXPECT_EQ(*planned(problem).result.start, first);
+}
+
+TEST(PlanProblem, StartAndGoalMayBothBePoses) {
+  Problem problem = posed_problem();
+  problem.T_task_goal =
+      *problem.T_task_base *
+      kinematics::T_base_transfer(planar_robot().chain, problem.goal_configurations.col(0));
+  problem.goal_configurations.resize(0, 0);
+  const PlannedProblem answer = planned(problem);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.not_planned, std::nullopt);
+}
+
+TEST(PlanProblem, AStartPoseThatCannotBeSaysWhy) {
+  Problem problem = posed_problem();
+  problem.T_task_start = Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0));
+  PlannedProblem answer = planned(problem);
+  EXPECT_EQ(answer.result.reason, "start out of reach");
+  EXPECT_EQ(answer.result.not_planned, NotPlanned::StartOutOfReach);
+  EXPECT_EQ(answer.result.start, std::nullopt);
+
+  problem.T_task_start =
+      *problem.T_task_base *
+      kinematics::T_base_transfer(planar_robot().chain, Eigen::Vector4d(3.1, 0, 0, 0));
+  answer = planned(problem);
+  EXPECT_EQ(answer.result.reason, "start only reached outside the joint limits");
+  EXPECT_EQ(answer.result.not_planned, NotPlanned::StartBeyondLimits);
+
+  // The wall's middle, which the last link is in whatever the others do.
+  problem.T_task_start = *problem.T_task_base * Eigen::Translation3d(0.8, 0, 0) *
+                         Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  answer = planned(problem);
+  EXPECT_EQ(answer.result.not_planned, NotPlanned::StartCollides);
+  EXPECT_EQ(answer.result.reason.find("every configuration of the start collides: 'l4' touches "
+                                      "'wall' ("),
+            0U)
+      << answer.result.reason;
+  EXPECT_EQ(answer.outcome, Outcome::Failed);
+}
+
+TEST(PlanProblem, TellsASearchInVainFromNone) {
+  const PlannedProblem found = planned(wall_problem());
+  EXPECT_EQ(found.result.not_planned, std::nullopt);
+  EXPECT_EQ(*found.result.start, wall_problem().start);
+  PlanSettings poor;
+  poor.max_checks = 20;
+  EXPECT_EQ(planned(wall_problem(), poor).result.not_planned, std::nullopt);
+
+  Problem problem = wall_problem();
+  problem.start.setZero();
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::StartCollides);
+  problem = wall_problem();
+  problem.goal_configurations.setZero();
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::GoalCollides);
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal = Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0));
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::GoalOutOfReach);
+  problem.start = Eigen::VectorXd::Zero(6);
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::DofMismatch);
+  problem = wall_problem();
+  problem.start[2] = 3;
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::StartBeyondLimits);
+  problem = wall_problem();
+  problem.attached.push_back({"box", "hand", BoxShape{{0.1, 0.1, 0.1}}, {}, {}});
+  EXPECT_EQ(planned(problem).result.not_planned, NotPlanned::Error);
 }
 
 TEST(PlanProblem, AProblemOfAnotherRobotIsAnsweredNotAttempted) {

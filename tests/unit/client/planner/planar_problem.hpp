@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "client/planner/plan_problem.hpp"
+#include "client/guided/plan_problem.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/kinematics/urdf.hpp"

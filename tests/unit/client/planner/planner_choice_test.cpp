@@ -1,4 +1,4 @@
-#include "client/planner/planner_choice.hpp"
+#include "client/guided/planner_choice.hpp"
 
 #include <gtest/gtest.h>
 

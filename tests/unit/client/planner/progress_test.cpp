@@ -72,7 +72,15 @@ TEST(Progress, TellsHowManyTheGatePlannedUniformly) {
       << stream.str();
 }
 
-TEST(Progress, CountsAttemptsByArmAndNothingElse) {
+ProblemResult not_planned(const std::string& name, NotPlanned why, const std::string& reason) {
+  ProblemResult result;
+  result.name = name;
+  result.not_planned = why;
+  result.reason = reason;
+  return result;
+}
+
+TEST(Progress, CountsSearchesByArmAndNothingElse) {
   std::ostringstream stream;
   Progress progress(stream, false, 4);
   ProblemResult guided = solved("a", 100);
@@ -82,12 +90,51 @@ TEST(Progress, CountsAttemptsByArmAndNothingElse) {
   progress.add(guided, true);
   progress.add(control, true);
   progress.add(ProblemResult{}, true);
-  progress.add(ProblemResult{}, false);
+  progress.add(not_planned("d", NotPlanned::DofMismatch, "start has 6 joints"), false);
   progress.finish();
   EXPECT_NE(stream.str().find("planned 3 of 4 problems, 2 solved; 1 guided, 1 control, 1 uniform; "
-                              "on average 200 checks and 0.000 s; 1 could not be attempted\n"),
+                              "on average 200 checks and 0 s; 1 could not be planned (dof "
+                              "mismatch: 1)\n"),
             std::string::npos)
       << stream.str();
+}
+
+TEST(Progress, LeavesOutOfAveragesWhatNoSearchWasBegunFor) {
+  std::ostringstream stream;
+  Progress progress(stream, false, 2);
+  ProblemResult planned = solved("a", 100);
+  planned.planning_time_s = 0.0024;
+  progress.add(planned, true);
+  // Its own check of the start is no search, whatever arm it was meant for.
+  ProblemResult collides = not_planned("b", NotPlanned::StartCollides, "start collides");
+  collides.collision_checks = 1;
+  collides.sampling_mode = SamplingMode::Guided;
+  progress.add(collides, true);
+  progress.finish();
+  EXPECT_NE(stream.str().find("planned 1 of 2 problems, 1 solved; 0 guided, 0 control, 1 uniform; "
+                              "on average 100 checks and 2.40 ms; 1 could not be planned"),
+            std::string::npos)
+      << stream.str();
+  EXPECT_FALSE(progress.nothing_attempted());
+}
+
+TEST(Progress, GroupsWhyAndNamesTheFirstThree) {
+  std::ostringstream stream;
+  Progress progress(stream, true, 5);
+  progress.add(not_planned("far", NotPlanned::GoalOutOfReach, "goal out of reach"), true);
+  for (const std::string name : {"b", "c", "d"})
+    progress.add(not_planned(name, NotPlanned::StartCollides, "start collides: 'x'"), true);
+  progress.add(solved("e", 100), true);
+  progress.finish();
+  const std::string text = stream.str();
+  EXPECT_EQ(text.substr(text.rfind("\033[K") + 3),
+            "could not be planned:\n"
+            "  far: goal out of reach\n"
+            "  b: start collides: 'x'\n"
+            "  c: start collides: 'x'\n"
+            "  and 1 more\n"
+            "planned 1 of 5 problems, 1 solved; 0 guided, 0 control, 1 uniform; on average 100 "
+            "checks and 0 s; 4 could not be planned (start collides: 3, goal out of reach: 1)\n");
 }
 
 TEST(Progress, NoProblemsIsNoDivisionByZero) {

@@ -24,7 +24,7 @@ TEST(ResultText, TellsWhatASolutionCostAndWhatGuidedIt) {
   result.sampling_mode = SamplingMode::Guided;
   result.share = 0.9;
   EXPECT_EQ(result_text(result),
-            "shelf-1: solved, 12 waypoints; BiRRT, 3804 checks in 0.412 s of 10 s; guided by " +
+            "shelf-1: solved, 12 waypoints; BiRRT, 3804 checks in 412 ms of 10 s; guided by " +
                 Digest{}.short_hex() + " revision 4, share 0.90");
 }
 
@@ -32,10 +32,10 @@ TEST(ResultText, TellsWhyItIsNotSolvedAndNotGuided) {
   ProblemResult result = solved_result();
   result.solved = false;
   result.waypoints.reset();
-  result.reason = "every goal collides";
+  result.reason = "time used up";
   result.guidance_reason = "no server answered";
   EXPECT_EQ(result_text(result),
-            "shelf-1: not solved, every goal collides; BiRRT, 3804 checks in 0.412 s of 10 s; "
+            "shelf-1: not solved, time used up; BiRRT, 3804 checks in 412 ms of 10 s; "
             "uniform: no server answered");
 }
 
@@ -43,6 +43,7 @@ TEST(ResultText, NamesABrokenLineOnce) {
   ProblemResult result;
   result.name = "line 3";
   result.reason = "line 3: not JSON";
+  result.not_planned = NotPlanned::Unreadable;
   EXPECT_EQ(result_text(result), "line 3: not JSON");
   result.name = "misfit";
   result.reason = "start has 6 joints";

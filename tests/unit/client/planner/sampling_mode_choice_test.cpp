@@ -1,4 +1,4 @@
-#include "client/planner/sampling_mode_choice.hpp"
+#include "client/guided/sampling_mode_choice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -189,7 +189,9 @@ TEST(SamplingModeSeed, IsTheSameForTheSameQueryOnly) {
   other.goal_configurations.resize(0, 0);
   other.T_task_goal = Eigen::Isometry3d::Identity();
   seeds.insert(sampling_mode_seed(other));
-  EXPECT_EQ(seeds.size(), 6U);
+  other.T_task_start = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1));
+  seeds.insert(sampling_mode_seed(other));
+  EXPECT_EQ(seeds.size(), 7U);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "client/planner/scene_record.hpp"
+#include "client/guided/scene_record.hpp"
 
 #include <gtest/gtest.h>
 

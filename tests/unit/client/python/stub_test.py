@@ -1,14 +1,21 @@
 """_kinship.pyi says what the module has, no less and no more; everything in it is documented."""
 import ast
+import doctest
 import inspect
+import os
 import pathlib
 import re
+import shutil
+import subprocess
+import sys
 import unittest
 
 import kinship
 from kinship import _kinship
 
 STUB = pathlib.Path(_kinship.__file__).with_name("_kinship.pyi")
+SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
+MYPY = shutil.which("mypy", path="/usr/bin")
 OTHERS = {"__repr__", "__getstate__", "__setstate__", "__new__", "__init__"}  # not part of a class's face
 
 
@@ -89,6 +96,38 @@ class Stub(unittest.TestCase):
             for member in real_members(value) if inspect.isclass(value) else ():
                 text = inspect.getdoc(getattr(value, member))
                 self.assertGreater(len(re.sub(r"^\w+\(.*?\) -> .*", "", text).strip()), 3, f"{name}.{member}")
+
+    def test_examples_in_docstrings_do_what_they_say(self):
+        parser, runner = doctest.DocTestParser(), doctest.DocTestRunner()
+        for name, value in vars(_kinship).items():
+            if not name.startswith("_"):
+                runner.run(parser.get_doctest(inspect.getdoc(value), {"kinship": kinship}, name, None, 0))
+        self.assertGreater(runner.summarize(verbose=False).attempted, 5)
+        self.assertEqual(runner.failures, 0)
+
+
+@unittest.skipUnless(MYPY, "needs mypy")
+class TypeCheck(unittest.TestCase):
+    """What users' mypy says of the types, in a process of its own."""
+
+    def check(self, *arguments):
+        build = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]).parent
+        return subprocess.run(
+            [MYPY, "--strict", "--ignore-missing-imports", "--allow-untyped-calls", "--allow-untyped-defs",
+             "--allow-incomplete-defs", "--disable-error-code", "type-arg", "--python-executable", sys.executable,
+             "--cache-dir", build / "mypy", *arguments],
+            env={**os.environ, "MYPYPATH": str(STUB.parent.parent)},
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=250)
+
+    def test_the_stub_and_the_example_pass(self):
+        run = self.check(STUB.parent, SOURCE / "client" / "python" / "examples" / "plot_distribution.py")
+        self.assertEqual(run.returncode, 0, run.stdout)
+
+    def test_what_is_wrong_is_found(self):
+        program = "import kinship\nkinship.Sampler('panda', [0.0]).sample(1)\nkinship.Robot('x').fk([0.0]).upper()\n"
+        run = self.check("-c", program)
+        self.assertIn('Argument 1 to "Sampler" has incompatible type "str"', run.stdout)
+        self.assertIn('has no attribute "upper"', run.stdout)
 
 
 if __name__ == "__main__":

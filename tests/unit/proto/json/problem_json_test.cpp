@@ -56,6 +56,25 @@ TEST(ProblemJson, OnlyNameStartAndGoalAreRequired) {
   EXPECT_TRUE(problem->scene.objects.empty());
 }
 
+TEST(ProblemJson, AStartIsJointsOrAPoseAndNothingElse) {
+  const auto with = [](const std::string& start) {
+    return R"({"name": "n", "start": )" + start + R"(, "goal": {"configurations": [[1, 2]]}})";
+  };
+  const auto problem = problem_from_json(with(R"({"pose": [1, 2, 3, 0, 0, 0, 1]})"));
+  ASSERT_TRUE(problem) << problem.error().message;
+  EXPECT_EQ(problem->T_task_start->translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(problem->start.size(), 0);
+  const auto again = problem_from_json(to_json(*problem));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_TRUE(again->T_task_start->isApprox(*problem->T_task_start));
+  EXPECT_FALSE(problem_from_json(with("[1, 2]"))->T_task_start);
+  EXPECT_EQ(message_of(with("[]")), "start: is empty");
+  EXPECT_EQ(message_of(with("{}")), "start.pose: is missing");
+  EXPECT_EQ(message_of(with(R"({"pose": [1]})")).find("start.pose: "), 0U);
+  EXPECT_NE(message_of(with(R"({"pose": [0,0,0,0,0,0,1], "link": "hand"})")).find("link"),
+            std::string::npos);
+}
+
 TEST(ProblemJson, AMissingPlacementIsWrittenAsMissing) {
   Problem problem;
   problem.start = problem.goal_configurations = Eigen::VectorXd::Zero(1);
@@ -205,8 +224,23 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
       to_json(result),
       R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
       R"("shortcut_checks":0,"projections":0,)"
-      R"("planning_time_s":0.0,"time_limit_s":0.0,"waypoints":null,"guidance":null,"found_by":"nothing",)"
-      R"("guidance_reason":"","planner":"","reason":"time limit"})");
+      R"("planning_time_s":0.0,"time_limit_s":0.0,"start":null,"waypoints":null,"guidance":null,)"
+      R"("found_by":"nothing","guidance_reason":"","planner":"","reason":"time limit",)"
+      R"("not_planned":null})");
+}
+
+TEST(ProblemJson, AResultSaysWhereItBeganOrWhyNot) {
+  ProblemResult result;
+  result.name = "shelf 7";
+  result.start = Eigen::Vector2d(0.25, -1);
+  result.not_planned = NotPlanned::StartCollides;
+  const auto again = problem_result_from_json(to_json(result));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again->start, *result.start);
+  EXPECT_EQ(again->not_planned, result.not_planned);
+  std::string text = to_json(result);
+  text.replace(text.find("start_collides"), 14, "bored");
+  EXPECT_FALSE(problem_result_from_json(text));
 }
 
 TEST(ProblemJson, GuidedResultIsReadBack) {

@@ -27,6 +27,14 @@ std::string message(const std::string& text) {
   return pairs ? "fine" : pairs.error().message;
 }
 
+TEST(WriteSrdf, IsReadBackAndEscapesNames) {
+  const std::string text =
+      write_srdf("my <robot>", {{"hand", "arm", "Adjacent"}, {"base", "hand", "Never"}}, "a note");
+  EXPECT_EQ(read(text).value_or_throw(), (Pairs{{"hand", "arm"}, {"base", "hand"}})) << text;
+  EXPECT_NE(text.find("my &lt;robot&gt;"), std::string::npos) << text;
+  EXPECT_NE(text.find("reason=\"Never\""), std::string::npos) << text;
+}
+
 TEST(ReadSrdf, GivesThePairsInTheirOrderAndNothingElse) {
   const auto pairs = read(R"(<?xml version="1.0"?>
     <!-- <disable_collisions link1="base" link2="base"/> -->

@@ -170,7 +170,11 @@ TEST(ReadChain, RefusesFarOrigins) {
 TEST(ReadChain, RefusesLinksThatDoNotMakeAChain) {
   RobotDescription description = large_robot();
   description.base_link = "bottom";
-  EXPECT_EQ(message(description), "base link 'bottom': not in the URDF");
+  EXPECT_EQ(message(description),
+            "base link 'bottom': not in the URDF (it has 'base', 'finger', 'hand', 'lamp', 'mid', "
+            "'rail' and 2 more)");
+  description.base_link = "bsae";
+  EXPECT_EQ(message(description), "base link 'bsae': not in the URDF (did you mean 'base'?)");
   description.base_link = "lamp";
   EXPECT_EQ(message(description), "base link 'lamp' is not an ancestor of tip link 'tip'");
   description.base_link = "hand";

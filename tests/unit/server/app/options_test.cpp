@@ -82,6 +82,21 @@ TEST_F(Options, TheStoreIsUnderHomeIfXdgSaysNothingUsable) {
   EXPECT_EQ(default_store(), "/home/someone/.local/state/kinship/experience.db");
 }
 
+TEST_F(Options, MetricsAreServedWhereSomebodySaysSo) {
+  EXPECT_EQ(good({}).metrics, "");
+  EXPECT_EQ(good({"--metrics", "127.0.0.1:9464"}).metrics, "127.0.0.1:9464");
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << "metrics = \"[::1]:9464\"\n";
+  EXPECT_EQ(good({"--config", file.c_str()}).metrics, "[::1]:9464");
+  for (const char* const wrong : {"9464", "localhost:9464", "127.0.0.1", "127.0.0.1:99999", ""}) {
+    EXPECT_EQ(code({"--metrics", wrong}), kWrongUsage) << wrong;
+    EXPECT_NE(err_.str().find("'" + std::string(wrong) + "' is not an address and a port"),
+              std::string::npos)
+        << err_.str();
+  }
+}
+
 TEST_F(Options, ArgumentsAreTaken) {
   const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
                                       "--interface", "eth0", "--log-level", "error"});

@@ -196,5 +196,41 @@ TEST_F(AdviceBookTest, ThreadsMayAddAndAskAtOnce) {
   EXPECT_EQ(advise().guided->attempts, static_cast<std::uint64_t>(kThreads * kAttempts));
 }
 
+TEST_F(AdviceBookTest, TellsTheWorthOfGuidanceAsItIsAdvisedNow) {
+  EXPECT_TRUE(book_.worths(10).pairs.empty());
+  advise();
+  EXPECT_TRUE(book_.worths(10).pairs.empty()) << "nothing is known yet";
+  run_later();
+  for (int i = 0; i < 20; ++i) {
+    book_.add(cost(SamplingMode::Guided, 1000));
+    book_.add(cost(SamplingMode::Control, 100));
+    run_later();
+  }
+  const GuidanceWorths worths = book_.worths(10);
+  ASSERT_EQ(worths.pairs.size(), 1U);
+  EXPECT_EQ(worths.left_out, 0U);
+  EXPECT_EQ(worths.pairs[0].task, "shelf");
+  EXPECT_EQ(worths.pairs[0].advice.guided->attempts, 20U);
+  EXPECT_EQ(worths.pairs[0].advice.recommended_share, advise().recommended_share);
+  EXPECT_LT(worths.pairs[0].advice.recommended_share, kProfileShare);
+}
+
+TEST_F(AdviceBookTest, TellsOfThePairsWithMostAttemptsAndHowManyOthersThereAre) {
+  for (const char* const task : {"c", "a", "b"})
+    book_.advise(task, {}, kContext, kProfileShare);
+  run_later();
+  for (const auto& [task, count] : {std::pair("a", 2), std::pair("b", 1), std::pair("c", 3)})
+    for (int i = 0; i < count; ++i) {
+      AttemptCost attempt = cost(SamplingMode::Guided, 10);
+      attempt.task = task;
+      book_.add(attempt);
+    }
+  const GuidanceWorths worths = book_.worths(2);
+  ASSERT_EQ(worths.pairs.size(), 2U);
+  EXPECT_EQ(worths.pairs[0].task, "a");
+  EXPECT_EQ(worths.pairs[1].task, "c");
+  EXPECT_EQ(worths.left_out, 1U);
+}
+
 }  // namespace
 }  // namespace kinship::catalog::advice_book_test

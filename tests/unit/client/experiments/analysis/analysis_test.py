@@ -207,6 +207,16 @@ class TestProgram(CopiedStudy):
         for name, content in files.items():
             self.assertEqual((self.folder / name).read_bytes(), content, name)
 
+    def test_the_report_counts_what_was_planned_not_what_the_study_wants(self) -> None:
+        description = self.folder / "study.json"
+        study = json.loads(description.read_text())
+        description.write_text(json.dumps(study | {"learning_instances": 20}))
+        planned = len(next(iter(StudyFolder(self.folder).cells("test.jsonl").values())).checks)
+        text = report.results_text(StudyFolder(self.folder))
+        self.assertNotEqual(planned, 50)
+        self.assertIn("20 learning instances per robot", text)
+        self.assertIn(f"{planned} test instances, ", text)
+
     def test_a_side_study_is_compared_with_its_own_uniform_planning(self) -> None:
         side = list(StudyFolder(self.folder).lines("pooled.jsonl"))
         older = report.results_text(StudyFolder(self.folder))

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/c/errors.hpp"
+#include "client/c/handles.hpp"
+#include "proto/types/task_axes.hpp"
+#include "robots/collision/fitted_links.hpp"
+#include "robots/kinematics/urdf.hpp"
+#include "robots/models/loaded_robot.hpp"
+
+namespace kinship::c_library {
+namespace {
+
+/// "x,y,yaw" as axes. \throws Failure(InvalidInput) that names a word that is none.
+TaskAxes read_axes(const char* text) {
+  std::vector<std::string_view> names;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    names.push_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return parse_task_axes(names).value_or_throw();
+}
+
+std::map<std::string, double> read_held(const kinship_held_joint* joints, std::size_t count) {
+  if (count > 0)
+    require(joints, "held_joints");
+  std::map<std::string, double> held;
+  for (std::size_t i = 0; i < count; ++i) {
+    require(joints[i].name, "a name in held_joints");
+    held[joints[i].name] = joints[i].value;
+  }
+  return held;
+}
+
+RobotDescription read_description(const kinship_robot_description& given) {
+  require(given.urdf, "description->urdf");
+  require(given.base_link, "description->base_link");
+  require(given.tip_link, "description->tip_link");
+  require(given.label, "description->label");
+  RobotDescription description;
+  description.label = given.label;
+  description.urdf = given.urdf;
+  description.base_link = given.base_link;
+  description.tip_link = given.tip_link;
+  if (given.T_tip_transfer != nullptr)
+    description.T_tip_transfer = read_pose(given.T_tip_transfer, "description->T_tip_transfer");
+  if (given.axes != nullptr)
+    description.task_axes = read_axes(given.axes);
+  description.held_joints = read_held(given.held_joints, given.held_joint_count);
+  description.never_colliding = read_pairs(given.never_colliding, given.never_colliding_pairs,
+                                           "description->never_colliding");
+  return description;
+}
+
+models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
+  require(given.source, "file->source");
+  models::RobotArguments arguments;
+  arguments.source = given.source;
+  arguments.base_link = text_or_empty(given.base_link);
+  arguments.tip_link = text_or_empty(given.tip_link);
+  arguments.label = text_or_empty(given.label);
+  arguments.axes = text_or_empty(given.axes);
+  arguments.srdf = text_or_empty(given.srdf);
+  if (given.package_count > 0)
+    require(given.packages, "file->packages");
+  for (std::size_t i = 0; i < given.package_count; ++i) {
+    require(given.packages[i], "a text in file->packages");
+    arguments.packages.emplace_back(given.packages[i]);
+  }
+  return arguments;
+}
+
+/// The description with solids around its meshes, if it has any.
+RobotDescription read_file(const kinship_robot_file& given) {
+  const models::RobotArguments arguments = read_file_arguments(given);
+  RobotDescription description = models::describe_robot(arguments).value_or_throw();
+  if (given.T_tip_transfer != nullptr)
+    description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
+  for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
+    description.held_joints[joint] = value;
+  const auto chain = kinematics::read_chain(description).value_or_throw();
+  const auto shapes = models::load_shapes(arguments, description, chain).value_or_throw();
+  description.mesh_solids = collision::fit_robot(chain, shapes).value_or_throw().mesh_solids;
+  return description;
+}
+
+kinship_code register_with(link::Client& line, const RobotDescription& description,
+                           kinship_robot& robot, size_t* dof) {
+  const auto chain = kinematics::read_chain(description).value_or_throw();
+  const Digest digest = chain.digest();
+  std::ranges::copy(digest.bytes, robot.digest);
+  if (dof != nullptr)
+    *dof = static_cast<size_t>(chain.dof());
+  const auto reply = line.register_robot(description);
+  if (!reply)
+    return remember(reply.error());
+  return reply->status == RegisterStatus::Refused ? remember(KINSHIP_REFUSED, reply->message)
+                                                  : KINSHIP_OK;
+}
+
+}  // namespace
+}  // namespace kinship::c_library
+
+using namespace kinship::c_library;
+
+kinship_code kinship_register(kinship_client* client, const kinship_robot_description* description,
+                              kinship_robot* robot, size_t* dof) {
+  return guarded([&] {
+    require(client, "client");
+    require(robot, "robot");
+    return register_with(client->line, read_description(read_structure(description, "description")),
+                         *robot, dof);
+  });
+}
+
+kinship_code kinship_register_file(kinship_client* client, const kinship_robot_file* file,
+                                   kinship_robot* robot, size_t* dof) {
+  return guarded([&] {
+    require(client, "client");
+    require(robot, "robot");
+    return register_with(client->line, read_file(read_structure(file, "file")), *robot, dof);
+  });
+}

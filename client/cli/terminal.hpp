@@ -1,0 +1,36 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+namespace kinship::cli {
+
+/// Whether a stream is standard output or standard error, and that a terminal.
+bool is_terminal(const std::ostream& stream);
+
+/// Whether colours may be written to a stream: a terminal, and the environment has no NO_COLOR
+/// (https://no-color.org).
+bool may_colour(const std::ostream& stream);
+
+/// A line at the end of a terminal that is written again and again; elsewhere a line each time.
+class StatusLine {
+ public:
+  /// \param stream    outlives the line.
+  /// \param is_shown  false: nothing is written.
+  StatusLine(std::ostream& stream, bool is_shown)
+      : stream_(stream), is_shown_(is_shown), is_rewritten_(is_terminal(stream)) {}
+  ~StatusLine() { clear(); }
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  void show(std::string_view text);
+  void clear();  ///< before anything else is written to the terminal
+
+ private:
+  std::ostream& stream_;
+  const bool is_shown_, is_rewritten_;
+  bool is_there_ = false;
+};
+
+}  // namespace kinship::cli

@@ -1,0 +1,44 @@
+#include "client/guided/attempt_record.hpp"
+
+#include <sstream>
+
+namespace kinship::planner {
+namespace {
+
+std::string describe(const PlanSettings& settings, const ProblemResult& result) {
+  std::ostringstream text;
+  text << "step=" << settings.resolution << " overshoot=" << settings.overshoot
+       << " shortcut_checks=" << settings.shortcut_checks << " max_checks=" << settings.max_checks
+       << (result.gate_fired ? " gate=fired" : "");
+  return text.str();
+}
+
+}  // namespace
+
+Attempt make_attempt(const Reporter& reporter, const Problem& problem,
+                     const PlannedProblem& planned, const PlanSettings& settings) {
+  const ProblemResult& result = planned.result;
+  Attempt attempt;
+  attempt.report_uuid = Uuid::random();
+  attempt.robot = reporter.robot;
+  attempt.machine = reporter.machine;
+  attempt.task = reporter.task;
+  attempt.T_task_base = problem.T_task_base;
+  PlanningRecord& record = attempt.record;
+  record.outcome = planned.outcome;
+  record.planner = planned.planner;
+  record.planner_options = describe(settings, result);
+  record.planning_time_s = result.planning_time_s;
+  record.collision_checks = result.collision_checks;
+  record.projections = result.projections;
+  record.time_limit_s = result.time_limit_s;
+  record.sampling_mode = result.sampling_mode;
+  record.share = result.share;
+  record.distribution_id = result.distribution_id;
+  record.distribution_revision = result.distribution_revision;
+  if (result.waypoints)
+    attempt.path = Path(*result.waypoints);
+  return attempt;
+}
+
+}  // namespace kinship::planner

@@ -1,0 +1,364 @@
+#include "client/guided/plan_problem.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "client/guided/contact_notes.hpp"
+#include "client/guided/problem_mismatch.hpp"
+#include "client/ompl/ompl_planner.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/planning/birrt.hpp"
+#include "robots/planning/cbirrt2.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/planning_bounds.hpp"
+#include "robots/planning/planning_budget.hpp"
+#include "robots/planning/region_constraint.hpp"
+#include "robots/planning/repetition_roadmap.hpp"
+#include "robots/planning/shortcut.hpp"
+#include "robots/planning/start_configuration.hpp"
+
+namespace kinship::planner {
+namespace {
+
+using planning::NoPath;
+
+struct Interrupted {};  // leaves a planner between two checks
+
+/// The configurations where planning may go: within limits to rounding, turning joints in the
+/// turn of the start.
+Eigen::MatrixXd within_bounds(const kinematics::Chain& chain, const Eigen::Matrix2Xd& bounds,
+                              const Eigen::MatrixXd& configurations) {
+  const std::vector<bool> turning = planning::turning_joints(chain);
+  Eigen::MatrixXd kept(configurations.rows(), configurations.cols());
+  Eigen::Index count = 0;
+  for (const auto& q : configurations.colwise()) {
+    Eigen::VectorXd limited = q;
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      if (chain.joints()[static_cast<std::size_t>(i)].type != kinematics::JointType::Continuous)
+        limited[i] = std::clamp(q[i], chain.lower()[i], chain.upper()[i]);
+    if (const auto turned = planning::turned_into(bounds, turning, limited))
+      kept.col(count++) = *turned;
+  }
+  return kept.leftCols(count);
+}
+
+/// "roll by 0.2, z by -0.1": what is outside a region, m and rad.
+std::string described(const planning::RegionConstraint::Vector6& excess) {
+  std::string text;
+  for (Eigen::Index i = 0; i < excess.size(); ++i)
+    if (excess[i] != 0)
+      text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
+              std::to_string(excess[i]);
+  return text + " outside Bw";
+}
+
+/// Empty for a query that is to be guided.
+std::string why_unguided(const QueryGuidance& query) {
+  if (query.guidance == nullptr)
+    return query.why_not;
+  switch (query.sampling_mode) {
+    case SamplingMode::Control:
+      return "planned uniformly as control";
+    case SamplingMode::Uniform:
+      return "planned uniformly by wish";
+    case SamplingMode::Guided:
+      break;
+  }
+  if (query.guidance->guide == Guide::None)
+    return "by rehearsal nothing is better than uniform planning";
+  return query.guidance->guided_fraction == 0 ? "the share of guided samples is 0" : "";
+}
+
+/// Which planner answers: a roadmap leaves a mixture of too many components to its trees.
+std::string planner_text(const PlannerChoice& planner,
+                         const planning::ConfigurationSampler& sampler) {
+  const std::string name = name_of(planner);
+  if (planner.kind != PlannerKind::Roadmap || !sampler.mixture() ||
+      sampler.mixture()->size() <= planning::kMaxRoadmapComponents)
+    return name;
+  return name + " (trees alone: " + std::to_string(sampler.mixture()->size()) +
+         " components exceed " + std::to_string(planning::kMaxRoadmapComponents) + ")";
+}
+
+Outcome outcome_of(const planning::PlanSummary& summary) {
+  if (summary.waypoints)
+    return Outcome::Solved;
+  const bool is_used_up =
+      summary.reason == NoPath::MaxChecks || summary.reason == NoPath::TimeLimit;
+  return is_used_up ? Outcome::Timeout : Outcome::Failed;
+}
+
+/// Why no search was begun; empty for what ends a search.
+std::optional<NotPlanned> not_planned_by(NoPath reason) {
+  switch (reason) {
+    case NoPath::StartOutOfReach:
+      return NotPlanned::StartOutOfReach;
+    case NoPath::StartBeyondLimits:
+      return NotPlanned::StartBeyondLimits;
+    case NoPath::StartNotFound:
+      return NotPlanned::StartNotFound;
+    case NoPath::StartCollides:
+      return NotPlanned::StartCollides;
+    case NoPath::StartOffConstraint:
+      return NotPlanned::StartOffConstraint;
+    case NoPath::GoalOutOfReach:
+      return NotPlanned::GoalOutOfReach;
+    case NoPath::GoalBeyondLimits:
+    case NoPath::GoalOutsideBounds:
+      return NotPlanned::GoalBeyondLimits;
+    case NoPath::NoGoal:
+    case NoPath::GoalNotFound:
+      return NotPlanned::GoalNotFound;
+    case NoPath::GoalsCollide:
+      return NotPlanned::GoalCollides;
+    case NoPath::GoalsOffConstraint:
+      return NotPlanned::GoalOffConstraint;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// One problem under way.
+class Planning {
+ public:
+  Planning(const PlannedRobot& robot, const Problem& problem, const PlanSettings& settings,
+           const std::function<bool()>& stop, planning::SearchRecorder* recorder)
+      : robot_(robot),
+        problem_(problem),
+        settings_(settings),
+        T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
+        world_(robot.solids,
+               {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
+        is_free_(planning::free_in(world_,
+                                   [&stop] {
+                                     if (stop())
+                                       throw Interrupted();
+                                   })),
+        recorder_(recorder),
+        generator_(problem.seed) {}
+
+  void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
+    if (!find_start(planned.result))
+      return;
+    bounds_ = planning::planning_bounds(robot_.chain, start_);
+    if (problem_.constraint)
+      constraint_.emplace(robot_.chain, *problem_.constraint, T_task_base_, bounds_);
+    const Eigen::MatrixXd goals = find_goals(planned.result);
+    if (goals.cols() == 0)
+      return;
+    planning::BirrtOptions options;
+    options.step = settings_.resolution;
+    options.overshoot = settings_.overshoot;
+    options.max_checks = settings_.max_checks;
+    options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
+    options.track_check_fraction = settings_.tracks.check_fraction;
+    options.recorder = recorder_;
+    const double begin_s = planning::thread_time_s();
+    const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
+                                            guidance, settings_, planned.result);
+    planned.result.planner = planner_text(planner, sampler);
+    planned.result.not_planned.reset();
+    const planning::PlanSummary summary = search(planner, goals, sampler, options);
+    planned.outcome = outcome_of(summary);
+    planned.result.not_planned = not_planned_by(summary.reason);
+    planned.result.solved = summary.waypoints.has_value();
+    planned.result.collision_checks = summary.collision_checks;
+    planned.result.projections = summary.projections;
+    planned.result.planning_time_s = planning::thread_time_s() - begin_s;
+    planned.result.tracks_followed = summary.tracks_followed;
+    planned.result.found_by = summary.found_by;
+    planned.result.reason = explain(summary.reason, summary.planner_message);
+    if (summary.waypoints)
+      shorten(*summary.waypoints, planned.result);
+  }
+
+ private:
+  planning::PlanSummary search(const PlannerChoice& planner, const Eigen::MatrixXd& goals,
+                               const planning::ConfigurationSampler& sampler,
+                               const planning::BirrtOptions& options) {
+    const Eigen::VectorXd& start = start_;
+    if (planner.kind == PlannerKind::Roadmap) {
+      planning::RoadmapOptions roadmap;
+      roadmap.tree = options;
+      return constraint_
+                 ? planning::plan_roadmap(start, goals, {is_free_, *constraint_}, sampler, roadmap,
+                                          generator_)
+                 : planning::plan_roadmap(start, goals, is_free_, sampler, roadmap, generator_);
+    }
+    if (planner.kind == PlannerKind::Ompl) {
+      const planning::OmplOptions ompl = {.planner = planner.ompl_planner, .limits = options};
+      return constraint_
+                 ? planning::plan_with_ompl(start, goals, {is_free_, *constraint_}, sampler, ompl,
+                                            generator_)
+                 : planning::plan_with_ompl(start, goals, is_free_, sampler, ompl, generator_);
+    }
+    return constraint_ ? planning::plan_cbirrt2(start, goals, {is_free_, *constraint_}, sampler,
+                                                options, generator_)
+                       : planning::plan_birrt(start, goals, is_free_, sampler, options, generator_);
+  }
+
+  /// \return whether there is one; the result says which, or why not.
+  bool find_start(ProblemResult& result) {
+    if (!problem_.T_task_start) {
+      start_ = problem_.start;
+      result.start = start_;
+      return true;
+    }
+    ContactNotes contacts(world_);
+    const planning::IsFree watched = contacts.watched(is_free_);
+    planning::StartConfiguration found = planning::start_configuration(
+        robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_start,
+        problem_.goal_configurations, watched);
+    result.goal_checks = found.collision_checks;
+    result.not_planned = not_planned_by(found.reason);
+    if (!found.q) {
+      result.reason = found.reason == NoPath::StartCollides
+                          ? "every configuration of the start collides: " + contacts.text()
+                          : explain(found.reason);
+      return false;
+    }
+    start_ = *std::move(found.q);
+    result.start = start_;
+    return true;
+  }
+
+  /// All of them count: the nearest may lie behind an obstacle.
+  Eigen::MatrixXd find_goals(ProblemResult& result) {
+    if (!problem_.T_task_goal) {
+      Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
+      if (goals.cols() > 0)
+        first_goal_ = goals.col(0);
+      else
+        refuse(NoPath::GoalOutsideBounds, result);
+      return goals;
+    }
+    const auto remember = [this](const Eigen::Ref<const Eigen::VectorXd>& q) {
+      if (!first_goal_)
+        first_goal_ = q;
+    };
+    const planning::IsFree is_free{[&](const Eigen::VectorXd& q) {
+                                     remember(q);
+                                     return is_free_(q);
+                                   },
+                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+                                     remember(qs.col(0));
+                                     return is_free_.ahead(qs);
+                                   },
+                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+                                     remember(qs.col(0));
+                                     return is_free_.blocked_ahead(qs);
+                                   }};
+    planning::GoalOptions options;
+    options.max_configurations = settings_.max_goals;
+    options.seed = problem_.seed;
+    planning::GoalConfigurations goals = planning::goal_configurations(
+        robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_goal, bounds_,
+        is_free, options);
+    result.goal_checks += goals.collision_checks;
+    if (goals.reason != NoPath::None)
+      refuse(goals.reason, result);
+    return std::move(goals.configurations);
+  }
+
+  void refuse(NoPath reason, ProblemResult& result) {
+    result.reason = explain(reason);
+    result.not_planned = not_planned_by(reason);
+  }
+
+  void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
+    planning::ShortcutOptions options;
+    options.step = settings_.resolution;
+    options.max_checks = settings_.shortcut_checks;
+    const planning::ShortcutSummary shortened =
+        constraint_
+            ? planning::shortcut_constrained(waypoints, is_free_, *constraint_, options, generator_)
+            : planning::shortcut(waypoints, is_free_, options, generator_);
+    result.shortcut_checks = shortened.collision_checks;
+    result.waypoints = shortened.waypoints;
+  }
+
+  /// Why there is no path, with what only this problem knows.
+  std::string explain(NoPath reason, const std::string& planner_message = {}) {
+    const std::string text(describe(reason));
+    switch (reason) {
+      case NoPath::StartCollides:
+        return text + contact_text(": ", start_);
+      case NoPath::GoalsCollide:
+        return text + (first_goal_ ? contact_text(", at the first one ", *first_goal_) : "");
+      case NoPath::StartOffConstraint:
+        return text + ": " + described(constraint_->excess(start_));
+      case NoPath::MaxChecks:
+        return "not solved within " + std::to_string(settings_.max_checks) + " collision checks";
+      case NoPath::TimeLimit:
+        return "not solved within " + std::to_string(problem_.time_limit_s) + " s";
+      case NoPath::GaveUp:
+        return planner_message;
+      default:
+        return text;
+    }
+  }
+
+  std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
+    const auto contact = world_.find_contact(q);
+    return contact ? before + "'" + contact->first + "' touches '" + contact->second + "'" : "";
+  }
+
+  const PlannedRobot& robot_;
+  const Problem& problem_;
+  const PlanSettings& settings_;
+  const Eigen::Isometry3d T_task_base_;
+  collision::CollisionWorld world_;
+  planning::IsFree is_free_;
+  Eigen::VectorXd start_;    // dof; from find_start on
+  Eigen::Matrix2Xd bounds_;  // around it
+  std::optional<planning::RegionConstraint> constraint_;
+  std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
+  planning::SearchRecorder* recorder_;
+  std::mt19937_64 generator_;
+};
+
+}  // namespace
+
+PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
+                            const QueryGuidance& query, const PlanSettings& settings,
+                            const std::function<bool()>& stop, planning::SearchRecorder* recorder) {
+  PlannedProblem planned;
+  planned.result.name = problem.name;
+  planned.result.time_limit_s = problem.time_limit_s;
+  if (query.guidance != nullptr) {
+    planned.result.distribution_id = query.guidance->distribution_id;
+    planned.result.distribution_revision = query.guidance->revision;
+    planned.result.sampling_mode = query.sampling_mode;
+  }
+  planned.result.guidance_reason = why_unguided(query);
+  const Result<PlannerChoice> planner =
+      planner_for(settings.planner, problem.constraint.has_value());
+  const std::optional<Mismatch> mismatch =
+      planner ? find_mismatch(robot.chain, problem)
+              : Mismatch{NotPlanned::UnfitPlanner, planner.error().message};
+  if (mismatch) {
+    planned.result.not_planned = mismatch->kind;
+    planned.result.reason = mismatch->text;
+    return planned;
+  }
+  planned.result.not_planned = NotPlanned::Error;  // until it gets further
+  try {
+    Planning planning(robot, problem, settings, stop, recorder);
+    planned.attempted = true;
+    planned.planner = name_of(*planner);
+    planned.result.planner = planned.planner;
+    planning.run(*planner, query.guidance, planned);
+  } catch (const Interrupted&) {
+    planned.interrupted = true;
+  } catch (const std::exception& exception) {  // of one problem: the others are planned
+    planned.result.reason = exception.what();
+  }
+  return planned;
+}
+
+}  // namespace kinship::planner

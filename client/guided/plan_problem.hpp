@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "client/guided/plan_settings.hpp"
+#include "client/guided/query_sampler.hpp"
+#include "proto/types/attempt.hpp"
+#include "proto/types/digest.hpp"
+#include "proto/types/mixture.hpp"
+#include "proto/types/problem.hpp"
+#include "robots/collision/robot_solids.hpp"
+#include "robots/geometry/link_shapes.hpp"
+#include "robots/inverse/solver.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/planning/search_recorder.hpp"
+
+namespace kinship::planner {
+
+/// What planning knows about the robot.
+struct PlannedRobot {
+  /// \throws Failure(InvalidInput) as collision::RobotSolids says.
+  PlannedRobot(kinematics::Chain its_chain, const geometry::RobotShapes& shapes)
+      : chain(std::move(its_chain)), solids(chain, shapes), solver(chain) {}
+
+  kinematics::Chain chain;
+  collision::RobotSolids solids;  ///< shared by the worlds of all problems
+  inverse::Solver solver;
+};
+
+struct PlannedProblem {
+  ProblemResult result;
+  std::string planner;  ///< its name; what else is to be said of it stands in the result only
+  Outcome outcome = Outcome::Failed;
+  bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
+  bool interrupted = false;  ///< given up because `stop` said so; the rest is then not meaningful
+};
+
+/// Plans one problem: goal configurations by inverse kinematics (all that are free, up to
+/// settings.max_goals), the planner of the settings, light shortcutting. A problem that does not
+/// fit the robot or the planner, or cannot be solved, is answered with its reason. Equal problem,
+/// guidance and settings give an equal path and equal checks, as long as the time limit does not
+/// end it.
+/// \param query  one that is not guided is planned exactly as if there were no guidance. Of a
+///               guided one the result says what its samples come from (make_query_sampler).
+/// \param stop   asked before every check; true gives up.
+/// \param recorder  writes down how the trees grow, but for planners of OMPL; null: nothing does.
+PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
+                            const QueryGuidance& query, const PlanSettings& settings,
+                            const std::function<bool()>& stop,
+                            planning::SearchRecorder* recorder = nullptr);
+
+}  // namespace kinship::planner

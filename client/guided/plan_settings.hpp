@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+#include "client/guided/planner_choice.hpp"
+#include "robots/planning/guided_sampler.hpp"
+
+namespace kinship::planner {
+
+/// How every problem of a run is planned, guided or not.
+struct PlanSettings {
+  double resolution = 0.05;             ///< between checked configurations, joint units
+  double overshoot = 1.5;               ///< see planning::BirrtOptions
+  std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
+  std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
+  int max_goals = 20;                   ///< goal configurations found for a goal pose
+  /// Beyond it a mixture gives fewer of its samples, none far beyond (planning::query_distance).
+  double gate_distance = planning::kGateDistance;
+  planning::TrackOptions tracks = {};  ///< of guided queries, where there is experience
+  PlannerChoice planner = {};
+};
+
+}  // namespace kinship::planner

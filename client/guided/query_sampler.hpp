@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/guided/plan_settings.hpp"
+#include "proto/types/attempt.hpp"
+#include "proto/types/digest.hpp"
+#include "proto/types/mixture.hpp"
+#include "proto/types/problem.hpp"
+#include "robots/kinematics/chain.hpp"
+#include "robots/planning/configuration_sampler.hpp"
+#include "robots/planning/experience_guide.hpp"
+
+namespace kinship::planner {
+
+/// What a task's experience gives a robot, for all queries from one placement: a distribution, or
+/// stored ways of the hand, or both.
+struct Guidance {
+  std::optional<Digest> distribution_id;  ///< present exactly if there is a mixture
+  std::uint64_t revision = 0;             ///< of the distribution
+  std::optional<Mixture> mixture;
+  std::shared_ptr<const planning::ExperienceGuide> experience;  ///< null: none
+  double guided_fraction = 0;  ///< of the samples of a guided query
+  Guide guide = Guide::All;    ///< what of them a guided query uses
+};
+
+/// What guidance a query has, and whether it uses it.
+struct QueryGuidance {
+  const Guidance* guidance = nullptr;  ///< null: there is none
+  SamplingMode sampling_mode =
+      SamplingMode::Uniform;  ///< Guided uses it; Control and Uniform plan without
+  std::string why_not = {};   ///< for people: why there is none
+};
+
+/// Where the samples of a guided query come from: planning::guided_sampler.
+/// \param guidance  null: uniform.
+/// \param result    told: guide, share, track_share, experience_revision, gate_fired,
+///                  guidance_reason.
+planning::ConfigurationSampler make_query_sampler(const kinematics::Chain& chain,
+                                                  const planning::TrackQuery& query,
+                                                  const Guidance* guidance,
+                                                  const PlanSettings& settings,
+                                                  ProblemResult& result);
+
+}  // namespace kinship::planner

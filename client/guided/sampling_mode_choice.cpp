@@ -1,0 +1,97 @@
+#include "client/guided/sampling_mode_choice.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+#include "proto/evidence/cost_ratio.hpp"
+#include "proto/types/pose.hpp"
+#include "proto/types/split_mix.hpp"
+
+namespace kinship::planner {
+namespace {
+
+/// Numbers one after another become one number.
+class Fingerprint {
+ public:
+  void add(std::uint64_t bits) { state_ = split_mixed(state_ + kSplitMixStep) ^ split_mixed(bits); }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  std::uint64_t value() const { return split_mixed(state_ + kSplitMixStep); }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+void require_part(const char* what, double value) {
+  if (!(value >= 0 && value <= 1))
+    throw std::invalid_argument(std::string("ArmChooser: ") + what + " is " +
+                                std::to_string(value) + ", must be 0 to 1");
+}
+
+std::uint64_t attempts_of(const std::optional<ModeEvidence>& evidence) {
+  return evidence ? evidence->attempts : 0;
+}
+
+}  // namespace
+
+double guided_fraction(const Advice& advice, const SamplingModeOptions& options) {
+  const double guided_fraction = options.guided_fraction.value_or(advice.guided_share);
+  require_part("share", guided_fraction);
+  return guided_fraction;
+}
+
+SamplingModeChooser::SamplingModeChooser(const Advice& advice, const SamplingModeOptions& options)
+    : options_(options),
+      window_(advice.recent),
+      guided_(attempts_of(advice.guided)),
+      control_(attempts_of(advice.control)) {
+  require_part("share", options.guided_fraction.value_or(0));
+  require_part("control share", options.control_fraction.value_or(0));
+}
+
+SamplingMode SamplingModeChooser::choose(std::uint64_t seed) const {
+  if (is_uniform())
+    return SamplingMode::Uniform;
+  // Under Thompson sampling each query draws anew, also a problem that is planned again and again;
+  // under a fixed part the same queries are control in every run.
+  const std::uint64_t known = is_sampling() ? guided_ + control_ : 0;
+  const double drawn = unit_interval(split_mixed(seed + split_mixed(known)));
+  return drawn < 1 - guided_part() ? SamplingMode::Control : SamplingMode::Guided;
+}
+
+double SamplingModeChooser::guided_part() const {
+  if (is_uniform())
+    return 0;
+  if (options_.control_fraction)
+    return 1 - *options_.control_fraction;
+  const double floor = control_ < kEarlyControls ? kEarlyControlFloor : kLateControlFloor;
+  return std::clamp(evidence::compare_costs(window_.recent()).guided_is_cheaper, kGuidedFloor,
+                    1 - floor);
+}
+
+void SamplingModeChooser::add(SamplingMode mode, Outcome outcome, std::uint64_t checks) {
+  if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
+    return;
+  ++(mode == SamplingMode::Guided ? guided_ : control_);
+  window_.add(mode, outcome == Outcome::Solved, checks);
+}
+
+std::uint64_t sampling_mode_seed(const Problem& problem) {
+  Fingerprint fingerprint;
+  fingerprint.add(problem.seed);
+  fingerprint.add(problem.name.size());
+  for (const char c : problem.name)
+    fingerprint.add(std::uint64_t{static_cast<unsigned char>(c)});
+  for (const double q : problem.start)
+    fingerprint.add(q);
+  for (const double q : problem.goal_configurations.reshaped())
+    fingerprint.add(q);
+  for (const auto& pose : {problem.T_task_start, problem.T_task_goal})
+    if (pose)
+      for (const double number : to_pose_array(*pose))
+        fingerprint.add(number);
+  return fingerprint.value();
+}
+
+}  // namespace kinship::planner

@@ -1,0 +1,41 @@
+#include "client/python/guidance_handle.hpp"
+
+namespace kinship::python {
+
+std::shared_ptr<GuidanceHandle> GuidanceHandle::of_distribution(
+    const SampledDistribution& distribution) {
+  planner::GuidanceOptions wanted;
+  wanted.task = distribution.value()->task;
+  wanted.robot = distribution.value()->robot;
+  wanted.dof = distribution.mixture().dimension();
+  wanted.guide = Guide::Mixture;
+  wanted.sampling.control_fraction = 0;
+  const auto fetch = [&](const FetchRequest&) -> Result<FetchReply> {
+    FetchReply reply;
+    reply.status = FetchStatus::Ready;
+    reply.distribution = *distribution.value();
+    return reply;
+  };
+  planner::GuidanceAnswer answer = planner::fetch_guidance(fetch, wanted, std::nullopt);
+  if (!answer.guidance)
+    throw Failure(ErrorCode::InvalidInput, answer.message);
+  return std::make_shared<GuidanceHandle>(wanted.robot, std::move(answer));
+}
+
+double GuidanceHandle::guided_part() const {
+  const std::scoped_lock lock(mutex_);
+  return answer_.sampling->guided_part();
+}
+
+SamplingMode GuidanceHandle::choose(const Problem& problem) const {
+  const std::scoped_lock lock(mutex_);
+  return answer_.sampling->choose(planner::sampling_mode_seed(problem));
+}
+
+void GuidanceHandle::add(const planner::PlannedProblem& planned) {
+  const std::scoped_lock lock(mutex_);
+  answer_.sampling->add(planned.result.sampling_mode, planned.outcome,
+                        planned.result.collision_checks);
+}
+
+}  // namespace kinship::python

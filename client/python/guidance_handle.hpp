@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "client/guided/guidance.hpp"
+#include "client/python/sampled_distribution.hpp"
+
+namespace kinship::python {
+
+/// What guides a robot's queries at one placement, with the choice between guided and control,
+/// which learns from what is planned. Shared by threads.
+class GuidanceHandle {
+ public:
+  /// \param answer  with guidance.
+  GuidanceHandle(const Digest& robot, planner::GuidanceAnswer answer)
+      : robot_(robot), answer_(std::move(answer)) {}
+
+  /// A distribution alone: without stored ways, and without control.
+  /// \throws Failure(InvalidInput) if it can guide no robot.
+  static std::shared_ptr<GuidanceHandle> of_distribution(const SampledDistribution& distribution);
+
+  const Digest& robot() const noexcept { return robot_; }
+  const planner::Guidance& guidance() const noexcept { return *answer_.guidance; }
+  const std::string& message() const noexcept { return answer_.message; }
+
+  double guided_part() const;
+  SamplingMode choose(const Problem& problem) const;
+  void add(const planner::PlannedProblem& planned);
+
+ private:
+  const Digest robot_;
+  planner::GuidanceAnswer answer_;  // but for its chooser never changed
+  mutable std::mutex mutex_;        // guards the chooser
+};
+
+}  // namespace kinship::python

@@ -1,0 +1,256 @@
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "client/guided/attempt_record.hpp"
+#include "client/guided/scene_record.hpp"
+#include "client/python/arrays.hpp"
+#include "client/python/bindings.hpp"
+#include "client/python/guidance_handle.hpp"
+#include "client/python/waiting.hpp"
+#include "proto/types/enum_text.hpp"
+
+namespace kinship::python {
+namespace {
+
+using SharedGuidance = std::shared_ptr<GuidanceHandle>;
+using AnyGuidance = std::variant<SharedGuidance, std::shared_ptr<SampledDistribution>>;
+
+/// A query that was planned, with what it was planned from.
+struct Plan {
+  std::shared_ptr<Robot> robot;
+  Problem problem;
+  planner::PlanSettings settings;
+  planner::PlannedProblem planned;
+};
+
+/// What a planner asks before every check. It runs without the interpreter's lock, which is taken
+/// now and then to let Python handle signals.
+class InterruptCheck {
+ public:
+  bool operator()() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_)
+      return false;
+    next_ = now + kSignalInterval;
+    const py::gil_scoped_acquire locked;
+    return PyErr_CheckSignals() != 0;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kSignalInterval;
+};
+
+SharedGuidance guidance_for(const Robot& robot, const std::optional<AnyGuidance>& given) {
+  if (!given)
+    return nullptr;
+  const auto* distribution = std::get_if<std::shared_ptr<SampledDistribution>>(&*given);
+  SharedGuidance guidance = distribution != nullptr
+                                ? GuidanceHandle::of_distribution(**distribution)
+                                : std::get<SharedGuidance>(*given);
+  if (guidance && guidance->robot() != robot.digest())
+    throw std::invalid_argument("plan: the guidance is for robot " + guidance->robot().short_hex() +
+                                ", not for '" + robot.description().label + "', " +
+                                robot.digest().short_hex());
+  return guidance;
+}
+
+planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& problem,
+                                const std::string& arm) {
+  if (!guidance)
+    return {.why_not = "no guidance was given"};
+  return {.guidance = &guidance->guidance(),
+          .sampling_mode = arm.empty() ? guidance->choose(problem)
+                                       : parse_word<SamplingMode>(arm).value_or_throw()};
+}
+
+Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
+                const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
+                const std::string& arm, const planner::PlanSettings& settings) {
+  Plan made{robot, problem, settings, {}};
+  if (seed)
+    made.problem.seed = *seed;
+  const SharedGuidance guidance = guidance_for(*robot, guided_by);
+  const planner::QueryGuidance query = query_of(guidance, made.problem, arm);
+  {
+    const py::gil_scoped_release unlocked;
+    made.planned = planner::plan_problem(*robot->planned(), made.problem, query, made.settings,
+                                         InterruptCheck());
+  }
+  if (made.planned.interrupted)
+    throw py::error_already_set();
+  if (!made.planned.attempted)
+    throw Failure(ErrorCode::InvalidInput,
+                  "problem '" + problem.name + "': " + made.planned.result.reason);
+  if (guidance)
+    guidance->add(made.planned);
+  return made;
+}
+
+json::NamedAttempt attempt_for(const Plan& self, const std::string& task,
+                               const std::string& machine) {
+  json::NamedAttempt named;
+  named.attempt = planner::make_attempt({self.robot->digest(), machine, task}, self.problem,
+                                        self.planned, self.settings);
+  const Problem& problem = self.problem;
+  const bool is_open = problem.scene.objects.empty() && problem.scene.meshes.empty() &&
+                       problem.scene.clouds.empty() && problem.attached.empty();
+  if (!is_open || problem.constraint)
+    named.attempt.scene = planner::record_scene(self.robot->chain(), problem).value_or_throw();
+  return named;
+}
+
+/// A member of the result, read as it is.
+template <typename Value>
+auto result(Value ProblemResult::*member) {
+  return [member](const Plan& self) { return self.planned.result.*member; };
+}
+
+/// The same of an enumeration, as the words of files.
+template <typename Enum>
+auto word(Enum ProblemResult::*member) {
+  return [member](const Plan& self) { return std::string(to_text(self.planned.result.*member)); };
+}
+
+void bind_guidance(py::module_& module) {
+  py::class_<GuidanceHandle, SharedGuidance>(
+      module, "Guidance",
+      "What guides a robot's queries of a task from one placement: a distribution, stored ways of "
+      "the hand, and how far to trust them. Learns from what is planned with it. Threads may share "
+      "it.")
+      .def_property_readonly("message", &GuidanceHandle::message, "What it is made of, for people.")
+      .def_property_readonly(
+          "guide",
+          [](const GuidanceHandle& self) { return std::string(to_text(self.guidance().guide)); },
+          "What of retreat, stored ways and mixture a guided query uses.")
+      .def_property_readonly(
+          "share", [](const GuidanceHandle& self) { return self.guidance().guided_fraction; },
+          "Of guided samples in a guided query, 0 to 1.")
+      .def_property_readonly("guided_part", &GuidanceHandle::guided_part,
+                             "Probability that the next query is guided, not planned uniformly to "
+                             "compare.")
+      .def_property_readonly(
+          "distribution_id",
+          [](const GuidanceHandle& self) {
+            const auto& id = self.guidance().distribution_id;
+            return id ? std::optional(id->hex()) : std::nullopt;
+          },
+          "Of its distribution; None: stored ways alone.")
+      .def_property_readonly(
+          "revision", [](const GuidanceHandle& self) { return self.guidance().revision; },
+          "Of its distribution.")
+      .def_property_readonly(
+          "ways",
+          [](const GuidanceHandle& self) {
+            const py::object stack = py::module_::import("numpy").attr("stack");
+            py::list ways;
+            if (self.guidance().experience)
+              for (const PosePath& path : self.guidance().experience->experience().paths) {
+                py::list poses;
+                for (const Eigen::Isometry3d& T_task_transfer : path.poses)
+                  poses.append(to_matrix(T_task_transfer));
+                ways.append(stack(poses));
+              }
+            return ways;
+          },
+          "Stored ways of the transfer frame in the task's frame: (n, 4, 4) each, start first.")
+      .def_property_readonly(
+          "way_sources",
+          [](const GuidanceHandle& self) {
+            std::vector<std::string> sources;
+            if (self.guidance().experience)
+              for (const PosePath& path : self.guidance().experience->experience().paths)
+                sources.push_back(path.source.hex());
+            return sources;
+          },
+          "Digests of the robots that took them, way by way.");
+}
+
+void bind_outcome(py::class_<Plan>& plan) {
+  plan.def_property_readonly("solved", result(&ProblemResult::solved), "Whether there is a path.")
+      .def_property_readonly(
+          "waypoints",
+          [](const Plan& self) {
+            const auto& waypoints = self.planned.result.waypoints;
+            return waypoints ? std::optional(to_rows(*waypoints)) : std::nullopt;
+          },
+          "(n, dof), start first, straight in between; None if not solved.")
+      .def_property_readonly("reason", result(&ProblemResult::reason), "Why it is not solved.")
+      .def_property_readonly("collision_checks", result(&ProblemResult::collision_checks),
+                             "Of planning.")
+      .def_property_readonly("goal_checks", result(&ProblemResult::goal_checks),
+                             "Of goal configurations, before planning.")
+      .def_property_readonly("shortcut_checks", result(&ProblemResult::shortcut_checks),
+                             "Of shortening the path, afterwards.")
+      .def_property_readonly("projections", result(&ProblemResult::projections),
+                             "Onto a constraint.")
+      .def_property_readonly("planning_time_s", result(&ProblemResult::planning_time_s),
+                             "Of this thread, without goals and shortening.")
+      .def_property_readonly("planner", result(&ProblemResult::planner), "What planned it.");
+}
+
+void bind_guided(py::class_<Plan>& plan) {
+  plan.def_property_readonly("arm", word(&ProblemResult::sampling_mode),
+                             "'guided', 'control' (uniform to compare) or 'uniform'.")
+      .def_property_readonly("share", result(&ProblemResult::share), "Of guided samples.")
+      .def_property_readonly("guide", word(&ProblemResult::guide),
+                             "What of retreat, ways and mixture guided it.")
+      .def_property_readonly("track_share", result(&ProblemResult::track_share),
+                             "Of samples around stored ways, a part of share.")
+      .def_property_readonly("tracks_followed", result(&ProblemResult::tracks_followed),
+                             "Stored ways that were tried.")
+      .def_property_readonly("found_by", word(&ProblemResult::found_by),
+                             "'straight_line', 'track', 'search' or 'nothing'.")
+      .def_property_readonly("guidance_reason", result(&ProblemResult::guidance_reason),
+                             "Why it was not guided, or less than wanted.")
+      .def("attempt", attempt_for, py::arg("task"), py::arg("machine") = "",
+           "What the server is to be told of it, with its scene: for Client.report().");
+}
+
+}  // namespace
+
+void bind_planning(py::module_& module) {
+  bind_guidance(module);
+  py::class_<Plan> outcome(module, "Plan", "What came of planning a problem.");
+  bind_outcome(outcome);
+  bind_guided(outcome);
+  module.def(
+      "plan",
+      [](const std::shared_ptr<Robot>& robot, const Problem& problem,
+         const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
+         const std::string& arm, const std::string& planner, std::uint64_t max_checks,
+         double resolution, std::uint64_t shortcut_checks, int max_goals) {
+        planner::PlanSettings settings;
+        settings.max_checks = max_checks;
+        settings.resolution = resolution;
+        settings.shortcut_checks = shortcut_checks;
+        settings.max_goals = max_goals;
+        if (!planner.empty())
+          settings.planner = planner::parse_planner(planner).value_or_throw();
+        return plan_query(robot, problem, guidance, seed, arm, settings);
+      },
+      py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),
+      py::arg("seed") = py::none(), py::arg("arm") = "", py::arg("planner") = "",
+      py::arg("max_checks") = planner::PlanSettings{}.max_checks,
+      py::arg("resolution") = planner::PlanSettings{}.resolution,
+      py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
+      py::arg("max_goals") = planner::PlanSettings{}.max_goals,
+      R"(Plans a problem as kinship-plan does; other threads run meanwhile, and Ctrl-C ends it.
+
+guidance         of Client.guidance(), or a Distribution; None: uniform
+seed             instead of the problem's: equal seed, equal path
+arm              'guided', 'control' or 'uniform'; empty: chosen as the evidence says
+planner          'birrt', 'cbirrt2', 'roadmap' or 'ompl:NAME'; empty: as the problem needs
+max_checks       collision checks after which it gives up
+resolution       between checked configurations, joint units
+shortcut_checks  spent on shortening the path
+max_goals        goal configurations found for a goal pose
+
+A problem that has no path is an answer with its reason. Raises InvalidInput if the problem does not
+fit the robot, or the guidance is another robot's.)");
+}
+
+}  // namespace kinship::python

@@ -1,0 +1,210 @@
+#include "robots/kinematics/link_tree.hpp"
+
+#include <urdf_model/model.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "robots/kinematics/urdf_model.hpp"
+
+namespace kinship::kinematics {
+namespace {
+
+constexpr std::size_t kArmJoints = 3;  // of a branch that is more than a finger
+constexpr std::array<std::string_view, 4> kPlaces = {"world", "map", "odom", "base_footprint"};
+constexpr std::array<std::string_view, 5> kToolNames = {"tool0", "tcp", "tool", "ee_link",
+                                                        "flange"};
+
+std::string type_of(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::REVOLUTE:
+      return "revolute";
+    case urdf::Joint::CONTINUOUS:
+      return "continuous";
+    case urdf::Joint::PRISMATIC:
+      return "prismatic";
+    case urdf::Joint::FLOATING:
+      return "floating";
+    case urdf::Joint::PLANAR:
+      return "planar";
+    default:
+      return "fixed";
+  }
+}
+
+std::string kind_of(const urdf::Geometry& geometry) {
+  switch (geometry.type) {
+    case urdf::Geometry::BOX:
+      return "box";
+    case urdf::Geometry::CYLINDER:
+      return "cylinder";
+    case urdf::Geometry::SPHERE:
+      return "sphere";
+    default:
+      return "mesh";
+  }
+}
+
+TreeJoint read_joint_of(const urdf::Joint& source) {
+  TreeJoint joint{.name = source.name, .type = type_of(source), .lower = {}, .upper = {}};
+  const bool has_limits = joint.type == "revolute" || joint.type == "prismatic";
+  if (has_limits && source.limits != nullptr) {
+    joint.lower = source.limits->lower;
+    joint.upper = source.limits->upper;
+  }
+  if (source.mimic != nullptr)
+    joint.mimics = source.mimic->joint_name;
+  return joint;
+}
+
+TreeLink read_link_of(const urdf::Link& source, int parent) {
+  TreeLink link{.name = source.name, .parent = parent, .joint = {}};
+  if (source.parent_joint != nullptr)
+    link.joint = read_joint_of(*source.parent_joint);
+  for (const auto& collision : source.collision_array)
+    if (collision != nullptr && collision->geometry != nullptr)
+      link.collision.push_back(kind_of(*collision->geometry));
+  return link;
+}
+
+/// A tree with its children, and how many moving joints lie below each link at most.
+class Branches {
+ public:
+  explicit Branches(const std::vector<TreeLink>& tree)
+      : tree_(tree),
+        children_(tree.size()),
+        below_(tree.size(), 0),
+        turns_or_slides_(tree.size(), false) {
+    for (std::size_t i = tree.size(); i-- > 1;) {
+      const auto parent = static_cast<std::size_t>(tree[i].parent);
+      if (tree[i].joint.type != "fixed")
+        turns_or_slides_[i] = true;
+      if (turns_or_slides_[i])
+        turns_or_slides_[parent] = true;
+      children_[parent].insert(children_[parent].begin(), i);
+      below_[parent] = std::max(below_[parent], joints_of(i));
+    }
+  }
+
+  /// Moving joints of a branch, that of the link itself among them.
+  std::size_t joints_of(std::size_t link) const {
+    return below_[link] + (tree_[link].joint.moves() ? 1 : 0);
+  }
+  const std::vector<std::size_t>& children(std::size_t link) const { return children_[link]; }
+
+  /// Links at which arms end, below `link`.
+  void find_ends(std::size_t link, std::vector<std::size_t>& ends) const {
+    std::vector<std::size_t> moving, arms;
+    std::size_t branches = 0;  // with whatever moves: a finger may follow another one
+    for (const std::size_t child : children_[link]) {
+      branches += turns_or_slides_[child] ? 1U : 0U;
+      if (joints_of(child) > 0)
+        moving.push_back(child);
+      if (joints_of(child) >= kArmJoints)
+        arms.push_back(child);
+    }
+    if (moving.empty() || (branches > 1 && arms.empty()))
+      ends.push_back(link);
+    else
+      for (const std::size_t child : branches == 1 ? moving : arms)
+        find_ends(child, ends);
+  }
+
+  /// The links without a moving joint between them and `link`, in the tree's order.
+  std::vector<std::size_t> fixed_to(std::size_t link) const {
+    while (tree_[link].parent >= 0 && !tree_[link].joint.moves())
+      link = static_cast<std::size_t>(tree_[link].parent);
+    std::vector<std::size_t> fixed = {link};
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      for (const std::size_t child : children_[fixed[i]])
+        if (tree_[child].joint.type == "fixed")
+          fixed.push_back(child);
+    return fixed;
+  }
+
+ private:
+  const std::vector<TreeLink>& tree_;
+  std::vector<std::vector<std::size_t>> children_;
+  std::vector<std::size_t> below_;
+  std::vector<bool> turns_or_slides_;  // the link, or one below it
+};
+
+std::size_t rank_of_tool(const std::string& name) {
+  std::size_t rank = 0;
+  while (rank < kToolNames.size() && !name.ends_with(kToolNames[rank]))
+    ++rank;
+  return rank;
+}
+
+/// The links fixed to an arm's last joint, outermost first, but those with a tool's name before.
+std::vector<std::string> tips_at(const std::vector<TreeLink>& tree, const Branches& branches,
+                                 std::size_t end) {
+  std::vector<std::size_t> fixed = branches.fixed_to(end);
+  std::reverse(fixed.begin(), fixed.end());
+  std::stable_sort(fixed.begin(), fixed.end(), [&](std::size_t a, std::size_t b) {
+    return rank_of_tool(tree[a].name) < rank_of_tool(tree[b].name);
+  });
+  std::vector<std::string> names;
+  for (const std::size_t link : fixed)
+    names.push_back(tree[link].name);
+  return names;
+}
+
+/// The links between the root and an arm's first moving joint, and how many joints move from there.
+ChainEnds ends_of(const std::vector<TreeLink>& tree, const Branches& branches, std::size_t end) {
+  ChainEnds ends;
+  ends.tips = tips_at(tree, branches, end);
+  std::vector<std::size_t> way;
+  for (int link = static_cast<int>(end); link >= 0;
+       link = tree[static_cast<std::size_t>(link)].parent)
+    way.insert(way.begin(), static_cast<std::size_t>(link));
+  for (const std::size_t link : way) {
+    ends.joints += tree[link].joint.moves() ? 1U : 0U;
+    if (ends.joints == 0)
+      ends.bases.push_back(tree[link].name);
+  }
+  const auto is_place = [](const std::string& name) {
+    return std::ranges::find(kPlaces, name) != kPlaces.end();
+  };
+  std::ranges::stable_partition(ends.bases, std::not_fn(is_place));
+  return ends;
+}
+
+}  // namespace
+
+Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf) {
+  const Result<UrdfModel> model = parse_urdf(urdf);
+  if (!model)
+    return model.error();
+  std::vector<urdf::LinkConstSharedPtr> found = {(*model)->getRoot()};
+  std::vector<TreeLink> tree = {read_link_of(*found[0], -1)};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const auto& joint : found[i]->child_joints) {
+      found.push_back((*model)->getLink(joint->child_link_name));
+      tree.push_back(read_link_of(*found.back(), static_cast<int>(i)));
+    }
+  return tree;
+}
+
+Result<std::string> read_robot_name(const std::string& urdf) {
+  const Result<UrdfModel> model = parse_urdf(urdf);
+  if (!model)
+    return model.error();
+  return (*model)->getName();
+}
+
+std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree) {
+  const Branches branches(tree);
+  if (tree.empty() || branches.joints_of(0) == 0)
+    return {};
+  std::vector<std::size_t> links;
+  branches.find_ends(0, links);
+  std::vector<ChainEnds> all;
+  for (const std::size_t link : links)
+    all.push_back(ends_of(tree, branches, link));
+  std::ranges::stable_sort(all, std::greater<>(), &ChainEnds::joints);
+  return all;
+}
+
+}  // namespace kinship::kinematics

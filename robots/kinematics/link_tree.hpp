@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/result.hpp"
+
+/// The links of a URDF before it is known which of them are a robot's base and tip.
+namespace kinship::kinematics {
+
+/// What joins a link to its parent, as the URDF says.
+struct TreeJoint {
+  std::string name;
+  std::string type;                    ///< revolute, continuous, prismatic, fixed, floating, planar
+  std::optional<double> lower, upper;  ///< joint units; hard limits of what has them
+  std::string mimics = {};             ///< the joint that it follows; empty: none
+
+  /// Whether it can be a joint of a chain: it has one value of its own.
+  bool moves() const {
+    return mimics.empty() && (type == "revolute" || type == "continuous" || type == "prismatic");
+  }
+};
+
+struct TreeLink {
+  std::string name;
+  int parent = -1;                          ///< index, below this link's own; -1: the root link
+  TreeJoint joint;                          ///< to the parent; of the root link empty
+  std::vector<std::string> collision = {};  ///< "box", "cylinder", "sphere" or "mesh" each
+};
+
+/// Every link of a URDF, in the order of Chain::links(): parents before their children.
+/// \return what parse_urdf() says of a text that is none.
+Result<std::vector<TreeLink>> read_link_tree(const std::string& urdf);
+
+/// The robot's name in a URDF. \return what parse_urdf() says of a text that is none.
+Result<std::string> read_robot_name(const std::string& urdf);
+
+/// Base and tip links that make an arm of a tree.
+struct ChainEnds {
+  std::vector<std::string> bases;  ///< no joint of its own between them; the likeliest first
+  std::vector<std::string> tips;   ///< the same
+  std::size_t joints = 0;          ///< moving ones between them
+};
+
+/// The arms of a tree, those with most joints first. An arm ends where no joint moves beyond, or
+/// where several do (the fingers of a gripper) and none of these branches has three joints; a
+/// branch that has begins an arm of its own from the same base. The likeliest base is the root
+/// link, or the first link below it where the root is a mere place (`world`, `map`, `odom`,
+/// `base_footprint`); the likeliest tip the last link that is fixed to the last joint, with
+/// `tool0`, `tcp` and the like before others.
+std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree);
+
+}  // namespace kinship::kinematics

@@ -1,0 +1,44 @@
+#include "server/app/metrics_address.hpp"
+
+#include <arpa/inet.h>
+
+#include <charconv>
+
+namespace kinship::app {
+namespace {
+
+bool is_address(int family, const std::string& text) {
+  in6_addr address{};  // the larger of the two
+  return inet_pton(family, text.c_str(), &address) == 1;
+}
+
+}  // namespace
+
+Result<MetricsAddress> read_metrics_address(std::string_view text) {
+  const Error wrong = invalid_input("'" + std::string(text) +
+                                    "' is not an address and a port, such as 127.0.0.1:9464, "
+                                    "[::1]:9464, or 0.0.0.0:9464 for all networks");
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos)
+    return wrong;
+  MetricsAddress read;
+  const char* const end = text.data() + text.size();
+  const auto [rest, mistake] = std::from_chars(text.data() + colon + 1, end, read.port);
+  if (mistake != std::errc{} || rest != end)
+    return wrong;
+  const std::string_view host = text.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) {
+    read.address = host.substr(1, host.size() - 2);
+    return is_address(AF_INET6, read.address) ? Result<MetricsAddress>(read) : wrong;
+  }
+  read.address = host;
+  return is_address(AF_INET, read.address) ? Result<MetricsAddress>(read) : wrong;
+}
+
+std::string to_text(const MetricsAddress& address) {
+  const std::string port = ':' + std::to_string(address.port);
+  return address.address.find(':') == std::string::npos ? address.address + port
+                                                        : '[' + address.address + ']' + port;
+}
+
+}  // namespace kinship::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "proto/types/result.hpp"
+
+namespace kinship::app {
+
+/// Where metrics are served.
+struct MetricsAddress {
+  std::string address;     ///< IPv4 or IPv6, in numbers
+  std::uint16_t port = 0;  ///< 0: one that is free
+};
+
+/// Reads 127.0.0.1:9464 or [::1]:9464. Names of hosts are none: what they mean may change.
+Result<MetricsAddress> read_metrics_address(std::string_view text);
+
+/// As a browser takes it: 127.0.0.1:9464, [::1]:9464.
+std::string to_text(const MetricsAddress& address);
+
+}  // namespace kinship::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/app/metrics_address.hpp"
+
+namespace kinship::app {
+
+/// A TCP port that is taken, and that nobody answers at yet.
+class MetricsPort {
+ public:
+  /// \throws Failure(Unavailable) if it cannot be had: taken, not ours, not of this machine.
+  explicit MetricsPort(const MetricsAddress& address);
+  ~MetricsPort();
+  MetricsPort(MetricsPort&& other) noexcept;
+  MetricsPort& operator=(MetricsPort&& other) noexcept;
+
+  std::string url() const;  ///< of the page
+
+ private:
+  friend class MetricsListener;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What one who connects may take.
+struct MetricsLimits {
+  std::size_t connections = 16;  ///< at a time; the oldest one goes for one more
+  std::size_t header_bytes = 8192;
+  std::chrono::milliseconds request_time{5000};  ///< from connection to reply, and for the reply
+  /// A page younger than this is sent again, however often somebody asks.
+  std::chrono::milliseconds page_age{200};
+};
+
+/// Answers GET /metrics over HTTP/1, one request a connection, on a thread of its own. Whoever
+/// connects can slow down nobody but others who do.
+class MetricsListener {
+ public:
+  /// \param page  called on the thread; what it throws is answered 503.
+  MetricsListener(MetricsPort port, std::function<std::string()> page, MetricsLimits limits = {});
+  ~MetricsListener();  ///< no call after it; open connections are closed
+  MetricsListener(const MetricsListener&) = delete;
+  MetricsListener& operator=(const MetricsListener&) = delete;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kinship::app

@@ -1,0 +1,162 @@
+// Manual pages and completions of the real programs, read by the real readers: mandoc, man, bash,
+// zsh, fish. Candidates for robots, tasks and distributions come from a real server.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "client/link/client.hpp"
+#include "tests/support/panda_experience.hpp"
+#include "tests/support/reserved_domain.hpp"
+#include "tests/support/robots.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace kinship::manual_test {
+namespace {
+
+const std::string kBin = KINSHIP_BIN_DIR;
+const std::string kDrivers = std::string(KINSHIP_SOURCE_DIR) + "/tests/integration/completion/";
+const std::map<std::string, int> kPrograms = {
+    {"kinship", 1}, {"kinship-plan", 1}, {"kinship-experiments", 1}, {"kinshipd", 8}};
+
+/// What a command of the shell prints, both streams. \param code  its exit code.
+std::string said_by(const std::string& command, int* code = nullptr) {
+  std::string text;
+  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> part{};
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe))
+    text.append(part.data(), size);
+  const int status = pclose(pipe);
+  if (code != nullptr)
+    *code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return text;
+}
+
+bool is_there(const std::string& program) {
+  int code = 1;
+  said_by("command -v " + program, &code);
+  return code == 0;
+}
+
+/// The scripts of all programs for each shell, written by the programs.
+class Manual : public testing::Test {
+ protected:
+  Manual() {
+    for (const auto& [program, section] : kPrograms) {
+      write(program, "--completion bash", program);
+      write(program, "--completion zsh", "_" + program);
+      write(program, "--completion fish", program + ".fish");
+      write(program, "--man-page", program + ".man");
+    }
+  }
+  void write(const std::string& program, const std::string& option, const std::string& name) {
+    int code = -1;
+    said_by(kBin + "/" + program + " " + option + " > " + (folder_.path() / name).string(), &code);
+    EXPECT_EQ(code, 0) << program << " " << option;
+  }
+  /// What a shell offers at the end of a line.
+  std::set<std::string> offered(const std::string& shell, const std::string& line) const {
+    const std::string options = shell == "bash" ? "--norc" : shell == "zsh" ? "-f" : "-N";
+    std::istringstream lines(said_by("PATH=" + kBin + ":$PATH timeout 60 " + shell + " " + options +
+                                     " " + kDrivers + "complete." + shell + " " +
+                                     folder_.path().string() + " '" + line + "'"));
+    std::set<std::string> words;
+    for (std::string word; std::getline(lines, word);)
+      if (!word.empty())
+        words.insert(word.substr(0, word.find_last_not_of(' ') + 1));
+    return words;
+  }
+
+  const test::TemporaryDirectory folder_;
+};
+
+using Words = std::set<std::string>;
+
+TEST_F(Manual, PagesAreAsManWantsThem) {
+  if (!is_there("mandoc") || !is_there("man"))
+    GTEST_SKIP() << "needs mandoc and man-db (deploy/packages-tests.txt)";
+  for (const auto& [program, section] : kPrograms) {
+    const std::string page = (folder_.path() / (program + ".man")).string();
+    EXPECT_EQ(said_by("mandoc -T lint -W warning " + page), "") << program;
+    EXPECT_EQ(said_by("LC_ALL=C man --warnings -l " + page + " > /dev/null"), "") << program;
+    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man -l " + page + " | col -b");
+    EXPECT_NE(text.find(program + " - "), std::string::npos) << text.substr(0, 400);
+    EXPECT_NE(text.find("--completion bash|zsh|fish"), std::string::npos) << program;
+  }
+  const std::string text =
+      said_by("LC_ALL=C MANWIDTH=80 man -l " + (folder_ / "kinship.man").string() + " | col -b");
+  EXPECT_NE(text.find("kinship paths list [OPTIONS]"), std::string::npos);
+  EXPECT_NE(text.find("KINSHIP_SERVER"), std::string::npos);
+  EXPECT_EQ(text.find("candidates"), std::string::npos) << "is hidden";
+}
+
+class Shells : public Manual, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Shells, CompleteVerbsOptionsAndTheirWords) {
+  const std::string shell = GetParam();
+  if (!is_there(shell))
+    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
+  EXPECT_EQ(offered(shell, "kinship pa"), (Words{"paths"}));
+  EXPECT_EQ(offered(shell, "kinship --domain 7 paths "),
+            (Words{"list", "show", "export", "import", "retire"}));
+  EXPECT_EQ(offered(shell, "kinship paths list -o "), (Words{"table", "wide", "json"}));
+  const Words options = offered(shell, "kinship paths list --");
+  for (const char* const option : {"--task", "--robot", "--limit", "--json", "--server"})
+    EXPECT_TRUE(options.contains(option)) << option << ": " << testing::PrintToString(options);
+  EXPECT_FALSE(options.contains("--file"));
+  EXPECT_FALSE(options.contains("--no-wait")) << "is of another verb";
+  EXPECT_EQ(offered(shell, "kinship-plan --guidance r"), (Words{"require"}));
+  EXPECT_TRUE(offered(shell, "kinshipd re").contains("restore"));
+  EXPECT_TRUE(offered(shell, "kinship-experiments pl").contains("placement"));
+}
+
+TEST_P(Shells, CompleteFilesWhereFilesAreMeant) {
+  const std::string shell = GetParam();
+  if (!is_there(shell))
+    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
+  std::ofstream(folder_ / "experience.jsonl") << '\n';
+  const Words found = offered(shell, "kinship paths import " + (folder_ / "exper").string());
+  ASSERT_EQ(found.size(), 1U) << testing::PrintToString(found);
+  EXPECT_TRUE(found.begin()->ends_with("experience.jsonl")) << *found.begin();
+}
+
+TEST_P(Shells, CompleteWhatTheServerKnowsAndNothingWithoutOne) {
+  const std::string shell = GetParam();
+  if (!is_there(shell))
+    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
+  const test::ReservedDomain domain;
+  const std::string number = std::to_string(domain.number());
+  EXPECT_EQ(offered(shell, "kinship --domain " + number + " robots show "), Words());
+  const test::ServerProcess server(
+      {.store = folder_ / "store.db", .domain = domain.number(), .arguments = {}});
+  link::Client client({.domain = domain.number(),
+                       .outbox = folder_ / "outbox",
+                       .timeout = std::chrono::seconds(30)});
+  for (const char* const robot : {"panda", "ur10e"})
+    ASSERT_TRUE(client.register_robot(test::model_description(robot)));
+  const Digest panda =
+      client.register_robot(test::model_description("panda")).value_or_throw().robot;
+  client.report(test::panda_attempt(panda, "sweep", 1));
+  ASSERT_EQ(client.flush(std::chrono::seconds(60)).accepted, 1U);
+  EXPECT_EQ(offered(shell, "kinship --domain " + number + " robots show "),
+            (Words{"panda", "ur10e"}));
+  EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --task "), (Words{"sweep"}));
+  EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --robot u"),
+            (Words{"ur10e"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shell, Shells, testing::Values("bash", "zsh", "fish"),
+                         [](const auto& shell) { return std::string(shell.param); });
+
+}  // namespace
+}  // namespace kinship::manual_test

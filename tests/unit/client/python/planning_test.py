@@ -1,0 +1,159 @@
+"""kinship.plan without a server: paths that keep what they promise, and planning that can be interrupted."""
+import json
+import os
+import pathlib
+import signal
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import kinship
+
+MODELS = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"]) / "robots" / "models"
+START = np.array([-0.9, -1.4, 1.9, -2.07, -1.57, 0])
+GOAL = np.array([0.9, -1.4, 1.9, -2.07, -1.57, 0])
+
+
+def post(radius=0.05) -> kinship.Scene:
+    """It stands between START and GOAL of a UR10e."""
+    scene = kinship.Scene()
+    scene.add_cylinder("post", [0.75, 0, 0.5, 0, 0, 0, 1], radius, 1.0)
+    return scene
+
+
+def around(q, digest) -> kinship.Distribution:
+    """One component around q, as if a server had fitted it."""
+    return kinship.Distribution.from_json(json.dumps({
+        "id": "ab" * 32, "revision": 3, "store_epoch": "7a0e3a52-8f0c-4d0a-9d43-2f6b7f0c1e55", "task": "sweep",
+        "robot": digest, "T_task_base": None, "profile": "default",
+        "selection": {"sources": [], "weighting": "sources", "since_ms": 0}, "engines": "test", "state": "ready",
+        "sources": [], "configurations": 500, "weights": [1.0], "means": [list(q)],
+        "covariances": [np.diag([0.5] * len(q)).tolist()], "limits": [[-6, 6]] * len(q), "cuts": None, "k_curve": None,
+        "held_out_score": None, "recommended_share": 0.75, "guided_share": 0.75, "evidence": "none", "guided": None,
+        "control": None, "recent": [], "fitted_ms": 1, "transfer_time_s": 0, "fit_time_s": 0, "fit": None}))
+
+
+class OfAUr10e(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = kinship.Robot(MODELS / "ur10e")
+        cls.problem = kinship.Problem("around", START, GOAL, scene=post(), seed=5)
+
+
+class Paths(OfAUr10e):
+    def test_go_from_start_to_goal_and_touch_nothing(self):
+        plan = kinship.plan(self.robot, self.problem)
+        self.assertTrue(plan.solved, plan.reason)
+        np.testing.assert_array_equal(plan.waypoints[0], START)
+        np.testing.assert_array_equal(plan.waypoints[-1], GOAL)
+        self.assertEqual((plan.arm, plan.planner, plan.found_by), ("uniform", "BiRRT", "search"))
+        steps = [np.linspace(a, b, 2 + int(np.linalg.norm(b - a) / 0.05))
+                 for a, b in zip(plan.waypoints, plan.waypoints[1:])]
+        self.assertTrue(kinship.World.of_problem(self.robot, self.problem).free(np.concatenate(steps)).all())
+        self.assertFalse(kinship.World.of_problem(self.robot, self.problem).free(np.linspace(START, GOAL, 40)).all())
+
+    def test_are_the_same_for_equal_seeds_alone(self):
+        first, again, other = (kinship.plan(self.robot, self.problem, seed=seed) for seed in (5, 5, 6))
+        np.testing.assert_array_equal(first.waypoints, again.waypoints)
+        self.assertEqual(first.collision_checks, again.collision_checks)
+        self.assertNotEqual(first.collision_checks, other.collision_checks)
+
+    def test_lead_to_a_pose_of_the_hand(self):
+        pose = self.robot.fk(GOAL, frame="transfer")
+        plan = kinship.plan(self.robot, kinship.Problem("hand", START, goal_pose=pose, scene=post()))
+        self.assertTrue(plan.solved, plan.reason)
+        np.testing.assert_allclose(self.robot.fk(plan.waypoints[-1], frame="transfer"), pose, atol=1e-5)
+
+    def test_that_are_none_say_why(self):
+        plan = kinship.plan(self.robot, kinship.Problem("inside", START, GOAL, scene=post(0.8)))
+        self.assertFalse(plan.solved)
+        self.assertIsNone(plan.waypoints)
+        self.assertRegex(plan.reason, "touches 'post'|'post' touches")
+        plan = kinship.plan(self.robot, self.problem, max_checks=20)
+        self.assertRegex(plan.reason, "not solved within 20 collision checks")
+
+    def test_of_problems_that_do_not_fit_are_refused(self):
+        with self.assertRaisesRegex(kinship.InvalidInput, "'short'.*2"):
+            kinship.plan(self.robot, kinship.Problem("short", [0, 0], [1, 1]))
+        with self.assertRaisesRegex(kinship.InvalidInput, "give goal or goal_pose"):
+            kinship.Problem("none", START)
+        with self.assertRaisesRegex(kinship.InvalidInput, "'nimble' is no planner"):
+            kinship.plan(self.robot, self.problem, planner="nimble")
+
+
+class Guided(OfAUr10e):
+    def test_by_a_distribution_it_draws_from_it(self):
+        plan = kinship.plan(self.robot, self.problem, around((START + GOAL) / 2, self.robot.digest))
+        self.assertTrue(plan.solved, plan.reason)
+        self.assertEqual((plan.arm, plan.guide), ("guided", "mixture"))
+        self.assertGreater(plan.share, 0)
+        attempt = plan.attempt("sweep", machine="cell 3")
+        self.assertEqual((attempt.arm, attempt.outcome, attempt.task, attempt.machine),
+                         ("guided", "solved", "sweep", "cell 3"))
+        self.assertEqual((attempt.collision_checks, attempt.share), (plan.collision_checks, plan.share))
+        self.assertEqual(len(attempt.scene), 1)
+        np.testing.assert_array_equal(attempt.waypoints, plan.waypoints)
+
+    def test_as_control_it_plans_as_without_guidance(self):
+        distribution = around(START, self.robot.digest)
+        plan, without = (kinship.plan(self.robot, self.problem, distribution, arm="control"),
+                         kinship.plan(self.robot, self.problem))
+        self.assertEqual(plan.arm, "control")
+        np.testing.assert_array_equal(plan.waypoints, without.waypoints)
+
+    def test_by_another_robots_distribution_it_is_refused(self):
+        with self.assertRaisesRegex(kinship.InvalidInput, "cdcdcdcdcdcd.*not for 'ur10e'"):
+            kinship.plan(self.robot, self.problem, around(START, "cd" * 32))
+
+
+class Interrupted(OfAUr10e):
+    """The goal is free but walled in: only the limits would end the search."""
+
+    def setUp(self):
+        scene = kinship.Scene()
+        hand = self.robot.fk(GOAL, frame="transfer")[:3, 3]
+        for axis in range(3):
+            for side in (-1, 1):
+                size = np.full(3, 1.6)
+                size[axis] = 0.02
+                center = hand + 0.8 * side * np.eye(3)[axis]
+                scene.add_box(f"wall {axis} {side}", [*center, 0, 0, 0, 1], size)
+        allowed = [(f"wall {axis} {side}", link) for axis in range(3) for side in (-1, 1)
+                   for link in self.robot.link_names if "wrist_3" not in link]
+        self.problem = kinship.Problem("walled in", START - [1.5, 0, 0, 0, 0, 0], GOAL, scene=scene,
+                                       allowed_collisions=allowed, time_limit_s=60)
+
+    def plan(self):
+        return kinship.plan(self.robot, self.problem, max_checks=10**9)
+
+    def test_by_control_c_it_ends_at_once(self):
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        begin = time.monotonic()
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            self.plan()
+        self.assertLess(time.monotonic() - begin, 20)
+        timer.join()
+
+
+class Threads(OfAUr10e):
+    def test_plan_at_the_same_time(self):
+        expected = kinship.plan(self.robot, self.problem).waypoints
+        answers = [None] * 4
+
+        def run(index):
+            answers[index] = kinship.plan(self.robot, self.problem).waypoints
+
+        threads = [threading.Thread(target=run, args=(index,)) for index in range(len(answers))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for answer in answers:
+            np.testing.assert_array_equal(answer, expected)
+
+
+if __name__ == "__main__":
+    unittest.main()
