@@ -3,8 +3,11 @@
 #include "client/cli/compare_command.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/kinematics_commands.hpp"
+#include "client/cli/link_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_commands.hpp"
+#include "client/cli/robot_upkeep_commands.hpp"
+#include "client/cli/srdf_command.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -148,6 +151,103 @@ void add_compare(CLI::App& group, Session& session) {
   });
 }
 
+void add_links(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<LinksOptions>();
+  CLI::App* command = add_command(
+      group, "links",
+      "The links of a URDF, their joints and solids, and which could be base and tip (no server)",
+      "kinship robots links arm.urdf\n"
+      "  kinship robots links arm.urdf --base base_link --tip tool0 --json");
+  add_robot_arguments(*command, options->robot);
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    return list_links(*options, session.out, session.err);
+  });
+}
+
+void add_frames(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<FramesOptions>();
+  CLI::App* command = add_command(
+      group, "frames", "Where the links and the transfer frame are at a configuration (no server)",
+      "kinship robots frames arm.urdf\n"
+      "  kinship robots frames robots/models/ur10e --q \"0 -1.57 1.57 0 1.57 0\"");
+  add_robot_arguments(*command, options->robot);
+  command->add_option(
+      "--q", options->configuration,
+      "Joint values, rad or m, separated by spaces (default: 0, within the limits)");
+  command->add_option("--placement", options->placement, kPlacementHelp);
+  add_json(*command, session);
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    return list_frames(*options, session.out, session.err);
+  });
+}
+
+void add_suggest_srdf(CLI::App& group, Session& session) {
+  const auto options = std::make_shared<SuggestSrdfOptions>();
+  CLI::App* command = add_command(
+      group, "suggest-srdf",
+      "Which links need not be checked against each other, sampled, as an SRDF (no server)",
+      "kinship robots suggest-srdf arm.urdf --base base_link --tip tool0 --output arm.srdf\n"
+      "  kinship robots check arm.urdf --base base_link --tip tool0 --srdf arm.srdf");
+  add_robot_arguments(*command, options->robot);
+  command->add_option("--samples", options->samples, "Random configurations (default 10000)")
+      ->check(arguments::between(100, 100'000'000));
+  command->add_option("--seed", options->seed, "Of the configurations (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--check-default", options->checks_default,
+                    "Check also pairs that touch where all joints are at 0");
+  command->add_option("--output", options->output, "SRDF file (default: standard output)");
+  add_json(*command, session, "What was found as one JSON document on standard output");
+  on_run(*command, session, [&session, options] {
+    options->json = session.json;
+    options->progress = session.is_on_terminal();
+    return suggest_srdf(*options, session.out, session.err);
+  });
+}
+
+void add_rename(CLI::App& group, Session& session) {
+  struct Options {
+    std::string robot, label;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      group, "rename", "Give a robot another label; the one it had is free for another robot",
+      "kinship robots rename cell1 cell1_without_gripper");
+  command->add_option("robot", options->robot, "Label, or four digits of its digest or more")
+      ->required();
+  command->add_option("label", options->label, "New label, 1 to 64 of A-Z a-z 0-9 _ . : -")
+      ->required();
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    return rename_robot(server, options->robot, options->label, session.json, session.out,
+                        session.err);
+  });
+}
+
+void add_remove(CLI::App& group, Session& session) {
+  struct Options {
+    std::string robot;
+    bool yes = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      group, "remove",
+      "Take a robot out: one without attempts is deleted, of another the paths are retired",
+      "kinship robots remove cell1\n  kinship robots remove cell1 --yes");
+  command->add_option("robot", options->robot, "Label, or four digits of its digest or more")
+      ->required();
+  command->add_flag("--yes", options->yes,
+                    "Also if it has attempts; without, it is only said what would happen (exit "
+                    "code 2)");
+  add_json(*command, session);
+  on_run_with_server(*command, session, [&session, options](link::Client& server) {
+    return remove_robot(server, options->robot, options->yes, session.json, session.out,
+                        session.err);
+  });
+}
+
 }  // namespace
 
 void add_robots(CLI::App& app, Session& session) {
@@ -158,7 +258,12 @@ void add_robots(CLI::App& app, Session& session) {
            "A robot by label or beginning of its digest", "kinship robots show ur10e"},
           show_robot);
   add_register(*robots, session);
+  add_rename(*robots, session);
+  add_remove(*robots, session);
   add_check(*robots, session);
+  add_links(*robots, session);
+  add_frames(*robots, session);
+  add_suggest_srdf(*robots, session);
   add_forward(*robots, session);
   add_inverse(*robots, session);
   add_compare(*robots, session);

@@ -161,6 +161,11 @@ class Watch {
     say("the server has gone; waiting for it");
   }
 
+  RobotNames robot() {
+    const std::lock_guard lock(mutex_);
+    return robot_;
+  }
+
   void read_rates() {
     int code = kDone;
     std::ostringstream unsaid;  // that it goes is said when it has gone
@@ -182,14 +187,15 @@ class Watch {
   void read_guidance() {
     std::ostringstream unsaid;
     std::vector<std::string> changed;
+    const RobotNames wanted = robot();
     for_each_row(server_, AdminVerb::ListTasks, {}, "watch", unsaid, [&](const std::string& row) {
       const auto task = json::task_summary_from_json(row);
       if (!task || (!options_.task.empty() && task->task != options_.task))
         return true;
       for (const TaskRobotSummary& robot : task->robots) {
-        if (!robot_.empty() && std::ranges::find(robot_, robot.label) == robot_.end())
+        if (!wanted.empty() && std::ranges::find(wanted, robot.label) == wanted.end())
           continue;
-        std::string text = guidance_text(task->task, robot);
+        std::string text = printable(guidance_text(task->task, robot));
         std::string& known = known_guidance_[{task->task, robot.label}];
         if (!text.empty() && text != known)
           changed.push_back(known = std::move(text));
@@ -207,7 +213,7 @@ class Watch {
     if (const std::string rates = rates_.text(); !rates.empty())
       out_ << now << padded("rates", kKind) << "  " << rates << std::endl;
     for (const std::string& guidance : std::exchange(guidance_, {}))
-      out_ << now << padded("guidance", kKind) << "  " << printable(guidance) << std::endl;
+      out_ << now << padded("guidance", kKind) << "  " << guidance << std::endl;
   }
 
   link::Client& server_;

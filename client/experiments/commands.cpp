@@ -47,8 +47,8 @@ void write_comparison(const CompareOptions& options, std::ostream& out) {
     write_table(comparison, out);
 }
 
-void write_page(const RunFolder& run, std::ostream& out) {
-  write_page(read_run(run), out);
+void write_page(const RunLocation& run, std::ostream& out) {
+  write_page(read_run(find_run(run)), out);
   if (!out)
     throw Failure(ErrorCode::Storage, "cannot write the page");
 }

@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <optional>
 
-#include "client/experiments/page/page_data.hpp"
+#include "client/experiments/page/run_files.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 /// The commands of kinship-experiments: options in, streams out. They throw Failure.
@@ -34,7 +34,7 @@ struct CompareOptions {
 /// Compares two result files of kinship-plan.
 void write_comparison(const CompareOptions& options, std::ostream& out);
 
-/// Writes a page for people that tells what a run of deploy/quickstart did, and shows it.
-void write_page(const RunFolder& run, std::ostream& out);
+/// Writes a page for people that tells what a run did, and shows it.
+void write_page(const RunLocation& run, std::ostream& out);
 
 }  // namespace kinship::experiments

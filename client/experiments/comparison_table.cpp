@@ -42,16 +42,15 @@ std::string ratio_text(double ratio) {
 
 std::string p_text(double p) { return formatted(p < 1e-3 ? "%.1e" : "%.4f", p); }
 
-void write_row(std::ostream& out, const std::string& name, const std::string& uniform,
-               const std::string& guided, const std::string& ratio, const std::string& p) {
+void write_row(std::ostream& out, const ComparisonRow& row) {
   constexpr std::size_t kName = 26;
   constexpr std::size_t kColumn = 11;
-  out << "  " << name << std::string(kName - std::min(kName, name.size()), ' ')
-      << padded(uniform, kColumn) << padded(guided, kColumn);
-  if (!ratio.empty())
-    out << padded(ratio, kColumn - 2);
-  if (!p.empty())
-    out << padded(p, kColumn);
+  out << "  " << row.name << std::string(kName - std::min(kName, row.name.size()), ' ')
+      << padded(row.uniform, kColumn) << padded(row.guided, kColumn);
+  if (!row.ratio.empty())
+    out << padded(row.ratio, kColumn - 2);
+  if (!row.p.empty())
+    out << padded(row.p, kColumn);
   out << '\n';
 }
 
@@ -100,40 +99,58 @@ std::string json_of(const WilcoxonSummary& test) {
 
 }  // namespace
 
-void write_table(const Comparison& comparison, std::ostream& out) {
+std::vector<ComparisonRow> comparison_rows(const Comparison& comparison) {
   const PlannerStatistics& u = comparison.uniform;
   const PlannerStatistics& g = comparison.guided;
-  out << comparison.pairs << " problems, each planned with both\n\n";
-  write_row(out, "", "uniform", "guided", "ratio", "p");
-  write_row(out, "solved", solved_text(u, comparison.pairs), solved_text(g, comparison.pairs), "",
-            "");
-  write_row(out, "collision checks, mean", count_text(u.mean_checks), count_text(g.mean_checks),
-            ratio_text(comparison.mean_checks_ratio), p_text(comparison.checks_test.p));
-  write_row(out, "collision checks, median", count_text(u.median_checks),
-            count_text(g.median_checks), ratio_text(comparison.median_checks_ratio), "");
-  write_row(out, "planning time, mean", seconds_text(u.mean_time_s), seconds_text(g.mean_time_s),
-            ratio_text(comparison.mean_time_ratio), p_text(comparison.time_test.p));
-  write_row(out, "planning time, median", seconds_text(u.median_time_s),
-            seconds_text(g.median_time_s), ratio_text(comparison.median_time_ratio), "");
+  std::vector<ComparisonRow> rows = {
+      {"solved", solved_text(u, comparison.pairs), solved_text(g, comparison.pairs), "", ""},
+      {"collision checks, mean", count_text(u.mean_checks), count_text(g.mean_checks),
+       ratio_text(comparison.mean_checks_ratio), p_text(comparison.checks_test.p)},
+      {"collision checks, median", count_text(u.median_checks), count_text(g.median_checks),
+       ratio_text(comparison.median_checks_ratio), ""},
+      {"planning time, mean", seconds_text(u.mean_time_s), seconds_text(g.mean_time_s),
+       ratio_text(comparison.mean_time_ratio), p_text(comparison.time_test.p)},
+      {"planning time, median", seconds_text(u.median_time_s), seconds_text(g.median_time_s),
+       ratio_text(comparison.median_time_ratio), ""}};
+  return rows;
+}
 
-  out << "\nratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst "
-         "("
-      << method_text(comparison.checks_test) << ").\n";
+std::vector<std::string> comparison_notes(const Comparison& comparison) {
+  const PlannerStatistics& u = comparison.uniform;
+  const PlannerStatistics& g = comparison.guided;
+  std::vector<std::string> notes = {
+      "ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test, unsolved ranked worst (" +
+      method_text(comparison.checks_test) + ")."};
   if (u.solved < comparison.pairs || g.solved < comparison.pairs)
-    out << "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
-           "is a lower bound. In a median it is worse than all that are solved.\n";
+    notes.emplace_back(
+        "An unsolved attempt counts in a mean with what it had used when it gave up: that mean "
+        "is a lower bound. In a median it is worse than all that are solved.");
   if (g.with_guidance < comparison.pairs)
-    out << "Only " << g.with_guidance << " of the " << comparison.pairs
-        << " guided attempts drew from a distribution.\n";
+    notes.push_back("Only " + std::to_string(g.with_guidance) + " of the " +
+                    std::to_string(comparison.pairs) +
+                    " guided attempts drew from a distribution.");
   if (u.with_guidance > 0)
-    out << u.with_guidance << " of the uniform attempts drew from a distribution.\n";
+    notes.push_back(std::to_string(u.with_guidance) +
+                    " of the uniform attempts drew from a distribution.");
   if (!comparison.unpaired.empty())
-    out << comparison.unpaired.size() << " problems were answered by one side only and left out.\n";
-  if (comparison.unplanned.size() > 0) {
-    out << comparison.unplanned.size() << " problems could not be planned and are left out ("
-        << comparison.unplanned.reasons() << "):\n";
-    comparison.unplanned.write_first(out);
-  }
+    notes.push_back(std::to_string(comparison.unpaired.size()) +
+                    " problems were answered by one side only and left out.");
+  if (comparison.unplanned.size() > 0)
+    notes.push_back(std::to_string(comparison.unplanned.size()) +
+                    " problems could not be planned and are left out (" +
+                    comparison.unplanned.reasons() + ").");
+  return notes;
+}
+
+void write_table(const Comparison& comparison, std::ostream& out) {
+  out << comparison.pairs << " problems, each planned with both\n\n";
+  write_row(out, {"", "uniform", "guided", "ratio", "p"});
+  for (const ComparisonRow& row : comparison_rows(comparison))
+    write_row(out, row);
+  out << '\n';
+  for (const std::string& note : comparison_notes(comparison))
+    out << note << '\n';
+  comparison.unplanned.write_first(out);
 }
 
 void write_json(const Comparison& comparison, std::ostream& out) {

@@ -1,10 +1,23 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 #include "client/experiments/comparison.hpp"
 
 namespace kinship::experiments {
+
+/// A line of the table, as text for people; what says nothing is empty.
+struct ComparisonRow {
+  std::string name, uniform, guided, ratio, p;
+};
+
+/// The table's lines below its head. Times are in ms where both are short.
+std::vector<ComparisonRow> comparison_rows(const Comparison& comparison);
+
+/// What the figures mean, and what is to be known of this run; a sentence or two each.
+std::vector<std::string> comparison_notes(const Comparison& comparison);
 
 /// The comparison as an aligned table for people, with what its figures mean below.
 void write_table(const Comparison& comparison, std::ostream& out);

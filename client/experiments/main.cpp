@@ -5,6 +5,7 @@
 
 #include "client/arguments/command_options.hpp"
 #include "client/experiments/commands.hpp"
+#include "client/experiments/page_options.hpp"
 #include "client/experiments/study_options.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/manual/manual.hpp"
@@ -24,8 +25,8 @@ Examples:
   kinship-experiments placement --model robots/models/ur10e
   kinship-experiments compare --uniform uniform.results.jsonl --guided guided.results.jsonl
 
-  kinship-experiments page --run build/quickstart --models robots/models --fleet panda,iiwa14 --robot ur10e \
-      --output quickstart.html
+  kinship-experiments page --run build/quickstart --models robots/models --output quickstart.html
+      any run: kinship-experiments page --help
   kinship-experiments planar --out build/experiments --quick
       the whole first experiment with few instances: learning sets, distributions, queries
   kinship-experiments planar --out client/experiments/results --resume
@@ -41,7 +42,7 @@ struct CommandLine {
   std::filesystem::path output;
   models::RobotArguments placed;
   CompareOptions compare;
-  RunFolder page;
+  PageOptions page;
   StudyOptions study;
 };
 
@@ -82,18 +83,6 @@ void add_compare(CLI::App& app, CommandLine& line) {
   compare->add_flag("--json", line.compare.json, "one JSON document instead of a table");
 }
 
-void add_page(CLI::App& app, CommandLine& line) {
-  CLI::App* const page = app.add_subcommand(
-      "page", "write an HTML page that shows a run of deploy/quickstart; it needs nothing else");
-  page->add_option("--run", line.page.folder, "folder of the run's files")->required();
-  page->add_option("--models", line.page.models, "folder of the robots' model folders")->required();
-  page->add_option("--fleet", line.page.fleet, "names of the experienced robots")
-      ->delimiter(',')
-      ->required();
-  page->add_option("--robot", line.page.robot, "name of the new robot")->required();
-  page->add_option("--output", line.output, "file to write; standard output if missing");
-}
-
 Eigen::Isometry3d read_placement(const std::string& text) {
   std::istringstream stream(text);
   PoseArray numbers{};
@@ -114,12 +103,6 @@ void write_shelf(const CommandLine& line) {
   output.keep();
 }
 
-void write_page_file(const CommandLine& line) {
-  files::OutputFile output(line.output, std::cout);
-  write_page(line.page, output.stream());
-  output.keep();
-}
-
 int run(int argc, char** argv) {
   CommandLine line;
   CLI::App app{"kinship-experiments: planning problems and comparisons for experiments",
@@ -130,7 +113,7 @@ int run(int argc, char** argv) {
   add_shelf(app, line);
   add_placement(app, line);
   add_compare(app, line);
-  add_page(app, line);
+  add_page_command(app, line.page);
   add_study_commands(app, line.study);
   try {
     app.parse(argc, argv);
@@ -146,7 +129,7 @@ int run(int argc, char** argv) {
   else if (app.got_subcommand("placement"))
     write_placement(line.placed, std::cout);
   else if (app.got_subcommand("page"))
-    write_page_file(line);
+    run_page_command(line.page);
   else
     write_comparison(line.compare, std::cout);
   return kDone;

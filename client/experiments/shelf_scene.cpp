@@ -16,13 +16,13 @@ namespace {
 constexpr double kThickness = 0.015;  // of boards, sides and back
 constexpr double kCompartmentWidth = 0.22;
 constexpr double kCompartmentHeight = 0.22;
-constexpr double kDepth = 0.26;
+constexpr double kShelfDepth = 0.26;
 constexpr double kFirstFloor = 0.12;  // top of the lowest board above the table
-constexpr std::size_t kColumns = 2;
-constexpr std::size_t kRows = 2;
-constexpr std::size_t kCompartments = kColumns * kRows;
+constexpr std::size_t kShelfColumns = 2;
+constexpr std::size_t kShelfRows = 2;
+constexpr std::size_t kCompartments = kShelfColumns * kShelfRows;
 
-constexpr double kPlaceNoise_m = 0.02;
+constexpr double kShelfNoise_m = 0.02;
 constexpr double kTurnNoise_rad = 3 * std::numbers::pi / 180;
 constexpr double kPickTurnNoise_rad = 8 * std::numbers::pi / 180;
 
@@ -34,8 +34,8 @@ Eigen::Isometry3d upright(double x, double y, double z, double yaw_rad = 0) {
 }
 
 Eigen::Isometry3d noisy(double x, double y, double z, double turn_noise_rad, Noise& noise) {
-  const double dx = noise(kPlaceNoise_m);
-  const double dy = noise(kPlaceNoise_m);
+  const double dx = noise(kShelfNoise_m);
+  const double dy = noise(kShelfNoise_m);
   return upright(x + dx, y + dy, z, noise(turn_noise_rad));
 }
 
@@ -46,33 +46,33 @@ void add_box(Scene& scene, std::string name, const Eigen::Vector3d& size,
 
 /// Middle of a compartment's floor at the opening, in the shelf's frame.
 Eigen::Vector3d floor_of(std::size_t compartment) {
-  const double column = static_cast<double>(compartment % kColumns);
-  const std::size_t floors_below = compartment / kColumns;
+  const double column = static_cast<double>(compartment % kShelfColumns);
+  const std::size_t floors_below = compartment / kShelfColumns;
   const double row = static_cast<double>(floors_below);
   const double pitch = kCompartmentWidth + kThickness;
-  return {0, (column - (kColumns - 1) / 2.0) * pitch,
+  return {0, (column - (kShelfColumns - 1) / 2.0) * pitch,
           kFirstFloor + row * (kCompartmentHeight + kThickness)};
 }
 
 void add_shelf(Scene& scene, const Eigen::Isometry3d& T_task_shelf) {
-  const double width = kColumns * kCompartmentWidth + (kColumns + 1) * kThickness;
+  const double width = kShelfColumns * kCompartmentWidth + (kShelfColumns + 1) * kThickness;
   const double bottom = kFirstFloor - kThickness;
-  const double height = kRows * kCompartmentHeight + (kRows + 1) * kThickness;
-  for (std::size_t row = 0; row <= kRows; ++row) {
+  const double height = kShelfRows * kCompartmentHeight + (kShelfRows + 1) * kThickness;
+  for (std::size_t row = 0; row <= kShelfRows; ++row) {
     const double z = kFirstFloor + static_cast<double>(row) * (kCompartmentHeight + kThickness);
-    add_box(scene, "board_" + std::to_string(row), {kDepth, width, kThickness},
-            T_task_shelf * upright(kDepth / 2, 0, z - kThickness / 2));
+    add_box(scene, "board_" + std::to_string(row), {kShelfDepth, width, kThickness},
+            T_task_shelf * upright(kShelfDepth / 2, 0, z - kThickness / 2));
   }
-  for (std::size_t side = 0; side <= kColumns; ++side) {
+  for (std::size_t side = 0; side <= kShelfColumns; ++side) {
     const double y =
-        (static_cast<double>(side) - kColumns / 2.0) * (kCompartmentWidth + kThickness);
-    add_box(scene, "side_" + std::to_string(side), {kDepth, kThickness, height},
-            T_task_shelf * upright(kDepth / 2, y, bottom + height / 2));
+        (static_cast<double>(side) - kShelfColumns / 2.0) * (kCompartmentWidth + kThickness);
+    add_box(scene, "side_" + std::to_string(side), {kShelfDepth, kThickness, height},
+            T_task_shelf * upright(kShelfDepth / 2, y, bottom + height / 2));
   }
   add_box(scene, "back", {kThickness, width, height},
-          T_task_shelf * upright(kDepth + kThickness / 2, 0, bottom + height / 2));
-  add_box(scene, "plinth", {kDepth, width, bottom},
-          T_task_shelf * upright(kDepth / 2, 0, bottom / 2));
+          T_task_shelf * upright(kShelfDepth + kThickness / 2, 0, bottom + height / 2));
+  add_box(scene, "plinth", {kShelfDepth, width, bottom},
+          T_task_shelf * upright(kShelfDepth / 2, 0, bottom / 2));
 }
 
 /// Puts boxes into one or two compartments other than the goal.
@@ -130,8 +130,8 @@ ShelfScene draw_shelf_scene(std::mt19937_64& generator) {
   Eigen::Isometry3d R_forward = Eigen::Isometry3d::Identity();
   R_forward.linear() << 0, 0, 1, 0, -1, 0, 1, 0, 0;
   const Eigen::Vector3d floor = floor_of(goal);
-  const double sideways = noise(kPlaceNoise_m / 2);
-  const double inward = noise(kPlaceNoise_m / 2);  // the palm ends at the opening
+  const double sideways = noise(kShelfNoise_m / 2);
+  const double inward = noise(kShelfNoise_m / 2);  // the palm ends at the opening
   const double above_floor = held_box().size.x() / 2 + 0.05;
   instance.T_task_place =
       T_task_shelf * upright(inward, floor.y() + sideways, floor.z() + above_floor) * R_forward;

@@ -127,7 +127,7 @@ std::optional<NotPlanned> not_planned_by(NoPath reason) {
 class Planning {
  public:
   Planning(const PlannedRobot& robot, const Problem& problem, const PlanSettings& settings,
-           const std::function<bool()>& stop)
+           const std::function<bool()>& stop, planning::SearchRecorder* recorder)
       : robot_(robot),
         problem_(problem),
         settings_(settings),
@@ -139,6 +139,7 @@ class Planning {
                                      if (stop())
                                        throw Interrupted();
                                    })),
+        recorder_(recorder),
         generator_(problem.seed) {}
 
   void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
@@ -156,6 +157,7 @@ class Planning {
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
     options.track_check_fraction = settings_.tracks.check_fraction;
+    options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
     const auto sampler = make_query_sampler(robot_.chain, {T_task_base_, bounds_, start_, goals},
                                             guidance, settings_, planned.result);
@@ -316,6 +318,7 @@ class Planning {
   Eigen::Matrix2Xd bounds_;  // around it
   std::optional<planning::RegionConstraint> constraint_;
   std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
+  planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
 };
 
@@ -323,7 +326,7 @@ class Planning {
 
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,
-                            const std::function<bool()>& stop) {
+                            const std::function<bool()>& stop, planning::SearchRecorder* recorder) {
   PlannedProblem planned;
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
@@ -345,7 +348,7 @@ PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
   }
   planned.result.not_planned = NotPlanned::Error;  // until it gets further
   try {
-    Planning planning(robot, problem, settings, stop);
+    Planning planning(robot, problem, settings, stop, recorder);
     planned.attempted = true;
     planned.planner = name_of(*planner);
     planned.result.planner = planned.planner;

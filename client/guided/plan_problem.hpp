@@ -16,6 +16,7 @@
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/solver.hpp"
 #include "robots/kinematics/chain.hpp"
+#include "robots/planning/search_recorder.hpp"
 
 namespace kinship::planner {
 
@@ -46,8 +47,10 @@ struct PlannedProblem {
 /// \param query  one that is not guided is planned exactly as if there were no guidance. Of a
 ///               guided one the result says what its samples come from (make_query_sampler).
 /// \param stop   asked before every check; true gives up.
+/// \param recorder  writes down how the trees grow, but for planners of OMPL; null: nothing does.
 PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
                             const QueryGuidance& query, const PlanSettings& settings,
-                            const std::function<bool()>& stop);
+                            const std::function<bool()>& stop,
+                            planning::SearchRecorder* recorder = nullptr);
 
 }  // namespace kinship::planner

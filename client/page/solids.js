@@ -27,8 +27,9 @@ const kinshipSolids = (() => {
     const hue = new THREE.Color(color(layer.color));
     const opacity = layer.opacity || 0.22;
     for (const object of layer.objects) {
+      const isFloor = object.box && Math.max(...object.box) > 1000 && Math.min(...object.box) < 100;
       const faces = new THREE.Mesh(geometryOf(object), new THREE.MeshLambertMaterial(
-        {color: hue, transparent: opacity < 1, opacity, depthWrite: opacity >= 1, side: THREE.DoubleSide,
+        {color: hue, transparent: opacity < 1, opacity: isFloor ? opacity / 3 : opacity, depthWrite: opacity >= 1, side: THREE.DoubleSide,
          polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
       const edges = new THREE.LineSegments(edgesOf(object), new THREE.LineBasicMaterial(
         {color: hue, transparent: true, opacity: opacity < 1 ? 0.85 : 0.4}));

@@ -45,6 +45,26 @@ const kinshipView = (() => {
         controls.update();
         draw();
       },
+      grow(index, lines, points) {
+        for (const drawn of groups[index].children) {
+          if (drawn.isLineSegments) drawn.geometry.setDrawRange(0, 2 * lines);
+          if (drawn.isPoints) drawn.geometry.setDrawRange(0, points);
+        }
+        draw();
+      },
+      follow(other) {
+        other.controls.addEventListener("change", () => {
+          if (camera.position.equals(other.camera.position) && controls.target.equals(other.controls.target)) return;
+          camera.position.copy(other.camera.position);
+          controls.target.copy(other.controls.target);
+          camera.near = other.camera.near;
+          camera.far = other.camera.far;
+          camera.updateProjectionMatrix();
+          stage.dataset.turned = "yes";
+          controls.update();
+          draw();
+        });
+      },
       move(how) {
         stage.dataset.turned = "yes";
         kinshipCamera.move(camera, controls.target, how);
@@ -102,6 +122,14 @@ const kinshipView = (() => {
     return {
       draw,
       set(index, layer) { layers[index] = layer; },
+      grow(index, lines, points) {
+        const {lines: [line] = [], points: [cloud] = []} = layers[index].whole || layers[index];
+        layers[index] = {...layers[index], whole: {lines: [line], points: [cloud]},
+                         lines: line && [{...line, positions: line.positions.slice(0, 6 * lines)}],
+                         points: cloud && [{...cloud, positions: cloud.positions.slice(0, 3 * points)}]};
+        draw();
+      },
+      follow() {},
       fit(balls) {
         canvas.width = 2 * stage.clientWidth;
         canvas.height = 2 * stage.clientHeight;
@@ -145,7 +173,7 @@ const kinshipView = (() => {
       if (!layer.text) return;
       const button = make("button", {type: "button", "aria-pressed": String(layer.shown), "data-layer": layer.name,
                                      onclick: () => button.setAttribute("aria-pressed", String(toggle(index)))},
-                          make("i", {style: `--hue: var(--${layer.color})`}), layer.text);
+                          make("i", {style: `--hue: var(--${layer.color})`}), make("span", {}, layer.text));
       legend.append(button);
     });
     return legend;
@@ -159,7 +187,8 @@ const kinshipView = (() => {
   ///   shows the layer), shown (true), fits (true: the camera sees all of it), objects [{pose, box | cylinder | sphere}] with
   ///   opacity, arms [{bones, opacity}], lines [{positions: pairs, opacity}], ways [{positions: one line, width}],
   ///   points [{positions, size, opacity}]}. Solids and bones are those of client/page/json_text.hpp.
-  /// \return {replace(name, layer): other content for a layer, of the same place in the legend; show(name, shown); fit()}
+  /// \return {replace(name, layer): other content, colour or text for a layer; show(name, shown); grow(name, lines, points):
+  ///   only so many segments and points of it; follow(other): turns as another figure does; fit()}
   function show(figure, view) {
     const layers = view.layers.map((layer) => ({shown: true, fits: true, ...layer}));
     const isTurnable = hasWebGl();
@@ -169,19 +198,28 @@ const kinshipView = (() => {
     const again = () => refit(true);
     const toggle = (index) => {
       layers[index].shown = !layers[index].shown;
-      drawing.set(index, layers[index]);
+      put(index);
       drawing.draw();
       return layers[index].shown;
     };
     const hint = isTurnable
       ? make("div", {class: "hint"},
-             make("span", {}, "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212."),
+             make("span", {}, matchMedia("(pointer: coarse)").matches
+               ? "Tap it, then drag to turn and pinch to zoom."
+               : "Drag to turn. Click it, then scroll to zoom; or use the arrow keys, + and \u2212."),
              make("button", {type: "button", onclick: again}, "Reset view"))
       : make("div", {class: "hint"}, "A still projection: this browser has no WebGL.");
     figure.classList.add("view");
     figure.append(legendOf(layers, toggle), stage, hint);
     const drawing = (isTurnable ? turnable : still)(stage, canvas, view.from);
-    const setAll = () => layers.forEach((layer, index) => drawing.set(index, layer));
+    const grown = new Map();
+    const indexOf = (name) => layers.findIndex((layer) => layer.name === name);
+    const put = (index) => {
+      drawing.set(index, layers[index]);
+      const range = grown.get(layers[index].name);
+      if (range) drawing.grow(index, ...range);
+    };
+    const setAll = () => layers.forEach((layer, index) => put(index));
     setAll();
     refit(true);
     if (isTurnable) listen(canvas, drawing, again);
@@ -190,18 +228,27 @@ const kinshipView = (() => {
       setAll();
       drawing.draw();
     });
-    const indexOf = (name) => layers.findIndex((layer) => layer.name === name);
     return {
       replace(name, layer) {
         const index = indexOf(name);
         layers[index] = {...layers[index], ...layer};
         drawing.set(index, layers[index]);
         drawing.draw();
+        const button = figure.querySelector(`[data-layer="${name}"]`);
+        if (!button) return;
+        button.firstChild.style.setProperty("--hue", `var(--${layers[index].color})`);
+        button.lastChild.textContent = layers[index].text;
       },
+      grow(name, lines, points) {
+        grown.set(name, [lines, points]);
+        drawing.grow(indexOf(name), lines, points);
+      },
+      follow(other) { drawing.follow(other.drawing); },
+      drawing,
       show(name, shown) {
         const index = indexOf(name);
         layers[index].shown = shown;
-        drawing.set(index, layers[index]);
+        put(index);
         drawing.draw();
         const button = figure.querySelector(`[data-layer="${name}"]`);
         if (button) button.setAttribute("aria-pressed", String(shown));

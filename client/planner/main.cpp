@@ -30,16 +30,21 @@ int run(const kinship::planner::PlanOptions& options) {
     throw kinship::Failure(kinship::ErrorCode::InvalidInput,
                            "--output '" + options.output.string() + "' is the problem file");
   kinship::files::OutputFile output(options.output, std::cout);
+  std::ostream nowhere(nullptr);
+  kinship::files::OutputFile searches(options.searches, nowhere);
   const bool is_read_by_people =
       !options.json && options.output.empty() && isatty(STDOUT_FILENO) == 1;
   const kinship::planner::RunStreams streams = {
       .problems = options.problems == "-" ? std::cin : problem_file,
       .results = output.stream(),
       .messages = std::cerr,
+      .searches = options.searches.empty() ? nullptr : &searches.stream(),
       .messages_on_terminal = isatty(STDERR_FILENO) == 1 && !is_read_by_people,
       .results_for_people = is_read_by_people};
   const kinship::planner::RunSummary summary =
       kinship::planner::run_plan(options, streams, [] { return interrupted.load(); });
+  if (summary.is_complete && !options.searches.empty())
+    searches.keep();
   if (summary.is_complete)
     output.keep();
   else if (output.has_part())

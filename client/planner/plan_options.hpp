@@ -39,9 +39,10 @@ struct PlanOptions {
   bool record_scenes = true;  ///< reports carry their problem's scene
   std::string machine;        ///< empty: the host's name
   PlanSettings settings;
-  std::uint64_t seed_offset = 0;  ///< added to each problem's seed
-  std::filesystem::path output;   ///< empty: standard output
-  bool json = false;              ///< results as JSON Lines also where people read them
+  std::uint64_t seed_offset = 0;   ///< added to each problem's seed
+  std::filesystem::path output;    ///< empty: standard output
+  std::filesystem::path searches;  ///< how each search grew; empty: is not recorded
+  bool json = false;               ///< results as JSON Lines also where people read them
   std::uint32_t domain = 0;
   std::string server = "127.0.0.1";  ///< host of kinshipd
   std::chrono::milliseconds timeout{5000};

@@ -42,6 +42,16 @@ int exit_code_without(NoGuidance why_not) {
   return kFailed;
 }
 
+/// An empty one of a problem that was not searched for.
+void write_search(const std::string& name, const planning::SearchRecorder& recorder,
+                  std::ostream& searches) {
+  RecordedSearch search = recorder.search();
+  search.name = name;
+  searches << json::to_json(search) << '\n';
+  if (!searches)
+    throw Failure(ErrorCode::Storage, "cannot write the searches");
+}
+
 void write_result(const ProblemResult& result, const RunStreams& streams) {
   streams.results << (streams.results_for_people ? result_text(result) : json::to_json(result))
                   << std::endl;  // flushed: a reader may follow
@@ -139,6 +149,9 @@ class Run {
         planned.result = broken_line_result(line.number, line.problem.error());
       if (planned.interrupted)
         return false;
+      if (streams_.searches != nullptr)
+        write_search(planned.result.name, recorder_, *streams_.searches);
+      recorder_ = {};
       write_result(planned.result, streams_);  // after: what has a result is in the outbox
       progress.add(planned.result, planned.attempted);
     }
@@ -151,7 +164,8 @@ class Run {
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
     PlannedProblem planned =
-        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop);
+        plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
+                     streams_.searches != nullptr ? &recorder_ : nullptr);
     if (planned.interrupted || !planned.attempted)
       return planned;
     server_.add(planned);
@@ -171,6 +185,7 @@ class Run {
   const Reporter reporter_;
   models::SceneMeshes meshes_;
   SceneRecorder scenes_;
+  planning::SearchRecorder recorder_;  // of the search under way
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace kinship::planner {
 struct RunStreams {
   std::istream& problems;
   std::ostream& results;
-  std::ostream& messages;  ///< for people
+  std::ostream& messages;            ///< for people
+  std::ostream* searches = nullptr;  ///< how each search grew; null: nowhere
   bool messages_on_terminal = false;
   bool results_for_people = false;  ///< lines of text instead of JSON
 };

@@ -193,7 +193,8 @@
       return;
     }
     const best = curve.reduce((a, b) => (b.score > a.score ? b : a)); // the first of the highest, as the server chose
-    add("How many were tried", `Mean score of configurations of held-out paths; the highest was chosen: ${best.K}.` +
+    const fit = distribution.fit && distribution.fit.from_revision > 0 ? `, at the full fit of revision ${distribution.fit.full_revision}` : "";
+    add("How many were tried", `Mean score of configurations of held-out paths${fit}; the highest was chosen: ${best.K}.` +
       (best.K === data.mixture_size ? "" : ` The mixture, fitted to all paths, has ${count(data.mixture_size)}.`),
       `Held-out score over the number of components: ${several(curve.length, "number")} tried, from ${curve[curve.length - 1].K} to ${curve[0].K}; ` +
       `${best.K} was chosen with ${fixed(best.score, 3)} nats.`, () => curveSpec(curve, best));

@@ -29,19 +29,19 @@ struct Plan {
 
 /// What a planner asks before every check. It runs without the interpreter's lock, which is taken
 /// now and then to let Python handle signals.
-class Ear {
+class InterruptCheck {
  public:
   bool operator()() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_)
       return false;
-    next_ = now + kEar;
+    next_ = now + kSignalInterval;
     const py::gil_scoped_acquire locked;
     return PyErr_CheckSignals() != 0;
   }
 
  private:
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kEar;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kSignalInterval;
 };
 
 SharedGuidance guidance_for(const Robot& robot, const std::optional<AnyGuidance>& given) {
@@ -68,8 +68,8 @@ planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& p
 }
 
 Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
-          const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
-          const std::string& arm, const planner::PlanSettings& settings) {
+                const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
+                const std::string& arm, const planner::PlanSettings& settings) {
   Plan made{robot, problem, settings, {}};
   if (seed)
     made.problem.seed = *seed;
@@ -77,8 +77,8 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   const planner::QueryGuidance query = query_of(guidance, made.problem, arm);
   {
     const py::gil_scoped_release unlocked;
-    made.planned =
-        planner::plan_problem(*robot->planned(), made.problem, query, made.settings, Ear());
+    made.planned = planner::plan_problem(*robot->planned(), made.problem, query, made.settings,
+                                         InterruptCheck());
   }
   if (made.planned.interrupted)
     throw py::error_already_set();

@@ -13,7 +13,7 @@ void wait_until(const std::function<bool(std::chrono::milliseconds)>& wait) {
   for (bool is_there = false; !is_there;) {
     {
       const pybind11::gil_scoped_release unlocked;
-      is_there = wait(kEar);
+      is_there = wait(kSignalInterval);
     }
     hear_signals();
   }

@@ -7,7 +7,7 @@ namespace kinship::python {
 
 /// So long a signal may have to wait until Python hears of it, of calls that are waited for by
 /// another thread.
-inline constexpr std::chrono::milliseconds kEar{50};
+inline constexpr std::chrono::milliseconds kSignalInterval{50};
 
 /// Lets Python handle signals. With the interpreter's lock.
 /// \throws what the handler raises: KeyboardInterrupt.

@@ -32,6 +32,7 @@ std::string to_json(const Explanation& explanation) {
 }
 
 std::string to_json(const Retirement& retirement) { return write_fields(retirement); }
+std::string to_json(const RobotRemoval& removal) { return write_fields(removal); }
 std::string to_json(const Job& job) { return write_fields(job); }
 
 std::string eviction_to_json(const Digest& distribution_id) {
@@ -46,6 +47,10 @@ Result<Explanation> explanation_from_json(std::string_view text) {
 
 Result<Retirement> retirement_from_json(std::string_view text) {
   return read_fields<Retirement>(text, "retirement");
+}
+
+Result<RobotRemoval> robot_removal_from_json(std::string_view text) {
+  return read_fields<RobotRemoval>(text, "robot removal");
 }
 
 Result<Job> job_from_json(std::string_view text) { return read_fields<Job>(text, "job"); }

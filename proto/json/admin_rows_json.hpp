@@ -13,6 +13,7 @@ namespace kinship::json {
 
 std::string to_json(const Explanation& explanation);
 std::string to_json(const Retirement& retirement);
+std::string to_json(const RobotRemoval& removal);
 std::string to_json(const Job& job);
 
 /// The row of EvictDistribution, `{"evicted": id}`.
@@ -21,6 +22,7 @@ std::string eviction_to_json(const Digest& distribution_id);
 /// The mixture of the distribution may be missing (weights, means and covariances null).
 Result<Explanation> explanation_from_json(std::string_view text);
 Result<Retirement> retirement_from_json(std::string_view text);
+Result<RobotRemoval> robot_removal_from_json(std::string_view text);
 Result<Job> job_from_json(std::string_view text);
 Result<Digest> eviction_from_json(std::string_view text);  ///< \return the distribution's id
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "proto/types/problem.hpp"
+#include "proto/types/recorded_search.hpp"
 #include "proto/types/result.hpp"
 
 /// The lines that kinship-plan reads and writes.
@@ -17,5 +18,10 @@ Result<Problem> problem_from_json(std::string_view text);
 
 std::string to_json(const ProblemResult& result);
 Result<ProblemResult> problem_result_from_json(std::string_view text);
+
+std::string to_json(const RecordedSearch& search);
+
+/// Every parent stands before its child, and the path's nodes are there.
+Result<RecordedSearch> recorded_search_from_json(std::string_view text);
 
 }  // namespace kinship::json

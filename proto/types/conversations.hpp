@@ -117,13 +117,15 @@ enum class AdminVerb {
   ShowJob,      ///< answers when the job has ended or `deadline` has passed
   CancelJob,    ///< row: Job
   JobRows,      ///< the rows of a job that is done, page by page
-  ListAttempts  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
+  ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
+  RenameRobot,  ///< `robot` gets the label `argument`; row: RobotSummary
+  RemoveRobot   ///< row: RobotRemoval
 };
 
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;
   std::string argument;       ///< label, digest prefix, task, UUID, job or file the verb is about
-  std::string robot, task;    ///< filters of a list verb; empty: all
+  std::string robot, task;    ///< filters of a list verb; empty: all. RenameRobot: which robot
   std::string cursor;         ///< from the page before; empty: the first page
   std::uint32_t limit = 100;  ///< rows a page
   std::chrono::milliseconds deadline{0};  ///< of ShowJob: how long it may wait for the end

@@ -204,6 +204,25 @@ inline constexpr std::tuple kFieldsOf<Retirement>{
     Field{"task", &Retirement::task, {.limit = kMaxTaskBytes}}, Field{"paths", &Retirement::paths},
     Field{"robots", &Retirement::robots, {.limit = kMaxSources}}};
 
+/// A robot that was taken out, and what went with it.
+struct RobotRemoval {
+  Digest robot;
+  std::string label;                ///< that it had; another robot may have it now
+  std::uint64_t paths = 0;          ///< retired now
+  std::uint64_t attempts = 0;       ///< kept for the record, with their paths and UUIDs
+  std::uint64_t distributions = 0;  ///< for it, which are gone
+  bool is_deleted = false;          ///< it had no attempts: nothing is left of it
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<RobotRemoval>{
+    Field{"robot", &RobotRemoval::robot},
+    Field{"label", &RobotRemoval::label, {.limit = kMaxLabelBytes}},
+    Field{"paths", &RobotRemoval::paths},
+    Field{"attempts", &RobotRemoval::attempts},
+    Field{"distributions", &RobotRemoval::distributions},
+    Field{"is_deleted", &RobotRemoval::is_deleted}};
+
 enum class JobState { Queued, Running, Done, Failed, Cancelled };
 
 /// A long verb on its way, or ended not long ago.

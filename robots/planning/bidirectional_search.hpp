@@ -13,6 +13,7 @@
 #include "robots/planning/planning_budget.hpp"
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/samples_ahead.hpp"
+#include "robots/planning/search_recorder.hpp"
 #include "robots/planning/tree.hpp"
 
 /// The search behind plan_birrt and plan_cbirrt2; for this library's sources only.
@@ -64,7 +65,9 @@ class BidirectionalSearch {
         options_(options),
         steering_(steering),
         budget_(budget),
-        samples_(sampler, generator) {}
+        samples_(sampler, generator) {
+    record_trees();
+  }
 
   /// Plants both trees and extends them until they meet or the budget is used up.
   PlanSummary run(const Eigen::VectorXd& start, const Eigen::MatrixXd& goals) {
@@ -96,6 +99,7 @@ class BidirectionalSearch {
   PlanSummary run_from(Tree start_tree, Tree goal_tree) {
     start_tree_ = std::move(start_tree);
     goal_tree_ = std::move(goal_tree);
+    record_trees();
     return search();
   }
 
@@ -114,6 +118,14 @@ class BidirectionalSearch {
   }
 
  private:
+  void record_trees() {
+    if (options_.recorder == nullptr)
+      return;
+    options_.recorder->begin(budget_);
+    start_tree_.record(*options_.recorder, SearchRecorder::Side::Start);
+    goal_tree_.record(*options_.recorder, SearchRecorder::Side::Goal);
+  }
+
   PlanSummary search() {
     PlanSummary found = search_on();
     samples_.give_back();
@@ -300,6 +312,8 @@ class BidirectionalSearch {
 
   /// The path over two nodes that hold the same configuration.
   Eigen::MatrixXd join(Eigen::Index start_node, Eigen::Index goal_node) const {
+    if (options_.recorder != nullptr)
+      options_.recorder->join(start_node, goal_node);
     const Eigen::MatrixXd from_start = start_tree_.branch(start_node).rowwise().reverse();
     const Eigen::MatrixXd to_goal = goal_tree_.branch(goal_node);
     Eigen::MatrixXd path(from_start.rows(), from_start.cols() + to_goal.cols() - 1);

@@ -14,6 +14,8 @@
 
 namespace kinship::planning {
 
+class SearchRecorder;
+
 struct BirrtOptions {
   double step = 0.1;       ///< between checked configurations, joint units
   double overshoot = 1.5;  ///< extend towards q_near + f (q_sample - q_near), clamped to the bounds
@@ -21,6 +23,7 @@ struct BirrtOptions {
   std::chrono::duration<double> time_limit{10};  ///< wall clock
   /// Of the checks that may have gone into following tracks when the next one is begun, 0 to 1.
   double track_check_fraction = 0.3;
+  SearchRecorder* recorder = nullptr;  ///< writes down how the trees grow; borrowed for the plan
 };
 
 struct PlanSummary {

@@ -15,7 +15,16 @@ Eigen::Index Tree::add(const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index 
   nodes_.col(index) = q;
   nearest_.add(q);
   parents_.push_back(parent);
+  if (recorder_ != nullptr)
+    recorder_->add(side_, q, parent);
   return index;
+}
+
+void Tree::record(SearchRecorder& recorder, SearchRecorder::Side side) {
+  recorder_ = &recorder;
+  side_ = side;
+  for (Eigen::Index i = 0; i < size(); ++i)
+    recorder.add(side, node(i), parents_[static_cast<std::size_t>(i)]);
 }
 
 Eigen::MatrixXd Tree::branch(Eigen::Index index) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "robots/planning/nearest_nodes.hpp"
+#include "robots/planning/search_recorder.hpp"
 
 namespace kinship::planning {
 
@@ -27,6 +28,9 @@ class Tree {
     return known.index;
   }
 
+  /// Tells a recorder of the nodes there are and of all that come. \param recorder  borrowed.
+  void record(SearchRecorder& recorder, SearchRecorder::Side side);
+
   Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(parents_.size()); }
   /// Valid until the next node is added.
   Eigen::MatrixXd::ConstColXpr node(Eigen::Index index) const { return nodes_.col(index); }
@@ -40,6 +44,8 @@ class Tree {
   Eigen::MatrixXd nodes_;  // dof x capacity
   NearestNodes nearest_;
   std::vector<Eigen::Index> parents_;
+  SearchRecorder* recorder_ = nullptr;
+  SearchRecorder::Side side_ = SearchRecorder::Side::Start;
 };
 
 }  // namespace kinship::planning

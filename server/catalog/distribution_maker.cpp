@@ -76,6 +76,8 @@ Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
   try {
     distribution.revision = parts_.store.put_distribution(distribution);
   } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::NotFound)
+      throw;  // its robot was removed meanwhile
     distribution.revision = 0;
     distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
                            std::string(failure.what());

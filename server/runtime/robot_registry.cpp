@@ -86,6 +86,7 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
 /// Of a robot that is known. Whoever comes second with the same finds the first's.
 void RobotRegistry::take_geometry(Robot better, const RobotDescription& description,
                                   std::int64_t now_ms, RegisterReply& reply) {
+  const std::uint64_t changes_before = changes();
   const Result<RobotPointer> known = find(reply.robot);
   if (!known || known.value()->grade >= better.grade)
     return;
@@ -98,7 +99,34 @@ void RobotRegistry::take_geometry(Robot better, const RobotDescription& descript
                                                  .geometry_revision = better.geometry_revision,
                                                  .geometry_ms = now_ms});
   if (reply.took_geometry)
-    keep(std::move(better));
+    keep(std::move(better), changes_before);
+}
+
+Result<bool> RobotRegistry::rename_robot(const Digest& robot, const std::string& label) {
+  Result<bool> renamed = store_.rename_robot(robot, label);
+  forget(robot, false);
+  return renamed;
+}
+
+Result<store::RemovedRobot> RobotRegistry::remove_robot(const Digest& robot,
+                                                        const std::stop_token& stop) {
+  Result<store::RemovedRobot> removed = store_.remove_robot(robot, stop);
+  forget(robot, removed && removed->removal.is_deleted);
+  return removed;
+}
+
+/// It is read from the store when somebody asks for it next, also by who is reading it just now.
+void RobotRegistry::forget(const Digest& robot, bool is_deleted) {
+  const std::lock_guard lock(mutex_);
+  ++changes_;
+  robots_.erase(robot);
+  if (is_deleted)
+    geometry_revisions_.erase(robot);
+}
+
+std::uint64_t RobotRegistry::changes() const {
+  const std::lock_guard lock(mutex_);
+  return changes_;
 }
 
 std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
@@ -138,6 +166,7 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::find(const Digest& robot) {
 }
 
 Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
+  const std::uint64_t changes_before = changes();
   std::optional<store::RobotRecord> record;
   try {
     record = store_.find_robot(robot);
@@ -158,7 +187,7 @@ Result<RobotRegistry::RobotPointer> RobotRegistry::read(const Digest& robot) {
                  name + " now reads as another robot, " + chain->digest().short_hex()};
   Robot known = robot_of(record->description, std::move(chain).value());
   known.geometry_revision = record->geometry_revision;
-  return keep(std::move(known));
+  return keep(std::move(known), changes_before);
 }
 
 RobotRegistry::RobotPointer RobotRegistry::find_in_memory(const Digest& robot) const {
@@ -181,9 +210,12 @@ std::uint64_t RobotRegistry::geometry_revision(const Digest& robot) const {
   return found == geometry_revisions_.end() ? 0 : found->second;
 }
 
-RobotRegistry::RobotPointer RobotRegistry::keep(Robot robot) {
+/// \param changes  as they were before it was read: if there were more since, it is not kept.
+RobotRegistry::RobotPointer RobotRegistry::keep(Robot robot, std::uint64_t changes) {
   const auto pointer = std::make_shared<const Robot>(std::move(robot));
   const std::lock_guard lock(mutex_);
+  if (changes != changes_)
+    return pointer;
   Known& known = robots_[pointer->digest];
   if (!known.robot || known.robot->geometry_revision < pointer->geometry_revision)
     known.robot = pointer;

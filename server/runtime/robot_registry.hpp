@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,6 +75,12 @@ class RobotRegistry {
   ///         for.
   Result<RobotPointer> find(const Digest& robot);
 
+  /// Gives a robot another label, durably. \return as Store::rename_robot() does.
+  Result<bool> rename_robot(const Digest& robot, const std::string& label);
+
+  /// Takes a robot out, durably. \return as Store::remove_robot() does.
+  Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {});
+
   /// From memory only; null if it is not there.
   RobotPointer find_in_memory(const Digest& robot) const;
   std::size_t in_memory() const;
@@ -92,7 +99,9 @@ class RobotRegistry {
   };
 
   Result<RobotPointer> read(const Digest& robot);
-  RobotPointer keep(Robot robot);
+  RobotPointer keep(Robot robot, std::uint64_t changes);
+  std::uint64_t changes() const;
+  void forget(const Digest& robot, bool is_deleted);
   void take_geometry(Robot better, const RobotDescription& description, std::int64_t now_ms,
                      RegisterReply& reply);
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
@@ -103,6 +112,7 @@ class RobotRegistry {
   mutable std::mutex mutex_;  // guards what follows
   mutable std::map<Digest, Known> robots_;
   mutable std::uint64_t uses_ = 0;
+  std::uint64_t changes_ = 0;                           // of labels, and robots removed
   std::map<Digest, std::uint64_t> geometry_revisions_;  // those above 0
 };
 

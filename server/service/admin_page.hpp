@@ -34,11 +34,12 @@ struct TextLine {
 /// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
 /// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
-/// Retirement; JobRows TextLines; the other verbs of jobs a Job each.
+/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; JobRows TextLines; the other
+/// verbs of jobs a Job each.
 using AdminRow =
     std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
                  AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
-                 ExportedRobot, Retirement, Job, TextLine>;
+                 ExportedRobot, Retirement, RobotRemoval, Job, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {

@@ -1,5 +1,6 @@
 #include "server/service/administration.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -27,6 +28,16 @@ Uuid report_of(const std::string& text) {
   if (!report)
     throw Failure(ErrorCode::InvalidInput, "'" + text + "' is not a report's UUID");
   return *report;
+}
+
+std::string describe(const RobotRemoval& removal) {
+  const std::string what = "robot '" + removal.label + "' (" + removal.robot.short_hex() + ") ";
+  const std::string distributions = std::to_string(removal.distributions) + " distributions";
+  if (removal.is_deleted)
+    return what + "deleted, it had no attempts; " + distributions + " of it are gone";
+  return what + "removed: " + std::to_string(removal.paths) + " paths retired, " +
+         std::to_string(removal.attempts) + " attempts stay on record, " + distributions +
+         " are gone";
 }
 
 }  // namespace
@@ -76,6 +87,10 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return retire_path(request.argument);
     case AdminVerb::ResetTask:
       return reset_task(request.argument);
+    case AdminVerb::RenameRobot:
+      return rename_robot(request);
+    case AdminVerb::RemoveRobot:
+      return remove_robot(request.argument);
     case AdminVerb::Backup:
       return begin(backup_job(parts_.store, request.argument, parts_.backups, request_key));
     case AdminVerb::ListJobs:
@@ -224,6 +239,50 @@ AdminPage Administration::retired(Result<Retirement> retirement, const std::stri
   parts_.on_change(retirement->task,
                    what + ": " + std::to_string(retirement->paths) + " paths retired");
   return page_of(std::move(retirement).value());
+}
+
+AdminPage Administration::rename_robot(const AdminRequest& request) {
+  RobotSummary robot = find_robot(parts_.store, request.robot).value_or_throw();
+  const std::string before = std::exchange(robot.label, request.argument);
+  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label).value_or_throw());
+  name_solver(robot);
+  if (before != robot.label)
+    parts_.on_change({}, "robot '" + before + "' (" + robot.robot.short_hex() + ") is called '" +
+                             robot.label + "' now");
+  return page_of(std::move(robot));
+}
+
+AdminPage Administration::remove_robot(const std::string& name) {
+  const RobotSummary robot = find_robot(parts_.store, name).value_or_throw();
+  Result<store::RemovedRobot> removed = Error{};
+  try {
+    removed = parts_.robots.remove_robot(robot.robot, parts_.stop);
+  } catch (const std::exception&) {  // some of its paths may be retired
+    forget_tasks_of(robot.robot);
+    throw;
+  }
+  if (!removed) {
+    forget_tasks_of(robot.robot);
+    return page_of(removed.error());
+  }
+  for (const Digest& distribution : removed->distributions)
+    parts_.forget_distribution(distribution);
+  for (const std::string& task : removed->tasks)
+    parts_.forget_task(task);
+  parts_.on_change({}, describe(removed->removal));
+  return page_of(std::move(removed->removal));
+}
+
+/// Of a robot that was not removed as a whole.
+void Administration::forget_tasks_of(const Digest& robot) {
+  std::string cursor;
+  do {
+    const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);
+    for (const TaskSummary& task : page.rows)
+      if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
+        parts_.forget_task(task.task);
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
 }
 
 AdminPage Administration::begin(Result<Jobs::Task> task) {

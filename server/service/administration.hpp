@@ -77,11 +77,14 @@ class Administration {
   AdminPage export_paths(const AdminRequest& request);
   AdminPage retire_path(const std::string& uuid);
   AdminPage reset_task(const std::string& task);
+  AdminPage rename_robot(const AdminRequest& request);
+  AdminPage remove_robot(const std::string& name);
   AdminPage begin(Result<Jobs::Task> task);
 
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   void check_task_filter(const AdminRequest& request) const;
   Distribution find_distribution(const std::string& prefix) const;
+  void forget_tasks_of(const Digest& robot);
   void name_solver(RobotSummary& summary);
   AdminPage retired(Result<Retirement> retirement, const std::string& what);
 

@@ -287,8 +287,10 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
-  // A reset takes long, and nobody else's request waits for it.
-  runtime::WorkerPool& pool = request.verb == AdminVerb::ResetTask ? reset_pool_ : short_task_pool_;
+  // These may take long, and nobody else's request waits for them.
+  const bool is_long =
+      request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot;
+  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
   auto run = [this, request = std::move(request), request_key, done] {
     const AdminPage page = administration_.answer(request, request_key);
     count_admin(page);

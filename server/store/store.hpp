@@ -83,6 +83,13 @@ struct AttemptTotals {
   std::vector<KnownAttempt> recent;  ///< the newest kKnownAttemptsPerMode of each, oldest first
 };
 
+/// What became of a robot that was removed, and of what was made with it.
+struct RemovedRobot {
+  RobotRemoval removal;
+  std::vector<std::string> tasks;     ///< of its attempts and distributions
+  std::vector<Digest> distributions;  ///< for it, which are gone
+};
+
 /// How far a store has come: what had a receipt by then is in it as long as the mark lies on its
 /// history.
 struct StorePoint {
@@ -146,6 +153,23 @@ class Store {
   /// \return false, and nothing changes, if it is not: somebody else was first; or if the row is
   ///         damaged or not there.
   virtual bool replace_geometry(const RobotRecord& robot) = 0;
+  /// Gives a robot another label, durable on return; the one it had is free from then on. A client
+  /// that registers it under the old one is answered Known.
+  /// \return NotFound for an unknown robot; Conflict if another robot has the label; InvalidInput
+  ///         for what is no label.
+  virtual Result<bool> rename_robot(const Digest& robot, const std::string& label) = 0;
+  /// Takes a robot out, durable on return: its label is free, it is neither found nor listed, its
+  /// distributions are gone and its paths retired. One without attempts is deleted. Of another its
+  /// attempts, paths and UUIDs stay for the record; registered again it is Registered, gets the
+  /// label that it brings, and what it reports anew counts; what was retired stays retired.
+  ///
+  /// All of it is one transaction, the last: before it, paths beyond some hundreds are retired in
+  /// transactions of their own, and who stops or fails between them leaves a robot that has fewer
+  /// paths.
+  /// \param stop  looked at between them.
+  /// \return NotFound for an unknown robot; Unavailable if it was stopped.
+  virtual Result<RemovedRobot> remove_robot(const Digest& robot,
+                                            const std::stop_token& stop = {}) = 0;
   /// Of robots whose geometry was ever taken over anew.
   virtual std::map<Digest, std::uint64_t> geometry_revisions() const = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
@@ -160,7 +184,8 @@ class Store {
   /// waits together is committed together. `done` must not throw, block or wait for a write. Never
   /// throws Storage.
   ///
-  /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A path whose content (waypoints
+  /// Same UUID and body: Duplicate. Same UUID, other body: Refused. A robot that is not registered
+  /// (any more): UnknownRobot. A path whose content (waypoints
   /// and snapped placement, or none) the (robot, task) has already is recorded as an attempt and
   /// answered Duplicate.
   ///

@@ -165,6 +165,18 @@ Retirement every_retirement() {
   return retirement;
 }
 
+RobotRemoval every_robot_removal() {
+  Distinct next(1450);
+  RobotRemoval removal;
+  removal.robot = next.id<Digest>();
+  removal.label = next.name("label");
+  removal.paths = next.count();
+  removal.attempts = next.count();
+  removal.distributions = next.count();
+  removal.is_deleted = true;
+  return removal;
+}
+
 Job every_job() {
   Distinct next(1500);
   Job job;

@@ -75,6 +75,7 @@ AttemptSummary every_attempt_summary();
 DistributionSummary every_distribution_summary();
 Explanation every_explanation();
 Retirement every_retirement();
+RobotRemoval every_robot_removal();
 Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();

@@ -86,6 +86,7 @@ std::vector<Case> cases() {
       readable("server_status", every_status(), server_status_from_json),
       readable("explanation", every_explanation(), explanation_from_json),
       readable("retirement", every_retirement(), retirement_from_json),
+      readable("robot_removal", every_robot_removal(), robot_removal_from_json),
       readable("job", every_job(), job_from_json),
       {"eviction", eviction_to_json(every_distribution().id), eviction_again},
       readable("problem", every_problem(), problem_from_json),

@@ -46,6 +46,7 @@ const fs::path kBuild = fs::path(KINSHIP_BIN_DIR).parent_path();
 // Always the same one, so that a compiler cache knows the examples.
 const fs::path kFolder = kBuild / "tests" / "installed_library";
 const fs::path kPrefix = kFolder / "prefix";
+const std::string kExamples = KINSHIP_SOURCE_DIR "/client/examples/";
 
 /// Every file that a header names in quotes is installed with it, so none needs our source tree.
 void expect_headers_are_complete(const fs::path& root) {
@@ -74,13 +75,35 @@ class InstalledLibrary : public testing::Test {
     unsetenv("KINSHIP_SERVER");
   }
 
+  /// Then it is moved: nothing in it may say where it was.
   static void install() {
+    const fs::path elsewhere = kFolder / "elsewhere";
     fs::remove_all(kPrefix);
+    fs::remove_all(elsewhere);
     for (const std::string component : {"client", "planning", "c", "robots"}) {
       const Ended installed = run({KINSHIP_CMAKE, "--install", kBuild.string(), "--prefix",
-                                   kPrefix.string(), "--component", component});
+                                   elsewhere.string(), "--component", component});
       ASSERT_EQ(installed.exit_code, 0) << installed.output;
     }
+    fs::rename(elsewhere, kPrefix);
+  }
+  /// What find_package with these arguments says in a project that needs no compiler.
+  static Ended find_kinship(const std::string& arguments) {
+    const fs::path project = kFolder / "finds";
+    fs::remove_all(project);
+    fs::create_directories(project);
+    std::ofstream(project / "CMakeLists.txt")
+        << "cmake_minimum_required(VERSION 3.25)\nproject(finds LANGUAGES NONE)\n"
+        << "find_package(Kinship " << arguments << ")\n"
+        << "message(STATUS \"found ${Kinship_VERSION}: ${Kinship_FOUND}\")\n";
+    return run_in_shell(std::string(KINSHIP_CMAKE) + " -G '" KINSHIP_GENERATOR "' -S '" +
+                        project.string() + "' -B '" + (project / "build").string() +
+                        "' -DCMAKE_PREFIX_PATH='" + kPrefix.string() + "'");
+  }
+  static void expect_said(const Ended& run, const std::string& part) {
+    // CMake breaks its lines between words.
+    const std::string said = std::regex_replace(run.output, std::regex("\\s+"), " ");
+    EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in: " << run.output;
   }
   static void build_examples() {
     const std::string source = std::string(KINSHIP_SOURCE_DIR) + "/client/examples";
@@ -110,6 +133,25 @@ class InstalledLibrary : public testing::Test {
     EXPECT_NE(run.output.find(part), std::string::npos) << "no '" << part << "' in: " << run.output;
   }
 
+  /// Programs that follow: one revision is there, another comes of what is reported then.
+  static void expect_two_revisions(const std::vector<std::string>& names,
+                                   const std::string& models) {
+    std::vector<std::unique_ptr<test::ChildProcess>> following;
+    std::vector<std::string> first;
+    for (const std::string& name : names) {
+      following.push_back(std::make_unique<test::ChildProcess>(example(name, {models, "2"})));
+      first.push_back(following.back()->read_line());
+      EXPECT_TRUE(first.back().starts_with("revision ")) << name << ": " << first.back();
+    }
+    expect_output(run(example("01_report_a_path", {models, "6"})), "accepted 6");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string second = following[i]->read_line();
+      EXPECT_TRUE(second.starts_with("revision ")) << names[i] << ": " << second;
+      EXPECT_NE(second, first[i]) << names[i];
+      EXPECT_EQ(following[i]->wait(), 0) << names[i];
+    }
+  }
+
   test::ReservedDomain domain_;
   test::TemporaryDirectory directory_;
   std::unique_ptr<test::ServerProcess> server_;
@@ -119,6 +161,13 @@ TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
   ASSERT_NO_FATAL_FAILURE(install());
   expect_headers_are_complete(kPrefix / "include" / "kinship-0.1");
   ASSERT_NO_FATAL_FAILURE(build_examples());
+  expect_said(find_kinship("0.1 REQUIRED COMPONENTS c"), "found " KINSHIP_VERSION ": 1");
+  expect_said(find_kinship("0.1 REQUIRED COMPONENTS c OPTIONAL_COMPONENTS nonsense"), ": 1");
+  expect_said(find_kinship("REQUIRED COMPONENTS nonsense"),
+              "component 'nonsense' is not installed beside");
+  expect_said(find_kinship("REQUIRED COMPONENTS nonsense"), "(known are client, planning, c)");
+  expect_said(find_kinship("0.2 REQUIRED"), "requested version \"0.2\"");
+  expect_said(find_kinship("0.0.9 REQUIRED"), "requested version \"0.0.9\"");
   const std::string models = (kPrefix / "share/kinship/robots").string();
 
   const Ended offline = run(example("07_work_offline", {models}));
@@ -133,20 +182,18 @@ TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
   expect_output(run(example("02_fetch_and_sample", {models})), "paths of 'panda'\ndrawn 1000");
   expect_output(run(example("02_fetch_and_sample_c", {models + "/ur10e/robot.urdf"})),
                 "of 6 joints");
+  expect_output(run({KINSHIP_PYTHON, kExamples + "02_fetch_and_sample_ctypes.py",
+                     (kPrefix / KINSHIP_LIBDIR / "libkinship.so").string(), models}),
+                "1000 samples of 6 joints");
   expect_output(run(example("03_guide_an_ompl_planner", {models})), "solved with ");
   expect_output(run(example("04_guide_your_own_planner", {models})), "solved in ");
+  expect_output(run(example("04_guide_your_own_planner_c", {models})), "arrays hold the rows: yes");
+  expect_output(run(example("08_plan_as_kinship_plan", {models})), "post 3 solved with ");
   expect_output(run(example("06_register_any_urdf",
                             {models + "/iiwa7/robot.urdf", "iiwa_link_0", "iiwa_link_ee", "0.12"})),
                 "inverse kinematics: ");
 
-  test::ChildProcess following(example("05_follow_and_replan", {models, "2"}));
-  const std::string first = following.read_line();
-  EXPECT_TRUE(first.starts_with("revision ")) << first;
-  expect_output(run(example("01_report_a_path", {models, "6"})), "accepted 6");
-  const std::string second = following.read_line();
-  EXPECT_TRUE(second.starts_with("revision ")) << second;
-  EXPECT_NE(second, first);
-  EXPECT_EQ(following.wait(), 0);
+  expect_two_revisions({"05_follow_and_replan", "05_follow_and_replan_c"}, models);
 }
 
 TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
@@ -170,19 +217,40 @@ TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
   EXPECT_EQ(exported, declared);
 }
 
-TEST(CLibrary, AloneIsFoundByPkgConfig) {
+TEST(CLibrary, AloneIsFoundByPkgConfigAndByOtherCompilersAndFlags) {
   const std::string prefix = (kBuild / "tests" / "c_library").string();
   fs::remove_all(prefix);
   const Ended installed =
       run({KINSHIP_CMAKE, "--install", kBuild.string(), "--prefix", prefix, "--component", "c"});
   ASSERT_EQ(installed.exit_code, 0) << installed.output;
-  const Ended ended = run_in_shell(
+  const std::string environment =
       "export PKG_CONFIG_PATH=\"$(dirname \"$(find '" + prefix + "' -name kinship.pc)\")\" && " +
-      "cc -std=c99 -Wall -Werror '" KINSHIP_SOURCE_DIR "/client/examples/01_report_a_path_c.c' " +
-      "$(pkg-config --cflags --libs kinship) -o '" + prefix + "/example' && " +
-      "LD_LIBRARY_PATH=\"$(pkg-config --variable=prefix kinship)/" KINSHIP_LIBDIR "\" '" + prefix +
-      "/example'");
-  EXPECT_EQ(ended.output, "usage: 01_report_a_path_c URDF\n");
+      "export LD_LIBRARY_PATH=\"$(pkg-config --variable=prefix kinship)/" KINSHIP_LIBDIR "\" && ";
+  const std::string program = prefix + "/program";
+  const auto build_and_run = [&](const std::string& compiler, const std::string& source) {
+    return run_in_shell(environment + compiler + " '" + source + "' $(pkg-config --cflags --libs " +
+                        "kinship) -o '" + program + "' && '" + program + "'")
+        .output;
+  };
+  const std::string in_c = kExamples + "01_report_a_path_c.c";
+  const std::string usage = "usage: 01_report_a_path_c URDF\n";
+  EXPECT_EQ(build_and_run("cc -std=c99 -pedantic -fno-exceptions -m64 -Wall -Werror", in_c), usage);
+  if (fs::exists("/usr/bin/clang")) {
+    EXPECT_EQ(build_and_run("clang -std=c11 -O2 -march=native -fshort-enums -Wall -Werror", in_c),
+              usage);
+  }
+  // C++ whose standard library, exceptions and alignment are not those that the library has.
+  const std::string in_cpp = prefix + "/other_abi.cpp";
+  std::ofstream(in_cpp) << "#include <kinship.h>\n#include <cstdio>\n#include <string>\n"
+                        << "static_assert(!_GLIBCXX_USE_CXX11_ABI);\n"
+                        << "int main() {\n  kinship_attempt attempt{};\n"
+                        << "  const int code = kinship_report(nullptr, &attempt);\n"
+                        << "  const std::string text = kinship_error_text();\n"
+                        << "  std::printf(\"%d %s\\n\", code, text.c_str());\n}\n";
+  EXPECT_EQ(build_and_run("c++ -std=c++14 -D_GLIBCXX_USE_CXX11_ABI=0 -fno-exceptions -fno-rtti "
+                          "-O3 -march=native -Wall -Wextra -Werror",
+                          in_cpp),
+            "1 client is NULL\n");
 }
 
 TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {

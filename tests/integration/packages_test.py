@@ -9,11 +9,11 @@ import unittest
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 BUILD = pathlib.Path(os.environ["KINSHIP_BIN_DIR"]).parent
 FILES = {
-    "kinship-server": ["usr/bin/kinshipd", "etc/kinship/kinshipd.toml", "usr/lib/kinship/backup",
+    "kinship-server": ["usr/bin/kinshipd", "usr/share/man/man8/kinshipd.8.gz", "etc/kinship/kinshipd.toml", "usr/lib/kinship/backup",
                        "usr/lib/sysusers.d/kinship.conf", "lib/systemd/system/kinshipd.service",
                        "lib/systemd/system/kinship-backup.service", "lib/systemd/system/kinship-backup.timer",
                        "usr/share/doc/kinship-server/kinship.json", "usr/share/doc/kinship-server/kinship.rules.yml"],
-    "kinship-client": ["usr/bin/kinship", "usr/bin/kinship-plan", "usr/share/kinship/robots/panda/robot.urdf"],
+    "kinship-client": ["usr/bin/kinship", "usr/share/man/man1/kinship.1.gz", "usr/bin/kinship-plan", "usr/share/kinship/robots/panda/robot.urdf"],
     "libkinship-dev": [r"usr/lib/(\S+/)?cmake/Kinship/KinshipConfig.cmake", r"usr/include/kinship-\S+/kinship/client.hpp",
                        "usr/include/kinship.h", r"usr/lib/(\S+/)?libkinship.so.*", r"usr/lib/(\S+/)?pkgconfig/kinship.pc"],
     "python3-kinship": [r"usr/lib/python3/dist-packages/kinship/\S+\.so", r"usr/lib/python3/dist-packages/kinship/__init__.py"],
@@ -69,9 +69,17 @@ class Packages(unittest.TestCase):
         root = self.folder / "control"
         run("dpkg-deb", "--control", self.packages["kinship-server"], root)
         self.assertEqual((root / "conffiles").read_text().split(), ["/etc/kinship/kinshipd.toml"])
-        for script in ("postinst", "prerm", "postrm"):
-            self.assertEqual((root / script).stat().st_mode & 0o777, 0o755)
-            run("sh", "-n", root / script)
+
+    def test_bring_their_scripts(self):
+        for name, scripts in {"kinship-server": {"postinst", "prerm", "postrm"}, "kinship-client": set(), "libkinship-dev": set(),
+                              "python3-kinship": {"postinst", "prerm"}}.items():
+            root = self.folder / f"scripts-of-{name}"
+            run("dpkg-deb", "--control", self.packages[name], root)
+            found = [file for file in root.iterdir() if file.name in ("preinst", "postinst", "prerm", "postrm")]
+            self.assertEqual({file.name for file in found}, scripts, name)
+            for file in found:
+                self.assertEqual(file.stat().st_mode & 0o777, 0o755, file)
+                run("sh", "-n", file)
 
     def test_units_name_what_is_installed(self):
         paths = {row.split()[5].removeprefix(".") for name in ("kinship-server", "kinship-client")

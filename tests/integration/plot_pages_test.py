@@ -99,6 +99,11 @@ class PlotPages(unittest.TestCase):
         return self.browser.run("return [...document.querySelector(arguments[0]).rows].map(row => [...row.cells].map(cell => cell.textContent))",
                                 selector)
 
+    def marks(self, selector: str, color: str) -> int:
+        """How many marks of charts have a colour and a size."""
+        return self.browser.run("return [...document.querySelectorAll(arguments[0] + ' svg [fill=\"' + arguments[1] + '\"]')]"
+                                ".filter(mark => mark.getBBox().width > 0 && mark.getBBox().height > 0).length", selector, color)
+
     def test_a_distribution_has_the_numbers_of_show(self):
         data = self.load("distribution.html")
         shown = self.shown
@@ -122,14 +127,15 @@ class PlotPages(unittest.TestCase):
         self.assertLess(pixels_of(self.browser.picture("#hands canvas"), GUIDED, 40), 300, "hidden")
         self.assertGreater(share_drawn(self.browser.picture("#hands canvas")), 0.01, "the arm stays")
         self.assertEqual([sum(each["counts"]) for each in data["marginals"]], 6 * [2000])
-        panels = self.browser.elements("#joints figure")
-        self.assertEqual(len(panels), 6)
-        for number in range(1, 7):
-            picture = self.browser.picture(f"#joints figure:nth-child({number}) .chart")
-            self.assertGreater(pixels_of(picture, GUIDED, 12), 200, f"joint {number}")
-            self.assertGreater(int((picture[:, :, 0].astype(int) - picture[:, :, 1] > 40).sum()), 100, f"red lines at the limits of joint {number}")
-        for figure in ("#components figure:nth-child(1) .chart", "#components figure:nth-child(2) .chart", "#poses"):
-            self.assertGreater(pixels_of(self.browser.picture(figure), GUIDED, 30), 100, figure)
+        for number, marginal in enumerate(data["marginals"], 1):
+            figure = f"#joints figure:nth-child({number})"
+            self.assertEqual(self.browser.text(f"{figure} h3"), marginal["joint"])
+            self.assertEqual(self.marks(figure, "#0b7a75") + self.marks(figure, "#b03a48"), sum(n > 0 for n in marginal["counts"]))
+        picture = self.browser.picture("#joints")
+        self.assertGreater(pixels_of(picture, GUIDED, 12), 2000, "bars")
+        self.assertGreater(int((picture[:, :, 0].astype(int) - picture[:, :, 1] > 40).sum()), 1000, "red lines at the limits")
+        self.assertEqual(self.marks("#components figure:nth-child(1)", "#0b7a75"), len(data["components"]))
+        self.assertGreater(pixels_of(self.browser.picture("#poses"), GUIDED, 30), 1000, "poses solved")
 
     def test_a_task_has_the_numbers_of_show(self):
         data = self.load("task.html")
@@ -138,8 +144,11 @@ class PlotPages(unittest.TestCase):
                          [(r["label"], r["attempts"], r["paths"]) for r in task["robots"]])
         self.assertEqual(self.table("#robots")[2][:8], ["ur10e", "26", "24", "1", "1", "12", "12", "1"])
         self.assertIn(self.first["id"][:12], [row[1] for row in self.table("#revisions")])
-        for figure in ("#experience", "#solved", "#checks figure:nth-child(2) .chart", "#benefit figure .chart"):
-            self.assertGreater(share_drawn(self.browser.picture(figure)), 0.01, figure)
+        self.assertGreater(share_drawn(self.browser.picture("#experience")), 0.01)
+        solved = sum(any(mode["attempts"] for mode in each["modes"]) for robot in data["robots"] for each in robot["bins"])
+        self.assertEqual(self.marks("#solved", "#2f6fde") + self.marks("#solved", "#d07a1f"), solved, "a dot for each bin of a robot")
+        self.assertGreaterEqual(self.marks("#checks figure:nth-child(2)", "#0b7a75"), 1, "medians of guided attempts")
+        self.assertGreaterEqual(self.marks("#benefit", "#0b7a75"), 1)
 
     def test_benefit_is_what_the_server_advises_by(self):
         self.load("task.html")
@@ -169,9 +178,11 @@ class PlotPages(unittest.TestCase):
             self.browser.resize(400, 800)
             self.load(page)
             self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 400, page)
-            light = self.browser.picture("section")
+            light = {color: self.marks("body", color) for color in ("#0b7a75", "#3fc1b8")}
             self.browser.prefer("dark")
-            self.assertLess(self.browser.picture("section").mean(), 0.5 * light.mean(), page)
+            self.assertEqual(self.browser.run("return getComputedStyle(document.body).backgroundColor"), "rgb(15, 19, 23)", page)
+            self.assertEqual(self.marks("body", "#3fc1b8"), light["#0b7a75"], page + ": charts are drawn anew")
+            self.assertEqual(light["#3fc1b8"], 0)
             self.browser.prefer("light")
 
     def test_what_is_not_there_is_code_three_and_leaves_the_file(self):

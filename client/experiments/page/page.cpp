@@ -9,11 +9,13 @@
 namespace kinship::experiments {
 
 void write_page(const PageData& data, std::ostream& out) {
+  const auto text = [](std::string_view name) { return page::text_of(page_texts(), name); };
   page::Document document;
-  document.title = "Kinship: what the fleet's experience was worth";
-  document.body = page::text_of(page_texts(), "page.html");
+  document.title = "Kinship: what experience was worth to " + data.robot;
+  document.body = text("story.html");
   document.data = to_json(data);
-  document.scripts = {page::text_of(page_texts(), "page.js")};
+  document.styles = {text("story.css")};
+  document.scripts = {text("station.js"), text("searches.js"), text("story.js")};
   document.draws_scenes = true;
   document.draws_charts = true;
   page::write_document(document, out);

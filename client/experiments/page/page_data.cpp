@@ -1,22 +1,18 @@
 #include "client/experiments/page/page_data.hpp"
 
 #include <algorithm>
-#include <map>
-#include <optional>
+#include <limits>
 #include <random>
 #include <utility>
 
+#include "client/experiments/page/run_reader.hpp"
 #include "client/experiments/result_file.hpp"
-#include "client/files/lines.hpp"
-#include "proto/json/distribution_json.hpp"
-#include "proto/json/problem_json.hpp"
+#include "client/page/drawn_scene.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
-#include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "robots/planning/configuration_sampler.hpp"
-#include "robots/planning/path_vertices.hpp"
 
 namespace kinship::experiments {
 namespace {
@@ -25,77 +21,6 @@ constexpr std::uint64_t kSeed = 1;
 constexpr std::size_t kSamples = 1500;
 constexpr Eigen::Index kCheckedSamples = 500;  // for how many of them are free
 constexpr std::size_t kPostures = 5;
-constexpr double kPathStep = 0.2;  // joint units between drawn poses
-
-models::LoadedRobot load(const std::filesystem::path& model) {
-  models::RobotArguments arguments;
-  arguments.source = model;
-  return models::load_robot(arguments).value_or_throw();
-}
-
-std::vector<Problem> read_problems(const std::filesystem::path& file) {
-  std::vector<Problem> problems;
-  std::ifstream stream = files::open_input(file);
-  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
-    Result<Problem> problem = json::problem_from_json(std::string(line.text.value()));
-    if (!problem)
-      throw Failure(problem.error().code, file.string() + " line " + std::to_string(line.number) +
-                                              ": " + problem.error().message);
-    problems.push_back(*std::move(problem));
-    return true;
-  });
-  if (problems.empty())
-    throw Failure(ErrorCode::InvalidInput, "'" + file.string() + "' holds no problem");
-  return problems;
-}
-
-Distribution read_distribution(const std::filesystem::path& file) {
-  std::ifstream stream = files::open_input(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  Result<Distribution> distribution = json::distribution_from_json(text);
-  if (!distribution)
-    throw Failure(distribution.error().code, file.string() + ": " + distribution.error().message);
-  if (!distribution->mixture)
-    throw Failure(ErrorCode::InvalidInput, file.string() + ": the distribution has no mixture");
-  return *std::move(distribution);
-}
-
-/// \param configurations  dof x n.
-Poses poses_of(const kinematics::Chain& chain, const Eigen::Isometry3d& T_task_base,
-               const Eigen::MatrixXd& configurations) {
-  Poses poses{Eigen::Matrix3Xd(3, configurations.cols()),
-              Eigen::Matrix3Xd(3, configurations.cols())};
-  for (Eigen::Index i = 0; i < configurations.cols(); ++i) {
-    const Eigen::Isometry3d T_task_transfer =
-        T_task_base * kinematics::T_base_transfer(chain, configurations.col(i));
-    poses.positions.col(i) = T_task_transfer.translation();
-    poses.directions.col(i) = T_task_transfer.linear().col(2);
-  }
-  return poses;
-}
-
-FleetMember read_member(const RunFolder& run, const std::string& name) {
-  const models::LoadedRobot robot = load(run.models / name);
-  std::map<std::string, Eigen::Isometry3d> placements;
-  for (const Problem& problem : read_problems(run.folder / (name + ".problems.jsonl")))
-    placements.emplace(problem.name, problem.T_task_base.value_or(Eigen::Isometry3d::Identity()));
-  FleetMember member;
-  member.label = robot.description.label;
-  for (const ProblemResult& result : read_results(run.folder / (name + ".results.jsonl"))) {
-    ++member.problems;
-    const auto placement = placements.find(result.name);
-    if (!result.waypoints || placement == placements.end())
-      continue;
-    if (result.waypoints->rows() != robot.chain.dof())
-      throw Failure(ErrorCode::InvalidInput, name + ": the path of '" + result.name + "' has " +
-                                                 std::to_string(result.waypoints->rows()) +
-                                                 " joints, the robot " +
-                                                 std::to_string(robot.chain.dof()));
-    member.paths.push_back(poses_of(robot.chain, placement->second,
-                                    planning::densified(*result.waypoints, kPathStep)));
-  }
-  return member;
-}
 
 /// Draws `kSamples` configurations, one per column; fewer if the mixture lies outside the limits.
 Eigen::MatrixXd draw(const Distribution& distribution, std::mt19937_64& generator) {
@@ -151,25 +76,28 @@ std::vector<Eigen::Index> far_apart(const std::vector<Eigen::Index>& candidates,
   return chosen;
 }
 
-void add_samples(const models::LoadedRobot& robot, const Problem& problem, PageData& data) {
-  const Distribution& distribution = data.distribution;
+DrawnSamples draw_samples(const models::LoadedRobot& robot, const Problem& problem,
+                          const Distribution& distribution, const std::filesystem::path& file) {
   if (distribution.mixture->dimension() != robot.chain.dof())
-    throw Failure(ErrorCode::InvalidInput, "distribution.json has " +
+    throw Failure(ErrorCode::InvalidInput, file.string() + " has " +
                                                std::to_string(distribution.mixture->dimension()) +
                                                " joints, " + robot.description.label + " " +
                                                std::to_string(robot.chain.dof()));
   const Eigen::Isometry3d T_task_base = problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
-  collision::CollisionWorld world(robot.chain, robot.shapes,
-                                  {T_task_base, problem.scene, {}, problem.allowed_collisions});
+  collision::CollisionWorld world(
+      robot.chain, robot.shapes,
+      {T_task_base, problem.scene, problem.attached, problem.allowed_collisions});
   std::mt19937_64 generator(kSeed);
   const Eigen::MatrixXd samples = draw(distribution, generator);
   const Eigen::MatrixXd uniform = draw_uniform(distribution.limits, generator);
   const std::vector<Eigen::Index> free = free_ones(world, samples);
-  data.samples = poses_of(robot.chain, T_task_base, samples);
-  data.free_share = share_of(free, samples.cols());
-  data.uniform_free_share = share_of(free_ones(world, uniform), uniform.cols());
-  for (const Eigen::Index index : far_apart(free, data.samples.positions))
-    data.postures.push_back(page::bones_of(robot, T_task_base, samples.col(index)));
+  DrawnSamples drawn{poses_of(robot.chain, T_task_base, samples),
+                     share_of(free, samples.cols()),
+                     share_of(free_ones(world, uniform), uniform.cols()),
+                     {}};
+  for (const Eigen::Index index : far_apart(free, drawn.hand.positions))
+    drawn.postures.push_back(page::bones_of(robot, T_task_base, samples.col(index)));
+  return drawn;
 }
 
 std::vector<double> checks_of(const std::vector<ProblemResult>& results) {
@@ -180,24 +108,74 @@ std::vector<double> checks_of(const std::vector<ProblemResult>& results) {
   return checks;
 }
 
+const ProblemResult& named(const std::vector<ProblemResult>& results, const std::string& name) {
+  return *std::ranges::find(results, name, &ProblemResult::name);
+}
+
+/// How many instances took fewer checks with guidance; one that is not solved took more than any.
+std::size_t count_cheaper(const std::vector<ProblemResult>& uniform,
+                          const std::vector<ProblemResult>& guided) {
+  const auto cost = [](const ProblemResult& result) {
+    return std::pair(!result.solved, result.collision_checks);
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(guided, [&](const ProblemResult& each) {
+    const auto other = std::ranges::find(uniform, each.name, &ProblemResult::name);
+    return other != uniform.end() && each.solved && cost(each) < cost(*other);
+  }));
+}
+
+/// Of one instance, if both searches are there and have nodes.
+std::optional<SearchPair> find_searches(const RunFiles& run, const models::LoadedRobot& robot,
+                                        const Problem& problem) {
+  const auto uniform = read_searches(run.uniform_searches);
+  const auto guided = read_searches(run.guided_searches);
+  const auto u = uniform.find(problem.name);
+  const auto g = guided.find(problem.name);
+  if (u == uniform.end() || g == guided.end() || u->second.parents.empty() ||
+      g->second.parents.empty())
+    return std::nullopt;
+  return SearchPair{grown(robot, problem, u->second), grown(robot, problem, g->second)};
+}
+
 }  // namespace
 
-PageData read_run(const RunFolder& run) {
+PageData read_run(const RunFiles& run) {
   PageData data;
-  for (const std::string& name : run.fleet)
-    data.fleet.push_back(read_member(run, name));
-  const models::LoadedRobot robot = load(run.models / run.robot);
+  for (const TeacherFiles& teacher : run.teachers)
+    data.fleet.push_back(read_member(teacher));
+  const models::LoadedRobot robot = models::load_robot(run.robot).value_or_throw();
   data.robot = robot.description.label;
-  const Problem problem = read_problems(run.folder / (run.robot + ".problems.jsonl")).front();
-  data.scene = problem.scene;
-  data.distribution = read_distribution(run.folder / "distribution.json");
-  data.advice = read_distribution(run.folder / "advice.json").advice;
-  add_samples(robot, problem, data);
-  const auto uniform = read_results(run.folder / (run.robot + "-uniform.results.jsonl"));
-  const auto guided = read_results(run.folder / (run.robot + "-guided.results.jsonl"));
-  data.comparison = compare(uniform, guided).value_or_throw();
+  const auto problems = read_problems(run.problems, run.robot);
+  const auto uniform = read_results(run.uniform);
+  const auto guided = read_results(run.guided);
+  Result<Comparison> comparison = compare(uniform, guided);
+  if (!comparison)
+    throw Failure(comparison.error().code, run.uniform.string() + " and " + run.guided.string() +
+                                               ": " + comparison.error().message);
+  data.comparison = *std::move(comparison);
   data.uniform_checks = mean_interval(checks_of(uniform));
   data.guided_checks = mean_interval(checks_of(guided));
+  data.distribution = read_distribution(run.distribution);
+  if (!run.advice.empty())
+    data.advice = read_distribution(run.advice).advice;
+
+  for (const ProblemResult& result : guided)
+    ++data.guides[result.guide];
+  data.cheaper_guided = count_cheaper(uniform, guided);
+
+  data.typical = find_typical(uniform, guided);
+  const Problem& shown = problem_of(
+      problems, data.typical ? data.typical->problem : uniform.front().name, run.uniform);
+  for (const AttachedObject& each : shown.attached)
+    data.held.push_back(each.name);
+  data.obstacles = page::drawn_objects(shown.scene);
+  if (data.typical) {
+    const ProblemResult& result = named(guided, shown.name);
+    data.newcomer =
+        demonstrate(robot, shown, checked_path(robot, result, run.guided), result.collision_checks);
+    data.searches = find_searches(run, robot, shown);
+  }
+  data.samples = draw_samples(robot, shown, data.distribution, run.distribution);
   return data;
 }
 

@@ -1,61 +1,57 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-#include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "client/experiments/comparison.hpp"
+#include "client/experiments/page/demonstration.hpp"
+#include "client/experiments/page/run_files.hpp"
+#include "client/experiments/page/typical_instance.hpp"
 #include "client/experiments/statistics.hpp"
 #include "client/page/bones.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/rehearsal.hpp"
 #include "proto/types/scene.hpp"
 
 namespace kinship::experiments {
 
-/// Where the run is that a page tells of: a folder as deploy/quickstart leaves it.
-struct RunFolder {
-  std::filesystem::path folder;    ///< ROBOT.problems.jsonl, ROBOT.results.jsonl of the fleet;
-                                   ///< ROBOT-uniform.results.jsonl, ROBOT-guided.results.jsonl and
-                                   ///< distribution.json of the new robot, advice.json, which is
-                                   ///< the same fetched after its attempts
-  std::filesystem::path models;    ///< folder of model folders
-  std::vector<std::string> fleet;  ///< names of the experienced robots' model folders
-  std::string robot;               ///< of the new robot's
+/// What the distribution says, in the scene that the page shows.
+struct DrawnSamples {
+  Poses hand;                                     ///< of all samples
+  double free_share = 0;                          ///< of those that were asked about, 0 to 1
+  double uniform_free_share = 0;                  ///< of as many uniform ones
+  std::vector<std::vector<page::Bone>> postures;  ///< some that are free, far from each other
 };
 
-/// Positions of the transfer frame and its approach directions, in the task frame.
-struct Poses {
-  Eigen::Matrix3Xd positions;   ///< m
-  Eigen::Matrix3Xd directions;  ///< unit vectors
-};
-
-/// What a robot of the fleet did.
-struct FleetMember {
-  std::string label;
-  std::size_t problems = 0;
-  std::vector<Poses> paths;  ///< resampled
+/// The same instance planned with both samplings.
+struct SearchPair {
+  GrownSearch uniform, guided;
 };
 
 /// Everything a page shows.
 struct PageData {
-  std::vector<FleetMember> fleet;
-  std::string robot;  ///< label of the new robot
-  Scene scene;        ///< one instance of its problems
+  std::vector<FleetMember> fleet;  ///< may be empty
+  std::string robot;               ///< label of the new robot
+  std::vector<std::string> held;   ///< names of what it holds
   Distribution distribution;
-  Advice advice;                  ///< what the server makes of the new robot's attempts
-  Poses samples;                  ///< of the distribution
-  double free_share = 0;          ///< of the samples, in the scene, 0 to 1
-  double uniform_free_share = 0;  ///< of as many uniform ones
-  std::vector<std::vector<page::Bone>>
-      postures;  ///< five samples that are free, far from each other
+  std::optional<Advice> advice;  ///< what the server makes of the new robot's attempts
   Comparison comparison;
   MeanInterval uniform_checks, guided_checks;  ///< means with 95 % intervals
+  std::map<Guide, std::size_t> guides;         ///< of the guided attempts, how many had each
+  std::size_t cheaper_guided = 0;              ///< instances that took fewer checks with guidance
+  /// The instance that is shown: a typical one, or the first problem where none was solved by both.
+  std::optional<TypicalInstance> typical;
+  std::vector<SceneObject> obstacles;     ///< of it
+  std::optional<Demonstration> newcomer;  ///< its guided path
+  std::optional<SearchPair> searches;     ///< if they were recorded
+  DrawnSamples samples;
 };
 
 /// Reads the run and draws the samples (seeded: equal files, equal page).
-/// \throws Failure that names the file if one is missing or broken.
-PageData read_run(const RunFolder& run);
+/// \throws Failure that names the file if one is missing or broken, or does not belong to the
+/// others.
+PageData read_run(const RunFiles& run);
 
 }  // namespace kinship::experiments

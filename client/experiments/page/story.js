@@ -1,108 +1,133 @@
-// Fills the page from its data.
+// Tells the run from its data.
 "use strict";
 (() => {
-  const {data, byId, count, fixed, percent, seconds, several, listed, total, metres, fillTable, fillTiles, color} = kinshipPage;
-  const {comparison, distribution, fleet} = data;
-  const pText = (p) => (p === null ? "\u2013" : p < 0.001 ? p.toExponential(1) : p.toFixed(4));
-
+  const {data, byId, count, fixed, percent, several, listed, total, metres, fillTable, fillTiles, color, make} = kinshipPage;
+  const {comparison, distribution, fleet, samples, typical} = data;
 
   const names = listed(fleet.map((robot) => robot.label));
+  const taught = names || listed(distribution.sources.map((source) => source.label)) || "A fleet";
   const paths = total(fleet.map((robot) => robot.paths.length));
   const ratio = comparison.ratio.mean_checks;
-  const isBetter = data.guided_checks.mean < data.uniform_checks.mean;
+  const instances = comparison.pairs;
+
+  /// A probability for who reads no p-values: "once in about 28 000 such runs".
+  function oncePer(p) {
+    if (p >= 0.5) return "in every other such run or more often";
+    const runs = 1 / p;
+    const unit = Math.pow(10, Math.max(0, Math.floor(Math.log10(runs)) - 1));
+    return p < 1e-9 ? "less than once in a billion such runs" : `once in about ${count(Math.round(runs / unit) * unit)} such runs`;
+  }
+
+  /// What guided the guided queries: not always the distribution.
+  function guidesInWords() {
+    const words = {retreat: "backing the hand out of its goal along the palm", ways: "recorded ways of the hand, moved onto each query",
+                   mixture: "samples from the distribution"};
+    const parts = (guide) => guide.split("+").map((part) => words[part] || "nothing");
+    return "What guided a query: " +
+      data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${count(total(data.guides.map((each) => each.queries)))})`).join("; ") +
+      ". Of these three the server chooses, by planning recorded queries again, what costs this robot the fewest checks.";
+  }
+
+  /// What chance has to do with it, as a sentence.
+  function chance() {
+    const p = comparison.wilcoxon_checks.p;
+    if (p === null) return "";
+    return p < 0.05
+      ? `Were both equally good, chance alone would bring about so clear a difference ${oncePer(p)}.`
+      : `That is no clear difference: were both equally good, chance alone would bring about as much ${oncePer(p)}.`;
+  }
 
   function tell() {
-    byId("title").textContent = `${names} teach ${data.robot} a task new to it`;
+    const holding = data.held.length ? `, holding ${listed(data.held.map((name) => `\u201c${name}\u201d`))},` : "";
+    byId("title").textContent = `${taught} teach${fleet.length === 1 ? "es" : ""} ${data.robot} a task`;
     byId("story").textContent =
-      `${names} planned the task \u201c${distribution.task}\u201d, moving a held box from a table into a shelf, with uniform ` +
-      `sampling and reported ${several(paths, "path")} to a Kinship server. The server moved these paths into the joint space of ` +
-      `${data.robot}, which has other kinematics and had never done the task, and fitted a sampling distribution. ` +
-      `${data.robot} then planned ${comparison.pairs} new instances twice: with uniform samples, and with samples from the distribution.`;
-    const tiles = [
-      [ratio === null ? "\u2013" : fixed(ratio, 2) + "\u2009\u00d7", isBetter ? "fewer collision checks with guidance (ratio of the means)" : "ratio of mean checks, uniform / guided"],
-      [`${count(data.uniform_checks.mean)} \u2192 ${count(data.guided_checks.mean)}`, "mean collision checks, uniform \u2192 guided"],
-      [pText(comparison.wilcoxon_checks.p), "p of a two-sided Wilcoxon signed-rank test" +
-        (comparison.wilcoxon_checks.p < 0.05 ? "" : ": not a clear difference")],
-      [`${percent(data.uniform_free_share)} \u2192 ${percent(data.free_share)}`, "samples free of collision, uniform \u2192 guided"]];
-    fillTiles(byId("tiles"), tiles);
+      (fleet.length
+        ? `${names} planned the task \u201c${distribution.task}\u201d${holding} with uniform sampling and reported ` +
+          `${several(paths, "path")} to a Kinship server. `
+        : `A Kinship server has experience of the task \u201c${distribution.task}\u201d. `) +
+      `The server moved it into the joint space of ${data.robot}, another robot, and fitted a sampling distribution. ${data.robot} then ` +
+      `planned ${several(instances, "new instance")} twice: with uniform samples, and guided by what the server made of that experience.`;
+    fillTiles(byId("tiles"), [
+      ratio === null ? ["\u2013", "no ratio: nothing was solved"]
+        : ratio >= 1 ? [fixed(ratio, 2) + "\u2009\u00d7", "as many collision checks without the experience, in the mean"]
+        : [fixed(1 / ratio, 2) + "\u2009\u00d7", "as many collision checks with the experience, in the mean: it did not help"],
+      [`${count(comparison.uniform.mean_checks)} \u2192 ${count(comparison.guided.mean_checks)}`, "collision checks per query in the mean, uniform \u2192 guided"],
+      [`${count(data.cheaper_guided)} of ${count(instances)}`, "instances took fewer checks with guidance"],
+      [`${percent(samples.uniform_free_share)} \u2192 ${percent(samples.free_share)}`, "of the samples are free of collision, uniform \u2192 distribution"]]);
   }
 
-  /// Each path as segments between its poses.
-  function segments(robot) {
-    const positions = [];
-    for (const path of robot.paths) {
-      const p = metres(path.positions);
-      for (let i = 3; i < p.length; i += 3) positions.push(...p.slice(i - 3, i + 3));
-    }
-    return positions;
+  function showStation() {
+    const actors = fleet.filter((robot) => robot.example).map((robot, i) => ({
+      label: robot.label, role: "experienced", color: "robot-" + i % 4, demo: robot.example, paths: robot.paths,
+      why: "It is the one in the middle of all that it solved, by checks."}));
+    if (data.newcomer)
+      actors.push({label: data.robot, role: "new to the task", color: "accent", demo: data.newcomer,
+                   why: "It planned this one guided by what the server made of that experience."});
+    if (!actors.length) return byId("station").remove();
+    byId("station-text").textContent =
+      `Every instance has its obstacles a little elsewhere. One path of each robot is drawn in its own instance, with the hand's start and ` +
+      `goal; play it, or look at all ways of the hand at once.`;
+    kinshipStation.show(byId("station-figure"), actors);
   }
 
-  /// A short stroke backwards from each pose, against its approach direction.
-  function approaches(poses, length) {
-    const positions = [];
-    const p = metres(poses.positions);
-    for (let i = 0; i < p.length; i += 3)
-      for (const back of [0, length])
-        for (let axis = 0; axis < 3; ++axis) positions.push(p[i + axis] - back * poses.directions[i + axis] / 100);
-    return positions;
-  }
-
-  function showFleet() {
-    const poses = total(fleet.flatMap((robot) => robot.paths.map((path) => path.positions.length / 3)));
-    byId("fleet-text").textContent =
-      `Where the palm of the gripper was along the recorded paths, in the frame of the station: ${count(poses)} poses of ` +
-      `${several(paths, "path")}. Each stroke points back out of the palm. The obstacles are those of one instance; they stand a little elsewhere in each.`;
-    kinshipView.show(byId("fleet-view"), {
-      label: `The station with the ways of the hand of ${names}`, from: [-1.8, -2.3, 1.3], layers: [
-        {name: "scene", text: "obstacles", color: "scene", objects: data.scene},
-        ...fleet.map((robot, i) => ({
-          name: robot.label, text: `${robot.label}, ${several(robot.paths.length, "path")}`, color: "robot-" + i % 4,
-          lines: [{positions: segments(robot), opacity: 0.3},
-                  {positions: robot.paths.flatMap((path) => approaches(path, 0.035)), opacity: 0.45}],
-          points: [{positions: robot.paths.flatMap((path) => metres(path.positions)), size: 0.022, opacity: 0.8}]}))]});
+  function showSearches() {
+    if (!data.searches) return;
+    byId("searches").hidden = false;
+    byId("searches-text").textContent =
+      `${data.robot} plans instance \u201c${typical.problem}\u201d: where its hand would be in every configuration that the two trees reached, ` +
+      `one tree from the start and others from the goals, until they meet. A collision check is what planning pays with. ${guidesInWords()}`;
+    kinshipSearches.show(byId("searches-figure"), data.searches,
+                         {uniform: typical.uniform_checks, guided: typical.guided_checks}, data.obstacles);
+    byId("searches-note").textContent =
+      `These are the run's own searches. The instance was chosen by rule: of ${several(typical.candidates, "instance")} solved both ways its ratio of checks, ` +
+      `${fixed(typical.ratio, 2)}, is nearest the median of their ratios, ${fixed(typical.median_ratio, 2)}. Both figures turn together. Straight lines between hands stand for ` +
+      `short motions of all joints; the path is the one found, before it is shortened.`;
   }
 
   function showSamples() {
-    const samples = data.samples.positions.length / 3;
+    const drawn = samples.hand.positions.length / 3;
     byId("samples-title").textContent = `What ${data.robot} was given`;
     byId("samples-text").textContent =
-      `The palm of ${data.robot} in ${count(samples)} configurations drawn from its distribution: a mixture of ` +
-      `${distribution.components} Gaussians in its ${distribution.joints} joints, fitted to ${count(distribution.configurations)} ` +
-      `configurations. ${data.postures.length} of them, free of collision and far from each other, are drawn as the whole arm. ` +
-      `The planner still checks every sample: about ${percent(data.free_share)} of these are free in the scene shown, of uniform ones ${percent(data.uniform_free_share)}.`;
-    kinshipView.show(byId("samples-view"), {
-      label: `${data.robot} in samples of its distribution`, from: [-1.8, -2.4, 1.4], layers: [
-        {name: "scene", text: "obstacles", color: "scene", objects: data.scene},
-        {name: "arms", text: `${data.robot} in ${data.postures.length} samples`, color: "arm",
-         arms: data.postures.map((bones, i) => ({bones, opacity: i === 0 ? 1 : 0.35}))},
-        {name: "samples", text: "palm, one dot per sample", color: "sample",
-         points: [{positions: metres(data.samples.positions), size: 0.022, opacity: 0.5}]}]});
+      `Its hand in ${count(drawn)} configurations drawn from the distribution: a mixture of ${several(distribution.components, "Gaussian")} in its ` +
+      `${several(distribution.joints, "joint")}, fitted to ${several(distribution.configurations, "configuration")}. ` +
+      (samples.postures.length ? `${several(samples.postures.length, "sample")}, free of collision and far from each other, can be seen as the whole arm. ` : "") +
+      `The planner checks every sample all the same: ${percent(samples.free_share)} of these are free in the scene shown, of uniform ones ${percent(samples.uniform_free_share)}.`;
+    kinshipView.show(byId("samples-figure"), {
+      label: `${data.robot} in samples of its distribution, and where its hand is in ${count(drawn)} of them`, from: [-1.5, -2.4, 1.25], layers: [
+        {name: "scene", text: "obstacles", color: "scene", opacity: 0.3, objects: data.obstacles},
+        {name: "samples", text: "its hand, a dot a sample", color: "sample",
+         points: [{positions: metres(samples.hand.positions), size: 0.022, opacity: 0.5}]},
+        {name: "arm", text: "one sample as the whole arm", color: "arm", arms: samples.postures.slice(0, 1).map((bones) => ({bones}))},
+        {name: "arms", text: `${samples.postures.length - 1} more`, color: "arm", shown: false,
+         arms: samples.postures.slice(1).map((bones) => ({bones, opacity: 0.4}))}].filter((layer) => !layer.arms || layer.arms.length)});
   }
 
   function showBars() {
     const rows = [["uniform", data.uniform_checks], ["guided", data.guided_checks]].map(([planner, checks]) =>
       ({planner, ...checks, label: count(checks.mean)}));
+    const says = ratio === null ? "" : ratio >= 1 ? `Without the experience ${fixed(ratio, 2)} times as many collision checks were needed. `
+      : `With the experience ${fixed(1 / ratio, 2)} times as many collision checks were needed. `;
     byId("worth-text").textContent =
-      `Collision checks of both planners over the same ${comparison.pairs} instances with the same seeds; bars are means, ` +
-      `whiskers their 95 % intervals (bootstrap).`;
-    kinshipCharts.show(byId("bars"), "Mean collision checks, uniform and guided", () => barsOf(rows));
+      `${says}${chance()} Both planned the same ${several(instances, "instance")} with the same seeds; bars are means, whiskers their 95\u202f% intervals.` +
+      (data.searches ? "" : " " + guidesInWords());
+    kinshipCharts.show(byId("bars"), `Mean collision checks: uniform ${rows[0].label}, guided ${rows[1].label}`, (width) => barsOf(rows, width));
   }
 
-  function barsOf(rows) {
+  function barsOf(rows, width) {
     const ink = color("ink"), font = kinshipCharts.font;
     const whisker = (x, x2, band) => ({
       type: "rule", from: {data: "rows"}, encode: {update: {
         x: {scale: "x", field: x}, x2: {scale: "x", field: x2}, stroke: {value: ink}, strokeWidth: {value: 1.5},
         y: {scale: "y", field: "planner", band: band[0]}, y2: {scale: "y", field: "planner", band: band[1]}}}});
     return {
-      width: byId("bars").clientWidth, height: 132,
+      width, height: 120,
       data: [{name: "rows", values: rows}],
       scales: [
         {name: "y", type: "band", domain: {data: "rows", field: "planner"}, range: "height", padding: 0.32},
         {name: "x", domain: {data: "rows", field: "high"}, range: "width", zero: true, nice: true},
         {name: "hue", type: "ordinal", domain: ["uniform", "guided"], range: [color("uniform"), color("guided")]}],
       axes: [
-        {orient: "bottom", scale: "x", grid: true, tickCount: 6, title: "collision checks per query",
+        {orient: "bottom", scale: "x", grid: true, tickCount: Math.max(3, Math.min(7, Math.round(width / 110))), title: "collision checks per query",
          encode: {labels: {update: {text: {signal: "replace(format(datum.value, ','), regexp(',', 'g'), '\u202f')"}}}}},
         {orient: "left", scale: "y", labelColor: ink, labelFontSize: 14, labelPadding: 10}],
       marks: [
@@ -116,34 +141,36 @@
   }
 
   function showTables() {
-    const {uniform: u, guided: g, ratio: r} = comparison;
-    fillTable(byId("comparison"), [
-      ["", "uniform", "guided", "ratio", "p"],
-      ["solved", `${u.solved}/${comparison.pairs}`, `${g.solved}/${comparison.pairs}`, "", ""],
-      ["collision checks, mean", count(u.mean_checks), count(g.mean_checks), fixed(r.mean_checks, 2), pText(comparison.wilcoxon_checks.p)],
-      ["collision checks, median", count(u.median_checks), count(g.median_checks), fixed(r.median_checks, 2), ""],
-      ["planning time, mean", seconds(u.mean_time_s), seconds(g.mean_time_s), fixed(r.mean_time, 2), pText(comparison.wilcoxon_time.p)],
-      ["95 % interval of mean checks", `${count(data.uniform_checks.low)} to ${count(data.uniform_checks.high)}`,
-       `${count(data.guided_checks.low)} to ${count(data.guided_checks.high)}`, "", ""]]);
-    byId("comparison-note").textContent =
-      "Ratio: uniform / guided. p: two-sided Wilcoxon signed-rank test over the pairs, unsolved ranked worst. One run of " +
-      `${comparison.pairs} instances is one draw: another seed gives another ratio.` +
-      (u.solved < comparison.pairs || g.solved < comparison.pairs ? " An unsolved attempt counts in a mean with what it had used when it gave up." : "");
+    fillTable(byId("comparison"), [["", "uniform", "guided", "ratio", "p"], ...data.table.rows]);
+    for (const note of data.table.notes) byId("comparison-notes").append(make("p", {}, note));
+    byId("comparison-notes").append(make("p", {}, `One run of ${several(instances, "instance")} is one draw: another seed gives another ratio.`));
     fillTable(byId("sources"), [
       ["robot", "paths", "poses", "reached by " + data.robot, "of the poses"],
       ...distribution.sources.map((s) => [s.label, count(s.paths), count(s.poses), count(s.poses_solved),
                                           s.poses ? percent(s.poses_solved / s.poses) : ""])]);
     byId("distribution-note").textContent =
       `Distribution ${distribution.id}, revision ${distribution.revision}, profile \u201c${distribution.profile}\u201d: transfer ` +
-      `${fixed(distribution.transfer_time_s, 2)} s, fit ${fixed(distribution.fit_time_s, 2)} s. What the server advises from the attempts above: share of guided samples ${fixed(data.advice.share, 2)}: ${data.advice.evidence}.`;
+      `${fixed(distribution.transfer_time_s, 2)}\u202fs, fit ${fixed(distribution.fit_time_s, 2)}\u202fs.`;
     byId("footer").textContent =
-      "Written by deploy/quickstart from the run's own files. The page holds everything it needs and loads nothing. " +
+      "Written by kinship-experiments page from the run's own files. The page holds everything it needs and loads nothing. " +
       "Drawn with three.js (MIT) and Vega (BSD 3-clause).";
+  }
+
+  function advise() {
+    if (!data.advice) return;
+    byId("advice").hidden = false;
+    const tenths = Math.round(10 * data.advice.share);
+    const words = tenths <= 0 ? `Do not guide ${data.robot} here: plan with uniform samples.`
+      : tenths >= 10 ? `Take all samples of a guided query from experience.`
+      : `In a guided query take about ${tenths} of 10 samples from experience and the others uniformly.`;
+    byId("advice-text").textContent = `${words} Its reasons: ${data.advice.evidence}.`;
   }
 
   tell();
   showTables();
+  advise();
   showBars();
-  showFleet();
+  showStation();
+  showSearches();
   showSamples();
 })();

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "proto/types/names.hpp"
 #include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/checked_vfs.hpp"
@@ -30,6 +31,7 @@
 #include "server/store/sqlite/rows/listings.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
+#include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
@@ -146,6 +148,34 @@ class SqliteStore : public Store {
 
   bool replace_geometry(const RobotRecord& robot) override {
     return write([&](Batch& batch) { return update_robot(batch.database(), robot); });
+  }
+
+  Result<bool> rename_robot(const Digest& robot, const std::string& label) override {
+    if (const auto error = check_label(label))
+      return *error;
+    return write([&](Batch& batch) { return relabel_robot(batch.database(), robot, label); });
+  }
+
+  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop) override {
+    RemovedRobot removed;
+    while (true) {
+      // What a transaction that is undone has counted is not counted.
+      RemovedRobot next;
+      const Result<bool> is_out = write([&](Batch& batch) {
+        next = removed;
+        return continue_removal(batch, robot, next);
+      });
+      if (!is_out)
+        return is_out.error();
+      removed = std::move(next);
+      if (*is_out)
+        return removed;
+      if (stop.stop_requested())
+        return Error{ErrorCode::Unavailable, "robot " + robot.short_hex() +
+                                                 ": the server is stopping after " +
+                                                 std::to_string(removed.removal.paths) +
+                                                 " paths were retired; ask again for the rest"};
+    }
   }
 
   std::map<Digest, std::uint64_t> geometry_revisions() const override {

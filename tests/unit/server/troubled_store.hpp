@@ -44,6 +44,13 @@ class TroubledStore final : public store::Store {
   bool replace_geometry(const store::RobotRecord& robot) override {
     return store_.replace_geometry(robot);
   }
+  Result<bool> rename_robot(const Digest& robot, const std::string& label) override {
+    return store_.rename_robot(robot, label);
+  }
+  Result<store::RemovedRobot> remove_robot(const Digest& robot,
+                                           const std::stop_token& stop) override {
+    return store_.remove_robot(robot, stop);
+  }
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
     return store_.geometry_revisions();
   }

@@ -6,6 +6,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retention.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
@@ -54,14 +55,15 @@ std::optional<EarlierAttempt> read_earlier(Database& database, ReportRows& rows)
   }
 }
 
+/// Of a robot that is registered: a removed one has to be registered again.
 struct RobotRow {
   std::int64_t id = 0;
   std::int64_t dof = 0;
 };
 
 std::optional<RobotRow> find_robot_row(Database& database, const Digest& robot) {
-  const auto query = database.cached("SELECT id, dof FROM robot WHERE digest = ?");
-  if (!query->bind(1, Bytes(robot.bytes)).step())
+  const auto query = database.cached("SELECT id, dof, label FROM robot WHERE digest = ?");
+  if (!query->bind(1, Bytes(robot.bytes)).step() || is_removed_label(query->column_text(2)))
     return std::nullopt;
   return RobotRow{query->column_integer(0), query->column_integer(1)};
 }
@@ -193,8 +195,8 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint6
     return refused(attempt.report_uuid, "this UUID was used for another report");
   const std::optional<RobotRow> robot = find_robot_row(database, attempt.robot);
   if (!robot)
-    return refused(attempt.report_uuid,
-                   "robot " + attempt.robot.short_hex() + " is not registered");
+    return {attempt.report_uuid, ReceiptStatus::UnknownRobot,
+            "robot " + attempt.robot.short_hex() + " is not registered"};
   if (prepared.path && prepared.path->blob.dof != robot->dof)
     return refused(attempt.report_uuid, "path of " + std::to_string(prepared.path->blob.dof) +
                                             " joints, robot " + attempt.robot.short_hex() +
@@ -294,9 +296,11 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
 }
 
 void name_robot_and_task(Database& database, AttemptRow& row) {
-  const auto robot = database.cached("SELECT digest FROM robot WHERE id = ?");
-  if (robot->bind(1, row.robot_id).step())
+  const auto robot = database.cached("SELECT digest, label FROM robot WHERE id = ?");
+  if (robot->bind(1, row.robot_id).step()) {
     row.attempt.robot = id_of<Digest>(robot->column_blob(0));
+    row.is_robot_removed = is_removed_label(robot->column_text(1));
+  }
   const auto task = database.cached("SELECT name FROM task WHERE id = ?");
   if (task->bind(1, row.task_id).step())
     row.attempt.task = task->column_text(0);

@@ -36,6 +36,7 @@ struct AttemptRow {
   std::optional<std::int64_t> path_id;
   std::optional<std::int64_t> scene_id;
   std::int64_t received_ms = 0;
+  bool is_robot_removed = false;
 };
 /// Without the names of its robot and task, which stand in other tables. \throws SqliteError: if
 /// is_damage(), the row is damaged.

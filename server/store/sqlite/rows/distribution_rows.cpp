@@ -11,6 +11,7 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/distribution_blob.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 
@@ -80,7 +81,8 @@ void remove_row(Database& database, std::int64_t row) {
 
 std::int64_t robot_id_of(Database& database, const Distribution& distribution) {
   const auto query = database.cached("SELECT id FROM robot WHERE digest = ?");
-  if (!query->bind(1, Bytes(distribution.robot.bytes)).step())
+  if (!query->bind(1, Bytes(distribution.robot.bytes)).step() ||
+      is_removed(database, distribution.robot))
     throw Failure(ErrorCode::NotFound, "distribution " + distribution.id.short_hex() + ": robot " +
                                            distribution.robot.short_hex() + " is not registered");
   return query->column_integer(0);

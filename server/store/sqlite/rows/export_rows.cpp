@@ -78,11 +78,13 @@ std::vector<std::int64_t> next_ids(Database& database, const std::optional<Diges
              : next_of_all(database, after_id, count);
 }
 
-/// Nothing if it lies on a damaged page.
+/// Nothing if its robot is removed, or it lies on a damaged page.
 std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names, std::int64_t id) {
   try {
     AttemptRow row = select_attempt(database, id);
     name_robot_and_task(database, row);
+    if (row.is_robot_removed)
+      return std::nullopt;
     const RobotNames::Name* const robot = names.find(row.robot_id);
     return AttemptSummary{row.attempt.report_uuid,
                           row.attempt.robot,
@@ -98,7 +100,7 @@ std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names
   }
 }
 
-/// Nothing if it lies on a damaged page, which is noted.
+/// Nothing if its robot is removed, or it lies on a damaged page, which is noted.
 std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
   std::optional<AttemptRow> row;
   try {
@@ -110,6 +112,8 @@ std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRe
     return std::nullopt;
   }
   name_robot_and_task(database, *row);
+  if (row->is_robot_removed)
+    return std::nullopt;
   return row;
 }
 

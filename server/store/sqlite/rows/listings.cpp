@@ -11,6 +11,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 
@@ -75,7 +76,8 @@ std::vector<TaskRobotSummary> robots_of_task(Database& database, RobotNames& nam
   constexpr int kGuided = 5, kControl = 8;
   std::vector<TaskRobotSummary> robots;
   while (query->step())
-    if (const RobotNames::Name* const robot = names.find(query->column_integer(0)))
+    if (const RobotNames::Name* const robot = names.find(query->column_integer(0));
+        robot != nullptr && !is_removed_label(robot->label))
       robots.push_back({robot->digest, robot->label, count_of(*query, 1), count_of(*query, 2),
                         count_of(*query, 3), count_of(*query, 4), evidence_of(*query, kGuided),
                         evidence_of(*query, kControl)});
@@ -224,7 +226,8 @@ Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, s
       " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(max(taken_ms), 0) FROM robot_geometry WHERE robot_id = robot.id) "
-      "FROM robot WHERE label > ? AND base_link <> '' ORDER BY label LIMIT ?");
+      "FROM robot WHERE label > ? AND base_link <> '' AND label NOT GLOB 'removed *' "
+      "ORDER BY label LIMIT ?");
   query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
   const auto read = [](const Statement& row) {
     RobotSummary summary;
@@ -324,7 +327,7 @@ void count_rows(Database& database, StoreStatus& status) {
     }
   };
   std::uint64_t schema = 0;
-  count(status.robots, "robots", "SELECT count(*) FROM robot");
+  count(status.robots, "robots", "SELECT count(*) FROM robot WHERE label NOT GLOB 'removed *'");
   count(status.tasks, "tasks", "SELECT count(*) FROM task");
   count(status.paths, "paths", "SELECT coalesce(sum(paths), 0) FROM experience");
   count(status.dropped_paths, "dropped paths", "SELECT coalesce(sum(dropped), 0) FROM experience");

@@ -17,7 +17,10 @@
 namespace kinship::store {
 namespace {
 
-constexpr std::int64_t kPathsOfAStep = 500;  // each is written anew: about 10 MB of WAL
+// Of the paths: what is not retired, also if it is damaged.
+constexpr std::string_view kNotRetired =
+    " AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 1 AND"
+    " set_aside.id = path.id AND set_aside.retired_ms IS NOT NULL) ";
 
 struct PathRow {
   std::int64_t id = 0;
@@ -68,9 +71,8 @@ std::vector<PathRow> select_rows(Database& database, const TaskReset& reset) {
   {
     const auto query = database.cached(
         "SELECT id, task_id, robot_id FROM path INDEXED BY path_by_task_robot "
-        "WHERE task_id = ?1 AND id <= ?2 AND retired_ms IS NULL AND NOT EXISTS (SELECT 1 FROM "
-        "set_aside WHERE kind = 1 AND set_aside.id = path.id AND set_aside.retired_ms IS NOT NULL) "
-        "LIMIT ?3");
+        "WHERE task_id = ?1 AND id <= ?2" +
+        std::string(kNotRetired) + "LIMIT ?3");
     query->bind_all(reset.task_id, reset.last_path_id, kPathsOfAStep);
     while (query->step())
       rows.push_back(
@@ -127,6 +129,24 @@ bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired) {
   for (const PathRow& path : paths)
     retire(batch, path, retired);
   return !paths.empty();
+}
+
+std::int64_t retire_some(Batch& batch, const ExperienceKey& key, std::int64_t limit,
+                         Retirement& retired) {
+  Database& database = batch.database();
+  const Digest robot = digest_of_robot(database, key.robot_id);
+  std::vector<PathRow> paths;
+  {
+    const auto query = database.cached(
+        "SELECT id FROM path INDEXED BY path_by_task_robot WHERE task_id = ? AND robot_id = ?" +
+        std::string(kNotRetired) + "LIMIT ?");
+    query->bind_all(key.task_id, key.robot_id, limit);
+    while (query->step())
+      paths.push_back({query->column_integer(0), key, robot});
+  }
+  for (const PathRow& path : paths)
+    retire(batch, path, retired);
+  return std::ssize(paths);
 }
 
 }  // namespace kinship::store

@@ -4,6 +4,7 @@
 
 #include "proto/types/result.hpp"
 #include "server/store/sqlite/database/writer.hpp"
+#include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/store.hpp"
 
 /// Paths that people take out of every fit. Their rows stay, out of the indexes that fits read.
@@ -25,5 +26,13 @@ Result<TaskReset> begin_reset(Database& database, std::string_view task);
 /// Retires some of the paths of a reset, few enough that the writer is soon free for reports, and
 /// adds them to `retired`. \return whether paths are left.
 bool continue_reset(Batch& batch, const TaskReset& reset, Retirement& retired);
+
+/// The most paths that are retired in one transaction: each is written anew.
+inline constexpr std::int64_t kPathsOfAStep = 500;
+
+/// Retires paths of a robot and task, as many as `limit` at most, and adds them to `retired`.
+/// \return how many.
+std::int64_t retire_some(Batch& batch, const ExperienceKey& key, std::int64_t limit,
+                         Retirement& retired);
 
 }  // namespace kinship::store

@@ -15,6 +15,8 @@ constexpr std::string_view kRobotColumns =
     "SELECT id, digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes, registered_ms,"
     " crc32c, urdf FROM robot ";
 
+constexpr std::string_view kRemoved = "removed ";
+
 std::int64_t mask_of(const TaskAxes& axes) {
   std::int64_t mask = 0;
   for (std::size_t i = 0; i < axes.matters.size(); ++i)
@@ -152,15 +154,23 @@ std::optional<std::int64_t> id_of_robot(Database& database, const Digest& digest
   return query->column_integer(0);
 }
 
-bool has_undamaged(Database& database, const Digest& digest) {
+bool is_registered(Database& database, const Digest& digest) {
   const std::optional<std::int64_t> id = id_of_robot(database, digest);
-  return id && read_robot_of(database, *id);
+  return id && !is_removed(database, digest) && read_robot_of(database, *id);
 }
 
-bool another_has_label(Database& database, const RobotRecord& robot) {
+/// From the index of labels. \return Conflict if another robot has it, and what can be done.
+std::optional<Error> check_free(Database& database, const std::string& label, const Digest& robot) {
   const auto query = database.cached("SELECT id FROM robot WHERE label = ?");
-  query->bind(1, std::string_view(robot.description.label));
-  return query->step() && query->column_integer(0) != id_of_robot(database, robot.digest);
+  query->bind(1, std::string_view(label));
+  if (!query->step() || query->column_integer(0) == id_of_robot(database, robot))
+    return std::nullopt;
+  return Error{ErrorCode::Conflict,
+               "another robot has the label '" + label +
+                   "': one with another URDF, base or tip link, transfer frame, axes or held "
+                   "joints. Take another label, or free this one: 'kinship robots rename " +
+                   label + " NEW' keeps that robot under a new name, 'kinship robots remove " +
+                   label + "' takes it out"};
 }
 
 /// \return the id of the row, the old one if the digest is there.
@@ -200,8 +210,8 @@ void write_robot(Database& database, const RobotRecord& robot, Bytes T_tip_trans
   insert_geometry(database, id, robot);
 }
 
-/// Of a robot whose row is written anew because it is damaged: neither what was fitted with its
-/// geometry nor a fit that failed over it is taken for its own.
+/// Of a robot whose row is written anew because it is damaged or removed: neither what was fitted
+/// with its geometry nor a fit that failed over it is taken for its own.
 std::uint64_t next_revision(Database& database, std::int64_t id) {
   RobotRecord robot;
   select_geometry(database, id, robot);
@@ -212,26 +222,65 @@ std::uint64_t next_revision(Database& database, std::int64_t id) {
 
 Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
-  if (has_undamaged(database, robot.digest))
+  if (is_registered(database, robot.digest))
     return RegisterStatus::Known;
-  if (another_has_label(database, robot))
-    return Error{ErrorCode::Conflict,
-                 "robot '" + description.label + "': another robot has this label"};
+  if (auto conflict = check_free(database, description.label, robot.digest))
+    return *conflict;
   const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
   if (!pose_from_blob(T_tip_transfer))
     return Error{ErrorCode::InvalidInput,
                  "robot '" + description.label + "': T_tip_transfer is no pose"};
   RobotRecord written = robot;
-  if (const std::optional<std::int64_t> damaged = id_of_robot(database, robot.digest))
-    written.geometry_revision = next_revision(database, *damaged);
+  if (const std::optional<std::int64_t> before = id_of_robot(database, robot.digest))
+    written.geometry_revision = next_revision(database, *before);
   write_robot(database, written, T_tip_transfer);
   return RegisterStatus::Registered;
+}
+
+std::string removed_label(const Digest& robot) {
+  constexpr std::size_t kDigits = 24;
+  return std::string(kRemoved) + robot.hex().substr(0, kDigits);
+}
+
+bool is_removed_label(std::string_view label) { return label.starts_with(kRemoved); }
+
+bool is_removed(Database& database, const Digest& robot) {
+  const auto query = database.cached("SELECT label FROM robot WHERE label = ?");
+  return query->bind(1, std::string_view(removed_label(robot))).step();
+}
+
+Result<bool> relabel_robot(Database& database, const Digest& robot, const std::string& label) {
+  std::optional<RobotRecord> record = select_robot(database, robot);
+  if (!record)
+    return Error{ErrorCode::NotFound, "robot " + robot.short_hex() + " is not registered"};
+  if (auto conflict = check_free(database, label, robot))
+    return *conflict;
+  const std::int64_t id = id_of_robot(database, robot).value();
+  record->description.label = label;
+  // As they are stored: see robot_crc().
+  const std::vector<std::uint8_t> solids = select_geometry(database, id, *record);
+  std::uint32_t crc = 0;
+  {
+    const auto pose = database.cached("SELECT T_tip_transfer FROM robot WHERE id = ?");
+    pose->bind(1, id).step();
+    crc = robot_crc(*record, pose->column_blob(0), solids);
+  }
+  database.cached("UPDATE robot SET label = ?, crc32c = ? WHERE id = ?")
+      ->bind_all(std::string_view(label), std::int64_t{crc}, id)
+      .run();
+  return true;
+}
+
+void delete_robot(Database& database, std::int64_t robot_id) {
+  delete_parts(database, robot_id);
+  database.cached("DELETE FROM robot WHERE id = ?")->bind(1, robot_id).run();
 }
 
 bool update_robot(Database& database, const RobotRecord& robot) {
   const std::optional<std::int64_t> id = id_of_robot(database, robot.digest);
   const std::optional<RobotRecord> before = id ? read_robot_of(database, *id) : std::nullopt;
-  if (!before || before->geometry_revision + 1 != robot.geometry_revision)
+  if (!before || is_removed_label(before->description.label) ||
+      before->geometry_revision + 1 != robot.geometry_revision)
     return false;
   const std::vector<std::uint8_t> T_tip_transfer = pose_blob(robot.description.T_tip_transfer);
   if (!pose_from_blob(T_tip_transfer))
@@ -268,6 +317,8 @@ std::optional<RobotRecord> select_robot(Database& database, const Digest& robot)
   std::optional<RobotRecord> record = read_robot_of(database, *id);
   if (!record)
     throw Failure(ErrorCode::Storage, "robot " + robot.short_hex() + ": its row is damaged");
+  if (is_removed_label(record->description.label))
+    return std::nullopt;
   return record;
 }
 
@@ -276,11 +327,12 @@ RobotsRead select_robots(Database& database, bool has_geometry) {
   const auto query = database.cached("SELECT id, label FROM robot ORDER BY label");
   RobotsRead read;
   while (query->step()) {
-    if (std::optional<RobotRecord> robot =
-            read_robot_of(database, query->column_integer(0), has_geometry))
-      read.robots.push_back(std::move(*robot));
-    else
+    std::optional<RobotRecord> robot =
+        read_robot_of(database, query->column_integer(0), has_geometry);
+    if (!robot)
       read.damaged.emplace_back(query->column_text(1));
+    else if (!is_removed_label(robot->description.label))
+      read.robots.push_back(std::move(*robot));
   }
   return read;
 }

@@ -43,6 +43,13 @@ Answer run_without_server(std::vector<std::string> command, const char* timeout_
   return run_command(command);
 }
 
+TEST(Commands, APageAndADocumentAreNotBothForStandardOutput) {
+  const Answer answer =
+      run_without_server({"robots", "compare", "--task", "pick", "--json", "--output", "-"});
+  EXPECT_EQ(answer.code, kWrongUsage);
+  EXPECT_NE(answer.err.find("--json and --output -"), std::string::npos) << answer.err;
+}
+
 TEST(Commands, HelpIsAnAnswer) {
   for (const std::string group : {"robots", "tasks", "paths", "distributions"}) {
     const Answer answer = run_command({group, "list", "--help"});
@@ -160,6 +167,11 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"jobs", "wait"},
                                                           {"jobs", "cancel"},
                                                           {"robots", "register"},
+                                                          {"robots", "rename"},
+                                                          {"robots", "remove"},
+                                                          {"robots", "links"},
+                                                          {"robots", "frames"},
+                                                          {"robots", "suggest-srdf"},
                                                           {"tasks", "reset"},
                                                           {"tasks", "experience"},
                                                           {"paths", "export"},

@@ -218,12 +218,12 @@ TEST(MoveItConversion, AllowedPairsNameEachPartAndOnlyWhatIsThere) {
 }
 
 TEST(MoveItConversion, TellsWhatItLeftOut) {
+  const std::string finger =
+      "start of joint 'panda_finger_joint1', 0.04: not of the chain; --hold says where it stands";
   const auto left_out = convert(kEchoedScene, kEchoedRequest).value_or_throw().left_out;
   EXPECT_EQ(left_out,
             (std::vector<std::string>{
-                "start of joint 'panda_finger_joint1', 0.04: not of the chain; --hold says where "
-                "it stands",
-                "'panda_leftfinger' may touch 'cup', but the robot has no such link",
+                finger, "'panda_leftfinger' may touch 'cup', but the robot has no such link",
                 "padding and scale of links", "tolerances of the goal: a problem's goal is exact",
                 "group_name 'panda_arm': the robot's chain says which joints move"}));
 }

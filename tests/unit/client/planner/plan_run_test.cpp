@@ -47,7 +47,7 @@ class PlanRun : public testing::Test {
   int run(const std::string& problems, const std::function<bool()>& stop = never) {
     std::istringstream input(problems);
     std::ostringstream output;
-    summary_ = run_plan(options_, {input, output, messages_}, stop);
+    summary_ = run_plan(options_, {input, output, messages_, searches_}, stop);
     const int code = summary_.exit_code;
     std::istringstream lines(output.str());
     for (std::string text; std::getline(lines, text);)
@@ -61,6 +61,7 @@ class PlanRun : public testing::Test {
        testing::UnitTest::GetInstance()->current_test_info()->name());
   PlanOptions options_;
   std::ostringstream messages_;
+  std::ostream* searches_ = nullptr;
   RunSummary summary_;
   std::vector<ProblemResult> results_;
 };
@@ -73,6 +74,28 @@ TEST_F(PlanRun, AnswersEveryLineInOrderAlsoABrokenOne) {
   EXPECT_FALSE(results_[1].solved);
   EXPECT_NE(results_[1].reason.find("line 2"), std::string::npos);
   EXPECT_EQ(results_[2].name, "third");
+}
+
+TEST_F(PlanRun, EachSearchIsWrittenDownWhereItIsAskedForAndChangesNoResult) {
+  const std::string problems = line("first") + "{broken\n" + line("third");
+  run(problems);
+  const std::vector<ProblemResult> without = std::exchange(results_, {});
+  std::ostringstream searches;
+  searches_ = &searches;
+  run(problems);
+  ASSERT_EQ(results_.size(), without.size());
+  std::istringstream lines(searches.str());
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    std::string text;
+    ASSERT_TRUE(std::getline(lines, text)) << i;
+    const RecordedSearch search = json::recorded_search_from_json(text).value_or_throw();
+    EXPECT_EQ(search.name, results_[i].name);
+    EXPECT_EQ(results_[i].waypoints, without[i].waypoints);
+    EXPECT_EQ(results_[i].collision_checks, without[i].collision_checks);
+    EXPECT_EQ(search.path.empty(), !results_[i].solved);
+    if (results_[i].solved)
+      EXPECT_LE(search.checks.back(), results_[i].collision_checks);
+  }
 }
 
 TEST_F(PlanRun, UnsolvedIsAnAnswer) {

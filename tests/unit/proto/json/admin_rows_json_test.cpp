@@ -63,6 +63,14 @@ TEST(AdminRowsJson, RetirementIsReadBack) {
   EXPECT_EQ(to_json(retirement_from_json(text).value_or_throw()), text);
 }
 
+TEST(AdminRowsJson, ARobotRemovalIsReadBack) {
+  const std::string text = to_json(RobotRemoval{digest_of(1), "cell1", 12, 20, 3, true});
+  EXPECT_EQ(text, R"({"robot":")" + digest_of(1).hex() +
+                      R"(","label":"cell1","paths":12,"attempts":20,"distributions":3,)"
+                      R"("is_deleted":true})");
+  EXPECT_EQ(to_json(robot_removal_from_json(text).value_or_throw()), text);
+}
+
 TEST(AdminRowsJson, EvictionIsReadBack) {
   const std::string text = eviction_to_json(digest_of(3));
   EXPECT_EQ(text, R"({"evicted":")" + digest_of(3).hex() + R"("})");

@@ -1,0 +1,91 @@
+#include "client/experiments/page/run_reader.hpp"
+
+#include <iterator>
+
+#include "client/files/lines.hpp"
+#include "proto/json/distribution_json.hpp"
+#include "proto/json/problem_json.hpp"
+#include "proto/types/failure.hpp"
+#include "robots/models/mesh_files.hpp"
+#include "robots/models/scene_meshes.hpp"
+
+namespace kinship::experiments {
+namespace {
+
+/// Hands over what `read` makes of each line.
+template <typename Read, typename Use>
+void read_each_line(const std::filesystem::path& file, Read read, Use use) {
+  std::ifstream stream = files::open_input(file);
+  files::for_each_line(stream, file.string(), [&](const files::Line& line) {
+    auto value = line.text ? read(*line.text) : decltype(read(*line.text))(line.text.error());
+    if (!value)
+      throw Failure(value.error().code, file.string() + " line " + std::to_string(line.number) +
+                                            ": " + value.error().message);
+    use(*std::move(value));
+    return true;
+  });
+}
+
+}  // namespace
+
+std::map<std::string, Problem> read_problems(const std::filesystem::path& file,
+                                             const models::RobotArguments& robot) {
+  models::SceneMeshes meshes(file.parent_path(),
+                             models::parse_packages(robot.packages).value_or_throw());
+  std::map<std::string, Problem> problems;
+  read_each_line(
+      file, [](const std::string& text) { return json::problem_from_json(text); },
+      [&](Problem problem) {
+        if (const auto error = meshes.read(problem.scene, problem.attached))
+          throw Failure(error->code, file.string() + ": " + error->message);
+        problems.emplace(problem.name, std::move(problem));
+      });
+  if (problems.empty())
+    throw Failure(ErrorCode::InvalidInput, "'" + file.string() + "' holds no problem");
+  return problems;
+}
+
+Distribution read_distribution(const std::filesystem::path& file) {
+  std::ifstream stream = files::open_input(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  Result<Distribution> distribution = json::distribution_from_json(text);
+  if (!distribution)
+    throw Failure(distribution.error().code, file.string() + ": " + distribution.error().message);
+  if (!distribution->mixture)
+    throw Failure(ErrorCode::InvalidInput, file.string() + ": the distribution has no mixture");
+  return *std::move(distribution);
+}
+
+std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path& file) {
+  std::map<std::string, RecordedSearch> searches;
+  if (!file.empty())
+    read_each_line(
+        file, [](const std::string& text) { return json::recorded_search_from_json(text); },
+        [&](RecordedSearch search) {
+          std::string name = search.name;
+          searches.emplace(std::move(name), std::move(search));
+        });
+  return searches;
+}
+
+const Problem& problem_of(const std::map<std::string, Problem>& problems, const std::string& name,
+                          const std::filesystem::path& what) {
+  const auto found = problems.find(name);
+  if (found == problems.end())
+    throw Failure(ErrorCode::InvalidInput, what.string() + " answers '" + name +
+                                               "', which is none of the " +
+                                               std::to_string(problems.size()) + " problems");
+  return found->second;
+}
+
+const Eigen::MatrixXd& checked_path(const models::LoadedRobot& robot, const ProblemResult& result,
+                                    const std::filesystem::path& what) {
+  if (result.waypoints->rows() != robot.chain.dof())
+    throw Failure(ErrorCode::InvalidInput, what.string() + ": the path of '" + result.name +
+                                               "' has " + std::to_string(result.waypoints->rows()) +
+                                               " joints, " + robot.description.label + " " +
+                                               std::to_string(robot.chain.dof()));
+  return *result.waypoints;
+}
+
+}  // namespace kinship::experiments

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinship {
+
+/// How the trees of one search grew, for who looks at it. Node 0 is the start; every other node
+/// without a parent is a goal.
+struct RecordedSearch {
+  std::string name;                   ///< of the problem
+  Eigen::MatrixXd nodes;              ///< dof x n, in the order in which they came, joint units
+  std::vector<std::int64_t> parents;  ///< n: an earlier node, or -1
+  std::vector<std::uint64_t> checks;  ///< n: collision checks that had been asked for by then
+  std::vector<std::int64_t> path;     ///< nodes from the start to a goal; empty if unsolved
+};
+
+inline constexpr std::size_t kMaxRecordedNodes = 50'000;  ///< of a search; later ones are left out
+
+}  // namespace kinship

@@ -1,0 +1,126 @@
+"""The quickstart's page in a browser: a small real run of deploy/quickstart, clicked through and looked at."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from selenium.webdriver.common.keys import Keys
+
+from browser import Browser, pixels_of, share_drawn, touches_border
+from kinshipd_process import reserve_domain
+
+SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
+INSTANCES = 4
+CANVASES = ("#station-figure canvas", "[data-search=uniform] canvas", "[data-search=guided] canvas", "#samples-figure canvas")
+# Of page.css, light.
+PANDA, HELD, PATH = (47, 111, 222), (201, 146, 46), (217, 115, 13)
+
+
+def run_quickstart(folder: pathlib.Path) -> None:
+    domain, claim = reserve_domain()
+    with claim:
+        subprocess.run([SOURCE / "deploy" / "quickstart", "--no-build", "--fleet", "4", "--instances", str(INSTANCES),
+                        "--folder", folder, "--domain", str(domain)], check=True, capture_output=True,
+                       env={**os.environ, "KINSHIP_BIN": os.environ["KINSHIP_BIN_DIR"]})
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory())) / "run"
+        run_quickstart(cls.folder)
+        cls.browser = cls.enterClassContext(Browser())
+        cls.browser.load(cls.folder / "quickstart.html")
+
+    def setUp(self):
+        self.browser.prefer("light")
+        self.browser.resize(1280, 900)
+
+    def tearDown(self):
+        self.browser.check_console(self)
+
+    def scrub(self, figure: str, part: float) -> None:
+        self.browser.run("const s = arguments[0]; s.value = arguments[1] * s.max;"
+                         "s.dispatchEvent(new Event('input'))", self.browser.element(f"{figure} input[type=range]"), part)
+        self.browser.settle()
+
+    def checks(self, search: str) -> int:
+        return int(re.sub(r"\D", "", self.browser.text(f"[data-search={search}] .count b")))
+
+    def test_its_table_is_the_terminals(self):
+        lines = (self.folder / "comparison.txt").read_text().splitlines()
+        terminal = [re.split(r" {2,}", line.strip()) for line in lines[3:8]]
+        page = [[cell.text for cell in row.find_elements("css selector", "th, td") if cell.text]
+                for row in self.browser.elements("#comparison tbody tr")]
+        self.assertEqual(page, terminal)
+        self.assertIn(page[1][3], self.browser.text("#tiles"), "the ratio of the means")
+
+    def test_nothing_is_cropped_from_a_phone_to_a_wide_screen(self):
+        for width, height in ((360, 700), (2200, 1200)):
+            self.browser.resize(width, height)
+            self.assertLessEqual(self.browser.run("return document.scrollingElement.scrollWidth"), width)
+            for canvas in CANVASES:
+                picture = self.browser.picture(canvas)
+                self.assertGreater(share_drawn(picture), 0.05, canvas)
+                self.assertFalse(touches_border(picture), (canvas, width))
+
+    def test_each_robot_carries_its_box_from_start_to_goal(self):
+        canvas = "#station-figure canvas"
+        self.browser.click("[data-actor=panda]")
+        middle = self.browser.picture(canvas)
+        self.assertGreater(pixels_of(middle, PANDA, 60), 500, "the arm")
+        self.assertGreater(pixels_of(middle, HELD, 40), 20, "the box")
+        self.scrub("#station", 0)
+        self.assertEqual(self.browser.text("#station output"), "at the start")
+        self.assertFalse((self.browser.picture(canvas) == middle).all())
+        self.browser.click("[data-actor=ur10e]")
+        self.assertLess(pixels_of(self.browser.picture(canvas), PANDA, 30), 50)
+        self.assertIn("ur10e, new to the task", self.browser.text("#station .note"))
+        self.browser.click("#station button[data-layer=arm]")
+        self.browser.click("#station button[data-layer=arm]")
+
+    def test_searches_grow_while_they_are_played_and_scrubbed(self):
+        canvas = "[data-search=uniform] canvas"
+        self.scrub("#searches", 1)
+        whole = self.browser.picture(canvas)
+        ends = {search: self.checks(search) for search in ("uniform", "guided")}
+        self.assertIn("path found", self.browser.text("[data-search=uniform] .count"))
+        self.assertGreater(pixels_of(self.browser.picture("[data-search=guided] canvas"), PATH, 60), 30, "the path")
+        self.scrub("#searches", 0)
+        self.assertEqual((self.checks("uniform"), self.checks("guided")), (0, 0))
+        empty = self.browser.picture(canvas)
+        self.assertLess(share_drawn(empty), share_drawn(whole))
+        self.browser.click("#searches .player button")
+        count = "Number(document.querySelector('[data-search=uniform] .count b').textContent.replace(/\\D/g, ''))"
+        self.browser.wait(f"{count} > 0")
+        self.browser.click("#searches .player button")
+        self.assertEqual(self.browser.text("#searches .player button"), "\u25b6 Play", "paused")
+        self.scrub("#searches", 1)
+        self.assertEqual({search: self.checks(search) for search in ends}, ends)
+
+    def test_says_by_which_rule_its_instance_was_chosen(self):
+        note = self.browser.text("#searches-note")
+        self.assertRegex(note, f"of {INSTANCES} instances solved both ways its ratio of checks, [0-9.]+, is nearest the median")
+
+    def test_can_be_used_without_a_mouse_and_be_heard(self):
+        unnamed = self.browser.run(
+            "return [...document.querySelectorAll('canvas, button, input, [role=img]')].filter((e) =>"
+            " !e.closest('[aria-hidden=true]') && !e.getAttribute('aria-label') && !e.textContent.trim()).map((e) => e.outerHTML)")
+        self.assertEqual(unnamed, [])
+        button = "#samples-figure button[data-layer=samples]"
+        before = self.browser.picture("#samples-figure canvas")
+        self.browser.press(button, Keys.ENTER)
+        self.assertEqual(self.browser.element(button).get_attribute("aria-pressed"), "false")
+        self.assertFalse((self.browser.picture("#samples-figure canvas") == before).all())
+        self.browser.press(button, Keys.ENTER)
+
+    def test_speaks_in_words(self):
+        words = self.browser.text("main")
+        self.assertRegex(words, "chance alone would bring about")
+        self.assertNotRegex(self.browser.text("#tiles"), r"\bp\b")
+
+
+if __name__ == "__main__":
+    unittest.main()
