@@ -93,7 +93,7 @@ void add_plot(CLI::App& group, Session& session) {
   add_query_or_id(*command, *query, "id");
   add_page_output(*command, options->output)->required();
   on_run_with_server(*command, session, [&session, query, options](link::Client& server) {
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return plot_distribution(server, *query, *options, session.out, session.err);
   });
 }

@@ -70,7 +70,7 @@ void add_task_plot(CLI::App& group, Session& session) {
   command->add_option("task", *task, "Its name")->required();
   add_page_output(*command, options->output)->required();
   on_run_with_server(*command, session, [&session, task, options](link::Client& server) {
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return plot_task(server, *task, *options, session.out, session.err);
   });
 }

@@ -202,7 +202,7 @@ void add_suggest_srdf(CLI::App& group, Session& session) {
   add_json(*command, session, "What was found as one JSON document on standard output");
   on_run(*command, session, [&session, options] {
     options->json = session.json;
-    options->progress = session.is_on_terminal();
+    options->progress = session.shows_progress();
     return suggest_srdf(*options, session.out, session.err);
   });
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/experiments/wilcoxon.hpp"
-#include "client/planner/unplanned_problems.hpp"
+#include "client/guided/unplanned_problems.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/result.hpp"
 

@@ -5,7 +5,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "client/planner/unplanned_problems.hpp"
+#include "client/guided/unplanned_problems.hpp"
 #include "proto/types/problem.hpp"
 
 namespace kinship::planner {

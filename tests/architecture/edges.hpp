@@ -75,7 +75,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       guided,    link,     arguments,  files,  planning, ompl, evidence, inverse,
       collision, geometry, kinematics, models, mixture,  json, manual,   types};
   std::set<std::string> experiments = planner_programs;
-  experiments.insert({planner, page});
+  experiments.insert(page);
   return std::map<std::string, AllowedEdges>{
       {types, {{}, {"Eigen", "libcrypto"}}},
       {idl, {{}, {"Cyclone DDS"}}},

@@ -4,7 +4,7 @@
 namespace kinship::store {
 namespace {
 
-constexpr PathRange kAll{.after_id = 0, .limit = 10'000};
+constexpr PathRange kEveryPath{.after_id = 0, .limit = 10'000};
 
 /// `panda` with another description: what a corrected registration brings.
 RobotRecord corrected() { return test::make_robot("panda", 3); }
@@ -19,7 +19,7 @@ TEST_P(StoreConformance, ARenamedRobotKeepsWhatItHasAndFreesItsLabel) {
   EXPECT_EQ(after.registered_ms, panda_.registered_ms);
   EXPECT_EQ(store_->robots().size(), 2U);  // undamaged, both
   EXPECT_EQ(store_->list_paths({}, "", "", 10).rows.at(0).label, "panda_old");
-  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", kAll).size(), 1U);
+  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", kEveryPath).size(), 1U);
   EXPECT_EQ(*store_->register_robot(corrected()), RegisterStatus::Registered);
 }
 
@@ -87,7 +87,7 @@ TEST_P(StoreConformance, OfARemovedRobotNothingIsReadAndEverythingIsKept) {
   reopen();
   EXPECT_FALSE(store_->find_robot(panda_.digest));
   EXPECT_FALSE(store_->find_distribution(distribution.id));
-  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kAll).empty());
+  EXPECT_TRUE(store_->read_paths(panda_.digest, "shelf", kEveryPath).empty());
   EXPECT_EQ(store_->robots().size(), 1U);
   EXPECT_EQ(store_->list_robots("", 10).rows.size(), 1U);
   EXPECT_EQ(store_->status().robots, 1U);
@@ -128,7 +128,7 @@ TEST_P(StoreConformance, AReportOfARemovedRobotAsksForItsRegistrationAndThenCoun
   Attempt other = solved(1);
   other.record.collision_checks += 1;
   EXPECT_EQ(report(other), ReceiptStatus::Refused);
-  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", kAll).size(), 2U);
+  EXPECT_EQ(store_->read_paths(panda_.digest, "shelf", kEveryPath).size(), 2U);
   const RobotRecord back = store_->find_robot(panda_.digest).value();
   EXPECT_EQ(back.description.label, "panda_2");
   EXPECT_GT(back.geometry_revision, 0U);  // a fit that was under way is none of its own

@@ -1,4 +1,4 @@
-#include "client/planner/unplanned_problems.hpp"
+#include "client/guided/unplanned_problems.hpp"
 
 #include <algorithm>
 #include <functional>
