@@ -95,7 +95,7 @@ const kinshipStation = (() => {
     if (actors.length > 1) element.append(group);
     element.append(figure);
     let actor = actors[0];
-    const place = 0.55;
+    const place = 0.3;
     const moving = (frame) => [
       ["arm", {color: actor.color, text: actor.label, arms: [{bones: frame.bones}]}],
       ["held", {objects: heldOf(frame)}]];

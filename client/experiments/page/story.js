@@ -23,9 +23,10 @@
     const words = {retreat: "backing the hand out of its goal along the palm", ways: "recorded ways of the hand, moved onto each query",
                    mixture: "samples from the distribution"};
     const parts = (guide) => guide.split("+").map((part) => words[part] || "nothing");
-    return "What guided a query: " +
-      data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${count(total(data.guides.map((each) => each.queries)))})`).join("; ") +
-      ". Of these three the server chooses, by planning recorded queries again, what costs this robot the fewest checks.";
+    const all = total(data.guides.map((each) => each.queries));
+    return `Three things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
+      `this robot the fewest checks; here that was ` +
+      data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
   }
 
   /// What chance has to do with it, as a sentence.
