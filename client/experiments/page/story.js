@@ -97,7 +97,7 @@
       label: `${data.robot} in samples of its distribution, and where its hand is in ${count(drawn)} of them`, from: [-1.5, -2.4, 1.25], layers: [
         {name: "scene", text: "obstacles", color: "scene", opacity: 0.3, objects: data.obstacles},
         {name: "samples", text: "its hand, a dot a sample", color: "sample",
-         points: [{positions: metres(samples.hand.positions), size: 0.022, opacity: 0.5}]},
+         points: [{positions: metres(samples.hand.positions), size: 0.034, opacity: 0.85}]},
         {name: "arm", text: "one sample as the whole arm", color: "arm", arms: samples.postures.slice(0, 1).map((bones) => ({bones}))},
         {name: "arms", text: `${samples.postures.length - 1} more`, color: "arm", shown: false,
          arms: samples.postures.slice(1).map((bones) => ({bones, opacity: 0.4}))}].filter((layer) => !layer.arms || layer.arms.length)});

@@ -163,14 +163,6 @@ TEST(Comparison, SaysWhyThereIsNothingToCompare) {
             "no problem could be planned (start collides: 1)");
 }
 
-TEST(ComparisonTable, ShortTimesAreInMilliseconds) {
-  const std::string table =
-      table_of(compared({attempt("a", true, 10, 0.00125)}, {guided_attempt("a", true, 5, 0.0005)}));
-  EXPECT_NE(table.find("  planning time ms, mean          1.250      0.500     2.50     1.0000\n"),
-            std::string::npos)
-      << table;
-}
-
 TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {
   const std::string table = table_of(compared(kUniform, kUniform));
   EXPECT_NE(table.find("Only 0 of the 3 guided attempts drew"), std::string::npos);
