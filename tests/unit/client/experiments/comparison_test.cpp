@@ -147,7 +147,7 @@ TEST(Comparison, LeavesOutWhatASideBeganNoSearchFor) {
   EXPECT_EQ(comparison.checks_test.p, 0.25);
   const std::string table = table_of(comparison);
   EXPECT_NE(table.find("\n2 problems could not be planned and are left out (start collides: 1, "
-                       "error: 1):\n  d: collides\n  e: broken\n"),
+                       "error: 1).\n  d: collides\n  e: broken\n"),
             std::string::npos)
       << table;
   std::ostringstream json;
