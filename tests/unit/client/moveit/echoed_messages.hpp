@@ -108,12 +108,7 @@ goal_constraints:
 )" + further;
 }
 
-inline const models::LoadedRobot& panda() {
-  static const models::LoadedRobot robot =
-      models::load_robot({.source = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda"})
-          .value_or_throw();
-  return robot;
-}
+const models::LoadedRobot& panda();
 
 inline Result<std::vector<Conversion>> convert_all(
     const std::string& scene, const std::string& request,
