@@ -114,12 +114,12 @@ enum class AdminVerb {
   ResetTask,             ///< row: Retirement
   Backup,                ///< begins a job that writes `argument`, a file at the server; row: Job
   ListJobs,
-  ShowJob,      ///< answers when the job has ended or `deadline` has passed
-  CancelJob,    ///< row: Job
-  JobRows,      ///< the rows of a job that is done, page by page
+  ShowJob,       ///< answers when the job has ended or `deadline` has passed
+  CancelJob,     ///< row: Job
+  JobRows,       ///< the rows of a job that is done, page by page
   ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
-  RenameRobot,  ///< `robot` gets the label `argument`; row: RobotSummary
-  RemoveRobot   ///< row: RobotRemoval
+  RenameRobot,   ///< `robot` gets the label `argument`; row: RobotSummary
+  RemoveRobot    ///< row: RobotRemoval
 };
 
 struct AdminRequest {
