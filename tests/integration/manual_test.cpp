@@ -82,7 +82,7 @@ TEST_F(Manual, PagesAreAsManWantsThem) {
     const std::string page = (folder_.path() / (program + ".man")).string();
     EXPECT_EQ(said_by("mandoc -T lint -W warning " + page), "") << program;
     EXPECT_EQ(said_by("LC_ALL=C man --warnings -l " + page + " > /dev/null"), "") << program;
-    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man -l " + page + " | col -b");
+    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man --nj -l " + page + " | col -bx");
     EXPECT_NE(text.find(program + " - "), std::string::npos) << text.substr(0, 400);
     EXPECT_NE(text.find("--completion bash|zsh|fish"), std::string::npos) << program;
   }
