@@ -48,17 +48,9 @@ bool is_there(const std::string& program) {
   return code == 0;
 }
 
-/// The scripts of all programs for each shell, written by the programs.
+/// What the programs write about themselves, in a folder.
 class Manual : public testing::Test {
  protected:
-  Manual() {
-    for (const auto& [program, section] : kPrograms) {
-      write(program, "--completion bash", program);
-      write(program, "--completion zsh", "_" + program);
-      write(program, "--completion fish", program + ".fish");
-      write(program, "--man-page", program + ".man");
-    }
-  }
   void write(const std::string& program, const std::string& option, const std::string& name) {
     int code = -1;
     said_by(kBin + "/" + program + " " + option + " > " + (folder_.path() / name).string(), &code);
@@ -86,10 +78,11 @@ TEST_F(Manual, PagesAreAsManWantsThem) {
   if (!is_there("mandoc") || !is_there("man"))
     GTEST_SKIP() << "needs mandoc and man-db (deploy/packages-tests.txt)";
   for (const auto& [program, section] : kPrograms) {
+    write(program, "--man-page", program + ".man");
     const std::string page = (folder_.path() / (program + ".man")).string();
     EXPECT_EQ(said_by("mandoc -T lint -W warning " + page), "") << program;
     EXPECT_EQ(said_by("LC_ALL=C man --warnings -l " + page + " > /dev/null"), "") << program;
-    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man -l " + page + " | col -b");
+    const std::string text = said_by("LC_ALL=C MANWIDTH=80 man --nj -l " + page + " | col -bx");
     EXPECT_NE(text.find(program + " - "), std::string::npos) << text.substr(0, 400);
     EXPECT_NE(text.find("--completion bash|zsh|fish"), std::string::npos) << program;
   }
@@ -100,7 +93,16 @@ TEST_F(Manual, PagesAreAsManWantsThem) {
   EXPECT_EQ(text.find("candidates"), std::string::npos) << "is hidden";
 }
 
-class Shells : public Manual, public testing::WithParamInterface<const char*> {};
+/// The scripts of all programs for one shell.
+class Shells : public Manual, public testing::WithParamInterface<const char*> {
+ protected:
+  Shells() {
+    const std::string shell = GetParam();
+    for (const auto& [program, section] : kPrograms)
+      write(program, "--completion " + shell,
+            (shell == "zsh" ? "_" : "") + program + (shell == "fish" ? ".fish" : ""));
+  }
+};
 
 TEST_P(Shells, CompleteVerbsOptionsAndTheirWords) {
   const std::string shell = GetParam();
