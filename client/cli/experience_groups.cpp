@@ -67,7 +67,7 @@ void add_task_plot(CLI::App& group, Session& session) {
   CLI::App* command = add_command(
       group, "plot", "A page that shows a task's experience and the benefit of guidance over time",
       "kinship tasks plot box_to_shelf --output box_to_shelf.html");
-  command->add_option("task", *task, "Its name")->required();
+  command->add_option("task", *task, "Its name")->required()->type_name("TASK");
   add_page_output(*command, options->output)->required();
   on_run_with_server(*command, session, [&session, task, options](link::Client& server) {
     options->progress = session.shows_progress();

@@ -141,17 +141,19 @@ std::string solids_text(const RobotLink& row) {
     ++counts[kind];
   std::string text;
   for (const auto& [kind, count] : counts)
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+    text +=
+        (text.empty() ? "" : ", ") +
+        (kind == "mesh" && count > 1 ? std::to_string(count) + " meshes" : count_text(count, kind));
   return text.empty() ? "-" : text;
 }
 
-/// The links as a tree is read, each below its parent; and how deep they are.
+/// The links as a tree is read, each below its parent, with a dot for each link above it.
 void add_rows(const RobotLinks& links, const std::string& parent, std::size_t depth, Table& table) {
   for (const RobotLink& row : links.links) {
     if (row.parent != parent)
       continue;
     const bool is_base = row.link == links.base_link, is_tip = row.link == links.tip_link;
-    table.add_row({std::string(depth, ' ') + row.link +
+    table.add_row({std::string(depth, '.') + row.link +
                        (is_base  ? " (base)"
                         : is_tip ? " (tip)"
                                  : ""),
@@ -167,6 +169,20 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// One after the other below a heading, as many in a line as fit.
+void print_wrapped(const std::vector<std::string>& words, std::ostream& out) {
+  constexpr std::size_t kColumns = 78;
+  std::string line = "   ";
+  for (const std::string& word : words) {
+    if (line.size() + word.size() + 2 > kColumns && line.size() > 3) {
+      out << line << '\n';
+      line = "   ";
+    }
+    line += " " + word + (&word == &words.back() ? "" : ",");
+  }
+  out << line << '\n';
+}
+
 void print_unchecked(const RobotLinks& links, std::ostream& out) {
   const std::map<std::string, std::string> words = {{"adjacent", "joined by one moving joint"},
                                                     {"described", "named by SRDF or chain.toml"},
@@ -176,9 +192,10 @@ void print_unchecked(const RobotLinks& links, std::ostream& out) {
     for (const UncheckedLinks& pair : links.unchecked)
       if (pair.reason == reason)
         pairs.push_back(pair.link_a + " - " + pair.link_b);
-    if (!pairs.empty())
-      out << "  " << count_text(pairs.size(), "pair") << " " << what << ": " << listed(pairs)
-          << '\n';
+    if (!pairs.empty()) {
+      out << "  " << count_text(pairs.size(), "pair") << " " << what << ":\n";
+      print_wrapped(pairs, out);
+    }
   }
 }
 

@@ -16,7 +16,8 @@ void add_problems(CLI::App& app, Session& session) {
   command
       ->add_option("robot", options->robot.source,
                    "URDF file, or a folder with chain.toml and robot.urdf")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   arguments::add_robot_options(*command, options->robot);
   CLI::Option_group* files = command->add_option_group("files");
   CLI::Option* requests =
@@ -40,8 +41,10 @@ void add_problems(CLI::App& app, Session& session) {
   command->add_option("--placement", options->placement,
                       "Robot's base in the task frame, \"x y z qx qy qz qw\" (default: the task "
                       "frame is MoveIt's planning frame, that of the URDF's root link)");
-  command->add_option("--output", options->output,
-                      "Problem file (default: standard output); meshes go into a folder beside it");
+  command
+      ->add_option("--output", options->output,
+                   "Problem file (default: standard output); meshes go into a folder beside it")
+      ->type_name("FILE");
   on_run(*command, session,
          [&session, options] { return convert_moveit(*options, session.out, session.err); });
 }

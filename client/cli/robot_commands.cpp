@@ -121,11 +121,10 @@ void warn_without_transfer(const char* command, const models::RobotArguments& ar
   std::error_code unreadable;
   if (!arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable))
     return;
-  err << command << ": without --transfer goals and experience mean the tip link '"
-      << description.tip_link
-      << "' itself. If the robot holds a tool or gripper, give the frame that every robot puts "
-         "alike, in the tip link: --transfer \"x y z qx qy qz qw\", e.g. \"0 0 0.12 0 0 0 1\" for "
-         "0.12 m along its z ('kinship robots frames' shows where that is)\n";
+  err << command << ": without --transfer goals mean the tip link '" << description.tip_link
+      << "' itself; if it holds a tool, say where that is in the tip link: --transfer \"x y z qx "
+         "qy "
+         "qz qw\" ('kinship robots frames' shows it)\n";
 }
 
 /// Who names pairs has all others checked, also those that cannot but touch.

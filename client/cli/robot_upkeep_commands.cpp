@@ -36,7 +36,7 @@ int say_what_would_happen(link::Client& server, const RobotSummary& robot, std::
       << robot.label << "' (" << robot.robot.short_hex()
       << "): out of every fit, not to be undone. " << count_text(robot.attempts, "attempt")
       << " would stay on record, " << count_text(distributions, "distribution")
-      << " for it go, and those of other robots that used its paths are fitted anew. To do it: "
+      << " for it would go, those of other robots that used its paths be fitted anew. To do it: "
          "kinship robots remove "
       << robot.label << " --yes; to free the label alone: kinship robots rename " << robot.label
       << " NEW\n";

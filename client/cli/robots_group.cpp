@@ -62,8 +62,9 @@ void add_forward(CLI::App& group, Session& session) {
   CLI::Option_group* configurations = command->add_option_group("configurations");
   configurations->add_option("--q", options->configuration,
                              "Joint values, rad or m, separated by spaces");
-  configurations->add_option("--configurations", options->configurations,
-                             "File with lines [q_1, q_2, ...]");
+  configurations
+      ->add_option("--configurations", options->configurations, "File with lines [q_1, q_2, ...]")
+      ->type_name("FILE");
   configurations->require_option(1);
   command->add_option("--placement", options->placement, kPlacementHelp);
   add_json(*command, session);
@@ -93,9 +94,11 @@ void add_inverse(CLI::App& group, Session& session) {
   command->add_option("--placement", options->placement, kPlacementHelp);
   command->add_flag("--collision-free", options->collision_free,
                     "Leave out solutions in which the robot touches itself or the scene");
-  command->add_option("--scene", options->scene,
-                      "Problem file: scene, attached objects and placement of its first problem, "
-                      "for --collision-free");
+  command
+      ->add_option("--scene", options->scene,
+                   "Problem file: scene, attached objects and placement of its first problem, "
+                   "for --collision-free")
+      ->type_name("FILE");
   add_choice(*command, options->max_solutions, options->min_distance);
   command->add_option("--seed", options->seed, "Equal seed, equal solutions (default 0)")
       ->check(CLI::NonNegativeNumber);
@@ -198,7 +201,8 @@ void add_suggest_srdf(CLI::App& group, Session& session) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--check-default", options->checks_default,
                     "Check also pairs that touch where all joints are at 0");
-  command->add_option("--output", options->output, "SRDF file (default: standard output)");
+  command->add_option("--output", options->output, "SRDF file (default: standard output)")
+      ->type_name("FILE");
   add_json(*command, session, "What was found as one JSON document on standard output");
   on_run(*command, session, [&session, options] {
     options->json = session.json;
@@ -216,7 +220,8 @@ void add_rename(CLI::App& group, Session& session) {
       group, "rename", "Give a robot another label; the one it had is free for another robot",
       "kinship robots rename cell1 cell1_without_gripper");
   command->add_option("robot", options->robot, "Label, or four digits of its digest or more")
-      ->required();
+      ->required()
+      ->type_name("ROBOT");
   command->add_option("label", options->label, "New label, 1 to 64 of A-Z a-z 0-9 _ . : -")
       ->required();
   add_json(*command, session);
@@ -237,7 +242,8 @@ void add_remove(CLI::App& group, Session& session) {
       "Take a robot out: one without attempts is deleted, of another the paths are retired",
       "kinship robots remove cell1\n  kinship robots remove cell1 --yes");
   command->add_option("robot", options->robot, "Label, or four digits of its digest or more")
-      ->required();
+      ->required()
+      ->type_name("ROBOT");
   command->add_flag("--yes", options->yes,
                     "Also if it has attempts; without, it is only said what would happen (exit "
                     "code 2)");

@@ -58,8 +58,9 @@ void add_json(CLI::App& command, Session& session, const std::string& what) {
 }
 
 CLI::Option* add_page_output(CLI::App& command, std::filesystem::path& output) {
-  return command.add_option("--output", output,
-                            "HTML file, replaced once it is whole; - is standard output");
+  return command
+      .add_option("--output", output, "HTML file, replaced once it is whole; - is standard output")
+      ->type_name("FILE");
 }
 
 void add_list(CLI::App& group, Session& session, List list, bool can_filter) {

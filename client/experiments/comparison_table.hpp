@@ -13,7 +13,7 @@ struct ComparisonRow {
   std::string name, uniform, guided, ratio, p;
 };
 
-/// The table's lines below its head. Times are in ms where both are short.
+/// The table's lines below its head. Times have units that suit them.
 std::vector<ComparisonRow> comparison_rows(const Comparison& comparison);
 
 /// What the figures mean, and what is to be known of this run; a sentence or two each.

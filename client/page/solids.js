@@ -128,6 +128,14 @@ const kinshipSolids = (() => {
     return group;
   }
 
+  /// Gives back what a group holds of the graphics card; balls and rods are shared.
+  function dispose(group) {
+    for (const drawn of group.children) {
+      if (drawn.geometry !== ball && drawn.geometry !== rod) drawn.geometry.dispose();
+      drawn.material.dispose();
+    }
+  }
+
   /// What a layer takes of the room, as balls [x, y, z, radius] in metres.
   function ballsOf(layer) {
     const balls = [];
@@ -144,5 +152,5 @@ const kinshipSolids = (() => {
     return balls;
   }
 
-  return {groupOf, ballsOf, edgesOf, bonesOfWay};
+  return {groupOf, dispose, ballsOf, edgesOf, bonesOfWay};
 })();

@@ -2,7 +2,7 @@
 "use strict";
 const kinshipView = (() => {
   const {color, make, onColors, onSize} = kinshipPage;
-  const {groupOf, ballsOf, edgesOf, bonesOfWay} = kinshipSolids;
+  const {groupOf, dispose, ballsOf, edgesOf, bonesOfWay} = kinshipSolids;
 
   function hasWebGl() {
     try {
@@ -33,7 +33,10 @@ const kinshipView = (() => {
     return {
       controls, camera, draw,
       set(index, layer) {
-        if (groups[index]) scene.remove(groups[index]);
+        if (groups[index]) {
+          scene.remove(groups[index]);
+          dispose(groups[index]);
+        }
         groups[index] = groupOf(layer, index);
         groups[index].visible = layer.shown;
         scene.add(groups[index]);

@@ -72,7 +72,7 @@ void write_paragraph(const std::string& text, std::ostream& out) {
 void write_examples(const std::string& examples, std::ostream& out) {
   if (examples.empty())
     return;
-  out << ".PP\nExamples:\n.PP\n.EX\n";
+  out << "Examples:\n.PP\n.EX\n";
   std::istringstream lines(examples);
   for (std::string line; std::getline(lines, line);)
     out << roff(line) << '\n';
@@ -82,12 +82,13 @@ void write_examples(const std::string& examples, std::ostream& out) {
 /// \param heading  of a section, or a paragraph.
 void write_notes(const std::string& footer, const std::string& heading, std::ostream& out) {
   const auto [notes, examples] = parts_of(footer);
-  if (!notes.empty()) {
+  const std::size_t begin = notes.find_first_not_of('\n');
+  if (begin != std::string::npos) {
     out << heading << '\n';
-    std::string trimmed = notes;
-    trimmed.erase(0, trimmed.find_first_not_of('\n'));
-    trimmed.erase(trimmed.find_last_not_of('\n') + 1);
-    write_paragraph(trimmed, out);
+    write_paragraph(notes.substr(begin, notes.find_last_not_of('\n') + 1 - begin), out);
+    out << (examples.empty() ? "" : ".PP\n");
+  } else if (!examples.empty()) {
+    out << heading << '\n';
   }
   write_examples(examples, out);
 }

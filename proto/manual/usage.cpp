@@ -48,7 +48,8 @@ CommandUsage usage_below(const CLI::App& app, const CommandUsage* above) {
   command.name = app.get_name();
   command.path = above == nullptr ? "" : above->path + "/" + app.get_name();
   command.description = app.get_description();
-  command.footer = app.get_footer();
+  const bool is_from_above = above != nullptr && app.get_parent()->get_footer() == app.get_footer();
+  command.footer = is_from_above ? std::string() : app.get_footer();  // CLI11 hands it down
   add_options(app, command);
   if (above != nullptr && app.get_fallthrough()) {
     command.inherited = above->inherited;
@@ -93,7 +94,7 @@ ValueUsage value_usage(const std::string& type_name) {
   const std::string type = type_name.substr(0, type_name.find(':'));
   const std::string check =
       type.size() < type_name.size() ? type_name.substr(type.size() + 1) : std::string();
-  value.name = type_name;
+  value.name = check.empty() ? type : check;
   if (type == "FILE" || check == "FILE") {
     value.kind = ValueKind::File;
     value.name = "FILE";

@@ -37,6 +37,11 @@ def verbs_of(*words: str) -> "set[str]":
     return set(re.findall(r"^  ([a-z][a-z-]*)\b", section[1], re.MULTILINE)) if section else set()
 
 
+def has_verb(path: "tuple[str, ...]", verb: str) -> bool:
+    """Also one that the list hides: then its own help begins with its own usage, not with that of what it belongs to."""
+    return verb in verbs_of(*path) or f"Usage: {' '.join(path)} {verb} " in help_of(*path, verb)
+
+
 def tree(*words: str) -> "list[tuple[str, ...]]":
     """The command and all below it."""
     return [words] + [found for verb in sorted(verbs_of(*words)) for found in tree(*words, verb)]
@@ -54,7 +59,7 @@ def what_is_missing(command: str) -> "list[str]":
                 continue  # an option before the verb; its value may look like one
             break
         for path in known:
-            missing += [f"{' '.join(path)} has no '{verb}'" for verb in alternatives if verb not in verbs_of(*path)]
+            missing += [f"{' '.join(path)} has no '{verb}'" for verb in alternatives if not has_verb(path, verb)]
         if missing:
             return missing
         known = [path + (verb,) for path in known for verb in alternatives]

@@ -51,7 +51,6 @@ class Terminal:
         process = subprocess.Popen(
             ["bash", "-c", "exec " + command], cwd=folder.strip(), env=dict(v.split("=", 1) for v in variables),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self._beside.append(process)
         timer = threading.Timer(self.STARTING_S, process.kill)
         timer.start()
         lines = []
@@ -60,16 +59,19 @@ class Terminal:
                 lines.append(line.rstrip("\n"))
         finally:
             timer.cancel()
+            rest = threading.Thread(target=process.stdout.read)  # a full pipe would hold the process up
+            rest.start()
+            self._beside.append((process, rest))
         return lines
 
     def close(self) -> "list[int]":
         """Ends everything. :return: exit codes of what was started beside, which Control-C ends."""
         codes = []
-        for process in reversed(self._beside):
+        for process, rest in reversed(self._beside):
             process.send_signal(signal.SIGINT)
-            process.stdout.read()
-            process.stdout.close()
             codes.append(process.wait())
+            rest.join()
+            process.stdout.close()
         self._shell.stdin.close()
         self._kill()
         self._shell.wait()

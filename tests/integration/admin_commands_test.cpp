@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
-#include <memory>
 #include <sstream>
 #include <thread>
 
-#include "client/link/client.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "tests/integration/admin_commands.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
@@ -21,102 +20,6 @@
 
 namespace kinship::admin_commands_test {
 namespace {
-
-using std::chrono::seconds;
-
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-/// One kinshipd and its domain.
-class Server {
- public:
-  explicit Server(const std::filesystem::path& store, std::vector<std::string> arguments = {})
-      : store_(store), arguments_(std::move(arguments)) {
-    start();
-  }
-
-  void start() {
-    process_ = std::make_unique<test::ServerProcess>(test::ServerProcess::Options{
-        .store = store_, .domain = domain_.number(), .arguments = arguments_});
-  }
-  test::ServerProcess& process() { return *process_; }
-
-  std::vector<std::string> with_domain(const std::vector<std::string>& words,
-                                       const char* timeout_s = "30") const {
-    std::vector<std::string> arguments = {"--domain", std::to_string(domain_.number()), "--timeout",
-                                          timeout_s};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    return arguments;
-  }
-  Answer kinship(const std::vector<std::string>& words, const char* timeout_s = "30") const {
-    const test::TemporaryDirectory folder;
-    Answer answer;
-    test::Program program("kinship", with_domain(words, timeout_s), folder / "err");
-    answer.out = program.read_all();
-    answer.code = program.wait();
-    answer.err = test::read_text(folder / "err");
-    return answer;
-  }
-  std::unique_ptr<link::Client> client(const std::filesystem::path& outbox) const {
-    return std::make_unique<link::Client>(
-        link::ClientOptions{.domain = domain_.number(), .outbox = outbox, .timeout = seconds(30)});
-  }
-
- private:
-  std::filesystem::path store_;
-  std::vector<std::string> arguments_;
-  test::ReservedDomain domain_;
-  std::unique_ptr<test::ServerProcess> process_;
-};
-
-std::vector<std::string> with(std::vector<std::string> words,
-                              const std::vector<std::string>& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-std::size_t count_lines(const std::string& text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-class AdminCommands : public testing::Test {
- protected:
-  /// Six sweeps of a panda, and an attempt that did not get on; a UR10e that has done nothing.
-  void teach(const Server& server) {
-    const auto client = server.client(folder_ / "outbox");
-    const auto register_model = [&](const std::string& name) {
-      return client->register_robot(test::model_description(name)).value_or_throw().robot;
-    };
-    const Digest panda = register_model("panda");
-    register_model("ur10e");
-    for (std::uint64_t i = 0; i < 6; ++i) {
-      attempts_.push_back(test::panda_attempt(panda, "sweep", i));
-      client->report(attempts_.back());
-    }
-    Attempt unsolved = test::panda_attempt(panda, "sweep", 99);
-    unsolved.record.outcome = Outcome::Timeout;
-    unsolved.path.reset();
-    client->report(unsolved);
-    ASSERT_EQ(client->flush(seconds(60)).accepted, 7U);
-  }
-  /// The Panda's distribution, its stored ways and what was rehearsed, waited for.
-  FetchReply fetch_rehearsed(const Server& server) const {
-    FetchRequest request;
-    request.task = "sweep";
-    request.robot = attempts_.front().robot;
-    request.deadline = seconds(200);
-    request.experience_bytes = kDefaultExperienceBytes;
-    request.rehearsed = true;
-    return server.client(folder_ / "other_outbox")->fetch(request).value_or_throw();
-  }
-  std::string file(const char* name) const { return (folder_ / name).string(); }
-
-  test::TemporaryDirectory folder_;
-  std::vector<Attempt> attempts_;
-  Server server_{folder_ / "store.db"};
-};
 
 TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
   teach(server_);
@@ -135,42 +38,6 @@ TEST_F(AdminCommands, WhatIsExportedTeachesAnEmptyServerAndOnlyOnce) {
   const Answer copy = empty.kinship({"paths", "export"});
   EXPECT_EQ(copy.code, 0) << copy.err;
   EXPECT_EQ(copy.out, test::read_text(folder_ / "all.jsonl"));
-}
-
-TEST_F(AdminCommands, ALabelIsFreedByARenameAndARobotTakenOutOnlyIfItIsSaidSo) {
-  teach(server_);
-  const Answer renamed = server_.kinship({"robots", "rename", "panda", "old_panda"});
-  ASSERT_EQ(renamed.code, 0) << renamed.err;
-  EXPECT_NE(renamed.out.find("is called 'old_panda' now"), std::string::npos) << renamed.out;
-  EXPECT_EQ(server_.kinship({"robots", "show", "panda"}).code, 3);
-  EXPECT_EQ(server_.kinship({"robots", "rename", "old_panda", "ur10e"}).code, 2);
-
-  const Answer asked = server_.kinship({"robots", "remove", "old_panda"});
-  EXPECT_EQ(asked.code, 2);
-  EXPECT_NE(asked.err.find("would retire 6 paths"), std::string::npos) << asked.err;
-  EXPECT_NE(asked.err.find("7 attempts would stay"), std::string::npos) << asked.err;
-  EXPECT_EQ(server_.kinship({"robots", "show", "old_panda"}).code, 0);
-  const Answer removed = server_.kinship({"robots", "remove", "old_panda", "--yes", "--json"});
-  ASSERT_EQ(removed.code, 0) << removed.err;
-  const auto removal = json::robot_removal_from_json(removed.out).value_or_throw();
-  EXPECT_EQ(removal.paths, 6U);
-  EXPECT_EQ(removal.attempts, 7U);
-  EXPECT_FALSE(removal.is_deleted);
-  EXPECT_EQ(server_.kinship({"robots", "remove", "old_panda"}).code, 3);
-
-  const Answer unused = server_.kinship({"robots", "remove", "ur10e"});
-  EXPECT_EQ(unused.code, 0) << unused.err;
-  EXPECT_NE(unused.out.find("deleted: it had no attempts"), std::string::npos) << unused.out;
-}
-
-TEST_F(AdminCommands, AClientOfARemovedRobotRegistersItAgainAndItsNewReportsCount) {
-  teach(server_);
-  const auto client = server_.client(folder_ / "outbox");
-  ASSERT_EQ(server_.kinship({"robots", "remove", "panda", "--yes"}).code, 0);
-  client->report(test::panda_attempt(attempts_.front().robot, "sweep", 1000));
-  EXPECT_EQ(client->flush(seconds(60)).accepted, 1U);
-  const Answer listed = server_.kinship({"robots", "list", "--json"});
-  EXPECT_NE(listed.out.find(R"("paths":1,"attempts":8)"), std::string::npos) << listed.out;
 }
 
 TEST_F(AdminCommands, ABrokenLineInTheMiddleIsNamedAndTheOthersArrive) {
@@ -469,106 +336,6 @@ TEST_F(AdminCommands, AServerBelowItsWatermarkOfFreeSpaceSaysSo) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "full.db.ballast"));
   const Server well(folder_ / "well.db", {"--ballast-mb", "2"});
   EXPECT_EQ(std::filesystem::file_size(folder_ / "well.db.ballast"), std::uintmax_t{2} << 20U);
-}
-
-TEST_F(AdminCommands, WatchTellsWhatHappensAndThatTheServerGoes) {
-  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--task", "sweep"}),
-                      folder_ / "watch.err");
-  // It watches once its first words are there: those of the server.
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  teach(server_);
-  const std::string event = watch.read_line();
-  EXPECT_NE(event.find("\"kind\":\"report\""), std::string::npos) << event;
-  server_.process().terminate();
-  while (test::read_text(folder_ / "watch.err").find("the server has gone") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
-}
-
-TEST_F(AdminCommands, WatchTellsOfTheExperienceThatSomebodyAskedForAsAFetch) {
-  teach(server_);
-  test::Program watch("kinship", server_.with_domain({"watch", "--json"}), folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(server_.kinship({"tasks", "experience", "sweep"}).code, 0);
-  const std::string event = watch.read_line();
-  EXPECT_NE(event.find("\"kind\":\"fetch\",\"task\":\"sweep\""), std::string::npos) << event;
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
-}
-
-TEST_F(AdminCommands, WatchSaysAtOnceThatThereIsNoServerAndThenHowBusyItIs) {
-  const test::ReservedDomain domain;
-  test::Program watch(
-      "kinship",
-      {"--domain", std::to_string(domain.number()), "watch", "--every", "1", "--robot", "panda"},
-      folder_ / "watch.err");
-  EXPECT_EQ(watch.read_line().substr(0, 28), "TIME                  KIND  ");
-  while (test::read_text(folder_ / "watch.err").find("no server at 127.0.0.1, domain ") ==
-         std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  const test::ServerProcess late(
-      {.store = folder_ / "late.db", .domain = domain.number(), .arguments = {}});
-  const std::string line = watch.read_line();
-  EXPECT_NE(line.find("  rates       reports 0.0/s, fetches "), std::string::npos) << line;
-  EXPECT_NE(test::read_text(folder_ / "watch.err").find("the server is there"), std::string::npos);
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
-}
-
-TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
-  teach(server_);
-  const std::vector<std::string> fetch = {"distributions", "fetch", "--task", "sweep",
-                                          "--robot",       "panda", "--wait", "120"};
-  const std::vector<std::string> elsewhere = {"--placement", "0.5 0 0.25 0 0 0 1"};
-  ASSERT_EQ(server_.kinship(with(fetch, elsewhere)).code, 0);
-  ASSERT_EQ(server_.kinship(with(fetch, {"--sources", "panda", "--since", "90m"})).code, 0);
-  const std::string table = server_.kinship({"distributions", "list"}).out;
-  const std::string wide = server_.kinship({"distributions", "list", "-o", "wide"}).out;
-  const std::size_t newer = wide.find("only panda, since 2"), older = wide.find("0.5 0 0.25 0");
-  ASSERT_NE(newer, std::string::npos) << wide;
-  ASSERT_NE(older, std::string::npos) << wide;
-  EXPECT_LT(newer, older) << wide;
-  const std::string rows = server_.kinship({"paths", "list", "-o", "json"}).out;
-  EXPECT_LT(rows.find(attempts_[5].report_uuid.text()), rows.find(attempts_[0].report_uuid.text()));
-  const std::string paths = server_.kinship({"paths", "list"}).out;
-  EXPECT_NE(paths.find(attempts_[0].report_uuid.text()), std::string::npos) << paths;
-  EXPECT_EQ(paths.find("MACHINE"), std::string::npos) << paths;
-  EXPECT_NE(server_.kinship({"paths", "list", "-o", "wide"}).out.find("MACHINE"),
-            std::string::npos);
-  std::istringstream lines(table + paths + server_.kinship({"robots", "list"}).out +
-                           server_.kinship({"tasks", "list"}).out +
-                           server_.kinship({"tasks", "show", "sweep"}).out);
-  for (std::string line; std::getline(lines, line);)
-    EXPECT_LE(line.size(), 80U) << line;
-}
-
-TEST_F(AdminCommands, WatchTakesARobotByItsDigestAndTellsNothingOfOthers) {
-  teach(server_);
-  const std::string panda = attempts_.front().robot.hex().substr(0, 8);
-  test::Program watch("kinship", server_.with_domain({"watch", "--json", "--robot", panda}),
-                      folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  for (const std::string robot : {"ur10e", "panda"})
-    EXPECT_EQ(server_.kinship({"distributions", "fetch", "--task", "dance", "--robot", robot}).code,
-              3);
-  const std::string event = watch.read_line();
-  EXPECT_NE(event.find("\"robot\":\"panda\""), std::string::npos) << event;
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
-}
-
-TEST_F(AdminCommands, WatchSaysThatItDoesNotKnowARobot) {
-  test::Program watch("kinship", server_.with_domain({"watch", "--robot", "nobody"}),
-                      folder_ / "watch.err");
-  while (test::read_text(folder_ / "watch.err").find("the server is there") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_NE(test::read_text(folder_ / "watch.err").find("no robot 'nobody'"), std::string::npos);
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
 }
 
 TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {

@@ -91,7 +91,13 @@ class Page(unittest.TestCase):
         self.scrub("#searches", 0)
         self.assertEqual((self.checks("uniform"), self.checks("guided")), (0, 0))
         empty = self.browser.picture(canvas)
-        self.assertLess(share_drawn(empty), share_drawn(whole))
+        self.assertFalse((empty == whole).all())
+        trees = [f"[data-search=uniform] button[data-layer={tree}]" for tree in ("start", "goal")]
+        for button in trees:
+            self.browser.click(button)
+        self.assertTrue((self.browser.picture(canvas) == empty).all(), "nothing of a tree has grown")
+        for button in trees:
+            self.browser.click(button)
         self.browser.click("#searches .player button")
         count = "Number(document.querySelector('[data-search=uniform] .count b').textContent.replace(/\\D/g, ''))"
         self.browser.wait(f"{count} > 0")

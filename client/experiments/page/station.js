@@ -95,7 +95,7 @@ const kinshipStation = (() => {
     if (actors.length > 1) element.append(group);
     element.append(figure);
     let actor = actors[0];
-    const place = 0.55;
+    const place = 0.3;
     const moving = (frame) => [
       ["arm", {color: actor.color, text: actor.label, arms: [{bones: frame.bones}]}],
       ["held", {objects: heldOf(frame)}]];
@@ -103,7 +103,7 @@ const kinshipStation = (() => {
     const cloud = actors.filter((each) => each.paths).map((each) => ({
       name: "ways " + each.label, text: `all ways of ${each.label}'s hand`, color: each.color, shown: false,
       lines: [{positions: segments(each.paths), opacity: 0.5}],
-      points: [{positions: each.paths.flatMap((path) => metres(path.positions)), size: 0.018, opacity: 0.6}]}));
+      points: [{positions: each.paths.flatMap((path) => metres(path.positions)), size: 0.026, opacity: 0.8}]}));
     const hasHeld = actors.some((each) => each.demo.frames[0].held.length > 0);
     const view = kinshipView.show(figure, {
       label: "The station: " + actors.map((each) => `${each.role} ${each.label}`).join(", ") +

@@ -23,9 +23,10 @@
     const words = {retreat: "backing the hand out of its goal along the palm", ways: "recorded ways of the hand, moved onto each query",
                    mixture: "samples from the distribution"};
     const parts = (guide) => guide.split("+").map((part) => words[part] || "nothing");
-    return "What guided a query: " +
-      data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${count(total(data.guides.map((each) => each.queries)))})`).join("; ") +
-      ". Of these three the server chooses, by planning recorded queries again, what costs this robot the fewest checks.";
+    const all = total(data.guides.map((each) => each.queries));
+    return `Three things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
+      `this robot the fewest checks; here that was ` +
+      data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
   }
 
   /// What chance has to do with it, as a sentence.
@@ -96,7 +97,7 @@
       label: `${data.robot} in samples of its distribution, and where its hand is in ${count(drawn)} of them`, from: [-1.5, -2.4, 1.25], layers: [
         {name: "scene", text: "obstacles", color: "scene", opacity: 0.3, objects: data.obstacles},
         {name: "samples", text: "its hand, a dot a sample", color: "sample",
-         points: [{positions: metres(samples.hand.positions), size: 0.022, opacity: 0.5}]},
+         points: [{positions: metres(samples.hand.positions), size: 0.034, opacity: 0.85}]},
         {name: "arm", text: "one sample as the whole arm", color: "arm", arms: samples.postures.slice(0, 1).map((bones) => ({bones}))},
         {name: "arms", text: `${samples.postures.length - 1} more`, color: "arm", shown: false,
          arms: samples.postures.slice(1).map((bones) => ({bones, opacity: 0.4}))}].filter((layer) => !layer.arms || layer.arms.length)});

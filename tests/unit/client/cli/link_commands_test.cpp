@@ -73,8 +73,9 @@ TEST(RobotsLinks, OfABareUrdfSayWhatBaseAndTipCouldBe) {
   ASSERT_EQ(answer.code, kDone) << answer.err;
   EXPECT_NE(answer.out.find("(suggested: --base panda_link0 --tip "), std::string::npos)
       << answer.out;
-  EXPECT_NE(answer.out.find("q7 revolute -2.897 to 2.897"), std::string::npos) << answer.out;
-  EXPECT_NE(answer.out.find("panda_link0 (base)"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("q7 revolute"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("\npanda_link0 (base)"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("\n.panda_link1 "), std::string::npos) << answer.out;
 }
 
 TEST(RobotsLinks, TellsHeldJointsSolidsAndUncheckedPairs) {

@@ -42,9 +42,10 @@ TEST(Table, GoesOnInASecondLineWhereItIsTooWideAndCutsWhatMayBeCut) {
   set_table_layout(narrow, {36, false});
   table.print(narrow);
   EXPECT_EQ(narrow.str(),
-            "ID        ROBOT        MADE OF\n"
-            "3f9a0c11  a_robot_w..  default, only\n"
-            "                       panda iiwa14\n");
+            "ID        ROBOT         MADE OF\n"
+            "3f9a0c11  a_robot_wi..  default,\n"
+            "                        only panda\n"
+            "                        iiwa14\n");
   std::ostringstream wide;
   set_table_layout(wide, {36, true});
   table.print(wide);

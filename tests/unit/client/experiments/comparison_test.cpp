@@ -147,7 +147,7 @@ TEST(Comparison, LeavesOutWhatASideBeganNoSearchFor) {
   EXPECT_EQ(comparison.checks_test.p, 0.25);
   const std::string table = table_of(comparison);
   EXPECT_NE(table.find("\n2 problems could not be planned and are left out (start collides: 1, "
-                       "error: 1):\n  d: collides\n  e: broken\n"),
+                       "error: 1).\n  d: collides\n  e: broken\n"),
             std::string::npos)
       << table;
   std::ostringstream json;
@@ -161,14 +161,6 @@ TEST(Comparison, SaysWhyThereIsNothingToCompare) {
       not_planned(attempt("d", false, 1, 0), NotPlanned::StartCollides, "collides")};
   EXPECT_EQ(compare(colliding, colliding).error().message,
             "no problem could be planned (start collides: 1)");
-}
-
-TEST(ComparisonTable, ShortTimesAreInMilliseconds) {
-  const std::string table =
-      table_of(compared({attempt("a", true, 10, 0.00125)}, {guided_attempt("a", true, 5, 0.0005)}));
-  EXPECT_NE(table.find("  planning time ms, mean          1.250      0.500     2.50     1.0000\n"),
-            std::string::npos)
-      << table;
 }
 
 TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {

@@ -51,8 +51,7 @@ TEST(DistributionPlot, ANarrowMixturesHandIsAtItsMeans) {
       Mixture(Eigen::VectorXd::Ones(1), means, {1e-12 * Eigen::MatrixXd::Identity(6, 6)});
   const DistributionPlot plot = plot_of(distribution, description("ur10e"));
   const Eigen::Vector3d hand =
-      kinematics::T_base_transfer(kinship::test::model_chain("ur10e"), means.col(0))
-          .translation();
+      kinematics::T_base_transfer(kinship::test::model_chain("ur10e"), means.col(0)).translation();
   EXPECT_LT((plot.hands.colwise() - hand).colwise().norm().maxCoeff(), 1e-4);
 }
 

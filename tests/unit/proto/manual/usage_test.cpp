@@ -79,7 +79,7 @@ TEST_F(Usage, AnOptionsTypeNameSaysWhatItsValueIs) {
   EXPECT_EQ(value_usage("TEXT:DIR").kind, ValueKind::Folder);
   EXPECT_EQ(value_usage("ROBOT").kind, ValueKind::FromServer);
   EXPECT_EQ(value_usage("TEXT:PATH(existing)").kind, ValueKind::Anything);
-  EXPECT_EQ(value_usage("UINT:0 to 230").name, "UINT:0 to 230");
+  EXPECT_EQ(value_usage("UINT:0 to 230").name, "0 to 230");
 }
 
 TEST_F(Usage, HelpFitsEightyColumnsAndSaysNothingOfHowOptionsAreChecked) {

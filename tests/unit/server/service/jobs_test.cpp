@@ -6,6 +6,10 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <variant>
+
+#include "server/service/job_verbs.hpp"
 
 namespace kinship::service::jobs_test {
 namespace {
@@ -94,6 +98,26 @@ class JobsTest : public testing::Test {  // NOLINT: GoogleTest deletes it
   std::string ended_;
   std::unique_ptr<Jobs> jobs_;  // last: its thread uses all of the above
 };
+
+TEST_F(JobsTest, AreListedFromTheLastThatWasBegunPageByPage) {
+  for (const char* const argument : {"a", "b", "c", "d", "e"})
+    begin(held(argument));
+  AdminRequest request;
+  request.verb = AdminVerb::ListJobs;
+  request.limit = 2;
+  std::string listed;
+  do {
+    const AdminPage page = list_jobs(*jobs_, request);
+    for (const AdminRow& row : page.rows)
+      listed += std::get<Job>(row).argument;
+    request.cursor = page.next_cursor;
+    if (listed.size() == 2)
+      begin(held("f"));  // comes before what was shown
+  } while (!request.cursor.empty());
+  EXPECT_EQ(listed, "edcba");
+  request.cursor = "forgotten";
+  EXPECT_TRUE(list_jobs(*jobs_, request).rows.empty());
+}
 
 TEST_F(JobsTest, AJobIsDoneWithItsMessageAndRows) {
   const Job job = end_of(begin(quick("one")));
