@@ -94,31 +94,26 @@ Problem make_problem(const std::string& name, const Array& start, const Goals& g
   return problem;
 }
 
-void bind_problem(py::module_& module) {
-  py::class_<Problem>(module, "Problem", R"(A planning problem, a line of a problem file.
+using ProblemClass = py::class_<Problem>;
 
->>> problem = kinship.Problem("over", [0.0, 0.5], [[1.0, 0.5], [1.0, -0.5]], seed=3)
->>> problem.goal_configurations.shape
-(2, 2)
->>> kinship.Problem.from_json(problem.to_json()).start
-array([0. , 0.5]))")
-      .def(
-          py::init([](const std::string& name, const Array& start, const std::optional<Array>& goal,
-                      const std::optional<Array>& goal_pose, const Scene& scene,
-                      const std::optional<Array>& T_task_base, const NamePairs& allowed_collisions,
-                      double time_limit_s, std::uint64_t seed) {
-            Problem problem = make_problem(name, start, {goal, goal_pose}, T_task_base);
-            problem.scene = scene;
-            problem.allowed_collisions = allowed_collisions;
-            problem.time_limit_s = time_limit_s;
-            problem.seed = seed;
-            return problem;
-          }),
-          py::arg("name"), py::arg("start"), py::arg("goal") = py::none(), py::kw_only(),
-          py::arg("goal_pose") = py::none(), py::arg("scene") = Scene(),
-          py::arg("T_task_base") = py::none(), py::arg("allowed_collisions") = NamePairs(),
-          py::arg("time_limit_s") = Problem{}.time_limit_s, py::arg("seed") = 0,
-          R"(A query of one robot.
+void bind_making(ProblemClass& bound) {
+  bound.def(
+      py::init([](const std::string& name, const Array& start, const std::optional<Array>& goal,
+                  const std::optional<Array>& goal_pose, const Scene& scene,
+                  const std::optional<Array>& T_task_base, const NamePairs& allowed_collisions,
+                  double time_limit_s, std::uint64_t seed) {
+        Problem problem = make_problem(name, start, {goal, goal_pose}, T_task_base);
+        problem.scene = scene;
+        problem.allowed_collisions = allowed_collisions;
+        problem.time_limit_s = time_limit_s;
+        problem.seed = seed;
+        return problem;
+      }),
+      py::arg("name"), py::arg("start"), py::arg("goal") = py::none(), py::kw_only(),
+      py::arg("goal_pose") = py::none(), py::arg("scene") = Scene(),
+      py::arg("T_task_base") = py::none(), py::arg("allowed_collisions") = NamePairs(),
+      py::arg("time_limit_s") = Problem{}.time_limit_s, py::arg("seed") = 0,
+      R"(A query of one robot.
 
 start               (dof,)
 goal                (dof,), or (n, dof): any of them
@@ -126,7 +121,19 @@ goal_pose           instead of goal, where the transfer frame is to get in the t
 scene               what is around the robot
 T_task_base         where its base stands in the task's frame
 allowed_collisions  pairs of names, of links or obstacles, that may touch
-time_limit_s        of wall-clock time)")
+time_limit_s        of wall-clock time)");
+}
+
+void bind_problem(py::module_& module) {
+  ProblemClass bound(module, "Problem", R"(A planning problem, a line of a problem file.
+
+>>> problem = kinship.Problem("over", [0.0, 0.5], [[1.0, 0.5], [1.0, -0.5]], seed=3)
+>>> problem.goal_configurations.shape
+(2, 2)
+>>> kinship.Problem.from_json(problem.to_json()).start
+array([0. , 0.5]))");
+  bind_making(bound);
+  bound
       .def_static(
           "from_json",
           [](const std::string& text) {
