@@ -6,7 +6,7 @@ namespace kinship::manual::script {
 namespace {
 
 /// Patterns of `case` in fish have spaces between them.
-std::string with_spaces(std::string patterns) {
+std::string with_spaces(const std::string& patterns) {
   std::string spaced;
   bool in_quotes = false;
   for (const char c : patterns) {
