@@ -167,7 +167,7 @@ ChainEnds ends_of(const std::vector<TreeLink>& tree, const Branches& branches, s
   const auto is_place = [](const std::string& name) {
     return std::ranges::find(kPlaces, name) != kPlaces.end();
   };
-  std::ranges::stable_partition(ends.bases, std::not_fn(is_place));
+  std::stable_partition(ends.bases.begin(), ends.bases.end(), std::not_fn(is_place));
   return ends;
 }
 
