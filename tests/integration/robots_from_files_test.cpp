@@ -80,8 +80,9 @@ TEST_F(RobotsFromFiles, ATwinIsToldWhomItIsLike) {
 TEST_F(RobotsFromFiles, CollisionMeshesAreNotNeededToRegister) {
   const test::ServerProcess server(
       {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}});
-  std::vector<std::string> arguments = {"robots", "register", write_pointer(), "--base", "base",
-                                        "--tip",  "arm"};
+  std::vector<std::string> arguments = {"robots", "register",   write_pointer(),
+                                        "--base", "base",       "--tip",
+                                        "arm",    "--transfer", "0 0 0 0 0 0 1"};
   const Answer without = run("kinship", arguments);
   EXPECT_EQ(without.code, 0) << without.err;
   EXPECT_NE(without.err.find("without collision geometry: link 'arm': mesh "
