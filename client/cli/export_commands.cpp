@@ -11,25 +11,31 @@
 namespace kinship::cli {
 namespace {
 
+/// Where rows go.
+struct RowsTarget {
+  const std::filesystem::path& file;  ///< empty: a stream
+  files::OutputFile& output;          ///< to it
+  bool progress;                      ///< is told
+};
+
 /// Writes rows as lines; the file has its name only if all came.
-/// \param file  of `output`; empty: a stream.
-int write_rows(link::Client& server, const AdminRequest& request, const std::filesystem::path& file,
-               files::OutputFile& output, std::string_view command, StatusLine& progress,
-               std::ostream& err) {
+int write_rows(link::Client& server, const AdminRequest& request, const RowsTarget& target,
+               std::string_view command, std::ostream& err) {
   constexpr std::size_t kLinesAtOnce = 100;
+  StatusLine progress(err, target.progress);
   std::size_t lines = 0;
   const auto error = link::for_each_row(server, request, [&](const std::string& row) {
-    output.stream() << row << '\n';
+    target.output.stream() << row << '\n';
     if (++lines % kLinesAtOnce == 0)
       progress.show(std::string(command) + ": " + count_text(lines, "line"));
-    return output.stream().good();
+    return target.output.stream().good();
   });
   progress.clear();
   if (error)
     return refuse(command, *error, err);
-  output.keep();
-  if (!file.empty())
-    err << count_text(lines, "line") << " in '" << file.string() << "'\n";
+  target.output.keep();
+  if (!target.file.empty())
+    err << count_text(lines, "line") << " in '" << target.file.string() << "'\n";
   return kDone;
 }
 
@@ -42,8 +48,8 @@ int export_paths(link::Client& server, const ExportOptions& options, std::ostrea
   request.verb = AdminVerb::ExportPaths;
   request.robot = options.robot;
   request.task = options.task;
-  StatusLine progress(err, options.progress && !(options.output.empty() && is_terminal(out)));
-  return write_rows(server, request, options.output, output, "paths export", progress, err);
+  const bool progress = options.progress && !(options.output.empty() && is_terminal(out));
+  return write_rows(server, request, {options.output, output, progress}, "paths export", err);
 }
 
 int export_configurations(link::Client& server, const ConfigurationsOptions& options,
@@ -60,9 +66,8 @@ int export_configurations(link::Client& server, const ConfigurationsOptions& opt
     AdminRequest rows;
     rows.verb = AdminVerb::JobRows;
     rows.argument = job.id;
-    StatusLine progress(err,
-                        options.waiting.progress && !(options.output.empty() && is_terminal(out)));
-    return write_rows(server, rows, options.output, output, kCommand, progress, err);
+    const bool progress = options.waiting.progress && !(options.output.empty() && is_terminal(out));
+    return write_rows(server, rows, {options.output, output, progress}, kCommand, err);
   });
 }
 
