@@ -13,6 +13,6 @@ function(kinship_browser_test name file)
     return()
   endif()
   add_test(NAME ${name} COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/${file})
-  set_tests_properties(${name} PROPERTIES LABELS story TIMEOUT 300 ENVIRONMENT
+  set_tests_properties(${name} PROPERTIES LABELS story TIMEOUT 600 ENVIRONMENT
     "PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/support;KINSHIP_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};KINSHIP_TESTS_DIR=${CMAKE_BINARY_DIR}/tests;KINSHIP_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
 endfunction()

@@ -19,6 +19,7 @@ _FLAGS = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-s
           "--disable-extensions", "--disable-default-apps", "--force-color-profile=srgb")
 _WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 _NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
+_PATIENCE_S = 120  # WebGL without a graphics card, beside other tests
 
 
 class Browser:
@@ -33,6 +34,8 @@ class Browser:
         options.add_argument(f"--user-data-dir={self._profile.name}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.driver.set_script_timeout(_PATIENCE_S)
+        self.driver.set_page_load_timeout(_PATIENCE_S)
         self.resize(width, height)
 
     def __enter__(self) -> "Browser":
@@ -97,7 +100,7 @@ class Browser:
             "type": "mouseWheel", "x": place[0], "y": place[1], "deltaX": 0, "deltaY": down})
         self.settle()
 
-    def wait(self, condition: str, seconds: float = 20):
+    def wait(self, condition: str, seconds: float = _PATIENCE_S):
         """Waits until a JavaScript expression is true. \return  its value."""
         return WebDriverWait(self.driver, seconds, poll_frequency=0.05).until(
             lambda driver: driver.execute_script(f"return {condition}"), f"never true: {condition}")
