@@ -8,6 +8,7 @@
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/exit_code.hpp"
+#include "proto/types/names.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -54,7 +55,8 @@ int print_candidates(link::Client& server, const std::string& kind, std::ostream
   const auto error = link::for_each_row(
       server, request,
       [&](const std::string& row) {
-        if (const std::string word = candidates.word(row); !word.empty())
+        // Whatever claims to be a server: what stands on a command line is a name, and no program.
+        if (const std::string word = candidates.word(row); !check_label(word))
           words += word + '\n';
         return true;
       },

@@ -35,14 +35,12 @@ void write_helpers(const std::string& name, std::ostream& out) {
 _)sh" << name
       << R"sh(_files() {
   compopt -o filenames 2>/dev/null
-  local IFS=$'\n'
-  COMPREPLY=($(compgen -f -- "$current"))
+  mapfile -t COMPREPLY < <(compgen -f -- "$current")
 }
 _)sh" << name
       << R"sh(_folders() {
   compopt -o filenames 2>/dev/null
-  local IFS=$'\n'
-  COMPREPLY=($(compgen -d -- "$current"))
+  mapfile -t COMPREPLY < <(compgen -d -- "$current")
 }
 # What the server knows that the line, or the environment, names; nothing without one.
 _)sh" << name
@@ -53,8 +51,10 @@ _)sh" << name
     [[ $before == --server || $before == --domain ]] && where+=("$before" "$word")
     before=$word
   done
-  local IFS=$'\n'
-  COMPREPLY=($(compgen -W "$(kinship candidates "$1" "${where[@]}" 2>/dev/null)" -- "$current"))
+  # compgen -W would expand what the server calls its robots
+  while IFS= read -r word; do
+    [[ $word == "$current"* ]] && COMPREPLY+=("$word")
+  done < <(kinship candidates "$1" "${where[@]}" 2>/dev/null)
 }
 _)sh" << name
       << "_nothing() { COMPREPLY=(); }\n";

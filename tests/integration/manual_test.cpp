@@ -57,9 +57,11 @@ class Manual : public testing::Test {
     EXPECT_EQ(code, 0) << program << " " << option;
   }
   /// What a shell offers at the end of a line.
-  std::set<std::string> offered(const std::string& shell, const std::string& line) const {
+  /// \param bin  where it finds the programs.
+  std::set<std::string> offered(const std::string& shell, const std::string& line,
+                                const std::string& bin = kBin) const {
     const std::string options = shell == "bash" ? "--norc" : shell == "zsh" ? "-f" : "-N";
-    std::istringstream lines(said_by("PATH=" + kBin + ":$PATH timeout 60 " + shell + " " + options +
+    std::istringstream lines(said_by("PATH=" + bin + ":$PATH timeout 60 " + shell + " " + options +
                                      " " + kDrivers + "complete." + shell + " " +
                                      folder_.path().string() + " '" + line + "'"));
     std::set<std::string> words;
@@ -155,6 +157,19 @@ TEST_P(Shells, CompleteWhatTheServerKnowsAndNothingWithoutOne) {
   EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --task "), (Words{"sweep"}));
   EXPECT_EQ(offered(shell, "kinship --domain " + number + " paths list --robot u"),
             (Words{"ur10e"}));
+}
+
+TEST_P(Shells, RunNothingThatAServerCallsItsRobots) {
+  const std::string shell = GetParam();
+  if (!is_there(shell))
+    GTEST_SKIP() << "needs " << shell << " (deploy/packages-tests.txt)";
+  const std::filesystem::path ran = folder_ / "ran";
+  const std::filesystem::path programs = folder_ / "programs";
+  std::filesystem::create_directory(programs);
+  std::ofstream(programs / "kinship") << "#!/bin/sh\necho 'a$(touch " << ran.string() << ")'\n";
+  std::filesystem::permissions(programs / "kinship", std::filesystem::perms::owner_all);
+  offered(shell, "kinship robots show ", programs.string());
+  EXPECT_FALSE(std::filesystem::exists(ran));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shell, Shells, testing::Values("bash", "zsh", "fish"),

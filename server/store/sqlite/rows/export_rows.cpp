@@ -179,17 +179,22 @@ Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Di
   const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
   RobotNames names(database);
   Page<AttemptSummary> page;
-  const std::vector<std::int64_t> ids =
-      next_ids(database, robot, task, parse_cursor(cursor), rows + 1);
-  for (const std::int64_t id : ids) {
-    if (std::ssize(page.rows) == rows)
+  std::int64_t last_id = parse_cursor(cursor);
+  while (true) {
+    const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
+    const std::vector<std::int64_t> ids = next_ids(database, robot, task, last_id, more);
+    if (ids.empty())
       return page;
-    if (std::optional<AttemptSummary> summary = read_summary(database, names, id))
-      page.rows.push_back(std::move(*summary));
-    page.next_cursor = std::to_string(id);
+    for (const std::int64_t id : ids) {
+      if (std::ssize(page.rows) == rows) {
+        page.next_cursor = std::to_string(last_id);
+        return page;
+      }
+      if (std::optional<AttemptSummary> summary = read_summary(database, names, id))
+        page.rows.push_back(std::move(*summary));
+      last_id = id;
+    }
   }
-  page.next_cursor.clear();
-  return page;
 }
 
 }  // namespace kinship::store

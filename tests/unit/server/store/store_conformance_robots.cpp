@@ -56,6 +56,22 @@ TEST_P(StoreConformance, ARefusedLabelSaysHowToFreeIt) {
   EXPECT_NE(message.find("kinship robots remove panda"), std::string::npos) << message;
 }
 
+TEST_P(StoreConformance, AttemptsAreListedOnBehindThoseOfARemovedRobot) {
+  for (std::uint64_t i = 1; i <= 3; ++i)
+    report(solved(i));
+  report(test::make_attempt(iiwa_.digest, "shelf", 4));
+  ASSERT_TRUE(store_->remove_robot(panda_.digest));
+  const Page<AttemptSummary> first = store_->list_attempts({}, "", "", 1);
+  ASSERT_EQ(first.rows.size(), 1U);
+  EXPECT_EQ(first.rows[0].report_uuid, test::id_from<Uuid>(4));
+  report(test::make_attempt(iiwa_.digest, "shelf", 5));
+  const Page<AttemptSummary> both = store_->list_attempts({}, "shelf", "", 1);
+  ASSERT_EQ(both.rows.size(), 1U);
+  ASSERT_FALSE(both.next_cursor.empty());
+  EXPECT_EQ(store_->list_attempts({}, "shelf", both.next_cursor, 1).rows.at(0).report_uuid,
+            test::id_from<Uuid>(5));
+}
+
 TEST_P(StoreConformance, ARobotWithoutAttemptsIsDeletedWithItsDistributions) {
   const Distribution distribution = test::make_distribution(panda_.digest, "shelf", 5);
   EXPECT_EQ(store_->put_distribution(distribution), 1U);
