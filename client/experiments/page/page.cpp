@@ -11,7 +11,7 @@ namespace kinship::experiments {
 void write_page(const PageData& data, std::ostream& out) {
   const auto text = [](std::string_view name) { return page::text_of(page_texts(), name); };
   page::Document document;
-  document.title = "Kinship: what experience was worth to " + data.robot;
+  document.title = "Kinship: what guidance was worth to " + data.robot;
   document.body = text("story.html");
   document.data = to_json(data);
   document.styles = {text("story.css")};

@@ -50,8 +50,8 @@
       `planned ${several(instances, "new instance")} twice: with uniform samples, and guided by what the server made of that experience.`;
     fillTiles(byId("tiles"), [
       ratio === null ? ["\u2013", "no ratio: nothing was solved"]
-        : ratio >= 1 ? [fixed(ratio, 2) + "\u2009\u00d7", "as many collision checks without the experience, in the mean"]
-        : [fixed(1 / ratio, 2) + "\u2009\u00d7", "as many collision checks with the experience, in the mean: it did not help"],
+        : ratio >= 1 ? [fixed(ratio, 2) + "\u2009\u00d7", "as many collision checks without guidance, in the mean"]
+        : [fixed(1 / ratio, 2) + "\u2009\u00d7", "as many collision checks with guidance, in the mean: it did not help"],
       [`${count(comparison.uniform.mean_checks)} \u2192 ${count(comparison.guided.mean_checks)}`, "collision checks per query in the mean, uniform \u2192 guided"],
       [`${count(data.cheaper_guided)} of ${count(instances)}`, "instances took fewer checks with guidance"],
       [`${percent(samples.uniform_free_share)} \u2192 ${percent(samples.free_share)}`, "of the samples are free of collision, uniform \u2192 distribution"]]);
@@ -106,8 +106,8 @@
   function showBars() {
     const rows = [["uniform", data.uniform_checks], ["guided", data.guided_checks]].map(([planner, checks]) =>
       ({planner, ...checks, label: count(checks.mean)}));
-    const says = ratio === null ? "" : ratio >= 1 ? `Without the experience ${fixed(ratio, 2)} times as many collision checks were needed. `
-      : `With the experience ${fixed(1 / ratio, 2)} times as many collision checks were needed. `;
+    const says = ratio === null ? "" : ratio >= 1 ? `Without guidance ${fixed(ratio, 2)} times as many collision checks were needed. `
+      : `With guidance ${fixed(1 / ratio, 2)} times as many collision checks were needed. `;
     byId("worth-text").textContent =
       `${says}${chance()} Both planned the same ${several(instances, "instance")} with the same seeds; bars are means, whiskers their 95\u202f% intervals.` +
       (data.searches ? "" : " " + guidesInWords());
