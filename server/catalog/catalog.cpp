@@ -131,6 +131,13 @@ void Catalog::evict(const Digest& id) {
   change([&](Afterwards& after) { state_.evict(id, after); });
 }
 
+void Catalog::forget_robot(const Digest& robot) {
+  std::vector<Digest> ids;
+  change([&](Afterwards& after) { ids = state_.forget_robot(robot, after); });
+  for (const Digest& id : ids)
+    maker_.forget(id);
+}
+
 void Catalog::stop() {
   stop_source_.request_stop();
   change([&](Afterwards& after) { state_.stop(after); });

@@ -151,6 +151,11 @@ Administration::Parts Service::administration_parts() {
                 rehearsals_.forget(task);
                 catalog_.forget(task);
               },
+          .forget_robot =
+              [this](const Digest& robot) {
+                catalog_.forget_robot(robot);
+                advice_.forget(robot);
+              },
           .fit_trouble = [this](const Digest& id) { return catalog_.trouble_of(id); },
           .memory = &memory_,
           .backups = options_.backups,
