@@ -276,13 +276,16 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     done =
         rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
                                   catalog::with_experience(experience_, request, std::move(done)));
-  catalog_.fetch(request, waiter,
-                 [this, watch, request, done = std::move(done)](const FetchReply& reply) {
-                   watch->set_answered();
-                   done(reply);
-                   if (options_.on_event)
-                     publish_fetch(events_, robots_, request, reply);
-                 });
+  catalog::FetchDone answer = [watch, done = std::move(done)](const FetchReply& reply) {
+    watch->set_answered();
+    done(reply);
+  };
+  if (options_.on_event)  // the request is copied for those who watch alone
+    answer = [this, request, answer = std::move(answer)](const FetchReply& reply) {
+      answer(reply);
+      publish_fetch(events_, robots_, request, reply);
+    };
+  catalog_.fetch(request, waiter, std::move(answer));
   watch->set_asked();
 }
 
