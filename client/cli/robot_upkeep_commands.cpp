@@ -51,7 +51,9 @@ void print_removal(const RobotRemoval& removal, std::ostream& out) {
     out << "removed: " << count_text(removal.paths, "path") << " retired, "
         << count_text(removal.attempts, "attempt") << " stay on record";
   out << "; " << count_text(removal.distributions, "distribution")
-      << " for it gone; the label is free\n";
+      << " for it gone; the label is free\n"
+      << "If its clients report again they register it again; while another robot has the label "
+         "their reports wait with them\n";
 }
 
 }  // namespace

@@ -119,7 +119,10 @@ GuidanceWorths AdviceBook::worths(std::size_t max) const {
     double profile_share = 0;
     {
       const std::lock_guard lock(mutex_);
-      const Entry& entry = entries_.at(key);
+      const auto found = entries_.find(key);
+      if (found == entries_.end())  // forgotten meanwhile
+        continue;
+      const Entry& entry = found->second;
       totals = entry.totals;
       judged = judged_attempts(entry.context, contexts_, entry.totals.recent);
       profile_share = entry.profile_share;
@@ -149,6 +152,11 @@ void AdviceBook::add(const AttemptCost& cost) {
     later_([this, key, id = *cost.distribution_id] { find_contexts(key, {id}); });
 }
 
+void AdviceBook::forget(const Digest& robot) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [&robot](const auto& entry) { return entry.first.second == robot; });
+}
+
 bool AdviceBook::knows_context(const Digest& distribution) const {
   const std::lock_guard lock(mutex_);
   return contexts_.contains(distribution);
@@ -168,7 +176,8 @@ void AdviceBook::find_contexts(const Key& key, const std::vector<Digest>& distri
     if (contexts_.size() >= kMaxContexts)
       contexts_.clear();
     contexts_[id] = found.value_or(Context{});
-    ++entries_[key].version;
+    if (const auto entry = entries_.find(key); entry != entries_.end())
+      ++entry->second.version;
   }
 }
 
@@ -176,7 +185,10 @@ void AdviceBook::read_totals(const Key& key) {
   for (int reading = 1; reading <= kMaxReadings; ++reading) {
     {
       const std::lock_guard lock(mutex_);
-      entries_[key].is_overtaken = false;
+      const auto found = entries_.find(key);
+      if (found == entries_.end())  // its robot was removed meanwhile
+        return;
+      found->second.is_overtaken = false;
     }
     std::optional<store::AttemptTotals> totals;
     try {
@@ -192,7 +204,10 @@ void AdviceBook::read_totals(const Key& key) {
 
 bool AdviceBook::end_reading(const Key& key, const store::AttemptTotals* totals, bool is_last_try) {
   const std::lock_guard lock(mutex_);
-  Entry& entry = entries_[key];
+  const auto found = entries_.find(key);
+  if (found == entries_.end())  // its robot was removed meanwhile
+    return true;
+  Entry& entry = found->second;
   if (totals == nullptr) {
     entry.state = State::Unread;
     return true;

@@ -81,6 +81,9 @@ class AdviceBook {
   /// An attempt was committed, Stored or Recorded.
   void add(const AttemptCost& cost);
 
+  /// A robot was removed: nothing is known of it until somebody asks for it again.
+  void forget(const Digest& robot);
+
  private:
   enum class State { Unread, Reading, Read };
   struct Entry {

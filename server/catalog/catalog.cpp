@@ -96,10 +96,10 @@ void Catalog::fetch(const FetchRequest& request, const std::string& waiter, Fetc
   change([&](Afterwards& after) {
     known = state_.fetch(id, *key, std::move(who), follow_until, after);
   });
+  const bool is_from_memory = known.reply && known.reply->status != FetchStatus::Busy;
+  ++(is_from_memory ? fetches_from_memory_ : fetches_not_from_memory_);
   if (!known.reply)
     return;
-  if (known.reply->status != FetchStatus::Busy)
-    ++fetches_from_memory_;
   if (!adviser_.is_current(known, *key)) {
     const AdvisedReply advised = adviser_.advise(known.reply, *key);
     const std::lock_guard lock(mutex_);
@@ -129,6 +129,13 @@ void Catalog::forget(std::string_view task) {
 void Catalog::evict(const Digest& id) {
   maker_.forget(id);
   change([&](Afterwards& after) { state_.evict(id, after); });
+}
+
+void Catalog::forget_robot(const Digest& robot) {
+  std::vector<Digest> ids;
+  change([&](Afterwards& after) { ids = state_.forget_robot(robot, after); });
+  for (const Digest& id : ids)
+    maker_.forget(id);
 }
 
 void Catalog::stop() {

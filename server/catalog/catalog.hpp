@@ -99,11 +99,17 @@ class Catalog {
   /// under way is stored later; what such a fit made earlier answers those who wait for it only.
   void evict(const Digest& id);
 
+  /// A robot was removed from the store. Nothing that was made for it is served after this call,
+  /// also what the store had no room for; whoever follows it is told when it is looked up.
+  void forget_robot(const Digest& robot);
+
   /// Answers everybody Busy, now and from now on; fits under way end before their next path.
   void stop();
 
   std::uint64_t fetches() const noexcept { return fetches_; }  ///< since construction
   std::uint64_t fetches_from_memory() const noexcept { return fetches_from_memory_; }
+  /// Those that waited, or that there was no room for; never fewer than before.
+  std::uint64_t fetches_not_from_memory() const noexcept { return fetches_not_from_memory_; }
   std::uint64_t fits() const noexcept { return fits_; }
   std::size_t followed() const;  ///< distributions under a lease
   CatalogUse use() const;
@@ -137,7 +143,8 @@ class Catalog {
   const Adviser adviser_;
   const DistributionMaker maker_;
   std::stop_source stop_source_;
-  std::atomic<std::uint64_t> fetches_{0}, fetches_from_memory_{0}, fits_{0};
+  std::atomic<std::uint64_t> fetches_{0}, fetches_from_memory_{0}, fetches_not_from_memory_{0},
+      fits_{0};
   std::atomic<double> typical_fit_s_{1};  // moving mean, for Busy
 
   mutable std::mutex mutex_;

@@ -240,6 +240,18 @@ void CatalogState::evict(const Digest& id, Afterwards& after) {
   schedule(id, after);
 }
 
+std::vector<Digest> CatalogState::forget_robot(const Digest& robot, Afterwards& after) {
+  std::vector<Digest> ids = memory_.of_robot(robot);
+  for (const auto& [id, pending] : pending_)
+    if (pending.key().robot == robot)
+      ids.push_back(id);
+  for (const Digest& id : leases_.of_robot(robot))
+    ids.push_back(id);
+  for (const Digest& id : ids)  // some twice, to no effect
+    evict(id, after);
+  return ids;
+}
+
 void CatalogState::stop(Afterwards& after) {
   stopping_ = true;
   pending_.close_all(shared(work_.busy("the server is stopping")), after.answers);

@@ -73,6 +73,8 @@ class CatalogState {
   void add_experience(std::string_view task, Afterwards& after);
   void retire_experience(std::string_view task, Afterwards& after);
   void evict(const Digest& id, Afterwards& after);
+  /// Evicts all that is known or under way for a robot. \return what that was, without order.
+  std::vector<Digest> forget_robot(const Digest& robot, Afterwards& after);
   void stop(Afterwards& after);
 
   // For the jobs. Each leaves things as they are if the pending fit is gone: the server stops.

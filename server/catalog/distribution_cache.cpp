@@ -39,4 +39,9 @@ void DistributionCache::replace(const Digest& id, const SharedReply& before,
     entry->reply = after;
 }
 
+std::vector<Digest> DistributionCache::of_robot(const Digest& robot) const {
+  return replies_.ids_of(
+      [&robot](const Entry& entry) { return entry.reply.reply->distribution->robot == robot; });
+}
+
 }  // namespace kinship::catalog

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
@@ -40,6 +41,9 @@ class DistributionCache {
   Entry* find(const Digest& id) { return replies_.find(id); }
 
   void erase(const Digest& id) { replies_.erase(id); }
+
+  /// The ids of what is in memory for a robot.
+  std::vector<Digest> of_robot(const Digest& robot) const;
 
   /// The same distribution with other advice; nothing if the entry holds another reply by now.
   void replace(const Digest& id, const SharedReply& before, const AdvisedReply& after);

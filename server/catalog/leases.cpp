@@ -170,6 +170,14 @@ std::vector<Digest> Leases::of_task(std::string_view task) const {
   return {found->second.begin(), found->second.end()};
 }
 
+std::vector<Digest> Leases::of_robot(const Digest& robot) const {
+  std::vector<Digest> ids;
+  for (const auto& [id, lease] : leases_)
+    if (lease.key.robot == robot)
+      ids.push_back(id);
+  return ids;
+}
+
 bool Leases::set_due(const Digest& id, std::optional<TimePoint> due) {
   const std::optional<TimePoint> before = next_due();
   Lease* const lease = find(id);

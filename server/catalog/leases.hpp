@@ -71,6 +71,7 @@ class Leases {
   std::size_t count(TimePoint now) const;                ///< of those that have not ended
   std::size_t holds() const noexcept { return holds_; }  ///< of all clients, not yet forgotten
   std::vector<Digest> of_task(std::string_view task) const;
+  std::vector<Digest> of_robot(const Digest& robot) const;
 
   /// \return whether next_due() is earlier than before.
   bool set_due(const Digest& id, std::optional<TimePoint> due);

@@ -5,6 +5,7 @@
 #include <list>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "proto/types/digest.hpp"
 
@@ -45,6 +46,16 @@ class LastUsed {
 
   /// Drops the one not used for longest; there is one.
   void drop_oldest() { drop(std::prev(nodes_.end())); }
+
+  /// Whose values fulfil a condition, without using them.
+  template <typename Condition>
+  std::vector<Digest> ids_of(Condition is_one) const {
+    std::vector<Digest> ids;
+    for (const Node& node : nodes_)
+      if (is_one(node.value))
+        ids.push_back(node.id);
+    return ids;
+  }
 
   std::size_t size() const noexcept { return index_.size(); }  ///< number of values
   std::size_t bytes() const noexcept { return bytes_; }        ///< of all of them

@@ -98,8 +98,11 @@ void RobotRegistry::take_geometry(Robot better, const RobotDescription& descript
                                                  .registered_ms = now_ms,
                                                  .geometry_revision = better.geometry_revision,
                                                  .geometry_ms = now_ms});
-  if (reply.took_geometry)
-    keep(std::move(better), changes_before);
+  if (!reply.took_geometry)
+    return;
+  // Renamed or removed meanwhile, it is not kept; nor may what was read before the write be.
+  if (keep(std::move(better), changes_before) != find_in_memory(reply.robot))
+    forget(reply.robot, false);
 }
 
 Result<bool> RobotRegistry::rename_robot(const Digest& robot, const std::string& label) {

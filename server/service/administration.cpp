@@ -267,6 +267,7 @@ AdminPage Administration::remove_robot(const std::string& name) {
   }
   for (const Digest& distribution : removed->distributions)
     parts_.forget_distribution(distribution);
+  parts_.forget_robot(robot.robot);
   for (const std::string& task : removed->tasks)
     parts_.forget_task(task);
   parts_.on_change({}, describe(removed->removal));
@@ -275,6 +276,7 @@ AdminPage Administration::remove_robot(const std::string& name) {
 
 /// Of a robot that was not removed as a whole.
 void Administration::forget_tasks_of(const Digest& robot) {
+  parts_.forget_robot(robot);
   std::string cursor;
   do {
     const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);

@@ -41,6 +41,8 @@ class Administration {
     std::function<void(const Digest&)> forget_distribution = [](const Digest&) {};
     /// Paths of a task were retired: nothing that was made of them may be served.
     std::function<void(const std::string& task)> forget_task = [](const std::string&) {};
+    /// A robot was removed: nothing that was made for it may be served, nor told of it.
+    std::function<void(const Digest& robot)> forget_robot = [](const Digest&) {};
     /// Why the last fit of a distribution made nothing, in words; empty: it did.
     std::function<std::string(const Digest&)> fit_trouble = [](const Digest&) {
       return std::string();

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <thread>
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/summaries.hpp"
@@ -36,15 +37,18 @@ inline constexpr std::array<std::string_view, 9> kFetchOutcomeNames = {
 inline constexpr std::array<std::string_view, 6> kReceiptNames = {
     "stored", "duplicate", "recorded", "refused", "try_again", "unknown_robot"};
 
-/// One fetch on its way: when it came, and whether the catalog answered it at once. Used by the
-/// thread that asks and by the one that answers.
+/// One fetch on its way: when it came, and whether the catalog answered it at once, which is on the
+/// thread that asks (a worker may be done before the catalog's fetch() returns). Made by the thread
+/// that asks, used by that and by the one that answers.
 class FetchWatch {
  public:
   explicit FetchWatch(const runtime::Clock& clock)
       : clock_(clock), began_(clock.now()), began_ms_(clock.unix_ms()) {}
 
   void set_asked() noexcept { is_asked_ = true; }  ///< the catalog's fetch() has returned
-  void set_answered() noexcept { is_at_once_ = !is_asked_; }  ///< the catalog has answered
+  void set_answered() noexcept {                   ///< the catalog has answered
+    is_at_once_ = !is_asked_ && std::this_thread::get_id() == asking_;
+  }
 
   /// Of a reply that goes out now.
   FetchOutcome outcome(const FetchReply& reply) const;
@@ -54,6 +58,7 @@ class FetchWatch {
   const runtime::Clock& clock_;
   const std::chrono::steady_clock::time_point began_;
   const std::int64_t began_ms_;
+  const std::thread::id asking_ = std::this_thread::get_id();
   std::atomic<bool> is_asked_ = false, is_at_once_ = false;
 };
 

@@ -151,6 +151,11 @@ Administration::Parts Service::administration_parts() {
                 rehearsals_.forget(task);
                 catalog_.forget(task);
               },
+          .forget_robot =
+              [this](const Digest& robot) {
+                catalog_.forget_robot(robot);
+                advice_.forget(robot);
+              },
           .fit_trouble = [this](const Digest& id) { return catalog_.trouble_of(id); },
           .memory = &memory_,
           .backups = options_.backups,
@@ -271,13 +276,16 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     done =
         rehearsal::with_rehearsal(rehearsals_, request, options_.clock.now(),
                                   catalog::with_experience(experience_, request, std::move(done)));
-  catalog_.fetch(request, waiter,
-                 [this, watch, request, done = std::move(done)](const FetchReply& reply) {
-                   watch->set_answered();
-                   done(reply);
-                   if (options_.on_event)
-                     publish_fetch(events_, robots_, request, reply);
-                 });
+  catalog::FetchDone answer = [watch, done = std::move(done)](const FetchReply& reply) {
+    watch->set_answered();
+    done(reply);
+  };
+  if (options_.on_event)  // the request is copied for those who watch alone
+    answer = [this, request, answer = std::move(answer)](const FetchReply& reply) {
+      answer(reply);
+      publish_fetch(events_, robots_, request, reply);
+    };
+  catalog_.fetch(request, waiter, std::move(answer));
   watch->set_asked();
 }
 

@@ -173,10 +173,10 @@ void Service::expose_use(Exposition& page) const {
           {"kept_by_fits", use.fit_memory_bytes, fitting::FitMemory::kDefaultBytes},
           {"distributions", use.memory_bytes, options_.catalog.memory.bytes},
           {"ways_of_paths", experience_.bytes_of_paths(), options_.experience.paths.bytes}});
-  const std::uint64_t hits = catalog_.fetches_from_memory();  // first, so that no miss is negative
-  page.counter("kinship_cache_hits_total", "Fetches that memory answered.", hits);
+  page.counter("kinship_cache_hits_total", "Fetches that memory answered.",
+               catalog_.fetches_from_memory());
   page.counter("kinship_cache_misses_total", "Fetches that it did not answer.",
-               catalog_.fetches() - hits);
+               catalog_.fetches_not_from_memory());
   page.counter("kinship_cache_evictions_total",
                "Distributions dropped from memory for want of room.", use.dropped);
   page.gauge("kinship_cache_entries", "Distributions in memory.", std::uint64_t{use.in_memory});

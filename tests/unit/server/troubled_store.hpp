@@ -41,8 +41,12 @@ class TroubledStore final : public store::Store {
   Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
     return store_.register_robot(robot);
   }
+  /// Called when better geometry of a robot is written, before whoever writes it goes on.
+  std::function<void()> on_geometry = [] {};
   bool replace_geometry(const store::RobotRecord& robot) override {
-    return store_.replace_geometry(robot);
+    const bool is_replaced = store_.replace_geometry(robot);
+    on_geometry();
+    return is_replaced;
   }
   Result<bool> rename_robot(const Digest& robot, const std::string& label) override {
     return store_.rename_robot(robot, label);

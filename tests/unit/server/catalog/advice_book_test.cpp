@@ -215,6 +215,27 @@ TEST_F(AdviceBookTest, TellsTheWorthOfGuidanceAsItIsAdvisedNow) {
   EXPECT_LT(worths.pairs[0].advice.recommended_share, kProfileShare);
 }
 
+TEST_F(AdviceBookTest, NothingIsToldOfARobotThatIsRemovedAlsoWhileItsAttemptsAreRead) {
+  advise();
+  run_later();
+  ASSERT_EQ(book_.worths(10).pairs.size(), 1U);
+  book_.forget(test::id_from<Digest>(7));
+  ASSERT_EQ(book_.worths(10).pairs.size(), 1U) << "another robot was removed";
+  book_.forget({});
+  EXPECT_TRUE(book_.worths(10).pairs.empty());
+  EXPECT_EQ(version(), 0U);
+
+  advise();
+  on_read_ = [this] { book_.forget({}); };
+  run_later();
+  EXPECT_TRUE(book_.worths(10).pairs.empty());
+
+  on_read_ = [] {};
+  advise();  // it is registered again
+  run_later();
+  EXPECT_EQ(book_.worths(10).pairs.size(), 1U);
+}
+
 TEST_F(AdviceBookTest, TellsOfThePairsWithMostAttemptsAndHowManyOthersThereAre) {
   for (const char* const task : {"c", "a", "b"})
     book_.advise(task, {}, kContext, kProfileShare);

@@ -160,6 +160,27 @@ TEST_F(Registry, BetterGeometryOfAKnownRobotIsTakenOver) {
   EXPECT_EQ(next.find(none.robot).value()->grade, GeometryGrade::Exact);
 }
 
+TEST_F(Registry, BetterGeometryIsTakenOverAlsoIfARobotIsRenamedMeanwhile) {
+  store::TroubledStore store(*store_);
+  RobotRegistry registry(store);
+  const Digest robot = registry.register_robot(with_mesh(), 1).robot;
+  const Digest other = registry.register_robot(fleet::pupil(), 1).robot;
+  for (const Digest& renamed : {robot, other}) {
+    const std::uint64_t revision = registry.geometry_revision(robot) + 1;
+    store.on_geometry = [&] {
+      EXPECT_TRUE(registry.rename_robot(renamed, "renamed_" + std::to_string(revision)));
+      EXPECT_TRUE(registry.find(robot));
+    };
+    const RegisterReply reply =
+        registry.register_robot(revision == 1 ? with_mesh_solids(0.1) : with_sphere(), 2);
+    EXPECT_TRUE(reply.took_geometry);
+    EXPECT_EQ(registry.geometry_revision(robot), revision);
+    EXPECT_EQ(registry.find(robot).value()->geometry_revision, revision);
+    EXPECT_EQ(registry.find(robot).value()->grade, reply.geometry_grade);
+    EXPECT_EQ(registry.find(robot).value()->label, "renamed_1");
+  }
+}
+
 TEST_F(Registry, GeometryThatIsNoBetterChangesNothing) {
   const Digest robot = registry_.register_robot(with_mesh_solids(0.1), 1).robot;
   for (const RobotDescription& other : {with_mesh_solids(0.2), with_mesh(), fleet::teacher()}) {

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "server/catalog/freshness.hpp"
+#include "server/metrics/exposition.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
 #include "tests/unit/server/troubled_store.hpp"
 
@@ -66,6 +68,25 @@ TEST_F(CatalogTest, TheSecondFetchIsAnsweredFromMemoryDuringTheCall) {
   EXPECT_EQ(status.fetches, 2U);
   EXPECT_EQ(status.fetches_from_memory, 1U);
   EXPECT_EQ(status.fits, 1U);
+}
+
+TEST_F(CatalogTest, AFetchUnderWayIsAMissForEver) {
+  const auto misses = [this] {
+    metrics::Exposition page;
+    service_->expose(page);
+    const std::string name = "\nkinship_cache_misses_total ";
+    return std::stoi(page.text().substr(page.text().find(name) + name.size()));
+  };
+  teach(6);
+  gate_.close();
+  std::future<FetchReply> first = begin_fetch(request_for(pupil_), "one");
+  gate_.wait_for_calls(1);
+  EXPECT_EQ(misses(), 1);
+  gate_.open();
+  EXPECT_EQ(first.get().status, FetchStatus::Ready);
+  EXPECT_EQ(misses(), 1);
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready);
+  EXPECT_EQ(misses(), 1) << "a hit";
 }
 
 TEST_F(CatalogTest, EqualValuesAreOneDistributionInTheWordsOfEachWhoAsks) {

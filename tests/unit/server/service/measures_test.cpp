@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <thread>
 #include <vector>
 
 namespace kinship::service::measures_test {
@@ -46,6 +47,14 @@ TEST_F(Measuring, AReadyReplyCameFromMemoryTheStoreOrAFit) {
   EXPECT_EQ(count_of(FetchOutcome::Memory), 1U);
   EXPECT_EQ(count_of(FetchOutcome::Store), 1U);
   EXPECT_EQ(count_of(FetchOutcome::Fitted), 1U);
+}
+
+TEST_F(Measuring, AWorkerIsNoMemoryHoweverFastItIs) {
+  FetchWatch watch(clock_);
+  std::thread([&] { watch.set_answered(); }).join();
+  watch.set_asked();
+  measures_.count(ready(900), watch);
+  EXPECT_EQ(count_of(FetchOutcome::Store), 1U);
 }
 
 TEST_F(Measuring, EveryStatusIsAnOutcomeOfItsOwn) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::service::robot_upkeep_test {
@@ -71,8 +73,23 @@ TEST_F(RobotUpkeep, WhatWasMadeOfARemovedRobotIsNotServed) {
   const FetchReply after = fetch(request_for(pupil_));
   ASSERT_TRUE(after.distribution) << after.message;
   EXPECT_GT(after.distribution->revision, before.distribution->revision);
+  std::map<Digest, std::uint64_t> paths;
   for (const Source& source : after.distribution->sources)
-    EXPECT_TRUE(source.robot != teacher_.digest || source.paths == 0);
+    if (source.paths > 0)
+      paths[source.robot] += source.paths;
+  EXPECT_EQ(paths, (std::map<Digest, std::uint64_t>{{dwarf_.digest, 6}}));
+}
+
+TEST_F(RobotUpkeep, WhatTheStoreMadeRoomOfIsNotServedForARemovedRobotEither) {
+  may_trouble_store_ = true;
+  start();
+  teach(6);
+  const FetchReply before = fetch(request_for(pupil_));
+  ASSERT_EQ(before.status, FetchStatus::Ready) << before.message;
+  ASSERT_TRUE(real_store_->evict_distribution(before.distribution->id));
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::Ready) << "it is in memory";
+  EXPECT_EQ(remove("pupil").distributions, 0U);
+  EXPECT_EQ(fetch(request_for(pupil_)).status, FetchStatus::UnknownRobot);
 }
 
 TEST_F(RobotUpkeep, AReportOfARemovedRobotIsOfAnUnknownOneUntilItIsRegisteredAgain) {
