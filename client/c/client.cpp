@@ -75,7 +75,7 @@ RecordedScene read_scene(const kinship_attempt& given) {
   RecordedScene scene;
   // A caller that was compiled with another version has objects of another size.
   const auto* bytes = reinterpret_cast<const char*>(given.objects);  // NOLINT: steps of that size
-  const std::size_t step = given.objects->size;
+  const std::size_t step = given.object_count > 0 ? given.objects->size : 0;
   for (std::size_t i = 0; i < given.object_count; ++i) {
     const kinship_object object =  // NOLINTNEXTLINE: of the array that the caller has
         read_structure(reinterpret_cast<const kinship_object*>(bytes + i * step), "object");
@@ -114,8 +114,14 @@ Attempt read_attempt(const kinship_attempt& given) {
   attempt.record.share = given.share;
   if (given.solved != 0)
     attempt.path = read_path(given);
-  if (given.objects != nullptr && given.object_count > 0)
+  if (given.object_count > 0)
+    require(given.objects, "attempt->objects");
+  if (given.objects != nullptr)
     attempt.scene = read_scene(given);
+  else if (given.allowed_collision_pairs > 0)
+    throw Failure(invalid_input("attempt->allowed_collision_pairs is " +
+                                std::to_string(given.allowed_collision_pairs) +
+                                ", must be 0 without attempt->objects"));
   return attempt;
 }
 

@@ -82,7 +82,8 @@ KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* optio
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */
 KINSHIP_API void kinship_client_close(kinship_client* client);
 
-/** A joint beside the chain that stands still. */
+/** A joint beside the chain that stands still. Without a member `size`: it stays as it is, whatever
+ * comes in later versions. */
 typedef struct kinship_held_joint {
   const char* name;
   double value; /**< rad or m */
@@ -185,11 +186,11 @@ typedef struct kinship_attempt {
   kinship_sampling sampling; /**< CONTROL: uniform on purpose although there was guidance */
   double share;              /**< of samples drawn from the distribution, 0 to 1 */
   /** The scene, so that another robot's distribution keeps out of it; of meshes take solids around
-   * them. NULL: the scene is not told. */
+   * them. NULL: the scene is not told; not NULL, with object_count 0: nothing was in the way. */
   const kinship_object* objects;
   size_t object_count;
   const char* const* allowed_collisions; /**< 2 n names of objects that may touch, pair by pair */
-  size_t allowed_collision_pairs;        /**< n */
+  size_t allowed_collision_pairs;        /**< n; 0 without objects */
 } kinship_attempt;
 
 /** Puts the attempt into the outbox: durable on return, sent in the background. Never waits for the

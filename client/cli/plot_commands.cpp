@@ -2,11 +2,13 @@
 
 #include <ostream>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/page_file.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/plots/plot_pages.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
@@ -24,11 +26,12 @@ constexpr std::string_view kPlotTask = "tasks plot";
 std::optional<Distribution> find_distribution(link::Client& server, const DistributionQuery& query,
                                               bool shows_progress, std::ostream& err, int& code) {
   if (query.id.empty()) {
-    if (shows_progress)
-      err << "having it made, if need be ..." << std::flush;
+    StatusLine progress(err, shows_progress);
+    progress.show("having it made, if need be ...");
     std::ostringstream trouble;
     auto distribution = fetch_query(server, query, kPlotDistribution, true, trouble, code);
-    err << (shows_progress ? "\r\033[K" : "") << trouble.str();
+    progress.clear();
+    err << trouble.str();
     return distribution;
   }
   const auto rows =
@@ -38,22 +41,27 @@ std::optional<Distribution> find_distribution(link::Client& server, const Distri
   return json::distribution_from_json(rows.front()).value_or_throw();
 }
 
-/// All rows of a listing of one task. \throws Failure for a row that cannot be read.
+/// Who asks for the rows of one task, and where that is told.
+struct TaskRows {
+  link::Client& server;
+  const std::string& task;
+  bool shows_progress;
+  std::ostream& err;
+};
+
+/// All rows of a listing. \throws Failure for a row that cannot be read.
 template <typename Parse, typename Row>
-int read_rows(link::Client& server, AdminVerb verb, const std::string& task, Parse parse,
-              std::vector<Row>& rows, const PlotOptions& options, std::ostream& err) {
+int read_rows(const TaskRows& of, AdminVerb verb, Parse parse, std::vector<Row>& rows) {
   constexpr std::size_t kStep = 1000;  // rows between two signs of progress
   ListOptions filter;
-  filter.task = task;
-  const int code = for_each_row(server, verb, filter, kPlotTask, err, [&](const std::string& row) {
+  filter.task = of.task;
+  StatusLine progress(of.err, of.shows_progress);
+  return for_each_row(of.server, verb, filter, kPlotTask, of.err, [&](const std::string& row) {
     rows.push_back(parse(row).value_or_throw());
-    if (options.progress && rows.size() % kStep == 0)
-      err << "\r\033[K" << rows.size() << " rows" << std::flush;
+    if (rows.size() % kStep == 0)
+      progress.show(count_text(rows.size(), "row"));
     return true;
   });
-  if (options.progress && rows.size() >= kStep)
-    err << "\r\033[K" << std::flush;
-  return code;
 }
 
 }  // namespace
@@ -84,17 +92,17 @@ int plot_task(link::Client& server, const std::string& task, const PlotOptions& 
   PageFile page(options.output, out);
   std::vector<AttemptSummary> attempts;
   std::vector<DistributionSummary> distributions;
-  int code = read_rows(server, AdminVerb::ListAttempts, task, json::attempt_summary_from_json,
-                       attempts, options, err);
+  const TaskRows of{server, task, options.progress, err};
+  int code = read_rows(of, AdminVerb::ListAttempts, json::attempt_summary_from_json, attempts);
   if (code == kDone)
-    code = read_rows(server, AdminVerb::ListDistributions, task,
-                     json::distribution_summary_from_json, distributions, options, err);
+    code = read_rows(of, AdminVerb::ListDistributions, json::distribution_summary_from_json,
+                     distributions);
   if (code != kDone)
     return code;
   if (attempts.empty())
     return refuse(kPlotTask,
                   {ErrorCode::NotFound, "nothing to plot: no attempt of task '" + task + "'"}, err);
-  plots::write_page(plots::history_of(task, attempts, distributions), page.stream());
+  plots::write_page(plots::history_of(task, std::move(attempts), distributions), page.stream());
   page.keep(err);
   return kDone;
 }

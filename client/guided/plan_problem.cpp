@@ -215,8 +215,8 @@ class Planning {
         robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_start,
         problem_.goal_configurations, watched);
     result.goal_checks = found.collision_checks;
-    result.not_planned = not_planned_by(found.reason);
     if (!found.q) {
+      result.not_planned = not_planned_by(found.reason);
       result.reason = found.reason == NoPath::StartCollides
                           ? "every configuration of the start collides: " + contacts.text()
                           : explain(found.reason);

@@ -1,19 +1,32 @@
 #include "client/plots/marginals.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
+#include "proto/types/failure.hpp"
 #include "proto/types/turn.hpp"
 
 namespace kinship::plots {
 namespace {
 
-/// The bin of a value; what rounding put beyond an end belongs to the last one.
+/// The bin of a value; what rounding put beyond an end belongs to the last one. Of a joint that
+/// cannot move it is the one in the middle.
 std::size_t bin_of(double value, const Marginal& marginal) {
+  if (marginal.lower == marginal.upper)
+    return kMarginalBins / 2;
   const double part = (value - marginal.lower) / (marginal.upper - marginal.lower);
   const double bin = part * static_cast<double>(kMarginalBins);
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(kMarginalBins - 1)));
+}
+
+void require_range(const Marginal& marginal) {
+  if (!std::isfinite(marginal.upper - marginal.lower) || marginal.lower > marginal.upper)
+    throw Failure(ErrorCode::InvalidInput, "limits of joint '" + marginal.joint + "' are " +
+                                               std::to_string(marginal.lower) + " to " +
+                                               std::to_string(marginal.upper) +
+                                               ", must be finite and the lower one first");
 }
 
 }  // namespace
@@ -38,6 +51,7 @@ std::vector<Marginal> marginals_of(const Distribution& distribution, const kinem
       marginal.lower = -std::numbers::pi;
       marginal.upper = std::numbers::pi;
     }
+    require_range(marginal);
     marginal.counts.resize(kMarginalBins);
     for (const double value : samples.row(joint))
       ++marginal.counts[bin_of(value, marginal)];

@@ -25,6 +25,7 @@ struct Marginal {
 
 /// \param samples  dof x n, as a DistributionSampler draws them.
 /// \throws std::invalid_argument if the joints of chain, distribution and samples are not as many.
+/// \throws Failure(InvalidInput) if limits are not finite, or a lower one lies above its upper one.
 std::vector<Marginal> marginals_of(const Distribution& distribution, const kinematics::Chain& chain,
                                    const Eigen::Ref<const Eigen::MatrixXd>& samples);
 

@@ -25,9 +25,11 @@ const kinshipPlots = (() => {
   const hueOf = (index) => "robot-" + index % 4;
   const dashOf = (index) => (index < 4 ? [1, 0] : index < 8 ? [6, 3] : [2, 3]);
 
+  /// Of what a Date cannot hold, the first or the last that it can.
+  const isoText = (ms) => new Date(Math.max(-8.64e15, Math.min(8.64e15, ms))).toISOString();
   /// 2026-11-25 14:03:07 UTC
-  const timeText = (ms) => new Date(ms).toISOString().slice(0, 19).replace("T", " ") + " UTC";
-  const dayText = (ms) => new Date(ms).toISOString().slice(0, 10);
+  const timeText = (ms) => isoText(ms).replace("T", " ").replace(/\..*/, "") + " UTC";
+  const dayText = (ms) => isoText(ms).replace(/T.*/, "");
 
   const lengthText = (ms) => {
     const units = [[86400000, "day"], [3600000, "hour"], [60000, "minute"], [1000, "second"]];

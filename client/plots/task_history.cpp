@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ms = 1000, kMinute_ms = 60 * kSecond_ms, kHour_ms = 60 * kMinute_ms,
                        kDay_ms = 24 * kHour_ms;
+constexpr std::int64_t kLatest_ms = 253'402'300'799'999;  // the end of the year 9999
 
 /// The attempts of one robot and bin while they are gathered.
 struct GatheredMode {
@@ -128,10 +129,12 @@ std::int64_t bin_length_ms(std::int64_t first_ms, std::int64_t last_ms) {
   return length;
 }
 
-TaskHistory history_of(const std::string& task, const std::vector<AttemptSummary>& attempts,
+TaskHistory history_of(const std::string& task, std::vector<AttemptSummary> attempts,
                        const std::vector<DistributionSummary>& distributions) {
   if (attempts.empty())
     throw std::invalid_argument("history_of: no attempt");
+  for (AttemptSummary& attempt : attempts)  // a server may say anything
+    attempt.received_ms = std::clamp<std::int64_t>(attempt.received_ms, 0, kLatest_ms);
   const auto [first, last] = std::ranges::minmax(attempts, {}, &AttemptSummary::received_ms);
   TaskHistory history;
   history.task = task;

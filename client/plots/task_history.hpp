@@ -92,7 +92,7 @@ std::int64_t bin_length_ms(std::int64_t first_ms, std::int64_t last_ms);
 /// \param attempts       of one task, as they arrived; one at least.
 /// \param distributions  of the task, as they are kept now.
 /// \throws std::invalid_argument without an attempt.
-TaskHistory history_of(const std::string& task, const std::vector<AttemptSummary>& attempts,
+TaskHistory history_of(const std::string& task, std::vector<AttemptSummary> attempts,
                        const std::vector<DistributionSummary>& distributions);
 
 }  // namespace kinship::plots

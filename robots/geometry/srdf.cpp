@@ -24,6 +24,17 @@ Result<std::string> read_link(const tinyxml2::XMLElement& element, const char* a
   return std::string(name);
 }
 
+/// XML has no "--" in a comment; a link's name may.
+std::string comment_text(const std::string& text) {
+  std::string spaced;
+  for (const char c : text) {
+    if (c == '-' && spaced.ends_with('-'))
+      spaced += ' ';
+    spaced += c;
+  }
+  return " " + spaced + " ";
+}
+
 }  // namespace
 
 Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_view text,
@@ -61,7 +72,7 @@ std::string write_srdf(const std::string& robot, const std::vector<SrdfPair>& pa
                        const std::string& comment) {
   tinyxml2::XMLPrinter printer;
   printer.PushHeader(false, true);
-  printer.PushComment((" " + comment + " ").c_str());
+  printer.PushComment(comment_text(comment).c_str());
   printer.OpenElement("robot");
   printer.PushAttribute("name", robot.c_str());
   for (const SrdfPair& pair : pairs) {

@@ -10,7 +10,8 @@
 namespace kinship::models {
 
 /// What marks a text as xacro that is still to be expanded: an element `xacro:...`, or `${...}`,
-/// `$(find ...)`, `$(arg ...)`; with its line, in words. Empty if it is none. Comments do not
+/// `$(find ...)`, `$(arg ...)` in an attribute of an element of the model; with its line, in words.
+/// Empty if it is none, or no XML. What plugins are told (`<gazebo>`, `<ros2_control>`) does not
 /// count, and neither does a mere declaration xmlns:xacro, which expanded files keep.
 std::string xacro_mark(std::string_view text);
 

@@ -1,6 +1,7 @@
 #include "robots/planning/search_recorder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace kinship::planning {
 
@@ -30,10 +31,13 @@ void SearchRecorder::join(Eigen::Index start_node, Eigen::Index goal_node) {
         nodes.push_back(i);
     return nodes;
   };
-  search_.path = branch(Side::Start, start_node);
-  std::ranges::reverse(search_.path);
-  for (const std::int64_t node : branch(Side::Goal, goal_node))
-    search_.path.push_back(node);
+  std::vector<std::int64_t> path = branch(Side::Start, start_node);
+  const std::vector<std::int64_t> rest = branch(Side::Goal, goal_node);
+  if (path.empty() || rest.empty())
+    return;  // half a path would look like a whole one
+  std::ranges::reverse(path);
+  path.insert(path.end(), rest.begin(), rest.end());
+  search_.path = std::move(path);
 }
 
 RecordedSearch SearchRecorder::search() const {

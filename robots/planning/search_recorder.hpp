@@ -22,7 +22,8 @@ class SearchRecorder {
   /// A tree has a new node. \param parent  in the same tree, -1: a root.
   void add(Side side, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Index parent);
 
-  /// Both trees have met in nodes that hold the same configuration.
+  /// Both trees have met in nodes that hold the same configuration. There is no path if one
+  /// of them came after kMaxRecordedNodes.
   void join(Eigen::Index start_node, Eigen::Index goal_node);
 
   /// What was recorded since begin(); without a name.

@@ -86,7 +86,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
-      {models, {{geometry, kinematics, types}, {"Eigen", "toml"}}},
+      {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},

@@ -228,6 +228,21 @@ TEST_F(CLibraryOffline, AnAttemptTellsItsScene) {
   expect_refused(kinship_report(client_, &attempt_), "object 1: its size is ");
 }
 
+TEST_F(CLibraryOffline, ASceneWithoutObjectsIsToldAndNoneIsNot) {
+  TableAndCup scene(attempt_);
+  attempt_.object_count = 0;
+  expect_refused(kinship_report(client_, &attempt_), "'table'");
+  attempt_.allowed_collision_pairs = 0;
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
+  attempt_.objects = nullptr;
+  EXPECT_EQ(kinship_report(client_, &attempt_), KINSHIP_OK) << kinship_error_text();
+  attempt_.allowed_collision_pairs = 1;
+  expect_refused(kinship_report(client_, &attempt_), "attempt->allowed_collision_pairs is 1");
+  attempt_.allowed_collision_pairs = 0;
+  attempt_.object_count = 2;
+  expect_refused(kinship_report(client_, &attempt_), "attempt->objects");
+}
+
 TEST_F(CLibraryOffline, ObjectsOfANewerCallerAreSteppedOverByTheirSize) {
   struct Newer {
     kinship_object object;

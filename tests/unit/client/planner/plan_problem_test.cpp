@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "tests/unit/client/planner/plan_problem_answers.hpp"
@@ -260,6 +262,27 @@ TEST(PlanProblem, AStartPoseThatCannotBeSaysWhy) {
             0U)
       << answer.result.reason;
   EXPECT_EQ(answer.outcome, Outcome::Failed);
+}
+
+// With a start pose as with a start configuration.
+TEST(PlanProblem, WhatBreaksWhileGoalsAreFoundIsNoSearch) {
+  Problem problem = posed_problem();
+  problem.goal_configurations.resize(0, 0);
+  problem.T_task_goal = *problem.T_task_base * Eigen::Translation3d(0.8, 0, 0) *
+                        Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());  // in the wall
+  int asked = 0, last = 0;
+  const auto plan = [&] {
+    return plan_problem(planar_robot(), problem, {}, {}, [&] {
+      if (++asked == last)
+        throw std::runtime_error("broken");
+      return false;
+    });
+  };
+  EXPECT_EQ(plan().result.not_planned, NotPlanned::GoalCollides);
+  last = std::exchange(asked, 0);
+  const PlannedProblem answer = plan();
+  EXPECT_EQ(answer.result.reason, "broken");
+  EXPECT_EQ(answer.result.not_planned, NotPlanned::Error);
 }
 
 TEST(PlanProblem, TellsASearchInVainFromNone) {

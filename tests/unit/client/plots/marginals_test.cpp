@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 #include <numeric>
 
+#include "proto/types/failure.hpp"
 #include "tests/unit/client/plots/plot_values.hpp"
 
 namespace kinship::plots::marginals_test {
@@ -52,6 +54,21 @@ TEST_F(Marginals, OfAContinuousJointGoOnceAround) {
   EXPECT_EQ(marginals[1].cut, 2.5);
   EXPECT_NEAR(marginals[3].cut.value(), 0.5, 1e-12) << "turned into the range that is shown";
   EXPECT_EQ(marginals[1].counts.front(), 10U);
+}
+
+TEST_F(Marginals, OfAJointThatCannotMoveAreInTheMiddle) {
+  distribution_.limits.col(2).setConstant(0.5);
+  samples_.row(2).setConstant(0.5);
+  EXPECT_EQ(marginals_of(distribution_, chain_, samples_)[2].counts[kMarginalBins / 2], 10U);
+}
+
+TEST_F(Marginals, LimitsThatAreNoRangeAreRefused) {
+  const Eigen::Matrix2Xd fine = distribution_.limits;
+  distribution_.limits(1, 2) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(marginals_of(distribution_, chain_, samples_), Failure);
+  distribution_.limits = fine;
+  distribution_.limits.col(2).reverseInPlace();
+  EXPECT_THROW(marginals_of(distribution_, chain_, samples_), Failure);
 }
 
 TEST_F(Marginals, OfAnotherRobotAreRefused) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/unit/client/plots/history_values.hpp"
 
 namespace kinship::plots::task_history_test {
@@ -101,6 +103,20 @@ TEST(TaskHistory, KnowsTheRevisionsThatWereUsedAndThoseThatAreKept) {
   EXPECT_EQ(revisions[1].fitted_ms, 0) << "nobody knows any more";
   EXPECT_EQ(revisions[2].attempts, 1U);
   EXPECT_EQ(revisions[2].fitted_ms, kept.fitted_ms);
+}
+
+TEST(TaskHistory, TimesThatNoClockShowsAreBroughtIntoTheCalendar) {
+  constexpr std::int64_t kEndOf9999_ms = 253'402'300'799'999;
+  const TaskHistory history =
+      history_of("shelf",
+                 {attempt(std::numeric_limits<std::int64_t>::min(), Outcome::Solved, 100),
+                  attempt(std::numeric_limits<std::int64_t>::max(), Outcome::Solved, 100)},
+                 {});
+  EXPECT_EQ(history.from_ms, 0);
+  EXPECT_LE(history.bins, kMaxBins);
+  EXPECT_GT(history.from_ms + static_cast<std::int64_t>(history.bins) * history.bin_ms,
+            kEndOf9999_ms);
+  EXPECT_EQ(history.robots.front().bins.back().bin, history.bins - 1);
 }
 
 TEST(TaskHistory, OfNothingIsRefused) {

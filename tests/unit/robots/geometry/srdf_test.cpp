@@ -35,6 +35,12 @@ TEST(WriteSrdf, IsReadBackAndEscapesNames) {
   EXPECT_NE(text.find("reason=\"Never\""), std::string::npos) << text;
 }
 
+TEST(WriteSrdf, ItsCommentEndsWhereItEnds) {
+  const std::string text = write_srdf("r", {{"hand", "arm", "Never"}}, "of arm-->--- to hand-");
+  EXPECT_EQ(read(text).value_or_throw(), (Pairs{{"hand", "arm"}})) << text;
+  EXPECT_NE(text.find("<!-- of arm- ->- - - to hand- -->"), std::string::npos) << text;
+}
+
 TEST(ReadSrdf, GivesThePairsInTheirOrderAndNothingElse) {
   const auto pairs = read(R"(<?xml version="1.0"?>
     <!-- <disable_collisions link1="base" link2="base"/> -->

@@ -85,6 +85,20 @@ TEST(DescribeRobot, WhatXacroHasMadeIsAUrdf) {
             "");
 }
 
+TEST(DescribeRobot, WhatPluginsAreToldIsNotTheModels) {
+  EXPECT_EQ(complaint("arm.urdf", R"x(<robot name="r"><link name="a"/>
+    <gazebo><plugin name="p"><parameters>$(find arm)/c.yaml</parameters>
+      <joint name="${prefix}j"/></plugin></gazebo>
+    <ros2_control name="${HOME}"><param name="p">${x}</param></ros2_control></robot>)x"),
+            "");
+  const std::string element = complaint("arm.urdf", R"x(<robot name="r"><link name="a"/>
+    <gazebo><xacro:plugin/></gazebo></robot>)x");
+  EXPECT_NE(element.find("line 2: '<xacro:plugin'"), std::string::npos) << element;
+  const std::string after = complaint("arm.urdf", R"x(<robot name="r"><gazebo><a><b/></a></gazebo>
+    <link name="${prefix}a"/></robot>)x");
+  EXPECT_NE(after.find("line 2: '${prefix'"), std::string::npos) << after;
+}
+
 /// What is wrong with an SRDF of this text for a Panda.
 std::string srdf_complaint(const std::string& text) {
   const test::TemporaryDirectory directory;

@@ -85,6 +85,25 @@ TEST(SearchRecorder, TellsTreesInTheOrderInWhichTheyGrew) {
   EXPECT_LE(search.checks.back(), summary.collision_checks);
 }
 
+TEST(SearchRecorder, HasNoPathThroughANodeThatWasLeftOut) {
+  const IsFree is_free = [](const Eigen::VectorXd&) { return true; };
+  const PlanningBudget budget(is_free, 1, std::chrono::seconds(1));
+  SearchRecorder recorder;
+  recorder.begin(budget);
+  recorder.add(SearchRecorder::Side::Start, at(0, 0), -1);
+  recorder.add(SearchRecorder::Side::Goal, at(1, 1), -1);
+  recorder.join(0, 0);
+  EXPECT_EQ(recorder.search().path.size(), 2U);
+  recorder.begin(budget);
+  recorder.add(SearchRecorder::Side::Start, at(0, 0), -1);
+  recorder.add(SearchRecorder::Side::Goal, at(1, 1), -1);
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kMaxRecordedNodes); ++i)
+    recorder.add(SearchRecorder::Side::Start, at(0, 0), i);
+  recorder.join(static_cast<Eigen::Index>(kMaxRecordedNodes), 0);
+  EXPECT_TRUE(recorder.search().path.empty());
+  EXPECT_EQ(recorder.search().parents.size(), kMaxRecordedNodes);
+}
+
 TEST(SearchRecorder, ASecondSearchForgetsTheFirst) {
   SearchRecorder recorder;
   plan(1, &recorder);
