@@ -9,6 +9,7 @@
 #include "client/cli/admin_rows.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/table.hpp"
+#include "client/cli/terminal.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "robots/collision/pair_sampling.hpp"
@@ -39,30 +40,6 @@ const char* verdict_of(const collision::SampledPair& pair, const SuggestSrdfOpti
   return pair.touched == 0 && !pair.touches_at_zero ? kNever : kSometimes;
 }
 
-class ProgressLine {
- public:
-  ProgressLine(std::ostream& err, bool is_shown) : err_(err), is_shown_(is_shown) {}
-  ~ProgressLine() {
-    if (is_shown_ && percent_ >= 0)
-      err_ << "\r\033[K" << std::flush;
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(double part) {
-    const int percent = static_cast<int>(100 * part);
-    if (!is_shown_ || percent == percent_)
-      return;
-    percent_ = percent;
-    err_ << "\r\033[Ksampling " << percent << " %" << std::flush;
-  }
-
- private:
-  std::ostream& err_;
-  const bool is_shown_;
-  int percent_ = -1;
-};
-
 SrdfSuggestion suggest(const SuggestSrdfOptions& options, const kinematics::Chain& chain,
                        const geometry::RobotShapes& geometry, std::ostream& err) {
   SrdfSuggestion suggestion{.base_link = chain.base_link(),
@@ -71,12 +48,15 @@ SrdfSuggestion suggest(const SuggestSrdfOptions& options, const kinematics::Chai
                             .seed = options.seed,
                             .never_bound = kRuleOfThree / static_cast<double>(options.samples),
                             .pairs = {}};
-  ProgressLine line(err, options.progress);
+  StatusLine line(err, options.progress);
+  int shown_percent = -1;
   const auto name = [&](int link) { return chain.links()[static_cast<std::size_t>(link)].name; };
   for (const collision::SampledPair& pair : collision::sample_pairs(
            chain, geometry,
            {.samples = options.samples, .seed = options.seed, .progress = [&](double part) {
-              line.show(part);
+              const int percent = static_cast<int>(100 * part);
+              if (std::exchange(shown_percent, percent) != percent)
+                line.show("sampling " + std::to_string(percent) + " %");
             }}))
     suggestion.pairs.push_back(
         {name(pair.link_a), name(pair.link_b), verdict_of(pair, options), pair.touched});

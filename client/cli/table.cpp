@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "client/cli/table_layout.hpp"
+#include "proto/types/characters.hpp"
 #include "proto/types/pose.hpp"
 
 namespace kinship::cli {
@@ -27,15 +28,8 @@ bool is_number(const std::string& text) {
          text.find_first_of("0123456789") != std::string::npos;
 }
 
-bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
-
-/// Characters of UTF-8.
-std::size_t length_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
-}
-
 std::string cut_to(const std::string& text, std::size_t width) {
-  if (length_of(text) <= width)
+  if (character_count(text) <= width)
     return text;
   std::size_t left = width - std::min(width, kCut.size());
   std::size_t bytes = 0;
@@ -46,13 +40,13 @@ std::string cut_to(const std::string& text, std::size_t width) {
 
 /// Lines of whole words; a word that is longer than the width has a line of its own.
 std::vector<std::string> lines_of(const std::string& text, std::size_t width) {
-  if (length_of(text) <= width)
+  if (character_count(text) <= width)
     return {text};
   std::vector<std::string> lines(1);
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     std::string& line = lines.back();
-    if (!line.empty() && length_of(line) + 1 + length_of(word) > width)
+    if (!line.empty() && character_count(line) + 1 + character_count(word) > width)
       lines.push_back(word);
     else
       line += (line.empty() ? "" : " ") + word;
@@ -64,7 +58,7 @@ std::size_t longest_word(const std::string& text) {
   std::size_t longest = 0;
   std::istringstream words(text);
   for (std::string word; words >> word;)
-    longest = std::max(longest, length_of(word));
+    longest = std::max(longest, character_count(word));
   return longest;
 }
 
@@ -81,7 +75,7 @@ void print_row(const std::vector<std::vector<std::string>>& row,
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string text = number < row[i].size() ? row[i][number] : "";
-      const std::string padding(widths[i] - length_of(text), ' ');
+      const std::string padding(widths[i] - character_count(text), ' ');
       line += right[i] ? padding + text : text + padding;
       line += std::string(kGap, ' ');
     }
@@ -118,7 +112,7 @@ std::vector<std::size_t> Table::widths(const std::vector<std::size_t>& columns,
   for (const std::size_t column : columns) {
     std::size_t natural = 0, words = 0;
     for (const auto& row : rows_) {
-      natural = std::max(natural, length_of(row[column]));
+      natural = std::max(natural, character_count(row[column]));
       words = std::max(words, longest_word(row[column]));
     }
     widths.push_back(natural);
@@ -156,7 +150,7 @@ void Table::print(std::ostream& out) const {
       const std::string& cell = rows_[row][columns[i]];
       cells[row].push_back(laid_out(cell, columns_[columns[i]].fit, most[i]));
       for (const std::string& line : cells[row].back())
-        used[i] = std::max(used[i], length_of(line));
+        used[i] = std::max(used[i], character_count(line));
       if (row > 0 && !is_number(cell))
         right[i] = false;
     }

@@ -112,7 +112,12 @@ void bind_events(py::module_& module) {
       .def(
           "__enter__", [](py::object self) { return self; }, "Itself.")
       .def(
-          "__exit__", [](EventStream& self, const py::args&) { self.close(); }, "Closes it.");
+          "__exit__",
+          [](EventStream& self, const py::args&) {
+            const py::gil_scoped_release unlocked;
+            self.close();
+          },
+          "Closes it.");
 }
 
 void bind_administration(ClientClass& client) {

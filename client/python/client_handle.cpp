@@ -73,9 +73,9 @@ Result<FetchReply> ClientHandle::fetch(FetchRequest request) const {
       if (is_too_early)
         std::this_thread::sleep_until(std::min(slice_end, deadline));
     }
-    hear_signals();
     if (is_final(*last))
       return *std::move(last);
+    hear_signals();
     if (Clock::now() >= deadline - 1ms)
       return *last ? *std::move(last) : in_all(last->error(), asked_for);
   }
@@ -90,9 +90,9 @@ link::Client::OutboxState ClientHandle::flush(milliseconds timeout) const {
       const py::gil_scoped_release unlocked;
       state = client->flush(std::min(kSlice, left_until(deadline)));
     }
-    hear_signals();
     if (state.pending == 0 || Clock::now() >= deadline)
       return state;
+    hear_signals();
   }
 }
 
@@ -118,11 +118,11 @@ std::shared_ptr<const Distribution> wait_for_newer(const link::Follower& followe
       const py::gil_scoped_release unlocked;
       newest = follower.wait_for_newer(held, std::min(deadline, Clock::now() + kSlice));
     }
-    hear_signals();
     const bool is_newer = newest && (!held || newest->revision != held->revision ||
                                      newest->store_epoch != held->store_epoch);
     if (is_newer || Clock::now() >= deadline)
       return newest;
+    hear_signals();
   }
 }
 

@@ -40,9 +40,12 @@ std::size_t EventStream::dropped() const {
 }
 
 void EventStream::close() {
+  std::unique_ptr<link::Watcher> ended;  // without the lock, for which its handler may wait
   {
     const std::scoped_lock lock(mutex_);
     is_closed_ = true;
+    events_.clear();
+    ended = std::move(watcher_);
   }
   changed_.notify_all();
 }

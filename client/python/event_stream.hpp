@@ -27,7 +27,7 @@ class EventStream {
   bool is_closed() const;
   std::size_t dropped() const;
 
-  /// Ends every take().
+  /// Ends every take(), and hears no more.
   void close();
 
  private:

@@ -276,6 +276,21 @@ class WithoutServer(unittest.TestCase):
             events.close()
             self.assertEqual(list(events), [])
 
+    def test_a_closed_watch_leaves_no_thread(self):
+        def threads():
+            return len(os.listdir("/proc/self/task"))
+
+        with self.client.watch():
+            with_one = threads()
+        closed = [self.client.watch() for _ in range(5)]
+        self.assertGreater(threads(), with_one)
+        for events in closed:
+            events.close()
+        deadline = time.monotonic() + 10  # a joined thread may be listed for a moment
+        while threads() > with_one and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertLessEqual(threads(), with_one)
+
     def test_closing_ends_the_fetch_of_another_thread(self):
         errors = []
 
