@@ -10,7 +10,7 @@ from typing import Callable
 class Terminal:
     """bash in `folder`; what a command exports or changes holds for the next ones."""
 
-    LIMIT_S = 120  # of one command; a command that waits for ever is ended, and fails
+    LIMIT_S = 300  # of one command; a command that waits for ever is ended, and fails
     STARTING_S = 30  # of what stays, until its first lines are there
 
     def __init__(self, folder: pathlib.Path, environment: "dict[str, str]"):

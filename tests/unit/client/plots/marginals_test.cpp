@@ -29,7 +29,7 @@ TEST_F(Marginals, CountEverySampleOnceBetweenTheLimits) {
     EXPECT_EQ(marginal.upper, chain_.joints()[joint].upper);
     EXPECT_FALSE(marginal.cut);
     ASSERT_EQ(marginal.counts.size(), kMarginalBins);
-    EXPECT_EQ(std::accumulate(marginal.counts.begin(), marginal.counts.end(), 0U), 10U);
+    EXPECT_EQ(std::accumulate(marginal.counts.begin(), marginal.counts.end(), std::size_t{0}), 10U);
     EXPECT_EQ(marginal.counts[kMarginalBins / 2 - 1] + marginal.counts[kMarginalBins / 2], 10U);
   }
 }
