@@ -200,6 +200,20 @@ void add_verbs(CLI::App& app, OfflineOptions& options) {
       "kinshipd migrate --store fleet.db              as it was: fleet.db.backup-<version>");
 }
 
+/// The names that may have been meant by words that the command line does not know.
+void suggest_words(const CLI::App& app, const std::vector<std::string>& words, std::ostream& err) {
+  for (const std::string& word : words)
+    if (word.starts_with("--"))
+      if (const std::string near =
+              suggestion(word.substr(2, word.find('=') - 2), option_names(app));
+          !near.empty() && app.get_option_no_throw(word) == nullptr)
+        err << word << near << '\n';
+  for (const std::string& word : app.remaining(true))
+    if (const std::string near = manual::suggestion_for(app, word);
+        !word.starts_with("-") && !near.empty())
+      err << word << near << '\n';
+}
+
 }  // namespace
 
 std::filesystem::path default_store() {
@@ -242,16 +256,7 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
     return kWrongUsage;
   } catch (const CLI::ExtrasError& error) {
     app.exit(error, out, err);
-    for (int i = 1; i < argc; ++i)
-      if (const std::string_view word = argv[i]; word.starts_with("--"))
-        if (const std::string near =
-                suggestion(word.substr(2, word.find('=') - 2), option_names(app));
-            !near.empty() && app.get_option_no_throw(std::string(word)) == nullptr)
-          err << word << near << '\n';
-    for (const std::string& word : app.remaining(true))
-      if (const std::string near = manual::suggestion_for(app, word);
-          !word.starts_with("-") && !near.empty())
-        err << word << near << '\n';
+    suggest_words(app, std::vector<std::string>(argv + 1, argv + argc), err);
     return kWrongUsage;
   } catch (const CLI::ParseError& error) {
     return manual::explain(app, error, out, err);
