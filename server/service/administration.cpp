@@ -271,7 +271,7 @@ AdminPage Administration::remove_robot(const std::string& name) {
   for (const std::string& task : removed->tasks)
     parts_.forget_task(task);
   parts_.on_change({}, describe(removed->removal));
-  return page_of(std::move(removed->removal));
+  return page_of(removed->removal);
 }
 
 /// Of a robot that was not removed as a whole.
