@@ -15,8 +15,8 @@ namespace kinship::dds {
 template <typename Conversation>
 class Answer<Conversation>::State {
  public:
-  State(const std::shared_ptr<ReplyLine>& line, const codec::Head& head)
-      : line_(line), head_(head) {}
+  State(const std::shared_ptr<ReplyLine>& line, const codec::Head& head, Caller caller)
+      : line_(line), head_(head), caller_(std::move(caller)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
@@ -27,6 +27,7 @@ class Answer<Conversation>::State {
   }
 
   const codec::Head& head() const noexcept { return head_; }
+  const Caller& caller() const noexcept { return caller_; }
 
   void send(const typename Conversation::Reply& reply) {
     if (is_sent_.exchange(true))
@@ -45,6 +46,7 @@ class Answer<Conversation>::State {
  private:
   std::weak_ptr<ReplyLine> line_;
   codec::Head head_;
+  Caller caller_;
   std::atomic<bool> is_sent_ = false;
 };
 
@@ -59,6 +61,11 @@ void Answer<Conversation>::operator()(const typename Conversation::Reply& reply)
 template <typename Conversation>
 const codec::Head& Answer<Conversation>::head() const noexcept {
   return state_->head();
+}
+
+template <typename Conversation>
+const Caller& Answer<Conversation>::caller() const noexcept {
+  return state_->caller();
 }
 
 template <typename Conversation>
@@ -121,8 +128,8 @@ class Replier<Conversation>::Implementation {
   void serve(const codec::Head& head, Decoded request) {
     if (!line_->begin(head))
       return;
-    const Answer<Conversation> answer(
-        std::make_shared<typename Answer<Conversation>::State>(line_, head));
+    const Answer<Conversation> answer(std::make_shared<typename Answer<Conversation>::State>(
+        line_, head, Caller{.client = head.client_id.text()}));
     try {
       handler_(std::move(request).value_or_throw(), answer);
     } catch (const Failure& failure) {

@@ -7,6 +7,7 @@
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/types/caller.hpp"
 
 namespace kinship::dds {
 
@@ -25,7 +26,8 @@ class Answer {
   /// says so. Never throws.
   void operator()(const typename Conversation::Reply& reply) const noexcept;
 
-  const codec::Head& head() const noexcept;  ///< whose request this answers
+  const codec::Head& head() const noexcept;  ///< which request this answers
+  const Caller& caller() const noexcept;     ///< who sent it
 
  private:
   std::shared_ptr<State> state_;  // shared by the copies; the last one frees the place

@@ -50,12 +50,11 @@ class Endpoints::Implementation {
       : register_(participant, loop,
                   [&service](RobotDescription description,
                              const dds::Answer<RegisterConversation>& answer) {
-                    service.register_robot(std::move(description), answer,
-                                           answer.head().client_id.text());
+                    service.register_robot(std::move(description), answer, answer.caller().client);
                   }),
         report_(participant, loop,
                 [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-                  service.report(std::move(request), answer, answer.head().client_id.text());
+                  service.report(std::move(request), answer, answer.caller().client);
                 }),
         fetch_(
             participant, loop,
