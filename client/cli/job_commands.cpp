@@ -7,7 +7,6 @@
 #include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
-#include "client/link/host_name.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/types/enum_text.hpp"
 
@@ -43,6 +42,8 @@ int code_of(const Job& job, std::string_view command, std::ostream& err) {
   return kFailed;
 }
 
+}  // namespace
+
 void print(const Job& job, bool json, std::ostream& out) {
   if (json)
     out << json::to_json(job) << '\n';
@@ -50,8 +51,6 @@ void print(const Job& job, bool json, std::ostream& out) {
     out << "job " << job.id << ", " << job.verb << (job.argument.empty() ? "" : " ") << job.argument
         << ": " << to_text(job.state) << said(job) << '\n';
 }
-
-}  // namespace
 
 int wait_for_job(link::Client& server, const std::string& id, const WaitOptions& options, bool json,
                  std::ostream& out, std::ostream& err) {
@@ -91,36 +90,6 @@ int run_job(link::Client& server, const AdminRequest& begin, const WaitOptions& 
     return code;
   code = code_of(*job, command, err);
   return code == kDone ? done(*job) : code;
-}
-
-std::string why_unusable(const std::filesystem::path& file, const std::string& host) {
-  if (!file.has_parent_path() || file.is_absolute() || link::is_this_machine(host))
-    return {};
-  return "'" + file.string() + "' begins with a folder of this machine, but the server on '" +
-         host +
-         "' writes it: give a name alone, for its folder of backups, or the whole path there";
-}
-
-int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
-            std::ostream& err) {
-  constexpr const char* kCommand = "backup";
-  AdminRequest request;
-  request.verb = AdminVerb::Backup;
-  // A name alone is one in the server's folder of backups.
-  const std::filesystem::path& file = options.file;
-  request.argument = file.has_parent_path()
-                         ? std::filesystem::absolute(file).lexically_normal().string()
-                         : file.string();
-  if (options.wait)
-    return run_job(server, request, options.waiting, kCommand, err, [&](const Job& job) {
-      print(job, options.json, out);
-      return kDone;
-    });
-  const Result<Job> job = link::job_of(server, request);
-  if (!job)
-    return refuse(kCommand, job.error(), err);
-  print(*job, options.json, out);
-  return kDone;
 }
 
 }  // namespace kinship::cli

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <iosfwd>
 #include <string>
@@ -27,25 +26,13 @@ int wait_for_job(link::Client& server, const std::string& id, const WaitOptions&
 int cancel_job(link::Client& server, const std::string& id, bool json, std::ostream& out,
                std::ostream& err);
 
+/// A job as it stands, in a line or as a document.
+void print(const Job& job, bool json, std::ostream& out);
+
 /// Begins a job and waits for its end.
 /// \param done  what it was for, once it is done. \return an exit code.
 int run_job(link::Client& server, const AdminRequest& begin, const WaitOptions& options,
             std::string_view command, std::ostream& err,
             const std::function<int(const Job&)>& done);
-
-struct BackupOptions {
-  std::filesystem::path file;  ///< at the server; a relative one is taken from the folder here
-  bool wait = true;
-  WaitOptions waiting;
-  bool json = false;
-};
-
-/// Why a server on `host` cannot be asked for a file: it would be completed with the folder here,
-/// but is written there; empty if it can.
-std::string why_unusable(const std::filesystem::path& file, const std::string& host);
-
-/// `backup`: copies the store of a running server into a new file.
-int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
-            std::ostream& err);
 
 }  // namespace kinship::cli

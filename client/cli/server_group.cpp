@@ -1,4 +1,6 @@
 #include "client/arguments/number_range.hpp"
+#include "client/cli/backup_commands.hpp"
+#include "client/cli/client_listing.hpp"
 #include "client/cli/groups.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/watch_command.hpp"
@@ -6,40 +8,93 @@
 namespace kinship::cli {
 namespace {
 
+constexpr int kMaxShownClients = 100'000;
+
 void add_status(CLI::App& app, Session& session) {
-  CLI::App* command =
-      add_command(app, "status", "Server, store, queues, counters", "kinship status --json");
+  CLI::App* command = add_command(app, "status", "Server, store, queues, counters",
+                                  "kinship status --json\n  kinship status --clients -o wide");
+  const auto clients = std::make_shared<bool>(false);
+  command->add_flag("--clients", *clients,
+                    "Who takes how much of the server, most first; with --limit only so many");
+  const auto limit = std::make_shared<std::size_t>(0);
+  command->add_option("--limit", *limit, "Clients at most; 0: all")
+      ->check(arguments::between(0, kMaxShownClients))
+      ->needs("--clients");
   add_json(*command, session);
-  on_run_with_server(*command, session, [&session](link::Client& server) {
+  on_run_with_server(*command, session, [&session, clients, limit](link::Client& server) {
+    if (*clients)
+      return list_clients(server, {.limit = *limit, .json = session.json}, session.out,
+                          session.err);
     return show_status(server, session.json, session.out, session.err);
+  });
+}
+
+void add_download(CLI::App& backup, Session& session) {
+  const auto options = std::make_shared<DownloadOptions>();
+  CLI::App* command = add_command(
+      backup, "download",
+      "Fetch a backup from the server into a file here, with its digest checked",
+      "kinship backup download monday.db --to /mnt/safe/monday.db\n"
+      "  kinship backup download monday.db       again, after it was interrupted: it goes on");
+  command->add_option("name", options->name, "As 'kinship backup list' names it")
+      ->required()
+      ->type_name("NAME");
+  command
+      ->add_option("--to", options->to,
+                   "New file here; default: of that name, in this folder. Until it is whole it is "
+                   "called FILE.part, where the next download goes on")
+      ->type_name("FILE");
+  const auto patience_s = std::make_shared<int>(60);
+  constexpr int kDay_s = 86'400;
+  command
+      ->add_option("--patience", *patience_s,
+                   "Seconds to go on asking a server that does not answer")
+      ->check(arguments::between(1, kDay_s))
+      ->capture_default_str();
+  add_json(*command, session);
+  on_run(*command, session, [&session, options, patience_s] {
+    options->json = session.json;
+    options->progress = session.shows_progress();
+    options->patience = std::chrono::seconds(*patience_s);
+    return session.with_server([&](link::Client& server) {
+      return download_backup(server, *options, session.out, session.err);
+    });
   });
 }
 
 void add_backup(CLI::App& app, Session& session) {
   const auto options = std::make_shared<BackupOptions>();
   CLI::App* command = add_command(app, "backup", "Copy the store of the running server into a file",
-                                  "kinship backup /var/backups/kinship-2026-11-21.db\n"
-                                  "  kinship backup monday.db --no-wait");
-  command
-      ->add_option(
-          "file", options->file,
-          "New file, written by the server: on its machine, as its user, below its folder of "
-          "backups (kinshipd --backup-folder). A name alone is a file in that folder; "
-          "one with a folder is completed with the folder here, if the server runs here")
-      ->required()
-      ->type_name("FILE");
+                                  "kinship backup monday.db\n  kinship backup monday.db --no-wait\n"
+                                  "  kinship backup list\n"
+                                  "  kinship backup download monday.db --to /mnt/safe/monday.db");
+  CLI::Option* name =
+      command
+          ->add_option("name", options->name,
+                       "New file in the server's folder of backups (kinshipd --backup-folder), "
+                       "which the server writes: a bare name of A-Z a-z 0-9 _ . -, never one that "
+                       "is there")
+          ->type_name("NAME");
   CLI::Option* no_wait =
       command->add_flag("!--no-wait", options->wait, "Print the job and leave it to itself");
   const auto waiting = add_job_wait(*command, session);
   command->get_option("--wait")->excludes(no_wait);
   add_json(*command, session);
-  on_run(*command, session, [&session, options, waiting] {
-    if (const std::string why = why_unusable(options->file, session.host); !why.empty())
-      return refuse("backup", {ErrorCode::InvalidInput, why}, session.err);
-    options->waiting = waiting();
-    options->json = session.json;
-    return session.with_server(
-        [&](link::Client& server) { return back_up(server, *options, session.out, session.err); });
+  command->require_subcommand(0, 1);
+  add_list(*command, session, list_backups);
+  add_download(*command, session);
+  command->callback([&session, command, name, options, waiting] {
+    if (!command->get_subcommands().empty())
+      return;
+    if (name->empty())
+      throw CLI::RequiredError("name");
+    session.command = [&session, options, waiting] {
+      options->waiting = waiting();
+      options->json = session.json;
+      return session.with_server([&](link::Client& server) {
+        return back_up(server, *options, session.out, session.err);
+      });
+    };
   });
 }
 

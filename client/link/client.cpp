@@ -1,6 +1,7 @@
 #include "client/link/client.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -25,6 +26,21 @@ constexpr milliseconds kShortestPause = 100ms;  // between two requests of one f
 /// What the server is given of the time that is left, so that its "pending" still arrives in time.
 milliseconds server_share(milliseconds left) {
   return left - std::min<milliseconds>(200ms, left / 4);
+}
+
+/// Asks until the reply is final or the time is over: a server that is busy says when to ask again.
+template <typename Reply>
+Result<Reply> ask_until_final(Clock::time_point deadline,
+                              const std::function<Result<Reply>()>& ask) {
+  while (true) {
+    Result<Reply> reply = ask();
+    if (!reply || reply->retry_after <= 0ms)
+      return reply;
+    const auto pause = std::max<milliseconds>(reply->retry_after, kShortestPause);
+    if (Clock::now() + pause >= deadline)
+      return reply;
+    std::this_thread::sleep_for(pause);
+  }
 }
 
 /// How long to wait before asking again; empty: the reply is final.
@@ -90,7 +106,9 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
     // One that cannot be read has no reports; the server says what is wrong with it.
     if (const auto chain = kinematics::read_chain(description))
       line_->outbox->keep_robot(chain->digest(), description);
-  Result<RegisterReply> reply = line_->registering.call(description, Clock::now() + line_->timeout);
+  const Clock::time_point deadline = Clock::now() + line_->timeout;
+  Result<RegisterReply> reply = ask_until_final<RegisterReply>(
+      deadline, [&] { return line_->registering.call(description, deadline); });
   if (line_->sender && reply && reply->status != RegisterStatus::Refused)
     line_->sender->retry();
   return reply;
@@ -170,7 +188,9 @@ Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
 }
 
 Result<AdminReply> Client::admin(const AdminRequest& request) {
-  return line_->administering.call(request, Clock::now() + line_->timeout + request.deadline);
+  const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
+  return ask_until_final<AdminReply>(deadline,
+                                     [&] { return line_->administering.call(request, deadline); });
 }
 
 void Client::cancel() {

@@ -1,5 +1,6 @@
 #include "client/link/delivery.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -17,22 +18,29 @@ using Clock = std::chrono::steady_clock;
 using Send = std::function<Result<ReportReply>(const ReportRequest&, Clock::time_point)>;
 using Receipts = std::map<Uuid, Receipt>;
 
-constexpr std::chrono::milliseconds kPause = 200ms;  // after "try again"
+constexpr std::chrono::milliseconds kPause = 200ms;        // after "try again"
+constexpr std::chrono::milliseconds kLongestWait = 10min;  // of one batch, as the server asks
 
-/// Sends a batch, and again what has no final receipt, until the timeout.
+/// Sends a batch, and again what has no final receipt, until the timeout. Pauses that the server
+/// asks for do not count.
 /// \return what is wrong if there was no reply at all.
 std::optional<Error> hand_over(ReportRequest batch, std::chrono::milliseconds timeout,
                                const Send& send, Receipts& receipts) {
-  const Clock::time_point deadline = Clock::now() + timeout;
+  Clock::time_point deadline = Clock::now() + timeout;
+  const Clock::time_point last = deadline + kLongestWait;
+  std::chrono::milliseconds asked{0};
   for (bool is_answered = false; !batch.attempts.empty(); is_answered = true) {
     if (is_answered) {
-      if (Clock::now() + kPause >= deadline)
+      deadline = std::min(deadline + asked, last);
+      const auto pause = std::max(kPause, asked);
+      if (Clock::now() + pause >= deadline)
         break;
-      std::this_thread::sleep_for(kPause);
+      std::this_thread::sleep_for(pause);
     }
     const Result<ReportReply> reply = send(batch, deadline);
     if (!reply)  // what the server said before stands
       return is_answered ? std::nullopt : std::optional(reply.error());
+    asked = reply->retry_after;
     for (const Receipt& receipt : reply->receipts)
       receipts.insert_or_assign(receipt.report_uuid, receipt);
     std::erase_if(batch.attempts, [&](const Attempt& attempt) {

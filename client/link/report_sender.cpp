@@ -11,6 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::chrono::milliseconds kShortestRetry = 100ms;
 constexpr std::chrono::milliseconds kRetry = 1s;      // after "try again" or without an answer
 constexpr std::chrono::milliseconds kIdle = 2s;       // another process may have added reports
 constexpr std::chrono::milliseconds kLockRetry = 1s;  // another process sends
@@ -112,8 +113,12 @@ std::chrono::milliseconds ReportSender::work(std::optional<SenderLock>& lock) {
   }
   age_now_and_then(false);
   is_offering_again_ = false;
+  retry_after_ = 0ms;
   const bool gets_on = send_all_pending() && greet();
-  return !gets_on ? kRetry : is_offering_again_ ? 0ms : kIdle;
+  if (!gets_on)  // a server that is busy says when it will not be
+    return retry_after_ > 0ms ? std::max<std::chrono::milliseconds>(retry_after_, kShortestRetry)
+                              : kRetry;
+  return is_offering_again_ ? 0ms : kIdle;
 }
 
 /// Every hour, so that a process that is killed takes no more than that with it, and at the end.
@@ -171,6 +176,8 @@ Result<ReportReply> ReportSender::exchange(ReportRequest& batch) {
   const std::uint64_t servers = count_servers_ ? count_servers_() : 0;
   batch.known_mark = outbox_.known_mark();
   Result<ReportReply> reply = send_(batch);
+  if (reply)
+    retry_after_ = std::max(retry_after_, reply->retry_after);
   if (!reply || reply->store_epoch == Uuid{})  // the server could not even read the batch
     return reply;
   if (outbox_.note_store(reply->store_epoch, reply->history_mark))
@@ -214,6 +221,8 @@ bool ReportSender::send_batch(ReportRequest& batch) {
   const auto open = std::count_if(
       batch.attempts.begin(), batch.attempts.end(),
       [&](const Attempt& attempt) { return !receipts.contains(attempt.report_uuid); });
+  if (open > 0 && problem.empty())
+    problem = reply->message;
   if (open > 0 && problem.empty())
     problem = "the server gave no receipt for " + std::to_string(open) + " reports";
   if (!problem.empty() || unknown_.empty())

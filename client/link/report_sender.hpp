@@ -83,6 +83,7 @@ class ReportSender {
       greeted_;  // the last reply, also a receipt's
   std::uint64_t servers_greeted_ = 0;
   bool is_offering_again_ = false;  // what was sent is pending again
+  RetryAfter retry_after_{0};       // the server asked for, in this round
   std::set<Digest> unknown_;        // robots whose reports wait for the next round
 
   mutable std::mutex mutex_;  // guards what follows

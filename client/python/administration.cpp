@@ -1,9 +1,7 @@
 #include "client/python/administration.hpp"
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -58,13 +56,10 @@ void require_done(const Job& job) {
     raise_error("Error", about + std::string(to_text(job.state)) + ": " + job.message);
 }
 
-py::object backup(const ClientHandle& client, const std::filesystem::path& file, double deadline) {
+py::object backup(const ClientHandle& client, const std::string& name, double deadline) {
   AdminRequest request;
   request.verb = AdminVerb::Backup;
-  // A name alone is one in the server's folder of backups.
-  request.argument = file.has_parent_path()
-                         ? std::filesystem::absolute(file).lexically_normal().string()
-                         : file.string();
+  request.argument = name;
   const auto until = std::chrono::steady_clock::now() + to_milliseconds(deadline, "deadline");
   Job job = client
                 .wait_for<Result<Job>>([request = std::move(request)](link::Client& line) {
@@ -145,13 +140,13 @@ void bind_administration(ClientClass& client) {
             return row_of(self, AdminVerb::ResetTask, task);
           },
           py::arg("task"), "Retires every path of a task, as `kinship tasks reset --yes`.")
-      .def("backup", backup, py::arg("file"), py::kw_only(), py::arg("deadline") = 3600.0,
+      .def("backup", backup, py::arg("name"), py::kw_only(), py::arg("deadline") = 3600.0,
            R"(Copies the store of the running server into a new file, as `kinship backup`.
 
-file      at the server's host, in a folder that it allows; a name alone: in its folder of backups
+name      bare, of a file in the server's folder of backups that is not there yet
 deadline  so long its end is waited for, s
 
-Returns the job; raises NotReady if it goes on, InvalidInput if the server does not take the file.)")
+Returns the job; raises NotReady if it goes on, InvalidInput if the server does not take the name.)")
       .def(
           "watch",
           [](const ClientHandle& self) {

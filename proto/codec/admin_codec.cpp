@@ -1,6 +1,7 @@
 #include "proto/codec/admin_codec.hpp"
 
 #include "proto/codec/reader.hpp"
+#include "proto/codec/retry_after.hpp"
 #include "proto/codec/writer.hpp"
 
 namespace kinship::codec {
@@ -58,7 +59,7 @@ Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminR
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   Reader reader;
   AdminRequest request;
-  request.verb = reader.enumerator("verb", wire.verb, AdminVerb::RemoveRobot);
+  request.verb = reader.enumerator("verb", wire.verb, AdminVerb::ReadBackup);
   request.argument = reader.text("argument", wire.argument, max_argument_bytes(request.verb));
   request.robot = reader.text("robot", wire.robot, kMaxTaskBytes);
   request.task = reader.text("task", wire.task, kMaxTaskBytes);
@@ -85,6 +86,7 @@ Result<Message<kinship_wire_AdminReply>> encode(const Head& head, const AdminRep
   wire.next_cursor = arena.text(reply.next_cursor);
   wire.message = arena.text(reply.message);
   wire.last_row_continues = reply.last_row_continues;
+  wire.retry_after_ms = retry_after_ms(reply.retry_after);
   return limited(std::move(message));
 }
 
@@ -100,6 +102,7 @@ Result<AdminReply> decode(const kinship_wire_AdminReply& wire) {
   reply.next_cursor = reader.text("next_cursor", wire.next_cursor, kMaxCursorBytes);
   reply.message = reader.text("message", wire.message, kMaxMessageBytes);
   reply.last_row_continues = wire.last_row_continues;
+  reply.retry_after = read_retry_after(wire.retry_after_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

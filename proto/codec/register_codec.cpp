@@ -1,6 +1,7 @@
 #include "proto/codec/register_codec.hpp"
 
 #include "proto/codec/reader.hpp"
+#include "proto/codec/retry_after.hpp"
 #include "proto/codec/writer.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/recorded_scene.hpp"
@@ -164,6 +165,7 @@ Result<Message<kinship_wire_RegisterReply>> encode(const Head& head, const Regis
   wire.geometry_grade = static_cast<std::uint32_t>(reply.geometry_grade);
   wire.took_geometry = reply.took_geometry;
   wire.geometry = message.arena->text(reply.geometry);
+  wire.retry_after_ms = retry_after_ms(reply.retry_after);
   return message;
 }
 
@@ -184,6 +186,7 @@ Result<RegisterReply> decode(const kinship_wire_RegisterReply& wire) {
       reader.enumerator("geometry_grade", wire.geometry_grade, GeometryGrade::Exact);
   reply.took_geometry = wire.took_geometry;
   reply.geometry = reader.text("geometry", wire.geometry, kMaxMessageBytes);
+  reply.retry_after = read_retry_after(wire.retry_after_ms);
   if (reader.rules.broken())
     return *reader.rules.broken();
   if (const auto error = check(reply))

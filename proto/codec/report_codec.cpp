@@ -1,6 +1,7 @@
 #include "proto/codec/report_codec.hpp"
 
 #include "proto/codec/fields.hpp"
+#include "proto/codec/retry_after.hpp"
 #include "proto/codec/scene_codec.hpp"
 #include "proto/types/names.hpp"
 #include "proto/types/number_text.hpp"
@@ -168,6 +169,8 @@ Result<Message<kinship_wire_ReportReply>> encode(const Head& head, const ReportR
     wire.message = message.arena->text(cut_text(receipt.message, kMaxMessageBytes));
   }
   write_mark(reply.history_mark, *message.arena, message.wire.history_mark);
+  message.wire.retry_after_ms = retry_after_ms(reply.retry_after);
+  message.wire.message = message.arena->text(cut_text(reply.message, kMaxMessageBytes));
   return limited(std::move(message));
 }
 
@@ -180,6 +183,8 @@ Result<ReportReply> decode(const kinship_wire_ReportReply& wire) {
   ReportReply reply;
   reply.store_epoch = read_uuid(wire.store_epoch);
   reply.history_mark = read_mark(wire.history_mark);
+  reply.retry_after = read_retry_after(wire.retry_after_ms);
+  reply.message = reader.text("message", wire.message, kMaxMessageBytes);
   for (const kinship_wire_Receipt& entry : elements(wire.receipts)) {
     Receipt receipt;
     receipt.report_uuid = read_uuid(entry.report_uuid);

@@ -20,6 +20,13 @@ class FairQueue {
 
   std::size_t size() const noexcept { return size_; }
 
+  bool has(const codec::Head& head) const {
+    const auto mine = waiting_.find(head.client_id);
+    return mine != waiting_.end() && std::ranges::any_of(mine->second, [&](const auto& waits) {
+             return waits.first == head;
+           });
+  }
+
   /// Makes room for a request if the queue is full: the newest of the client of whom most wait has
   /// to go, and is sent again.
   /// \return false if this one has to go itself, or is waiting already.

@@ -71,9 +71,10 @@ const Caller& Answer<Conversation>::caller() const noexcept {
 template <typename Conversation>
 class Replier<Conversation>::Implementation {
  public:
-  Implementation(const Participant& participant, WaitLoop& loop, Handler handler)
+  Implementation(const Participant& participant, WaitLoop& loop, Handler handler, Gate gate)
       : line_(std::make_shared<ReplyLine>(participant, Wire<Conversation>::topics())),
-        handler_(std::move(handler)) {
+        handler_(std::move(handler)),
+        gate_(std::move(gate)) {
     loop.attach(line_->reader(), [this] { return serve_some(); });
   }
 
@@ -112,8 +113,25 @@ class Replier<Conversation>::Implementation {
 
   void take(const WireRequest& wire) {
     const codec::Head head = codec::head_of(wire);
+    // What is sent again costs its client nothing, and one that is refused pushes nobody out.
+    if (line_->is_being_answered(head) || waiting_.has(head) || is_refused(head, wire))
+      return;
     if (waiting_.admit(head))
       waiting_.push(head, decoded(wire));
+  }
+
+  static Caller caller_of(const codec::Head& head) { return {.client = head.client_id.text()}; }
+
+  /// Whether the gate keeps a request out, which is answered then.
+  bool is_refused(const codec::Head& head, const WireRequest& wire) const {
+    if (!gate_)
+      return false;
+    const auto reply = gate_(caller_of(head), codec::size_of(wire));
+    if (!reply)
+      return false;
+    if (const auto message = codec::encode(head, *reply))
+      line_->send(head, &message->wire);
+    return true;
   }
 
   /// What decoding throws (no memory) is that request's own.
@@ -128,8 +146,8 @@ class Replier<Conversation>::Implementation {
   void serve(const codec::Head& head, Decoded request) {
     if (!line_->begin(head))
       return;
-    const Answer<Conversation> answer(std::make_shared<typename Answer<Conversation>::State>(
-        line_, head, Caller{.client = head.client_id.text()}));
+    const Answer<Conversation> answer(
+        std::make_shared<typename Answer<Conversation>::State>(line_, head, caller_of(head)));
     try {
       handler_(std::move(request).value_or_throw(), answer);
     } catch (const Failure& failure) {
@@ -144,12 +162,15 @@ class Replier<Conversation>::Implementation {
   std::shared_ptr<ReplyLine> line_;  // shared for the moment in which an Answer sends
   const std::string what_ = "requests of " + line_->name();
   Handler handler_;
+  Gate gate_;
   FairQueue<Decoded> waiting_{kWaitingRequests};
 };
 
 template <typename Conversation>
-Replier<Conversation>::Replier(const Participant& participant, WaitLoop& loop, Handler handler)
-    : implementation_(std::make_unique<Implementation>(participant, loop, std::move(handler))) {}
+Replier<Conversation>::Replier(const Participant& participant, WaitLoop& loop, Handler handler,
+                               Gate gate)
+    : implementation_(std::make_unique<Implementation>(participant, loop, std::move(handler),
+                                                       std::move(gate))) {}
 
 template <typename Conversation>
 Replier<Conversation>::~Replier() = default;

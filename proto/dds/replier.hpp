@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "proto/codec/conversation.hpp"
+#include "proto/codec/request_size.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/wait_loop.hpp"
 #include "proto/types/caller.hpp"
@@ -43,8 +45,14 @@ class Replier {
   /// Runs on the loop's thread. A Failure it throws becomes a refusal.
   using Handler = std::function<void(typename Conversation::Request, Answer<Conversation>)>;
 
+  /// Asked about each request before it is decoded, on the loop's thread: the reply to one that may
+  /// not come in now. Must not throw.
+  using Gate = std::function<std::optional<typename Conversation::Reply>(
+      const Caller&, const codec::RequestSize&)>;
+
+  /// \param gate  empty: everything may come in.
   /// \throws Failure(Internal) if an entity cannot be created.
-  Replier(const Participant& participant, WaitLoop& loop, Handler handler);
+  Replier(const Participant& participant, WaitLoop& loop, Handler handler, Gate gate = {});
   ~Replier();
   Replier(const Replier&) = delete;
   Replier& operator=(const Replier&) = delete;

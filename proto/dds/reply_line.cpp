@@ -30,6 +30,11 @@ std::size_t ReplyLine::clients() const {
   return matched > 0 ? static_cast<std::size_t>(matched) : 0;
 }
 
+bool ReplyLine::is_being_answered(const codec::Head& head) const {
+  const std::lock_guard lock(mutex_);
+  return being_answered_.contains(head);
+}
+
 bool ReplyLine::begin(const codec::Head& head) {
   const std::lock_guard lock(mutex_);
   return being_answered_.insert(head).second;

@@ -19,6 +19,7 @@ class ReplyLine {
   const Entity& reader() const noexcept { return reader_; }
   const std::string& name() const noexcept { return name_; }
 
+  bool is_being_answered(const codec::Head& head) const;
   bool begin(const codec::Head& head);  ///< false: it is being answered already
   void end(const codec::Head& head);
 
@@ -35,7 +36,7 @@ class ReplyLine {
   std::vector<Entity> publishers_;  // one per partition
   std::vector<Entity> writers_;     // one per partition
 
-  std::mutex mutex_;  // guards being_answered_
+  mutable std::mutex mutex_;  // guards being_answered_
   std::set<codec::Head> being_answered_;
 };
 

@@ -34,10 +34,20 @@ std::string to_json(const Explanation& explanation) {
 std::string to_json(const Retirement& retirement) { return write_fields(retirement); }
 std::string to_json(const RobotRemoval& removal) { return write_fields(removal); }
 std::string to_json(const Job& job) { return write_fields(job); }
+std::string to_json(const ClientUse& client) { return write_fields(client); }
+std::string to_json(const BackupSummary& backup) { return write_fields(backup); }
 
 std::string eviction_to_json(const Digest& distribution_id) {
   OrderedJson object;
   object["evicted"] = distribution_id.hex();
+  return write(object);
+}
+
+std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256) {
+  OrderedJson object;
+  object["file"] = file;
+  object["bytes"] = bytes;
+  object["sha256"] = sha256.hex();
   return write(object);
 }
 
@@ -54,6 +64,14 @@ Result<RobotRemoval> robot_removal_from_json(std::string_view text) {
 }
 
 Result<Job> job_from_json(std::string_view text) { return read_fields<Job>(text, "job"); }
+
+Result<ClientUse> client_use_from_json(std::string_view text) {
+  return read_fields<ClientUse>(text, "client");
+}
+
+Result<BackupSummary> backup_summary_from_json(std::string_view text) {
+  return read_fields<BackupSummary>(text, "backup");
+}
 
 Result<Digest> eviction_from_json(std::string_view text) {
   return read_document(text, "eviction",

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "proto/types/backup_summary.hpp"
+#include "proto/types/client_use.hpp"
 #include "proto/types/digest.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
@@ -15,15 +18,22 @@ std::string to_json(const Explanation& explanation);
 std::string to_json(const Retirement& retirement);
 std::string to_json(const RobotRemoval& removal);
 std::string to_json(const Job& job);
+std::string to_json(const ClientUse& client);
+std::string to_json(const BackupSummary& backup);
 
 /// The row of EvictDistribution, `{"evicted": id}`.
 std::string eviction_to_json(const Digest& distribution_id);
+
+/// What `kinship backup download --json` says: `{"file", "bytes", "sha256"}`.
+std::string download_to_json(const std::string& file, std::uint64_t bytes, const Digest& sha256);
 
 /// The mixture of the distribution may be missing (weights, means and covariances null).
 Result<Explanation> explanation_from_json(std::string_view text);
 Result<Retirement> retirement_from_json(std::string_view text);
 Result<RobotRemoval> robot_removal_from_json(std::string_view text);
 Result<Job> job_from_json(std::string_view text);
+Result<ClientUse> client_use_from_json(std::string_view text);
+Result<BackupSummary> backup_summary_from_json(std::string_view text);
 Result<Digest> eviction_from_json(std::string_view text);  ///< \return the distribution's id
 
 }  // namespace kinship::json

@@ -20,6 +20,11 @@
 /// What the four conversations between client and server carry, as values.
 namespace kinship {
 
+/// When to ask again for what the server could not take now, as far as a reply says. Above 0 the
+/// reply is not final, whatever its status: asked again later it may be another. At most
+/// kMaxRetryAfter_ms.
+using RetryAfter = std::chrono::milliseconds;
+
 enum class RegisterStatus { Registered, Known, Refused };
 
 struct RegisterReply {
@@ -33,6 +38,7 @@ struct RegisterReply {
   bool took_geometry = false;  ///< Known, and this registration's geometry is better: it counts now
   /// What is filtered with what, and what is not and why, in words; empty from older servers.
   std::string geometry = {};
+  RetryAfter retry_after{0};  ///< above 0: Refused for now alone
 };
 
 enum class ReceiptStatus { Stored, Duplicate, Recorded, Refused, TryAgain, UnknownRobot };
@@ -65,6 +71,8 @@ struct ReportReply {
   std::vector<Receipt> receipts;  ///< at most one per attempt, found by UUID; missing: try again
   /// Of all that is durable; empty from older servers, and if there is nothing to say.
   HistoryMark history_mark = {};
+  RetryAfter retry_after{0};  ///< when to send again what has no final receipt
+  std::string message = {};   ///< why attempts have no receipt
 };
 
 struct FetchRequest {
@@ -87,7 +95,7 @@ enum class FetchStatus { Ready, Pending, NoExperience, UnknownRobot, Busy, Refus
 struct FetchReply {
   FetchStatus status = FetchStatus::Refused;
   std::optional<Distribution> distribution;  ///< present if Ready or Failed
-  std::chrono::milliseconds retry_after{0};  ///< if Busy
+  RetryAfter retry_after{0};                 ///< if Busy
   std::string message;
   /// Unless Refused or Busy: none if it was not asked for, is known already, or there is none.
   std::optional<TaskExperience> experience;
@@ -119,7 +127,12 @@ enum class AdminVerb {
   JobRows,       ///< the rows of a job that is done, page by page
   ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
   RenameRobot,   ///< `robot` gets the label `argument`; row: RobotSummary
-  RemoveRobot    ///< row: RobotRemoval
+  RemoveRobot,   ///< row: RobotRemoval
+  // 23 is another's.
+  ListClients = 24,  ///< rows: ClientUse, who asked for most first
+  ListBackups,       ///< rows: BackupSummary, the newest first
+  HashBackup,        ///< begins a job over backup `argument`; rows: its SHA-256 in hex, its bytes
+  ReadBackup         ///< row: bytes of backup `argument` from `cursor` on, in base64
 };
 
 struct AdminRequest {
@@ -139,6 +152,7 @@ struct AdminReply {
   std::string next_cursor;        ///< empty: no more pages
   std::string message;
   bool last_row_continues = false;  ///< the next page begins with the rest of the last row
+  RetryAfter retry_after{0};        ///< above 0: Failed for now alone
 };
 
 }  // namespace kinship

@@ -25,7 +25,8 @@ bool is_listing(AdminVerb verb) {
   return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
          verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
          verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs ||
-         verb == AdminVerb::ListAttempts;
+         verb == AdminVerb::ListAttempts || verb == AdminVerb::ListClients ||
+         verb == AdminVerb::ListBackups;
 }
 
 template <typename Value>
@@ -51,6 +52,7 @@ AdminReply to_reply(const service::AdminPage& page) {
   reply.status = page.status;
   reply.next_cursor = page.next_cursor;
   reply.message = page.message;
+  reply.retry_after = page.retry_after;
   for (const service::AdminRow& row : page.rows)
     reply.rows.push_back(to_json(row));
   return reply;

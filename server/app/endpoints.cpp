@@ -8,6 +8,7 @@
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/replier.hpp"
 #include "server/app/admin_reply.hpp"
+#include "server/quotas/quota.hpp"
 
 namespace kinship::app {
 namespace {
@@ -17,15 +18,42 @@ using codec::FetchConversation;
 using codec::RegisterConversation;
 using codec::ReportConversation;
 
-std::string request_key_of(const codec::Head& head) {
-  return head.client_id.text() + ' ' + std::to_string(head.sequence_number);
+/// Begins with whom quotas count (catalog::client_of). One of those may have several clients.
+template <typename Conversation>
+std::string request_key_of(const dds::Answer<Conversation>& answer) {
+  return answer.caller().client + ' ' + answer.head().client_id.text() + ' ' +
+         std::to_string(answer.head().sequence_number);
+}
+
+/// The same words for each conversation, in the place that its reply has for them.
+template <typename Reply>
+std::optional<Reply> reply_to(const std::optional<quotas::Refusal>& refusal, Reply reply) {
+  if (!refusal)
+    return std::nullopt;
+  reply.message = refusal->message;
+  reply.retry_after = refusal->retry_after;
+  return reply;
+}
+
+template <typename Reply>
+Reply with_status(Reply reply, decltype(Reply::status) status) {
+  reply.status = status;
+  return reply;
+}
+
+/// Who may not ask for more now is told so before the request is read.
+template <typename Reply>
+auto gate_of(service::Service& service, const Reply& busy) {
+  return [&service, busy](const Caller& caller, const codec::RequestSize& size) {
+    return reply_to(service.admit(caller.client, size.bytes, size.attempts), busy);
+  };
 }
 
 /// Answers with the part of the service's answer that begins at a place. Rows of one page can
 /// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
-  service.administer(request, request_key_of(answer.head()),
+  service.administer(request, request_key_of(answer),
                      [=, &service](const service::AdminPage& page) {
                        AdminReply reply = to_reply(page);
                        if (!fits_page(reply))
@@ -47,25 +75,33 @@ class Endpoints::Implementation {
  public:
   Implementation(const dds::Participant& participant, dds::WaitLoop& loop,
                  service::Service& service)
-      : register_(participant, loop,
-                  [&service](RobotDescription description,
-                             const dds::Answer<RegisterConversation>& answer) {
-                    service.register_robot(std::move(description), answer, answer.caller().client);
-                  }),
-        report_(participant, loop,
-                [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-                  service.report(std::move(request), answer, answer.caller().client);
-                }),
+      : register_(
+            participant, loop,
+            [&service](RobotDescription description,
+                       const dds::Answer<RegisterConversation>& answer) {
+              service.register_robot(std::move(description), answer, answer.caller().client);
+            },
+            [&service](const Caller& caller, const codec::RequestSize& size) {
+              return reply_to(service.admit_robot(caller.client, size.bytes), RegisterReply{});
+            }),
+        report_(
+            participant, loop,
+            [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
+              service.report(std::move(request), answer, answer.caller().client);
+            },
+            gate_of(service, ReportReply{})),
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              service.fetch(request, request_key_of(answer.head()), answer);
-            }),
+              service.fetch(request, request_key_of(answer), answer);
+            },
+            gate_of(service, with_status(FetchReply(), FetchStatus::Busy))),
         admin_(
             participant, loop,
             [&service](const AdminRequest& request, const dds::Answer<AdminConversation>& answer) {
               administer(service, request, answer);
-            }) {}
+            },
+            gate_of(service, with_status(AdminReply(), AdminStatus::Failed))) {}
 
   /// A client joins the conversations that it needs.
   std::size_t clients() const {

@@ -113,6 +113,36 @@ void add_retention_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
 }
 
+/// What one client may take; more is answered busy, with a time.
+void add_client_options(CLI::App& app, ClientQuotaOptions& client) {
+  constexpr int kMaxPerSecond = 1'000'000, kMaxPerDay = 1'000'000'000, kMaxAtATime = 1'000'000;
+  const auto add = [&app](const char* name, auto& value, const char* description, int highest) {
+    app.add_option(name, value, description)
+        ->check(is_number_up_to(highest))
+        ->capture_default_str();
+  };
+  add("--client-attempts-per-s", client.attempts_per_s,
+      "Attempts that one client may report, a second, and ten times as many at once; 0: no limit",
+      kMaxPerSecond);
+  add("--client-mb-per-s", client.mb_per_s,
+      "MB that one client may send and be sent, a second, and ten times as many at once; 0: no "
+      "limit",
+      kMaxPerSecond);
+  add("--client-waiting", client.waiting,
+      "Fetches of one client that may wait, and as many requests for the store; 0: no limit",
+      kMaxAtATime);
+  add("--client-leases", client.leases, "Distributions that one client may follow; 0: no limit",
+      kMaxAtATime);
+  add("--client-fits", client.fits, "Fits under way because one client asked first; 0: no limit",
+      kMaxAtATime);
+  add("--client-robots-per-day", client.robots_per_day,
+      "Robots that one client may register, of those not known, a day; 0: no limit", kMaxPerDay);
+  add("--client-tasks-per-day", client.tasks_per_day,
+      "Tasks that one client may report the first attempt of, a day; 0: no limit", kMaxPerDay);
+  add("--client-stored-mb-per-day", client.stored_mb_per_day,
+      "MB of paths of one client that are stored, a day; 0: no limit", kMaxPerDay);
+}
+
 /// What serving needs, each also in a file that --config names.
 void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMaxWorkers = 256;
@@ -150,6 +180,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
   add_disk_options(app, options);
   add_retention_options(app, options);
+  add_client_options(app, options.client);
   app.add_option("--scrub-mb-per-s", options.scrub_mb_per_s,
                  "How fast the store is read through, again and again, in search of damage, MB a "
                  "second; 0: not at all")

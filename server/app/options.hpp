@@ -12,6 +12,18 @@
 
 namespace kinship::app {
 
+/// What one client may take, 0: as much as it likes (server/quotas, ServiceOptions).
+struct ClientQuotaOptions {
+  double attempts_per_s = 1000;
+  double mb_per_s = 16;
+  std::size_t waiting = 256;
+  std::size_t leases = 256;
+  std::size_t fits = 64;
+  double robots_per_day = 2000;
+  double tasks_per_day = 2000;
+  double stored_mb_per_day = 16'000;
+};
+
 /// What kinshipd was asked to do.
 struct ServerOptions {
   std::filesystem::path store;
@@ -33,6 +45,7 @@ struct ServerOptions {
   std::uint64_t max_wal_mb = 512;                ///< with more kept by readings, no report is taken
   /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
   double scrub_mb_per_s = 4;
+  ClientQuotaOptions client;
   std::string metrics;  ///< address and port to serve metrics at; empty: none
   std::string log_level = "info";
 };

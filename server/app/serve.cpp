@@ -41,6 +41,19 @@ void start_log(const std::string& level) {
   dds::set_log_sink([](std::string_view line) { spdlog::warn("dds: {}", line); });
 }
 
+void set_quotas(const ClientQuotaOptions& client, service::ServiceOptions& service) {
+  constexpr double kBytesOfMegabyte = 1e6;
+  service.client_rates.attempts_per_s = client.attempts_per_s;
+  service.client_rates.bytes_per_s = kBytesOfMegabyte * client.mb_per_s;
+  service.client_rates.robots_per_day = client.robots_per_day;
+  service.client_rates.tasks_per_day = client.tasks_per_day;
+  service.client_rates.stored_bytes_per_day = kBytesOfMegabyte * client.stored_mb_per_day;
+  service.client_short_tasks = client.waiting;
+  service.catalog.client_waiters = client.waiting;
+  service.catalog.client_leases = client.leases;
+  service.catalog.client_fits = client.fits;
+}
+
 service::ServiceOptions service_options(const ServerOptions& options) {
   service::ServiceOptions service;
   service.version = KINSHIP_VERSION;
@@ -51,6 +64,7 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   service.rehearsal_fraction = options.rehearsal_fraction;
   service.catalog.memory.bytes = options.distribution_memory_mb << 20U;
   service.experience.paths.bytes = options.path_memory_mb << 20U;
+  set_quotas(options.client, service);
   return service;
 }
 

@@ -51,7 +51,10 @@ CatalogState::Work Catalog::work() {
                     {.run = [this, id] { run_fit(id); }, .abandon = {}, .client = client});
               },
           .busy = [this](const std::string& message) { return busy(message); },
-          .over_quota = [this](const std::string& message) { options_.on_over_quota(message); }};
+          .over_quota =
+              [this](const std::string& client, ClientBound bound, const std::string& message) {
+                options_.on_over_quota(client, bound, message);
+              }};
 }
 
 template <typename Change>
@@ -156,6 +159,11 @@ CatalogUse Catalog::use() const {
           .memory_bytes = state_.memory().bytes(),
           .dropped = state_.memory().dropped(),
           .fit_memory_bytes = maker_.memory_bytes()};
+}
+
+std::map<std::string, ClientHolds> Catalog::holds_of_clients() const {
+  const std::lock_guard lock(mutex_);
+  return state_.holds_of_clients();
 }
 
 std::string Catalog::trouble_of(const Digest& id) const {

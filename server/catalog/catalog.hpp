@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -64,7 +65,8 @@ class Catalog {
         on_trouble = [](const Digest&, FetchStatus, const std::string&) {};
     /// A client was told that it has as many leases, waiting fetches or fits as one may have.
     /// Called from any thread, under the lock: must not call the catalog.
-    std::function<void(const std::string& message)> on_over_quota = [](const std::string&) {};
+    std::function<void(const std::string& client, ClientBound bound, const std::string& message)>
+        on_over_quota = [](const std::string&, ClientBound, const std::string&) {};
     /// Called on a worker after each fit of a distribution under a lease that was stored.
     std::function<void(const Announcement&)> announce = [](const Announcement&) {};
     /// Nobody holds a lease on a distribution any more. Called from any thread.
@@ -113,6 +115,8 @@ class Catalog {
   std::uint64_t fits() const noexcept { return fits_; }
   std::size_t followed() const;  ///< distributions under a lease
   CatalogUse use() const;
+  /// What each client has of it, of those that have something.
+  std::map<std::string, ClientHolds> holds_of_clients() const;
   /// Why the last fit of a distribution made nothing, in words; empty: it did.
   std::string trouble_of(const Digest& id) const;
 

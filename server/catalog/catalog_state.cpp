@@ -28,8 +28,10 @@ CatalogState::CatalogState(const runtime::Clock& clock, const Limits& limits, Wo
 AdvisedReply CatalogState::fetch(const Digest& id, const fitting::DistributionKey& key,
                                  Waiter waiter, std::optional<TimePoint> follow_until,
                                  Afterwards& after) {
-  if (follow_until && !follow(id, key, *follow_until, std::string(client_of(waiter.key))))
-    return {over_quota("follows " + std::to_string(limits_.client_leases) + " distributions",
+  const std::string client(client_of(waiter.key));
+  if (follow_until && !follow(id, key, *follow_until, client))
+    return {over_quota(client, ClientBound::Leases,
+                       "follows " + std::to_string(limits_.client_leases) + " distributions",
                        limits_.client_leases)};
   AdvisedReply known = find(id, key, waiter.minimum_generation, after);
   if (!known.reply) {
@@ -57,11 +59,19 @@ bool CatalogState::follow(const Digest& id, const fitting::DistributionKey& key,
   return true;
 }
 
-SharedReply CatalogState::over_quota(const std::string& what, std::size_t limit) const {
+SharedReply CatalogState::over_quota(const std::string& client, ClientBound bound,
+                                     const std::string& what, std::size_t limit) const {
   const std::string message = "this client " + what + " already, the most one client may have (" +
                               std::to_string(limit) + ")";
-  work_.over_quota(message);
+  work_.over_quota(client, bound, message);
   return shared(work_.busy(message));
+}
+
+std::map<std::string, ClientHolds> CatalogState::holds_of_clients() const {
+  std::map<std::string, ClientHolds> holds;
+  pending_.add_to(holds);
+  leases_.add_to(holds);
+  return holds;
 }
 
 /// What memory holds, if that is an answer. Has it fitted again behind if it is time for that.
@@ -96,12 +106,14 @@ SharedReply CatalogState::join(const Digest& id, const fitting::DistributionKey&
     return shared(work_.busy("too many wait already"));
   const std::string client(client_of(waiter.key));
   if (limits_.client_waiters > 0 && pending_.waiters_of(client) >= limits_.client_waiters)
-    return over_quota("waits for " + std::to_string(limits_.client_waiters) + " replies",
+    return over_quota(client, ClientBound::Waiters,
+                      "waits for " + std::to_string(limits_.client_waiters) + " replies",
                       limits_.client_waiters);
   const auto [pending, is_new] = pending_.open(id, key);
   if (is_new && limits_.client_fits > 0 && pending_.fits_of(client) >= limits_.client_fits) {
     pending_.close(id);
-    return over_quota("has " + std::to_string(limits_.client_fits) + " fits under way",
+    return over_quota(client, ClientBound::Fits,
+                      "has " + std::to_string(limits_.client_fits) + " fits under way",
                       limits_.client_fits);
   }
   if (is_new)

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,7 +36,8 @@ class CatalogState {
     /// The reply to who cannot be served now.
     std::function<FetchReply(const std::string& message)> busy;
     /// A client was told that it has as many of something as one may have.
-    std::function<void(const std::string& message)> over_quota = [](const std::string&) {};
+    std::function<void(const std::string& client, ClientBound bound, const std::string& message)>
+        over_quota = [](const std::string&, ClientBound, const std::string&) {};
   };
 
   struct Limits {
@@ -110,6 +113,8 @@ class CatalogState {
   const DistributionCache& memory() const { return memory_; }
   std::size_t waiters() const { return pending_.waiters(); }
   std::size_t holds() const { return leases_.holds(); }
+  /// What each client has, of those that have something.
+  std::map<std::string, ClientHolds> holds_of_clients() const;
   std::size_t followed() const { return leases_.count(clock_.now()); }
 
  private:
@@ -118,7 +123,8 @@ class CatalogState {
   SharedReply join(const Digest& id, const fitting::DistributionKey& key, Waiter waiter);
   bool follow(const Digest& id, const fitting::DistributionKey& key, TimePoint until,
               const std::string& client);
-  SharedReply over_quota(const std::string& what, std::size_t limit) const;
+  SharedReply over_quota(const std::string& client, ClientBound bound, const std::string& what,
+                         std::size_t limit) const;
   bool refresh(const Digest& id, const fitting::DistributionKey& key);
   bool request_look_up(const Digest& id, PendingFit& pending);
   void look_up_soon(const Digest& id, PendingFit& pending, Afterwards& after);

@@ -163,6 +163,12 @@ std::size_t Leases::count(TimePoint now) const {
   return by_end_.size() - static_cast<std::size_t>(std::distance(by_end_.begin(), ended));
 }
 
+void Leases::add_to(std::map<std::string, ClientHolds>& holds) const {
+  for (const auto& [name, client] : clients_)
+    if (!name.empty())
+      holds[name].leases += client.by_end.size();
+}
+
 std::vector<Digest> Leases::of_task(std::string_view task) const {
   const auto found = by_task_.find(task);
   if (found == by_task_.end())

@@ -15,6 +15,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "server/catalog/experience_versions.hpp"
+#include "server/catalog/pending_fit.hpp"
 #include "server/fitting/distribution_key.hpp"
 
 namespace kinship::catalog {
@@ -70,6 +71,7 @@ class Leases {
   bool holds(const Digest& id, TimePoint now) const;
   std::size_t count(TimePoint now) const;                ///< of those that have not ended
   std::size_t holds() const noexcept { return holds_; }  ///< of all clients, not yet forgotten
+  void add_to(std::map<std::string, ClientHolds>& holds) const;  ///< what each client has
   std::vector<Digest> of_task(std::string_view task) const;
   std::vector<Digest> of_robot(const Digest& robot) const;
 

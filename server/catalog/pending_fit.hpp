@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -30,6 +31,14 @@ bool satisfies(const FetchReply& reply, std::uint64_t minimum_generation);
 inline std::string_view client_of(std::string_view request_key) {
   return request_key.substr(0, request_key.find(' '));
 }
+
+/// What one client may have so many of at a time.
+enum class ClientBound { Waiters, Leases, Fits };
+
+/// How many it has.
+struct ClientHolds {
+  std::size_t waiters = 0, leases = 0, fits = 0;
+};
 
 /// Somebody who waits for a distribution.
 struct Waiter {

@@ -51,6 +51,15 @@ std::size_t PendingFits::fits_of(std::string_view client) const {
   }));
 }
 
+void PendingFits::add_to(std::map<std::string, ClientHolds>& holds) const {
+  for (const auto& [id, pending] : pending_) {
+    for (const Waiter& waiter : pending.waiters())
+      ++holds[std::string(client_of(waiter.key))].waiters;
+    if (pending.stage != PendingFit::Stage::Idle && !pending.client.empty())
+      ++holds[pending.client].fits;
+  }
+}
+
 std::optional<PendingFits::TimePoint> PendingFits::next_deadline() const {
   std::optional<TimePoint> next;
   const auto consider = [&next](const std::optional<TimePoint>& time) {

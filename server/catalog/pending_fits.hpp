@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -32,6 +34,8 @@ class PendingFits {
   std::size_t waiters_of(std::string_view client) const;
   /// That a client asked for first and that are being looked up or fitted.
   std::size_t fits_of(std::string_view client) const;
+  /// Adds what each client has.
+  void add_to(std::map<std::string, ClientHolds>& holds) const;
   /// When somebody's deadline passes, or a look is due.
   std::optional<TimePoint> next_deadline() const;
 

@@ -30,9 +30,10 @@ enum class Trouble : std::uint8_t {
   FitEnded,         ///< a fit ended for want of memory, threads or the store; tried again later
   AdminRefused,     ///< an admin request breaks a rule or names what is not there
   AdminFailed,      ///< an admin request that the store or the queue could not serve
+  ClientQuota,      ///< one client took more than its share, of whatever kind
 };
 
-inline constexpr std::array<std::string_view, 14> kTroubleNames = {"report refused",
+inline constexpr std::array<std::string_view, 15> kTroubleNames = {"report refused",
                                                                    "report to be sent again",
                                                                    "report of an unknown robot",
                                                                    "report over quota",
@@ -45,7 +46,8 @@ inline constexpr std::array<std::string_view, 14> kTroubleNames = {"report refus
                                                                    "fit over the memory limit",
                                                                    "fit to be tried again",
                                                                    "admin verb refused",
-                                                                   "admin verb failed"};
+                                                                   "admin verb failed",
+                                                                   "client over quota"};
 
 /// Counts troubles by kind and logs the first of each burst: an event that many clients repeat
 /// every second is one line, and a number. Bounded by the number of kinds. May be shared between

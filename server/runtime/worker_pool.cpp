@@ -71,6 +71,11 @@ std::size_t WorkerPool::queued() const {
   return interactive_.size() + background_.size();
 }
 
+std::size_t WorkerPool::queued_of(const std::string& client) const {
+  const std::lock_guard lock(mutex_);
+  return interactive_.size_of(client);
+}
+
 void WorkerPool::work(int niceness) {
   // Linux keeps a nice value per thread; failing to lower it changes no result.
   if (niceness > 0)

@@ -49,7 +49,8 @@ class WorkerPool {
   /// be called from a job. A second call returns at once.
   void stop(Leftovers leftovers);
 
-  std::size_t queued() const;  ///< jobs that nobody has begun
+  std::size_t queued() const;                              ///< jobs that nobody has begun
+  std::size_t queued_of(const std::string& client) const;  ///< interactive ones of them
   std::size_t threads() const noexcept { return thread_count_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "server/service/admin_page.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "proto/types/limits.hpp"
 
@@ -28,6 +29,15 @@ AdminPage page_of(const Error& error) {
 
 std::size_t page_size(const AdminRequest& request) {
   return std::clamp<std::size_t>(request.limit, 1, kMaxPageRows);
+}
+
+Result<std::size_t> row_number(const std::string& cursor) {
+  std::size_t number = 0;
+  const char* const end = cursor.data() + cursor.size();
+  const auto [rest, error] = std::from_chars(cursor.data(), end, number);
+  if (!cursor.empty() && (error != std::errc() || rest != end))
+    return Error{ErrorCode::InvalidInput, "'" + cursor + "' is no cursor of these rows"};
+  return number;
 }
 
 }  // namespace kinship::service

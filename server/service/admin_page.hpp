@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/backup_summary.hpp"
+#include "proto/types/client_use.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/failure.hpp"
@@ -34,12 +36,13 @@ struct TextLine {
 /// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
 /// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
-/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; JobRows TextLines; the other
-/// verbs of jobs a Job each.
+/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; ListClients ClientUses;
+/// ListBackups BackupSummaries; JobRows and ReadBackup TextLines; the other verbs of jobs a Job
+/// each.
 using AdminRow =
     std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
                  AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
-                 ExportedRobot, Retirement, RobotRemoval, Job, TextLine>;
+                 ExportedRobot, Retirement, RobotRemoval, Job, ClientUse, BackupSummary, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {
@@ -47,6 +50,7 @@ struct AdminPage {
   std::vector<AdminRow> rows;
   std::string next_cursor;
   std::string message;
+  RetryAfter retry_after{0};
 };
 
 /// What went wrong, as a page without rows.
@@ -54,6 +58,10 @@ AdminPage page_of(const Error& error);
 
 /// How many rows a request asks for, at least 1.
 std::size_t page_size(const AdminRequest& request);
+
+/// Where a page begins whose cursor is how many rows, or bytes, come before it; none: 0.
+/// \return InvalidInput for another cursor.
+Result<std::size_t> row_number(const std::string& cursor);
 
 template <typename Row>
 AdminPage page_of(Row row) {
@@ -66,6 +74,18 @@ AdminPage page_of(Row row) {
 template <typename Row>
 AdminPage page_of(Result<Row> row) {
   return row ? page_of(std::move(row).value()) : page_of(row.error());
+}
+
+/// So many of all rows, from the first one on; the cursor is the number of the next one.
+template <typename Row>
+AdminPage page_of(const std::vector<Row>& all, std::size_t first, std::size_t limit) {
+  AdminPage answer;
+  answer.status = AdminStatus::Ok;
+  for (; first < all.size() && answer.rows.size() < limit; ++first)
+    answer.rows.emplace_back(all[first]);
+  if (first < all.size())
+    answer.next_cursor = std::to_string(first);
+  return answer;
 }
 
 template <typename Row>

@@ -8,6 +8,7 @@
 #include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/catalog/freshness.hpp"
+#include "server/service/backup_verbs.hpp"
 #include "server/service/explain_distribution.hpp"
 #include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
@@ -103,6 +104,14 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return job_rows(parts_.jobs, request);
     case AdminVerb::ListAttempts:
       return list_attempts(request);
+    case AdminVerb::ListClients:
+      return list_clients(request);
+    case AdminVerb::ListBackups:
+      return list_backups(parts_.store, parts_.backups, request);
+    case AdminVerb::HashBackup:
+      return begin(hash_backup_job(parts_.store, parts_.backups, request.argument, request_key));
+    case AdminVerb::ReadBackup:
+      return read_backup(parts_.store, parts_.backups, request);
     default:
       break;
   }
@@ -115,6 +124,12 @@ AdminPage Administration::list_robots(const AdminRequest& request) {
   for (RobotSummary& summary : page.rows)
     name_solver(summary);
   return page_of(std::move(page));
+}
+
+AdminPage Administration::list_clients(const AdminRequest& request) {
+  allow_no_filter(request);
+  const Result<std::size_t> first = row_number(request.cursor);
+  return first ? page_of(parts_.clients(), *first, page_size(request)) : page_of(first.error());
 }
 
 AdminPage Administration::list_paths(const AdminRequest& request) {

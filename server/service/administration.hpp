@@ -48,6 +48,8 @@ class Administration {
       return std::string();
     };
     fitting::MemoryCeiling* memory = nullptr;  ///< of all fits together; null: no limit
+    /// Who takes how much.
+    std::function<std::vector<ClientUse>()> clients = [] { return std::vector<ClientUse>(); };
     BackupPlace backups = {};
     std::stop_token stop = {};  ///< ends a reset between two of its transactions
     /// What was changed, in words, with its task (may be empty).
@@ -66,6 +68,7 @@ class Administration {
  private:
   AdminPage dispatch(const AdminRequest& request, const std::string& request_key);
   AdminPage list_robots(const AdminRequest& request);
+  AdminPage list_clients(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
   AdminPage list_attempts(const AdminRequest& request);
   AdminPage list_distributions(const AdminRequest& request);

@@ -11,6 +11,9 @@
 namespace kinship::service {
 namespace {
 
+/// What waits is decided within milliseconds, unless the disk or the server is at its end.
+constexpr RetryAfter kRetryAfter{1000};
+
 /// A robot may be registered later, and a damaged one repaired: their reports are not refused for
 /// good.
 ReceiptStatus status_of(bool is_robot_there, const Error& error) {
@@ -26,8 +29,10 @@ struct Ingest::Batch {
   std::vector<Attempt> attempts;  // until they are handed to the store
   std::vector<catalog::AttemptCost> costs;
   std::vector<Receipt> receipts;
-  std::vector<std::size_t> accepted;  // positions of what the store was given
+  std::vector<std::size_t> accepted;    // positions of what the store was given
+  std::vector<std::size_t> path_bytes;  // of each attempt
   std::size_t bytes = 0;
+  RetryAfter retry_after{0};
   bool counted = false;  // among load_, and its client's
   std::string client;
   Done done;
@@ -48,6 +53,7 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done, const std::string&
     batch->receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, {}});
     batch->costs.push_back(catalog::cost_of(attempt));
     const BatchBytes bytes = batch_bytes(attempt);
+    batch->path_bytes.push_back(bytes.waypoints);
     batch->bytes += bytes.waypoints + bytes.scenes;
   }
   batch->attempts = std::move(attempts);
@@ -55,9 +61,9 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done, const std::string&
 
   if (const std::string why = take_in(*batch); !why.empty())
     return answer_try_again(*batch, why);
-  const bool in_memory = std::all_of(
-      batch->attempts.begin(), batch->attempts.end(),
-      [this](const Attempt& attempt) { return robots_.find_in_memory(attempt.robot) != nullptr; });
+  const bool in_memory =
+      std::all_of(batch->attempts.begin(), batch->attempts.end(),
+                  [&](const Attempt& attempt) { return is_in_memory(attempt, client); });
   if (in_memory)
     return check_and_commit(batch);
   const bool accepted = short_task_pool_.submit(
@@ -67,6 +73,12 @@ void Ingest::submit(std::vector<Attempt> attempts, Done done, const std::string&
        .client = client});
   if (!accepted)
     answer_try_again(*batch, "the server is busy");
+}
+
+/// Whether it can be checked without the store.
+bool Ingest::is_in_memory(const Attempt& attempt, const std::string& client) const {
+  return robots_.find_in_memory(attempt.robot) != nullptr &&
+         (client.empty() || options_.is_known_task(attempt.task));
 }
 
 std::string Ingest::take_in(Batch& batch) {
@@ -95,7 +107,7 @@ std::string Ingest::take_in(Batch& batch) {
       return {};
     }
   }
-  options_.on_over_quota(over_quota);
+  options_.on_over_quota(batch.client, over_quota);
   return over_quota;
 }
 
@@ -148,10 +160,21 @@ void Ingest::check(Batch& batch) {
     if (error) {
       batch.receipts[i] = {attempt.report_uuid, status_of(robot.has_value(), *error),
                            error->message};
+    } else if (const auto over = begins_too_many(batch, attempt)) {
+      batch.receipts[i].message = over->message;
+      batch.retry_after = std::max(batch.retry_after, over->retry_after);
     } else {
       batch.accepted.push_back(i);
     }
   }
+}
+
+/// Of what a batch begins at once none is counted yet: the last one may be beyond the quota.
+std::optional<quotas::Refusal> Ingest::begins_too_many(const Batch& batch,
+                                                       const Attempt& attempt) const {
+  if (batch.client.empty() || options_.is_known_task(attempt.task))
+    return std::nullopt;
+  return options_.may_begin_task(batch.client, attempt.task);
 }
 
 void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
@@ -159,8 +182,12 @@ void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
   for (std::size_t i = 0; i < batch.accepted.size() && i < receipts.size(); ++i) {
     const std::size_t position = batch.accepted[i];
     batch.receipts[position] = receipts[i];
-    if (receipts[i].status == ReceiptStatus::Stored)
+    const bool is_stored = receipts[i].status == ReceiptStatus::Stored;
+    if (is_stored)
       grown.insert(batch.costs[position].task);
+    if (is_stored || receipts[i].status == ReceiptStatus::Recorded)
+      options_.on_kept(batch.client, batch.costs[position].task,
+                       is_stored ? batch.path_bytes[position] : 0);
   }
   for (const std::string_view task : grown)
     options_.on_new_experience(task);
@@ -174,12 +201,13 @@ void Ingest::answer(Batch& batch) {
   options_.on_answer(batch.costs, batch.receipts);
   if (batch.counted)
     let_go_of_client(batch);
-  batch.done(batch.receipts);
+  batch.done(batch.receipts, batch.retry_after);
   if (batch.counted)
     let_go(batch);
 }
 
 void Ingest::answer_try_again(Batch& batch, std::string_view message) {
+  batch.retry_after = kRetryAfter;
   for (Receipt& receipt : batch.receipts) {
     receipt.status = ReceiptStatus::TryAgain;
     receipt.message = message;
@@ -196,6 +224,14 @@ void Ingest::drain() {
 std::size_t Ingest::queued() const {
   const std::lock_guard lock(mutex_);
   return load_.attempts;
+}
+
+std::map<std::string, std::size_t> Ingest::queued_of_clients() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, std::size_t> queued;
+  for (const auto& [client, load] : clients_)
+    queued.emplace(client, load.attempts);
+  return queued;
 }
 
 }  // namespace kinship::service

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "proto/types/attempt.hpp"
 #include "proto/types/conversations.hpp"
 #include "server/catalog/advice_book.hpp"
+#include "server/quotas/quota.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/runtime/worker_pool.hpp"
 #include "server/store/store.hpp"
@@ -32,7 +34,20 @@ class Ingest {
     std::size_t client_attempts = 1024;
     std::size_t client_bytes = std::size_t{16} << 20U;
     /// A client was told that it has as many on their way as one may have.
-    std::function<void(const std::string& message)> on_over_quota = [](const std::string&) {};
+    std::function<void(const std::string& client, const std::string& message)> on_over_quota =
+        [](const std::string&, const std::string&) {};
+    /// Whether it is known without asking the store that it has a task.
+    std::function<bool(const std::string& task)> is_known_task = [](const std::string&) {
+      return true;
+    };
+    /// Whether a client may bring attempts of a task that is not known so; may ask the store.
+    std::function<std::optional<quotas::Refusal>(const std::string& client,
+                                                 const std::string& task)>
+        may_begin_task = [](const std::string&, const std::string&) { return std::nullopt; };
+    /// Called on the store's writer thread for each attempt of a client that is kept, with the
+    /// bytes of its path if that is.
+    std::function<void(const std::string& client, const std::string& task, std::size_t bytes)>
+        on_kept = [](const std::string&, const std::string&, std::size_t) {};
     /// Called on the store's writer thread for each task that has a new path, before the reply.
     std::function<void(std::string_view task)> on_new_experience = [](std::string_view) {};
     /// Called before each reply, on the thread that gives it: what a batch's attempts cost, and how
@@ -49,7 +64,8 @@ class Ingest {
   Ingest(const Ingest&) = delete;
   Ingest& operator=(const Ingest&) = delete;
 
-  using Done = std::function<void(const std::vector<Receipt>&)>;
+  /// \param retry_after  when to send again what is to be tried again; 0: the client's own time.
+  using Done = std::function<void(const std::vector<Receipt>&, RetryAfter retry_after)>;
 
   /// `done` is called once, on this thread, a worker of `short_task_pool` or the store's writer
   /// thread; it must not throw or block. TryAgain for all of them if too much waits already.
@@ -63,6 +79,7 @@ class Ingest {
   std::uint64_t received() const noexcept { return received_; }
   std::uint64_t refused() const noexcept { return refused_; }
   std::size_t queued() const;  ///< attempts taken in and not yet answered
+  std::map<std::string, std::size_t> queued_of_clients() const;  ///< of those that have some
 
  private:
   struct Batch;
@@ -83,6 +100,8 @@ class Ingest {
   void committed(Batch& batch, const std::vector<Receipt>& receipts);
   void answer(Batch& batch);
   void answer_try_again(Batch& batch, std::string_view message);
+  bool is_in_memory(const Attempt& attempt, const std::string& client) const;
+  std::optional<quotas::Refusal> begins_too_many(const Batch& batch, const Attempt& attempt) const;
 
   store::Store& store_;
   runtime::RobotRegistry& robots_;

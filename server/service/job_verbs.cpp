@@ -1,24 +1,10 @@
 #include "server/service/job_verbs.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "proto/types/limits.hpp"
 
 namespace kinship::service {
-namespace {
-
-/// Where a page of a job's rows begins: after the `cursor` rows before it.
-Result<std::size_t> first_row(const std::string& cursor) {
-  std::size_t first = 0;
-  const char* const end = cursor.data() + cursor.size();
-  const auto [rest, error] = std::from_chars(cursor.data(), end, first);
-  if (!cursor.empty() && (error != std::errc() || rest != end))
-    return Error{ErrorCode::InvalidInput, "'" + cursor + "' is no cursor of a job's rows"};
-  return first;
-}
-
-}  // namespace
 
 AdminPage list_jobs(const Jobs& jobs, const AdminRequest& request) {
   const std::vector<Job> all = jobs.list();
@@ -39,7 +25,7 @@ AdminPage list_jobs(const Jobs& jobs, const AdminRequest& request) {
 }
 
 AdminPage job_rows(const Jobs& jobs, const AdminRequest& request) {
-  const Result<std::size_t> first = first_row(request.cursor);
+  const Result<std::size_t> first = row_number(request.cursor);
   if (!first)
     return page_of(first.error());
   Result<Jobs::RowPage> rows =

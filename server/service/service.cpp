@@ -8,6 +8,7 @@
 #include "server/catalog/experience_reply.hpp"
 #include "server/rehearsal/rehearsal_reply.hpp"
 #include "server/service/publish_events.hpp"
+#include "server/service/reply_bytes.hpp"
 
 namespace kinship::service {
 namespace {
@@ -16,6 +17,19 @@ using runtime::Trouble;
 using Priority = runtime::WorkerPool::Priority;
 
 constexpr std::size_t kMaxResets = 16;  // that wait
+
+constexpr RetryAfter kRetryAfter{1000};  // of requests for which there was no room
+
+quotas::Quota quota_of(catalog::ClientBound bound) {
+  switch (bound) {
+    case catalog::ClientBound::Leases:
+      return quotas::Quota::Leases;
+    case catalog::ClientBound::Fits:
+      return quotas::Quota::Fits;
+    default:
+      return quotas::Quota::Waiting;
+  }
+}
 
 std::string seconds(double value) {
   char text[32];
@@ -30,6 +44,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       started_(options_.clock.now()),
       store_(std::move(store)),
       troubles_(options_.clock, options_.log),
+      clients_(options_.clock, options_.client_rates),
       robots_(*store_, {.max_robots = options_.max_robots,
                         .on_unreadable =
                             [this](const std::string& message) {
@@ -60,20 +75,7 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       catalog_({*store_, robots_, short_task_pool_, fitters_, options_.clock, &memory_},
                catalog_options(options_)),
       rehearsals_({*store_, robots_, options_.clock, experience_, &memory_}, rehearsal_options()),
-      ingest_(
-          *store_, robots_, short_task_pool_,
-          {.max_attempts = options_.max_queued_attempts,
-           .client_attempts = options_.client_attempts,
-           .on_over_quota =
-               [this](const std::string& message) { troubles_.add(Trouble::ReportQuota, message); },
-           .on_new_experience =
-               [this](std::string_view task) {
-                 experience_.new_experience(task);
-                 rehearsals_.new_experience(task);
-                 catalog_.new_experience(task);
-               },
-           .on_answer = [this](std::span<const catalog::AttemptCost> costs,
-                               std::span<const Receipt> receipts) { answered(costs, receipts); }}),
+      ingest_(*store_, robots_, short_task_pool_, ingest_options()),
       jobs_(options_.clock, job_options(options_)),
       administration_(administration_parts()),
       reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}) {}
@@ -93,7 +95,9 @@ catalog::Catalog::Options Service::catalog_options(const ServiceOptions& options
     troubles_.add(status == FetchStatus::Busy ? Trouble::FitEnded : Trouble::FitMemory,
                   "distribution " + id.short_hex() + ": " + message);
   };
-  catalog.on_over_quota = [this](const std::string& message) {
+  catalog.on_over_quota = [this](const std::string& client, catalog::ClientBound bound,
+                                 const std::string& message) {
+    clients_.count_refusal(client, quota_of(bound));
     troubles_.add(Trouble::FetchQuota, message);
   };
   catalog.announce = [this](Announcement announcement) {
@@ -158,6 +162,7 @@ Administration::Parts Service::administration_parts() {
               },
           .fit_trouble = [this](const Digest& id) { return catalog_.trouble_of(id); },
           .memory = &memory_,
+          .clients = [this] { return list_clients(); },
           .backups = options_.backups,
           .stop = stop_source_.get_token(),
           .on_change =
@@ -179,28 +184,38 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
 void Service::register_robot(RobotDescription description,
                              std::function<void(const RegisterReply&)> done,
                              const std::string& client) {
-  auto run = [this, description = std::move(description), done = std::move(done)] {
+  auto run = [this, description = std::move(description), done, client] {
     try {
-      done(registered(description));
+      done(registered(description, client));
     } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
       troubles_.add(Trouble::RobotUnanswered, "'" + description.label + "': " + exception.what());
     }
   };
   if (!short_task_pool_.submit(Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}, .client = client}))
+                               {.run = std::move(run), .abandon = {}, .client = client})) {
     troubles_.add(Trouble::RobotUnanswered, "busy or stopping");
+    if (stop_source_.stop_requested())
+      return;  // another server may come
+    RegisterReply busy;
+    busy.message = is_over_waiting(client) ? "busy: this client has as much waiting as one may have"
+                                           : "the server is busy";
+    busy.retry_after = kRetryAfter;
+    done(busy);
+  }
 }
 
 /// \throws Failure(Storage), std::bad_alloc: a refusal would be final.
-RegisterReply Service::registered(const RobotDescription& description) {
+RegisterReply Service::registered(const RobotDescription& description, const std::string& client) {
   const RegisterReply reply = robots_.register_robot(description, options_.clock.unix_ms());
-  if (reply.status == RegisterStatus::Refused)
+  if (reply.status == RegisterStatus::Refused) {
     troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);
-  else
+  } else {
+    clients_.count_robot(client, description.label, reply.status == RegisterStatus::Registered);
     options_.log("register '" + description.label +
                  "': " + (reply.status == RegisterStatus::Known ? "known as robot " : "robot ") +
                  reply.robot.short_hex() + "; geometry" +
                  (reply.took_geometry ? ", better than before: " : ": ") + reply.geometry);
+  }
   publish_registered(events_, description, reply);
   return reply;
 }
@@ -210,7 +225,7 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
   if (!store_->has_lost(request.known_mark))
     return take_in(std::move(request), std::move(done), client);
   // No answer if it fails: a newer mark in it would make the client forget the lost one.
-  auto run = [this, request = std::move(request), done = std::move(done), client]() mutable {
+  auto run = [this, request = std::move(request), done, client]() mutable {
     try {
       begin_epoch(request.known_mark);
     } catch (const std::exception& exception) {
@@ -219,8 +234,14 @@ void Service::report(ReportRequest request, std::function<void(const ReportReply
     take_in(std::move(request), std::move(done), client);
   };
   if (!short_task_pool_.submit(Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}, .client = client}))
-    options_.log("report: not answered, busy or stopping");
+                               {.run = std::move(run), .abandon = {}, .client = client})) {
+    if (stop_source_.stop_requested())
+      return;
+    ReportReply busy;  // without the store's epoch and mark: the client keeps those it has
+    busy.message = "the server is busy";
+    busy.retry_after = kRetryAfter;
+    done(busy);
+  }
 }
 
 void Service::begin_epoch(const HistoryMark& lost) {
@@ -239,9 +260,9 @@ void Service::take_in(ReportRequest request, std::function<void(const ReportRepl
   ingest_.submit(
       std::move(request.attempts),
       [this, refused = std::move(request.refused), done = std::move(done),
-       began = options_.clock.now()](const std::vector<Receipt>& receipts) {
+       began = options_.clock.now()](const std::vector<Receipt>& receipts, RetryAfter retry_after) {
         store::StorePoint point = store_->point();
-        ReportReply reply{point.epoch, receipts, std::move(point.mark)};
+        ReportReply reply{point.epoch, receipts, std::move(point.mark), retry_after};
         reply.receipts.insert(reply.receipts.end(), refused.begin(), refused.end());
         count_refused(reply.receipts);
         measures_.count(reply.receipts, options_.clock.now() - began);
@@ -266,8 +287,10 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
   // Shared by those who ask and answer: they may be on two threads, in either order.
   const auto watch = std::make_shared<FetchWatch>(options_.clock);
-  done = [this, watch, done = std::move(done)](const FetchReply& reply) {
+  done = [this, watch, client = std::string(catalog::client_of(waiter)),
+          done = std::move(done)](const FetchReply& reply) {
     count_fetch(reply);
+    clients_.count_reply(client, reply_bytes(reply));
     measures_.count(reply, *watch);
     done(reply);
   };
@@ -299,21 +322,25 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   const bool is_long =
       request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot;
   runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
-  auto run = [this, request = std::move(request), request_key, done] {
+  const std::string client(catalog::client_of(request_key));
+  auto run = [this, request = std::move(request), request_key, client, done] {
     const AdminPage page = administration_.answer(request, request_key);
     count_admin(page);
+    clients_.count_reply(client, reply_bytes(page));
     done(page);
   };
   const auto decline = [this, done] {
     AdminPage page;
     page.message = "the server is busy or stopping";
+    page.retry_after = kRetryAfter;
     count_admin(page);
     done(page);
   };
-  if (!pool.submit(Priority::Interactive, {.run = std::move(run),
-                                           .abandon = decline,
-                                           .client = std::string(catalog::client_of(request_key))}))
+  if (!pool.submit(Priority::Interactive,
+                   {.run = std::move(run), .abandon = decline, .client = client})) {
+    is_over_waiting(client);
     decline();
+  }
 }
 
 std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {
@@ -378,6 +405,7 @@ std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
       {"MB of memory of fits", memory_.reserved() >> 20U, options_.fit_memory_bytes >> 20U},
       {"fetches that wait", use.waiters, options_.catalog.max_waiters},
       {"leases", use.holds, options_.catalog.max_leases},
+      {"clients told apart", clients_.size(), options_.client_rates.max_clients},
       {"short tasks that wait", short_task_pool_.queued(), options_.short_task_queue},
       {"jobs", jobs_.active(), options_.jobs.queued + 1},
       {"robots in memory", robots_.in_memory(), options_.max_robots},

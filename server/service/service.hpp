@@ -9,12 +9,15 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/types/conversations.hpp"
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
 #include "server/catalog/experience_book.hpp"
 #include "server/metrics/exposition.hpp"
+#include "server/quotas/client_book.hpp"
+#include "server/quotas/known_tasks.hpp"
 #include "server/rehearsal/rehearsal_book.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
@@ -40,6 +43,7 @@ struct ServiceOptions {
   std::size_t client_short_tasks = 128;  ///< of one client that wait
   std::size_t max_queued_attempts = 4096;
   std::size_t client_attempts = 1024;  ///< of one client, taken in and not yet answered
+  quotas::ClientRates client_rates;    ///< what one client may take in the course of time
   std::size_t max_robots = 1024;       ///< parsed ones in memory; others are read when needed
   /// Of replies, leases, waiting fetches and fits, in all and of one client.
   catalog::CatalogState::Limits catalog;
@@ -73,15 +77,24 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// `done` is not called if the server is busy or stopping: the client asks again.
-  /// \param client  who asks, here and below; empty: nobody in particular, without a quota.
+  /// Whether a client may ask for something now, before it is even read; not: when it may. Counts
+  /// what may come in.
+  /// \param client           who asks, here and below; empty: nobody in particular, without a
+  /// quota. \param bytes, attempts  that the request has.
+  std::optional<quotas::Refusal> admit(const std::string& client, std::size_t bytes,
+                                       std::size_t attempts = 0);
+  /// The same of a registration.
+  std::optional<quotas::Refusal> admit_robot(const std::string& client, std::size_t bytes);
+
+  /// `done` is not called if the server is stopping or the store cannot take it: the client asks
+  /// again.
   void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done,
                       const std::string& client = {});
   void report(ReportRequest request, std::function<void(const ReportReply&)> done,
               const std::string& client = {});
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
-  /// \param request_key  the request's name; see Administration::answer.
+  /// \param request_key  the request's name (catalog::client_of); see Administration::answer.
   void administer(AdminRequest request, const std::string& request_key,
                   const std::function<void(const AdminPage&)>& done);
 
@@ -110,10 +123,15 @@ class Service {
   void begin_epoch(const HistoryMark& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
-  RegisterReply registered(const RobotDescription& description);
+  RegisterReply registered(const RobotDescription& description, const std::string& client);
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);
   void count_admin(const AdminPage& page);
+  Ingest::Options ingest_options();
+  std::optional<quotas::Refusal> refused(std::optional<quotas::Refusal> refusal);
+  std::optional<quotas::Refusal> may_begin_task(const std::string& client, const std::string& task);
+  bool is_over_waiting(const std::string& client);
+  std::vector<ClientUse> list_clients() const;
   std::vector<BoundUse> bounds(const store::StoreStatus& store) const;
   void log_fit(const Distribution& distribution) const;
   void expose_use(metrics::Exposition& page) const;
@@ -124,6 +142,8 @@ class Service {
   const std::unique_ptr<store::Store> store_;
   runtime::TroubleBook troubles_;
   Measures measures_;
+  quotas::ClientBook clients_;
+  quotas::KnownTasks known_tasks_;
   std::stop_source stop_source_;
   runtime::RobotRegistry robots_;
   catalog::ExperienceBook experience_;

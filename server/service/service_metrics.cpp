@@ -63,6 +63,17 @@ void expose_refusals(Exposition& page, const std::vector<TroubleCount>& counts) 
   }
 }
 
+/// One family of a few series, however many clients there are.
+void expose_quotas(Exposition& page, const quotas::ClientBook& clients) {
+  page.family("kinship_quota_refusals_total", Type::Counter,
+              "Requests of clients that had taken or held as much as one may, by quota.");
+  for (std::size_t i = 0; i < quotas::kQuotaNames.size(); ++i)
+    page.sample(clients.refusals(static_cast<quotas::Quota>(i)),
+                {{"quota", quotas::kQuotaNames[i]}});
+  page.gauge("kinship_clients_told_apart", "Clients whose use is known, see kinship status.",
+             std::uint64_t{clients.size()});
+}
+
 void expose_rows(Exposition& page, const store::StoreStatus& store) {
   page.gauge("kinship_store_robots", "Robots that are registered.", store.robots);
   page.gauge("kinship_store_tasks", "Tasks with experience.", store.tasks);
@@ -130,6 +141,7 @@ void expose_modes(Exposition& page, const std::vector<Pair>& pairs,
 void Service::expose(Exposition& page) const {
   expose_measures(page, measures_);
   expose_refusals(page, troubles_.counts());
+  expose_quotas(page, clients_);
   expose_use(page);
   expose_guidance(page);
   std::optional<store::StoreStatus> store;

@@ -58,6 +58,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string transfer = "server/transfer";
   const std::string density = "server/density";
   const std::string runtime = "server/runtime";
+  const std::string quotas = "server/quotas";
   const std::string fitting = "server/fitting";
   const std::string catalog = "server/catalog";
   const std::string rehearsal = "server/rehearsal";
@@ -96,16 +97,18 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
       {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},
+      {quotas, {{runtime, types}, {}}},
       {fitting, {{runtime, store, transfer, density, inverse, kinematics, types}, {"Eigen"}}},
       {catalog, {{fitting, runtime, store, evidence, types}, {"Eigen"}}},
       {rehearsal,
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
       {service,
-       {{rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence, types},
+       {{quotas, rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence,
+         types},
         {"Eigen"}}},
       {"server/app",
-       {{service, metrics, dds, codec, json, manual, types, store},
+       {{service, quotas, metrics, dds, codec, json, manual, types, store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

@@ -106,8 +106,11 @@ double max_reports_per_s(std::uint32_t domain, const Digest& robot) {
 void run() {
   const test::ReservedDomain domain, bare_domain;
   const test::TemporaryDirectory directory{test::disk_root()};
+  // It measures what a server can, not what one client may.
   const test::ServerProcess server(
-      {.store = directory / "fleet.db", .domain = domain.number(), .arguments = {}});
+      {.store = directory / "fleet.db",
+       .domain = domain.number(),
+       .arguments = {"--client-mb-per-s", "0", "--client-attempts-per-s", "0"}});
   link::Client client(bench::without_outbox(domain.number()));
   const Digest panda = bench::teach(client, kPaths);
   Comparison comparison(domain.number(), bare_domain.number(), panda);

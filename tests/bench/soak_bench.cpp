@@ -124,7 +124,9 @@ class Soak {
   const test::ReservedDomain domain_;
   const test::TemporaryDirectory directory_{test::disk_root()};
   const test::ServerProcess server_{
-      {.store = directory_ / "fleet.db", .domain = domain_.number(), .arguments = {}}};
+      {.store = directory_ / "fleet.db",
+       .domain = domain_.number(),
+       .arguments = {"--client-mb-per-s", "0", "--client-attempts-per-s", "0"}}};
   Digest panda_;
 };
 

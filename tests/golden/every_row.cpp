@@ -192,6 +192,36 @@ Job every_job() {
   return job;
 }
 
+ClientUse every_client_use() {
+  Distinct next(1550);
+  ClientUse use;
+  use.client = next.name("client");
+  use.robots = {next.name("label"), next.name("label")};
+  use.attempts_per_s = next.real();
+  use.bytes_per_s = next.real();
+  use.on_way = next.count();
+  use.waiting = next.count();
+  use.leases = next.count();
+  use.fits = next.count();
+  use.attempts = next.count();
+  use.registered_robots = next.count();
+  use.created_tasks = next.count();
+  use.stored_bytes = next.count();
+  use.refused = next.count();
+  use.refused_for = next.text("quota");
+  use.last_seen_ms = next.time_ms();
+  return use;
+}
+
+BackupSummary every_backup() {
+  Distinct next(1580);
+  BackupSummary backup;
+  backup.name = next.name("name");
+  backup.bytes = next.count();
+  backup.modified_ms = next.time_ms();
+  return backup;
+}
+
 ServerStatus every_status() {
   Distinct next(1600);
   ServerStatus status;

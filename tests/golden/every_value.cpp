@@ -268,6 +268,7 @@ RegisterReply every_register_reply() {
   reply.geometry_grade = GeometryGrade::Approximate;
   reply.took_geometry = true;
   reply.geometry = next.text("geometry");
+  reply.retry_after = std::chrono::milliseconds(next.count());
   return reply;
 }
 
@@ -290,6 +291,8 @@ ReportReply every_report_reply() {
     reply.receipts.push_back(receipt);
   }
   reply.history_mark = {2, 7, 1, 8};
+  reply.retry_after = std::chrono::milliseconds(next.count());
+  reply.message = next.text("message");
   return reply;
 }
 
@@ -374,6 +377,7 @@ AdminReply every_admin_reply() {
   reply.next_cursor = next.text("cursor");
   reply.message = next.text("message");
   reply.last_row_continues = true;
+  reply.retry_after = std::chrono::milliseconds(next.count());
   return reply;
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/backup_summary.hpp"
+#include "proto/types/client_use.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/publications.hpp"
@@ -77,6 +79,8 @@ Explanation every_explanation();
 Retirement every_retirement();
 RobotRemoval every_robot_removal();
 Job every_job();
+ClientUse every_client_use();
+BackupSummary every_backup();
 ServerStatus every_status();
 StoreCheck every_store_check();
 

@@ -88,6 +88,8 @@ std::vector<Case> cases() {
       readable("retirement", every_retirement(), retirement_from_json),
       readable("robot_removal", every_robot_removal(), robot_removal_from_json),
       readable("job", every_job(), job_from_json),
+      readable("client_use", every_client_use(), client_use_from_json),
+      readable("backup", every_backup(), backup_summary_from_json),
       {"eviction", eviction_to_json(every_distribution().id), eviction_again},
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -40,6 +41,7 @@ class Server {
         .store = store_, .domain = domain_.number(), .arguments = arguments_});
   }
   test::ServerProcess& process() { return *process_; }
+  std::uint32_t domain() const { return domain_.number(); }
 
   std::vector<std::string> with_domain(const std::vector<std::string>& words,
                                        const char* timeout_s = "30") const {

@@ -144,7 +144,7 @@ TEST_F(AdminCommands, ATaskIsResetOnlyWhenThatIsMeant) {
 
 TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {
   teach(server_);
-  const Answer backup = server_.kinship({"backup", file("copy.db"), "--json"});
+  const Answer backup = server_.kinship({"backup", "copy.db", "--json"});
   ASSERT_EQ(backup.code, 0) << backup.err;
   const Job job = json::job_from_json(backup.out).value_or_throw();
   EXPECT_EQ(job.state, JobState::Done);
@@ -153,7 +153,7 @@ TEST_F(AdminCommands, ABackupOfARunningServerIsAStore) {
   EXPECT_EQ(server_.kinship({"jobs", "wait", "00000000"}).code, 3);
   const Server copy(folder_ / "copy.db");
   EXPECT_EQ(copy.kinship({"paths", "export"}).out, server_.kinship({"paths", "export"}).out);
-  EXPECT_NE(server_.kinship({"backup", file("copy.db")}).code, 0);  // it is there already
+  EXPECT_NE(server_.kinship({"backup", "copy.db"}).code, 0);  // it is there already
 }
 
 TEST_F(AdminCommands, ADistributionIsMadeOfChosenSourcesAndForgotten) {

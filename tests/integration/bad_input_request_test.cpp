@@ -125,11 +125,22 @@ std::vector<Case<AdminWire>> admin_cases() {
       {"rows of a garbage job", verb(19, "99999999999999999999"), {"99999999999999999999"}},
       {"cancelling nothing", verb(18, ""), {"job"}},
       {"a backup to a device", verb(15, "/dev/null"), {"/dev/null"}},
-      {"a backup outside of the folder", verb(15, "../backup.db"), {"backup.db", "outside of"}},
+      {"a backup outside of the folder",
+       verb(15, "../backup.db"),
+       {"../backup.db", "no bare name"}},
       {"a backup to a folder that is not there", verb(15, "/nowhere/at/all.db"), {"/nowhere"}},
       {"a backup to a name of 1025 bytes",
        verb(15, "/" + std::string(1024, 'b')),
        {"argument", "1025", "1024"}},
+      {"the digest of a file that is no backup", verb(26, "fleet.db"), {"fleet.db", "the store"}},
+      {"reading a file outside of the folder", verb(27, "/etc/passwd"), {"/etc/passwd"}},
+      {"reading a backup that is not there", verb(27, "monday.db"), {"monday.db"}},
+      {"reading from no place",
+       [verb](AdminWire& w, Arena& a) {
+         verb(27, "monday.db")(w, a);
+         w.cursor = a.text("-1");
+       },
+       {"-1"}},
       {"a wait of 49 days",
        [verb](AdminWire& w, Arena& a) {
          verb(17, "1")(w, a);

@@ -77,11 +77,15 @@ TEST(Commands, AHostThatNobodyKnowsIsNamedAtOnce) {
   EXPECT_TRUE(answer.err.starts_with("kinship: --server 'nobody..invalid': ")) << answer.err;
 }
 
-TEST(Commands, ABackupOnAnotherMachineIsNotNamedByAFolderHere) {
-  const Answer answer = run_command({"--server", "192.0.2.1", "backup", "./copy.db"});
+TEST(Commands, ABackupNeedsANameOrAVerb) {
+  const Answer answer = run_command({"backup"});
   EXPECT_EQ(answer.code, kWrongUsage);
-  EXPECT_NE(answer.err.find("'./copy.db' begins with a folder of this machine"), std::string::npos)
-      << answer.err;
+  EXPECT_NE(answer.err.find("name is required"), std::string::npos) << answer.err;
+  EXPECT_EQ(run_command({"backup", "download"}).code, kWrongUsage);
+}
+
+TEST(Commands, ALimitOfClientsNeedsThemToBeAskedFor) {
+  EXPECT_EQ(run_command({"status", "--limit", "3"}).code, kWrongUsage);
 }
 
 TEST(Commands, HelpIsOfWordsThatOneCanType) {
@@ -162,6 +166,8 @@ TEST(Commands, TheHelpOfANounIsAboutThatNoun) {
 TEST(Commands, EachHasHelpWithAnExample) {
   const std::vector<std::vector<std::string>> commands = {{"status"},
                                                           {"backup"},
+                                                          {"backup", "list"},
+                                                          {"backup", "download"},
                                                           {"watch"},
                                                           {"jobs", "list"},
                                                           {"jobs", "wait"},

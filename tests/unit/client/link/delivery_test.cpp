@@ -54,6 +54,23 @@ TEST_F(Deliver, ReceiptsComeInTheOrderOfTheAttempts) {
     EXPECT_EQ((*receipts)[i].report_uuid, sent[i].report_uuid);
 }
 
+TEST_F(Deliver, APauseThatTheServerAsksForDoesNotCount) {
+  std::vector<Clock::time_point> asked;
+  answer_ = [&](const ReportRequest& batch) -> Result<ReportReply> {
+    asked.push_back(Clock::now());
+    if (asked.size() > 2)
+      return store(batch);
+    ReportReply busy;
+    busy.retry_after = 400ms;
+    return busy;
+  };
+  const auto receipts = deliver(attempts(3), 600ms).value_or_throw();
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_GE(asked[1] - asked[0], 400ms);
+  for (const Receipt& receipt : receipts)
+    EXPECT_EQ(receipt.status, ReceiptStatus::Stored);
+}
+
 TEST_F(Deliver, BatchesKeepTheLimits) {
   ASSERT_TRUE(deliver(attempts(kMaxAttemptsPerBatch + 1)));
   EXPECT_EQ(batches_, (std::vector<std::size_t>{kMaxAttemptsPerBatch, 1}));

@@ -65,6 +65,31 @@ TEST_F(ReportSenderTest, EverythingPendingIsSentInBatches) {
   EXPECT_EQ(sizes, (std::vector<std::size_t>{256, 44}));
 }
 
+TEST_F(ReportSenderTest, ABusyServerIsAskedAgainWhenItSaysAndNothingIsLost) {
+  add();
+  std::vector<std::chrono::steady_clock::time_point> asked;
+  ReportSender sender(outbox, [&](const ReportRequest& batch) {
+    asked.push_back(std::chrono::steady_clock::now());
+    if (asked.size() == 3)
+      return answer(batch, ReceiptStatus::Stored);
+    ReportReply busy;  // as of a server that did not even read the batch
+    busy.retry_after = asked.size() == 1 ? 300ms : 1700ms;
+    busy.message = "busy";
+    return busy;
+  });
+  const auto give_up = in(20s);
+  while (sender.counts().problem.empty() && std::chrono::steady_clock::now() < give_up)
+    sender.wait_until_empty(in(1ms));
+  EXPECT_EQ(sender.counts().problem, "busy");
+  sender.wake();  // something new in the outbox is no reason to come earlier
+  sender.wait_until_empty(in(20s));
+  EXPECT_EQ(sender.counts().accepted, 1U);
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_GE(asked[1] - asked[0], 300ms);
+  EXPECT_LT(asked[1] - asked[0], 1000ms) << "the server's time, not the sender's own";
+  EXPECT_GE(asked[2] - asked[1], 1700ms);
+}
+
 TEST_F(ReportSenderTest, BatchesKeepTheLimitOfBytes) {
   for (int i = 0; i < 5; ++i) {
     Attempt attempt = values.attempt();

@@ -37,10 +37,10 @@ AdminReply row(const std::string& text) {
 /// A server with a handler on a thread, and a requester, on a domain of their own.
 class Pair {
  public:
-  explicit Pair(Replier<Conversation>::Handler handler)
+  explicit Pair(Replier<Conversation>::Handler handler, Replier<Conversation>::Gate gate = {})
       : server_({.domain = domain_.number(), .role = Role::Server}),
         loop_(server_),
-        replier_(server_, loop_, std::move(handler)),
+        replier_(server_, loop_, std::move(handler), std::move(gate)),
         client_({.domain = domain_.number(), .role = Role::Client}),
         requester_(client_, Uuid::random()),
         thread_([this] { loop_.run([] { return Clock::time_point::max(); }); }) {}
@@ -97,6 +97,40 @@ TEST(Conversation, AnswerMayComeLaterFromAnotherThreadAndResendsAreDropped) {
   held.wait_for_first();
   EXPECT_EQ(reply.wait_for(600ms), std::future_status::timeout);  // resent after 100 and 400 ms
   EXPECT_EQ(held.size(), 1U);
+  held.answer_all(row("late"));
+  EXPECT_EQ(reply.get()->rows.front(), "late");
+}
+
+TEST(Conversation, AGateAnswersInThePlaceOfTheHandlerAndIsNotAskedOfResends) {
+  Held held;
+  std::atomic<int> asked = 0, handled = 0;
+  std::atomic<bool> is_open = false;
+  const auto gate = [&](const Caller& caller,
+                        const codec::RequestSize& size) -> std::optional<AdminReply> {
+    EXPECT_FALSE(caller.client.empty());
+    EXPECT_GT(size.bytes, 0U);
+    ++asked;
+    if (is_open)
+      return std::nullopt;
+    AdminReply busy;
+    busy.status = AdminStatus::Failed;
+    busy.retry_after = 1500ms;
+    return busy;
+  };
+  Pair pair(
+      [&](const AdminRequest&, const AdminAnswer& answer) {
+        ++handled;
+        held.hold(answer);
+      },
+      gate);
+  EXPECT_EQ(pair.call("x")->retry_after, 1500ms);
+  EXPECT_EQ(handled, 0);
+  is_open = true;
+  const int before = asked;
+  auto reply = std::async(std::launch::async, [&] { return pair.call("y"); });
+  held.wait_for_first();
+  EXPECT_EQ(reply.wait_for(600ms), std::future_status::timeout);  // resent after 100 and 400 ms
+  EXPECT_EQ(asked, before + 1);
   held.answer_all(row("late"));
   EXPECT_EQ(reply.get()->rows.front(), "late");
 }

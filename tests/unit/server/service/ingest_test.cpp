@@ -20,9 +20,8 @@ class IngestTest : public testing::Test {
 
   std::future<std::vector<Receipt>> submit(std::vector<Attempt> attempts) {
     const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
-    ingest_.submit(std::move(attempts), [promise](const std::vector<Receipt>& receipts) {
-      promise->set_value(receipts);
-    });
+    ingest_.submit(std::move(attempts), [promise](const std::vector<Receipt>& receipts,
+                                                  RetryAfter) { promise->set_value(receipts); });
     return promise->get_future();
   }
   static std::vector<ReceiptStatus> statuses(const std::vector<Receipt>& receipts) {
@@ -106,15 +105,18 @@ TEST_F(IngestTest, MoreThanItMayHoldIsAskedToTryAgain) {
 
 TEST_F(IngestTest, OneClientMayHaveSoManyOnTheirWay) {
   std::vector<std::string> told;
-  Ingest ingest(*store_, registry_, short_task_pool_,
-                {.client_attempts = 4,
-                 .on_over_quota = [&](const std::string& message) { told.push_back(message); }});
+  Ingest ingest(
+      *store_, registry_, short_task_pool_,
+      {.client_attempts = 4, .on_over_quota = [&](const std::string&, const std::string& message) {
+         told.push_back(message);
+       }});
   const auto send = [&](int count, const std::string& client) {
     const auto done = std::make_shared<std::promise<Receipt>>();
     std::future<Receipt> receipt = done->get_future();
     ingest.submit(
         fleet::solved(robot_, "shelf", count, 100 * static_cast<std::uint64_t>(count)),
-        [done](const std::vector<Receipt>& receipts) { done->set_value(receipts[0]); }, client);
+        [done](const std::vector<Receipt>& receipts, RetryAfter) { done->set_value(receipts[0]); },
+        client);
     return receipt.get();
   };
   const Receipt receipt = send(5, "greedy");
@@ -132,8 +134,8 @@ TEST_F(IngestTest, ReadsRobotsOfTheStoreOnTheDesk) {
   runtime::RobotRegistry cold(*store_);
   Ingest ingest(*store_, cold, short_task_pool_, {});
   std::promise<std::vector<Receipt>> done;
-  ingest.submit({fleet::solved(robot_, "shelf", 1)},
-                [&](const std::vector<Receipt>& receipts) { done.set_value(receipts); });
+  ingest.submit({fleet::solved(robot_, "shelf", 1)}, [&](const std::vector<Receipt>& receipts,
+                                                         RetryAfter) { done.set_value(receipts); });
   EXPECT_EQ(done.get_future().get()[0].status, ReceiptStatus::Stored);
   ingest.drain();
 }
@@ -178,7 +180,7 @@ TEST_F(IngestTest, WhatTheStoreCannotTakeIsAskedForAgainAndDrainingEnds) {
   Ingest ingest(troubled, registry_, short_task_pool_, {});
   std::vector<Receipt> receipts;
   ingest.submit({fleet::solved(robot_, "shelf", 1), fleet::unsolved(robot_.digest, "shelf")},
-                [&](const std::vector<Receipt>& answer) { receipts = answer; });
+                [&](const std::vector<Receipt>& answer, RetryAfter) { receipts = answer; });
   EXPECT_EQ(statuses(receipts), (std::vector{ReceiptStatus::TryAgain, ReceiptStatus::TryAgain}));
   EXPECT_EQ(ingest.queued(), 0U);
   ingest.drain();

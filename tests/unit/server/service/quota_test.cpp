@@ -101,6 +101,54 @@ TEST_F(Quota, AClientWaitsForSoManyRepliesAndFits) {
     EXPECT_EQ(reply.get().status, FetchStatus::Ready);
 }
 
+TEST_F(Quota, ARegistrationThatFindsNoRoomIsToldWhenToComeAgain) {
+  start_with([](ServiceOptions& options) { options.client_short_tasks = 1; });
+  teach(6);
+  std::promise<void> go_on;
+  const std::shared_future<void> gate = go_on.get_future().share();
+  service_->administer(fleet::question(AdminVerb::Status), "other 1",
+                       [gate](const AdminPage&) { gate.wait(); });  // holds the only thread
+  const auto ask_again = [this] {
+    const auto reply = std::make_shared<std::promise<RegisterReply>>();
+    service_->register_robot(
+        fleet::pupil(), [reply](const RegisterReply& r) { reply->set_value(r); }, "greedy");
+    return reply->get_future();
+  };
+  std::future<RegisterReply> first = ask_again();
+  const RegisterReply second = ask_again().get();
+  EXPECT_EQ(second.status, RegisterStatus::Refused);
+  EXPECT_GT(second.retry_after.count(), 0);
+  EXPECT_NE(second.message.find("busy"), std::string::npos);
+  go_on.set_value();
+  EXPECT_EQ(first.get().status, RegisterStatus::Known);
+}
+
+TEST_F(Quota, WhoTakesWhatIsListedAndCounted) {
+  start_with([](ServiceOptions& options) {
+    options.client_rates.attempts_per_s = 1;
+    options.catalog.client_leases = 1;
+  });
+  EXPECT_FALSE(service_->admit("greedy", 100, 10));
+  EXPECT_TRUE(service_->admit("greedy", 100, 10));
+  ask("greedy", 0, seconds(60));
+  ask("greedy", 1, seconds(60));
+  const AdminPage page = administer(fleet::question(AdminVerb::ListClients));
+  ASSERT_EQ(page.rows.size(), 1U);
+  const auto& use = std::get<ClientUse>(page.rows[0]);
+  EXPECT_EQ(use.client, "greedy");
+  EXPECT_EQ(use.attempts, 10U);
+  EXPECT_EQ(use.leases, 1U);
+  EXPECT_EQ(use.refused, 2U);
+  EXPECT_EQ(use.refused_for, "leases");
+  metrics::Exposition exposed;
+  service_->expose(exposed);
+  for (const char* const line : {"kinship_quota_refusals_total{quota=\"attempts\"} 1",
+                                 "kinship_quota_refusals_total{quota=\"leases\"} 1",
+                                 "kinship_quota_refusals_total{quota=\"fits\"} 0"})
+    EXPECT_NE(exposed.text().find(line), std::string::npos) << exposed.text();
+  EXPECT_EQ(exposed.text().find("greedy"), std::string::npos) << "no series of a client";
+}
+
 TEST_F(Quota, AFitOfAnotherClientComesBeforeTheSecondOfOne) {
   fit_threads_ = 1;
   start();

@@ -1,0 +1,48 @@
+#include "proto/codec/request_size.hpp"
+
+#include <cstring>
+
+#include "proto/codec/reader.hpp"
+#include "proto/codec/scene_codec.hpp"
+
+namespace kinship::codec {
+namespace {
+
+/// Headers, and members of a fixed length.
+constexpr std::size_t kFixedBytes = 256;
+constexpr std::size_t kAttemptBytes = 256;  // its record, digest and UUID
+constexpr std::size_t kSolidBytes = 128;
+constexpr std::size_t kPairBytes = 64;
+
+std::size_t text_bytes(const char* text) { return text == nullptr ? 0 : std::strlen(text); }
+
+}  // namespace
+
+RequestSize size_of(const kinship_wire_RegisterRequest& wire) {
+  return {.bytes = kFixedBytes + text_bytes(wire.urdf) +
+                   kSolidBytes * elements(wire.mesh_solids).size() +
+                   kPairBytes *
+                       (elements(wire.never_colliding).size() + elements(wire.unfiltered).size())};
+}
+
+RequestSize size_of(const kinship_wire_ReportRequest& wire) {
+  const auto attempts = elements(wire.attempts);
+  RequestSize size{.bytes = kFixedBytes, .attempts = attempts.size()};
+  for (const kinship_wire_Attempt& attempt : attempts) {
+    size.bytes += kAttemptBytes + sizeof(double) * elements(attempt.waypoints).size();
+    for (const kinship_wire_RecordedScene& scene : elements(attempt.scene))
+      size.bytes += scene_bytes(scene);
+  }
+  return size;
+}
+
+RequestSize size_of(const kinship_wire_FetchRequest& wire) {
+  std::size_t bytes = kFixedBytes;
+  for (const kinship_wire_Selection& selection : elements(wire.selection))
+    bytes += elements(selection.sources).size();
+  return {.bytes = bytes};
+}
+
+RequestSize size_of(const kinship_wire_AdminRequest& /*wire*/) { return {.bytes = kFixedBytes}; }
+
+}  // namespace kinship::codec

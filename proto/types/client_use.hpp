@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship {
+
+/// What one client takes of a server: a row of ListClients. Numbers since the server's start, or
+/// since it last forgot this client.
+struct ClientUse {
+  std::string client;               ///< its name, or, without security, its participant
+  std::vector<std::string> robots;  ///< labels that it registered, the newest; at most 8
+  double attempts_per_s = 0;        ///< in the mean, over the last minute or so
+  double bytes_per_s = 0;           ///< sent and received, likewise
+  std::uint64_t on_way = 0;         ///< attempts taken in and not yet answered
+  std::uint64_t waiting = 0;        ///< fetches that wait
+  std::uint64_t leases = 0;
+  std::uint64_t fits = 0;               ///< looked up or fitted because it asked first
+  std::uint64_t attempts = 0;           ///< that were let in
+  std::uint64_t registered_robots = 0;  ///< that the server did not know
+  std::uint64_t created_tasks = 0;
+  std::uint64_t stored_bytes = 0;  ///< of paths that it reported
+  std::uint64_t refused = 0;       ///< requests that were over a quota
+  std::string refused_for = {};    ///< the quota that the last one was over; empty: none was
+  std::int64_t last_seen_ms = 0;
+};
+
+inline constexpr std::size_t kMaxLabelsOfClient = 8;
+
+template <>
+inline constexpr std::tuple kFieldsOf<ClientUse>{
+    Field{"client", &ClientUse::client, {.limit = kMaxMachineBytes}},
+    Field{"robots", &ClientUse::robots, {.limit = kMaxLabelsOfClient}},
+    Field{"attempts_per_s", &ClientUse::attempts_per_s, {.min = 0}},
+    Field{"bytes_per_s", &ClientUse::bytes_per_s, {.min = 0}},
+    Field{"on_way", &ClientUse::on_way},
+    Field{"waiting", &ClientUse::waiting},
+    Field{"leases", &ClientUse::leases},
+    Field{"fits", &ClientUse::fits},
+    Field{"attempts", &ClientUse::attempts},
+    Field{"registered_robots", &ClientUse::registered_robots},
+    Field{"created_tasks", &ClientUse::created_tasks},
+    Field{"stored_bytes", &ClientUse::stored_bytes},
+    Field{"refused", &ClientUse::refused},
+    Field{"refused_for", &ClientUse::refused_for, {.limit = kMaxWordBytes}},
+    Field{"last_seen_ms", &ClientUse::last_seen_ms}};
+
+}  // namespace kinship

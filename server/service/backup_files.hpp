@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/types/backup_summary.hpp"
+#include "proto/types/result.hpp"
+
+/// The folder of backups, as files. Names in it are bare: who may ask for a backup over the network
+/// reaches no other folder, and no file that is none.
+namespace kinship::service {
+
+/// How many bytes an ordinary user may still write into a folder's file system; 0 if nobody can
+/// tell.
+std::uint64_t free_bytes(const std::filesystem::path& folder);
+
+/// Where backups are.
+struct BackupPlace {
+  std::filesystem::path folder;  ///< empty: the folder of the store
+  std::function<std::uint64_t(const std::filesystem::path& folder)> free_bytes =
+      service::free_bytes;
+};
+
+/// What is wrong with the name of a backup: 1 to kMaxBackupNameBytes of A-Z a-z 0-9 _ . -,
+/// beginning with a letter or digit, and none of the store's own files.
+/// \param store_file  that the server has open.
+std::optional<Error> find_name_fault(const std::string& name,
+                                     const std::filesystem::path& store_file);
+
+/// The folder that a place means, for a store in this file.
+std::filesystem::path folder_of(const BackupPlace& place, const std::filesystem::path& store_file);
+
+/// Complete copies in the folder, the newest first: plain files of such names that begin as stores
+/// do, without the store itself and what belongs to it.
+/// \throws Failure(Storage) if the folder cannot be read.
+std::vector<BackupSummary> find_backups(const std::filesystem::path& folder,
+                                        const std::filesystem::path& store_file);
+
+/// A backup that is open for reading: the same bytes, whatever becomes of its name. Move-only.
+class BackupFile {
+ public:
+  /// No symbolic link is followed.
+  /// \return InvalidInput for a name that is none, NotFound if there is no such backup.
+  static Result<BackupFile> open(const std::filesystem::path& folder, const std::string& name,
+                                 const std::filesystem::path& store_file);
+  BackupFile(BackupFile&& other) noexcept;
+  BackupFile& operator=(BackupFile&& other) = delete;
+  BackupFile(const BackupFile&) = delete;
+  BackupFile& operator=(const BackupFile&) = delete;
+  ~BackupFile();
+
+  const BackupSummary& summary() const noexcept { return summary_; }
+
+  /// Bytes from a place on, fewer at the end of the file. \throws Failure(Storage).
+  std::vector<std::uint8_t> read(std::uint64_t begin, std::size_t most) const;
+
+ private:
+  BackupFile(int descriptor, BackupSummary summary);
+
+  int descriptor_;  // -1: moved from
+  BackupSummary summary_;
+};
+
+}  // namespace kinship::service

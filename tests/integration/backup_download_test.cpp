@@ -1,0 +1,138 @@
+// A copy of a running server's store, fetched over DDS into a file here.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "tests/integration/admin_commands.hpp"
+
+namespace kinship::backup_download_test {
+namespace {
+
+namespace fs = std::filesystem;
+using admin_commands_test::Answer;
+using admin_commands_test::Server;
+using std::chrono::seconds;
+using Clock = std::chrono::steady_clock;
+
+class BackupDownload : public testing::Test {
+ protected:
+  BackupDownload() { fs::create_directory(backups_); }
+
+  std::vector<std::string> arguments(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"--backup-folder", backups_.string()});
+    return more;
+  }
+  /// Some 430 kB a path that cannot be compressed.
+  void fill(const Server& server, int paths) {
+    const auto client = server.client(folder_ / "outbox");
+    const Digest panda =
+        client->register_robot(test::model_description("panda")).value_or_throw().robot;
+    std::mt19937_64 generator(1);
+    std::uniform_real_distribution<double> joint(-0.5, 0.5);
+    for (int i = 0; i < paths; ++i) {
+      Attempt attempt = test::panda_attempt(panda, "sweep", 1);
+      Eigen::MatrixXd waypoints =
+          Eigen::MatrixXd::NullaryExpr(7, 8000, [&] { return joint(generator); });
+      waypoints.row(3).array() -= 1.5;  // within the limits
+      waypoints.row(5).array() += 1.5;
+      attempt.path = Path(waypoints);
+      client->report(attempt);
+    }
+    const link::Client::OutboxState state = client->flush(seconds(60));
+    ASSERT_EQ(state.accepted, static_cast<std::size_t>(paths)) << state.problem;
+  }
+  /// Waits until so much of a download is here. \return whether it came to that.
+  static bool has_bytes(const fs::path& part, std::uintmax_t bytes) {
+    std::error_code error;
+    const auto give_up = Clock::now() + seconds(60);
+    while (Clock::now() < give_up) {
+      if (const auto size = fs::file_size(part, error); !error && size >= bytes)
+        return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+  std::string to() const { return (folder_ / "here.db").string(); }
+  bool is_same() const { return test::read_text(to()) == test::read_text(backups_ / "monday.db"); }
+
+  test::TemporaryDirectory folder_;
+  const fs::path backups_ = folder_ / "backups";
+};
+
+TEST_F(BackupDownload, ABackupIsListedFetchedAndNeverOverAFileThatIsThere) {
+  const Server server(folder_ / "fleet.db", arguments());
+  fill(server, 2);
+  ASSERT_EQ(server.kinship({"backup", "monday.db"}).code, 0);
+  std::ofstream(backups_ / "key.pem") << "secret";
+  fs::create_symlink(folder_ / "fleet.db", backups_ / "link.db");
+  const Answer list = server.kinship({"backup", "list", "--json"});
+  EXPECT_NE(list.out.find("\"name\":\"monday.db\""), std::string::npos) << list.out << list.err;
+  EXPECT_EQ(list.out.find("key.pem"), std::string::npos) << "is no backup";
+  EXPECT_EQ(list.out.find("link.db"), std::string::npos);
+  EXPECT_EQ(server.kinship({"backup", "download", "key.pem", "--to", to()}).code, 3);
+  EXPECT_EQ(server.kinship({"backup", "download", "link.db", "--to", to()}).code, 3);
+  EXPECT_FALSE(fs::exists(to() + ".part")) << "nothing came";
+
+  const Answer answer = server.kinship({"backup", "download", "monday.db", "--to", to()});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_TRUE(is_same());
+  EXPECT_EQ(fs::status(to()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_NE(answer.out.find("SHA-256 "), std::string::npos) << answer.out;
+  const Answer again = server.kinship({"backup", "download", "monday.db", "--to", to()});
+  EXPECT_NE(again.code, 0);
+  EXPECT_NE(again.err.find("is there already"), std::string::npos) << again.err;
+}
+
+TEST_F(BackupDownload, WhatIsLeftOfAnotherBackupIsFoundOutByItsDigest) {
+  const Server server(folder_ / "fleet.db", arguments());
+  fill(server, 2);
+  ASSERT_EQ(server.kinship({"backup", "monday.db"}).code, 0);
+  std::ofstream(to() + ".part") << std::string(100'000, 'x');
+  const Answer answer = server.kinship({"backup", "download", "monday.db", "--to", to()});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_TRUE(is_same());
+  EXPECT_EQ(answer.out.find("were here"), std::string::npos) << answer.out;
+}
+
+TEST_F(BackupDownload, OneThatIsKilledGoesOnAndOneOutlivesTheServer) {
+  // So slow that it can be met in the middle: 3 MB at once, then 0.3 MB a second.
+  Server server(folder_ / "fleet.db", arguments({"--client-mb-per-s", "0.3"}));
+  {
+    Server filler(folder_ / "other.db", arguments());
+    fill(filler, 12);
+    ASSERT_EQ(filler.kinship({"backup", "monday.db"}).code, 0);
+  }
+  const fs::path part = to() + ".part";
+  const std::uintmax_t whole = fs::file_size(backups_ / "monday.db");
+  ASSERT_GT(whole, 4'000'000U);
+  {
+    test::Program download("kinship",
+                           server.with_domain({"backup", "download", "monday.db", "--to", to()}));
+    ASSERT_TRUE(has_bytes(part, 1'000'000));
+    download.signal(SIGKILL);
+    download.wait();
+  }
+  const std::uintmax_t before = fs::file_size(part);
+  ASSERT_LT(before, whole) << "the test is to meet it in the middle";
+  EXPECT_FALSE(fs::exists(to()));
+  test::Program download(
+      "kinship", server.with_domain({"backup", "download", "monday.db", "--to", to()}, "2"));
+  ASSERT_TRUE(has_bytes(part, before + 1));
+  server.process().kill();
+  server.start();
+  const std::string said = download.read_all();
+  EXPECT_EQ(download.wait(), 0);
+  EXPECT_NE(said.find(std::to_string(before) + " of them were here"), std::string::npos) << said;
+  EXPECT_TRUE(is_same());
+  EXPECT_FALSE(fs::exists(part));
+}
+
+}  // namespace
+}  // namespace kinship::backup_download_test
