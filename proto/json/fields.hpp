@@ -81,8 +81,9 @@ T read_as(const Reader& reader, const FieldRules& rules) {
     return read_as<typename T::value_type>(reader, rules);
   } else if constexpr (kIsList<T>) {
     T list;
+    constexpr FieldRules kOfElement{.limit = kMaxMessageBytes};  // if it is a text
     for (const Reader& element : reader.elements(rules.limit))
-      list.push_back(read_as<typename T::value_type>(element));
+      list.push_back(read_as<typename T::value_type>(element, kOfElement));
     return list;
   } else if constexpr (Described<T>) {
     T value;

@@ -155,8 +155,9 @@ double cpu_s(pid_t pid) {
 TEST_F(Quotas, AFloodThatIsRefusedCostsLessThanOneThatIsServed) {
   constexpr int kBatches = 60;
   const auto cost = [&](const std::string& store, const std::string& quota, bool is_served) {
-    Server server(folder_ / store, {"--client-attempts-per-s", quota, "--rehearsal-cpu", "0"});
-    const Digest panda = register_panda(*server.client(folder_ / (store + ".outbox")));
+    Server server(folder_.path() / store,
+                  {"--client-attempts-per-s", quota, "--rehearsal-cpu", "0"});
+    const Digest panda = register_panda(*server.client(folder_.path() / (store + ".outbox")));
     const dds::Participant participant({.domain = server.domain(), .server = "127.0.0.1"});
     dds::Requester<codec::ReportConversation> line(participant, Uuid::random());
     std::vector<ReportRequest> batches;
