@@ -92,6 +92,19 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return rename_robot(request);
     case AdminVerb::RemoveRobot:
       return remove_robot(request.argument);
+    case AdminVerb::ListAttempts:
+      return list_attempts(request);
+    case AdminVerb::ListClients:
+      return list_clients(request);
+    default:
+      return dispatch_jobs(request, request_key);
+  }
+}
+
+/// The verbs about jobs and backups.
+AdminPage Administration::dispatch_jobs(const AdminRequest& request,
+                                        const std::string& request_key) {
+  switch (request.verb) {
     case AdminVerb::Backup:
       return begin(backup_job(parts_.store, request.argument, parts_.backups, request_key));
     case AdminVerb::ListJobs:
@@ -102,10 +115,6 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
       return page_of(parts_.jobs.cancel(request.argument));
     case AdminVerb::JobRows:
       return job_rows(parts_.jobs, request);
-    case AdminVerb::ListAttempts:
-      return list_attempts(request);
-    case AdminVerb::ListClients:
-      return list_clients(request);
     case AdminVerb::ListBackups:
       return list_backups(parts_.store, parts_.backups, request);
     case AdminVerb::HashBackup:
@@ -113,9 +122,8 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ReadBackup:
       return read_backup(parts_.store, parts_.backups, request);
     default:
-      break;
+      return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
   }
-  return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
 }
 
 AdminPage Administration::list_robots(const AdminRequest& request) {

@@ -67,6 +67,7 @@ class Administration {
 
  private:
   AdminPage dispatch(const AdminRequest& request, const std::string& request_key);
+  AdminPage dispatch_jobs(const AdminRequest& request, const std::string& request_key);
   AdminPage list_robots(const AdminRequest& request);
   AdminPage list_clients(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
