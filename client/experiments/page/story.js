@@ -29,10 +29,22 @@
       data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
   }
 
+  /// The line of the terminal's table: its name, uniform, guided, ratio and p.
+  const tableRow = (name) => data.table.rows.find((row) => row[0] === name);
+
+  /// How many times as much was needed, and how much that is.
+  function ratioTile(times, what, name) {
+    const [, uniform, guided] = tableRow(name);
+    if (times === null) return ["\u2013", `no ratio, ${name}: nothing was solved`];
+    return [fixed(Math.max(times, 1 / times), 2) + "\u2009\u00d7",
+            `${what} ${times >= 1 ? "without" : "with"} guidance, in the mean: uniform ${uniform}, guided ${guided}` +
+            (times >= 1 ? "" : "; it did not help")];
+  }
+
   /// Planning time as a sentence, and what it is.
   function timeInWords() {
     if (timeRatio === null) return "";
-    const [, , uniform, guided] = ["", ...data.table.rows.find((row) => row[0] === "planning time, mean")];
+    const [, uniform, guided] = tableRow("planning time, mean");
     return (timeRatio >= 1 ? `Without guidance planning took ${fixed(timeRatio, 2)} times as long, ` : `With guidance planning took ${fixed(1 / timeRatio, 2)} times as long, `) +
       `${uniform} to ${guided} of processor time in the mean; that counts what guidance itself costs, drawing samples and moving recorded ways onto the query. `;
   }
@@ -57,13 +69,8 @@
       `The server moved it into the joint space of ${data.robot}, another robot, and fitted a sampling distribution. ${data.robot} then ` +
       `planned ${several(instances, "new instance")} twice: with uniform samples, and guided by what the server made of that experience.`;
     fillTiles(byId("tiles"), [
-      ratio === null ? ["\u2013", "no ratio: nothing was solved"]
-        : ratio >= 1 ? [fixed(ratio, 2) + "\u2009\u00d7", "as many collision checks without guidance, in the mean"]
-        : [fixed(1 / ratio, 2) + "\u2009\u00d7", "as many collision checks with guidance, in the mean: it did not help"],
-      timeRatio === null ? ["\u2013", "no ratio of planning times"]
-        : timeRatio >= 1 ? [fixed(timeRatio, 2) + "\u2009\u00d7", "as much planning time without guidance, in the mean"]
-        : [fixed(1 / timeRatio, 2) + "\u2009\u00d7", "as much planning time with guidance, in the mean: it cost time"],
-      [`${count(comparison.uniform.mean_checks)} \u2192 ${count(comparison.guided.mean_checks)}`, "collision checks per query in the mean, uniform \u2192 guided"],
+      ratioTile(ratio, "as many collision checks", "collision checks, mean"),
+      ratioTile(timeRatio, "as much planning time", "planning time, mean"),
       [`${count(data.cheaper_guided)} of ${count(instances)}`, "instances took fewer checks with guidance"],
       [`${percent(samples.uniform_free_share)} \u2192 ${percent(samples.free_share)}`, "of the samples are free of collision, uniform \u2192 distribution"]]);
   }
@@ -124,7 +131,7 @@
       (data.searches ? "" : " " + guidesInWords());
     kinshipCharts.show(byId("bars"), `Mean collision checks: uniform ${rows[0].label}, guided ${rows[1].label}`,
                        (width) => barsOf(rows, "collision checks per query", width));
-    const told = data.table.rows.find((row) => row[0] === "planning time, mean");
+    const told = tableRow("planning time, mean");
     const times = [["uniform", data.uniform_time_s, told[1]], ["guided", data.guided_time_s, told[2]]].map(([planner, time, label]) =>
       ({planner, mean: 1000 * time.mean, low: 1000 * time.low, high: 1000 * time.high, label}));
     kinshipCharts.show(byId("time-bars"), `Mean planning time: uniform ${told[1]}, guided ${told[2]}`,
