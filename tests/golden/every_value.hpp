@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "proto/types/conversations.hpp"
+#include "proto/types/credential_list.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/publications.hpp"
 #include "proto/types/robot_check.hpp"
@@ -79,6 +80,7 @@ RobotRemoval every_robot_removal();
 Job every_job();
 ServerStatus every_status();
 StoreCheck every_store_check();
+CredentialList every_credential_list();
 
 Problem every_problem();            ///< to configurations, in a scene
 Problem every_pose_problem();       ///< to a pose
