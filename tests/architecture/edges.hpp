@@ -47,6 +47,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string json = "proto/json";
   const std::string dds = "proto/dds";
   const std::string manual = "proto/manual";
+  const std::string security = "proto/security";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
@@ -86,6 +87,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
+      {security, {{types}, {"libcrypto", "toml"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
@@ -108,7 +110,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          types},
         {"Eigen"}}},
       {"server/app",
+<<<<<<< HEAD
        {{service, access, metrics, dds, codec, json, manual, types, store},
+=======
+       {{service, metrics, security, dds, codec, json, manual, types, store},
+>>>>>>> files
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
