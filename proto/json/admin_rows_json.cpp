@@ -36,6 +36,7 @@ std::string to_json(const RobotRemoval& removal) { return write_fields(removal);
 std::string to_json(const Job& job) { return write_fields(job); }
 std::string to_json(const ClientUse& client) { return write_fields(client); }
 std::string to_json(const BackupSummary& backup) { return write_fields(backup); }
+std::string to_json(const AuditEntry& entry) { return write_fields(entry); }
 
 std::string eviction_to_json(const Digest& distribution_id) {
   OrderedJson object;
@@ -71,6 +72,10 @@ Result<ClientUse> client_use_from_json(std::string_view text) {
 
 Result<BackupSummary> backup_summary_from_json(std::string_view text) {
   return read_fields<BackupSummary>(text, "backup");
+}
+
+Result<AuditEntry> audit_entry_from_json(std::string_view text) {
+  return read_fields<AuditEntry>(text, "audit entry");
 }
 
 Result<Digest> eviction_from_json(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/types/audit.hpp"
 #include "proto/types/backup_summary.hpp"
 #include "proto/types/client_use.hpp"
 #include "proto/types/digest.hpp"
@@ -20,6 +21,7 @@ std::string to_json(const RobotRemoval& removal);
 std::string to_json(const Job& job);
 std::string to_json(const ClientUse& client);
 std::string to_json(const BackupSummary& backup);
+std::string to_json(const AuditEntry& entry);
 
 /// The row of EvictDistribution, `{"evicted": id}`.
 std::string eviction_to_json(const Digest& distribution_id);
@@ -34,6 +36,7 @@ Result<RobotRemoval> robot_removal_from_json(std::string_view text);
 Result<Job> job_from_json(std::string_view text);
 Result<ClientUse> client_use_from_json(std::string_view text);
 Result<BackupSummary> backup_summary_from_json(std::string_view text);
+Result<AuditEntry> audit_entry_from_json(std::string_view text);
 Result<Digest> eviction_from_json(std::string_view text);  ///< \return the distribution's id
 
 }  // namespace kinship::json

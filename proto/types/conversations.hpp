@@ -128,12 +128,13 @@ enum class AdminVerb {
   ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
   RenameRobot,   ///< `robot` gets the label `argument`; row: RobotSummary
   RemoveRobot,   ///< row: RobotRemoval
-  // 23 is another's.
-  ListClients = 24,  ///< rows: ClientUse, who asked for most first
-  ListBackups,       ///< rows: BackupSummary, the newest first
-  HashBackup,        ///< begins a job over backup `argument`; rows: its SHA-256 in hex, its bytes
-  ReadBackup         ///< row: bytes of backup `argument` from `cursor` on, in base64
+  ListAudit,     ///< rows: AuditEntry, the newest first; `argument`: of this name alone
+  ListClients,   ///< rows: ClientUse, who asked for most first
+  ListBackups,   ///< rows: BackupSummary, the newest first
+  HashBackup,    ///< begins a job over backup `argument`; rows: its SHA-256 in hex, its bytes
+  ReadBackup     ///< row: bytes of backup `argument` from `cursor` on, in base64
 };
+inline constexpr AdminVerb kLastVerb = AdminVerb::ReadBackup;
 
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;

@@ -26,7 +26,7 @@ bool is_listing(AdminVerb verb) {
          verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
          verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs ||
          verb == AdminVerb::ListAttempts || verb == AdminVerb::ListClients ||
-         verb == AdminVerb::ListBackups;
+         verb == AdminVerb::ListBackups || verb == AdminVerb::ListAudit;
 }
 
 template <typename Value>

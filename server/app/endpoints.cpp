@@ -7,6 +7,7 @@
 
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/replier.hpp"
+#include "server/app/access_gate.hpp"
 #include "server/app/admin_reply.hpp"
 #include "server/quotas/quota.hpp"
 
@@ -53,14 +54,16 @@ auto gate_of(service::Service& service, const Reply& busy) {
 /// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
-  service.administer(request, request_key_of(answer),
-                     [=, &service](const service::AdminPage& page) {
-                       AdminReply reply = to_reply(page);
-                       if (!fits_page(reply))
-                         if (const auto smaller = for_fewer_rows(request, page.rows.size()))
-                           return administer(service, *smaller, begin, answer);
-                       answer(page_of(std::move(reply), begin));
-                     });
+  service.administer(
+      request, request_key_of(answer),
+      [=, &service](const service::AdminPage& page) {
+        AdminReply reply = to_reply(page);
+        if (!fits_page(reply))
+          if (const auto smaller = for_fewer_rows(request, page.rows.size()))
+            return administer(service, *smaller, begin, answer);
+        answer(page_of(std::move(reply), begin));
+      },
+      answer.caller());
 }
 
 void administer(service::Service& service, const AdminRequest& request,
@@ -79,7 +82,7 @@ class Endpoints::Implementation {
             participant, loop,
             [&service](RobotDescription description,
                        const dds::Answer<RegisterConversation>& answer) {
-              service.register_robot(std::move(description), answer, answer.caller().client);
+              app::register_robot(service, answer.caller(), std::move(description), answer);
             },
             [&service](const Caller& caller, const codec::RequestSize& size) {
               return reply_to(service.admit_robot(caller.client, size.bytes), RegisterReply{});
@@ -87,13 +90,13 @@ class Endpoints::Implementation {
         report_(
             participant, loop,
             [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-              service.report(std::move(request), answer, answer.caller().client);
+              app::report(service, answer.caller(), std::move(request), answer);
             },
             gate_of(service, ReportReply{})),
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              service.fetch(request, request_key_of(answer), answer);
+              app::fetch(service, answer.caller(), request, request_key_of(answer), answer);
             },
             gate_of(service, with_status(FetchReply(), FetchStatus::Busy))),
         admin_(

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <thread>
@@ -18,6 +19,8 @@
 namespace kinship::app {
 namespace {
 
+constexpr const char* kLoopback = "lo";
+
 constexpr const char* kDescription =
     "kinshipd: keeps the planning experience of a fleet of robots and makes it of use to others";
 
@@ -30,12 +33,14 @@ Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
+  kinshipd --interface eth0 --security /etc/kinship/security      other hosts, with certificates
   kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
-  kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one)";
+  kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one
+  kinshipd secure init DIR                       certificates for the fleet; kinshipd secure --help)";
 
 /// What the help of a verb ends with, before its example.
 constexpr const char* kVerbFooter =
@@ -159,6 +164,14 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
   app.add_option("--interface", options.network_interface,
                  "Network interface to serve, e.g. eth0; default: loopback, this machine only");
+  app.add_option("--security", options.security,
+                 "Security folder, made by 'kinshipd secure init': only who has a certificate of "
+                 "it is heard; default: none")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("FOLDER");
+  app.add_flag("--insecure", options.insecure,
+               "Serve other hosts without --security: whoever reaches the ports may read, report "
+               "and register; what changes or removes is for this machine alone");
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
@@ -247,6 +260,15 @@ void suggest_words(const CLI::App& app, const std::vector<std::string>& words, s
 
 }  // namespace
 
+std::string insecurity_of(const ServerOptions& options) {
+  if (!options.security.empty() || options.network_interface.empty() ||
+      options.network_interface == kLoopback)
+    return {};
+  return "interface '" + options.network_interface +
+         "' is served without security: whoever reaches its ports reads every robot and path, "
+         "reports and registers under any name; what changes or removes is for this machine alone";
+}
+
 std::filesystem::path default_store() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread
@@ -278,6 +300,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
                "Print the options that would serve, as a file for --config, and end")
       ->configurable(false);
   add_verbs(app, offline);
+  std::optional<SecureOptions> secure;
+  add_secure_verbs(app, secure);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
@@ -292,6 +316,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   } catch (const CLI::ParseError& error) {
     return manual::explain(app, error, out, err);
   }
+  if (secure)
+    return *secure;
   const bool is_offline = !app.get_subcommands().empty();
   const bool store_given = app.count("--store") > 0;
   if (is_offline && store_given) {
@@ -313,6 +339,13 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   }
   if (is_offline)
     return offline;
+  if (const std::string insecurity = insecurity_of(options);
+      !insecurity.empty() && !options.insecure) {
+    err << "kinshipd: " << insecurity
+        << ". Make certificates ('kinshipd secure init FOLDER') and say --security FOLDER; or say "
+           "--insecure if that is what you want\n";
+    return kWrongUsage;
+  }
   return options;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/audit.hpp"
 #include "proto/types/backup_summary.hpp"
 #include "proto/types/client_use.hpp"
 #include "proto/types/conversations.hpp"
@@ -36,13 +37,13 @@ struct TextLine {
 /// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
 /// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
-/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; ListClients ClientUses;
-/// ListBackups BackupSummaries; JobRows and ReadBackup TextLines; the other verbs of jobs a Job
-/// each.
-using AdminRow =
-    std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
-                 AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
-                 ExportedRobot, Retirement, RobotRemoval, Job, ClientUse, BackupSummary, TextLine>;
+/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; ListAudit
+/// AuditEntries; ListClients ClientUses; ListBackups BackupSummaries; JobRows and ReadBackup
+/// TextLines; the other verbs of jobs a Job each.
+using AdminRow = std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary,
+                              PathSummary, AttemptSummary, Attempt, DistributionSummary,
+                              Distribution, Explanation, Eviction, ExportedRobot, Retirement,
+                              RobotRemoval, Job, AuditEntry, ClientUse, BackupSummary, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {

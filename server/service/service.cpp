@@ -18,8 +18,6 @@ using Priority = runtime::WorkerPool::Priority;
 
 constexpr std::size_t kMaxResets = 16;  // that wait
 
-constexpr RetryAfter kRetryAfter{1000};  // of requests for which there was no room
-
 quotas::Quota quota_of(catalog::ClientBound bound) {
   switch (bound) {
     case catalog::ClientBound::Leases:
@@ -310,37 +308,6 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
     };
   catalog_.fetch(request, waiter, std::move(answer));
   watch->set_asked();
-}
-
-void Service::administer(AdminRequest request, const std::string& request_key,
-                         const std::function<void(const AdminPage&)>& done) {
-  // From memory, and on the thread that then asks for the next deadline.
-  if (request.verb == AdminVerb::ShowJob)
-    return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
-                      [done](const Result<Job>& job) { done(page_of(job)); });
-  // These may take long, and nobody else's request waits for them.
-  const bool is_long =
-      request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot;
-  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
-  const std::string client(catalog::client_of(request_key));
-  auto run = [this, request = std::move(request), request_key, client, done] {
-    const AdminPage page = administration_.answer(request, request_key);
-    count_admin(page);
-    clients_.count_reply(client, reply_bytes(page));
-    done(page);
-  };
-  const auto decline = [this, done] {
-    AdminPage page;
-    page.message = "the server is busy or stopping";
-    page.retry_after = kRetryAfter;
-    count_admin(page);
-    done(page);
-  };
-  if (!pool.submit(Priority::Interactive,
-                   {.run = std::move(run), .abandon = decline, .client = client})) {
-    is_over_waiting(client);
-    decline();
-  }
 }
 
 std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {

@@ -3,14 +3,17 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "proto/types/caller.hpp"
 #include "proto/types/conversations.hpp"
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
@@ -95,8 +98,20 @@ class Service {
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
   /// \param request_key  the request's name (catalog::client_of); see Administration::answer.
+  /// \param caller  who asks: what it may not (server/access) is refused before anything is done.
   void administer(AdminRequest request, const std::string& request_key,
-                  const std::function<void(const AdminPage&)>& done);
+                  const std::function<void(const AdminPage&)>& done, const Caller& caller = {});
+
+  /// The labels of registered robots; those of others are missing, an error is of the store.
+  /// `done` is called at most once; not if the server is busy or stopping.
+  using RobotLabels = std::map<Digest, Result<std::string>>;
+  void name_robots(const std::set<Digest>& robots, std::function<void(const RobotLabels&)> done,
+                   const std::string& client);
+
+  /// Answers, and counts, what is refused before it is asked of the service.
+  void refuse_registration(const std::string& label, const std::string& why,
+                           const std::function<void(const RegisterReply&)>& done);
+  void refuse_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
   std::optional<catalog::Catalog::TimePoint> next_deadline() const;
@@ -114,6 +129,8 @@ class Service {
   void shutdown();
 
  private:
+  static constexpr RetryAfter kRetryAfter{1000};  ///< of requests for which there was no room
+
   catalog::Catalog::Options catalog_options(const ServiceOptions& options);
   rehearsal::RehearsalBookOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
@@ -124,6 +141,7 @@ class Service {
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   RegisterReply registered(const RobotDescription& description, const std::string& client);
+  std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);
   void count_admin(const AdminPage& page);

@@ -47,12 +47,14 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string json = "proto/json";
   const std::string dds = "proto/dds";
   const std::string manual = "proto/manual";
+  const std::string security = "proto/security";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
+  const std::string access = "server/access";
   const std::string metrics = "server/metrics";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
@@ -86,12 +88,14 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {json, {{types}, {"Eigen", "nlohmann-json"}}},
       {dds, {{types, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
+      {security, {{types}, {"libcrypto", "toml"}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {access, {{types}, {}}},
       {metrics, {{}, {}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
@@ -104,11 +108,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
       {service,
-       {{quotas, rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence,
-         types},
+       {{access, quotas, rehearsal, catalog, fitting, runtime, store, metrics, density, inverse,
+         evidence, types},
         {"Eigen"}}},
       {"server/app",
-       {{service, quotas, metrics, dds, codec, json, manual, types, store},
+       {{service, access, quotas, metrics, security, dds, codec, json, manual, types, store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

@@ -222,6 +222,24 @@ BackupSummary every_backup() {
   return backup;
 }
 
+AuditEntry every_audit_entry() {
+  Distinct next(1650);
+  AuditEntry entry;
+  entry.number = next.count();
+  entry.time_ms = next.time_ms();
+  entry.name = next.name("name");
+  entry.role = next.name("role");
+  entry.client = next.text("client");
+  entry.is_local = false;
+  entry.verb = next.name("verb");
+  entry.target = next.text("target");
+  entry.outcome = AuditOutcome::Refused;
+  entry.before = next.text("before");
+  entry.after = next.text("after");
+  entry.message = next.text("message");
+  return entry;
+}
+
 ServerStatus every_status() {
   Distinct next(1600);
   ServerStatus status;
@@ -289,6 +307,26 @@ StoreCheck every_store_check() {
   check.problems = next.count();
   check.messages = {next.text("message"), next.text("message")};
   return check;
+}
+
+CredentialList every_credential_list() {
+  Distinct next(3300);
+  CredentialList list;
+  list.authorities.push_back({next.text("authority"), next.name("fingerprint"), next.time_ms()});
+  CredentialList::Row row;
+  row.name = next.name("name");
+  row.role = next.name("role");
+  row.tasks = {next.name("task"), next.name("task")};
+  row.robots = {next.name("robot"), next.name("robot")};
+  row.state = next.text("state");
+  row.expires_ms = next.time_ms();
+  row.days_left = static_cast<std::int64_t>(next.count());
+  row.revoked_ms = next.time_ms();
+  row.authority = next.name("fingerprint");
+  row.is_of_previous_authority = true;
+  row.message = next.text("message");
+  list.credentials.push_back(row);
+  return list;
 }
 
 Problem every_problem() {

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/audit.hpp"
 #include "proto/types/backup_summary.hpp"
 #include "proto/types/client_use.hpp"
 #include "proto/types/conversations.hpp"
+#include "proto/types/credential_list.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/publications.hpp"
 #include "proto/types/robot_check.hpp"
@@ -81,8 +83,10 @@ RobotRemoval every_robot_removal();
 Job every_job();
 ClientUse every_client_use();
 BackupSummary every_backup();
+AuditEntry every_audit_entry();
 ServerStatus every_status();
 StoreCheck every_store_check();
+CredentialList every_credential_list();
 
 Problem every_problem();            ///< to configurations, in a scene
 Problem every_pose_problem();       ///< to a pose

@@ -7,6 +7,7 @@
 
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
+#include "proto/json/credential_list_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/event_json.hpp"
 #include "proto/json/experience_line.hpp"
@@ -90,6 +91,7 @@ std::vector<Case> cases() {
       readable("job", every_job(), job_from_json),
       readable("client_use", every_client_use(), client_use_from_json),
       readable("backup", every_backup(), backup_summary_from_json),
+      readable("audit_entry", every_audit_entry(), audit_entry_from_json),
       {"eviction", eviction_to_json(every_distribution().id), eviction_again},
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),
@@ -97,6 +99,7 @@ std::vector<Case> cases() {
       readable("problem_result", every_problem_result(), problem_result_from_json),
       {"event", to_json(every_event())},
       {"store_check", to_json(every_store_check())},
+      {"credential_list", to_json(every_credential_list())},
       {"inverse_answer", to_json(every_inverse_answer())},
       {"robot_check", to_json(every_robot_check())},
       {"register_reply", to_json(every_register_reply(), "label")},

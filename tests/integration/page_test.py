@@ -55,7 +55,19 @@ class Page(unittest.TestCase):
         page = [[cell.text for cell in row.find_elements("css selector", "th, td") if cell.text]
                 for row in self.browser.elements("#comparison tbody tr")]
         self.assertEqual(page, terminal)
-        self.assertIn(page[1][3], self.browser.text("#tiles"), "the ratio of the means")
+        tiles = self.browser.text("#tiles")
+        for row in (page[1], page[3]):
+            self.assertIn(row[0].removesuffix(", mean").split()[-1], tiles)
+            self.assertIn(f"uniform {row[1]}, guided {row[2]}", tiles.replace("\u202f", " "))
+        self.assertIn("ms of a processor", self.browser.element("#time-bars").get_attribute("innerHTML"))
+
+    def test_says_what_each_guide_alone_would_bring_as_the_terminal_does(self):
+        lines = (self.folder / "comparison.txt").read_text().splitlines()
+        alone = [re.split(r" {2,}", line.strip()) for line in lines if " alone " in line]
+        self.assertEqual([row[0] for row in alone], ["mixture alone", "ways alone", "retreat alone"])
+        page = [[cell.text for cell in row.find_elements("css selector", "th, td")]
+                for row in self.browser.elements("#alone-table tbody tr")]
+        self.assertEqual(page, alone)
 
     def test_nothing_is_cropped_from_a_phone_to_a_wide_screen(self):
         for width, height in ((360, 700), (2200, 1200)):
@@ -66,15 +78,16 @@ class Page(unittest.TestCase):
                 self.assertGreater(share_drawn(picture), 0.05, canvas)
                 self.assertFalse(touches_border(picture), (canvas, width))
 
-    def test_each_robot_carries_its_box_from_start_to_goal(self):
+    def test_each_robot_carries_its_part_from_start_to_goal(self):
         canvas = "#station-figure canvas"
         self.browser.click("[data-actor=panda]")
         middle = self.browser.picture(canvas)
         self.assertGreater(pixels_of(middle, PANDA, 60), 500, "the arm")
-        self.assertGreater(pixels_of(middle, HELD, 40), 20, "the box")
         self.scrub("#station", 0)
         self.assertEqual(self.browser.text("#station output"), "at the start")
-        self.assertFalse((self.browser.picture(canvas) == middle).all())
+        start = self.browser.picture(canvas)
+        self.assertFalse((start == middle).all())
+        self.assertGreater(pixels_of(start, HELD, 40), 20, "the part over the pallet")
         self.browser.click("[data-actor=ur10e]")
         self.assertLess(pixels_of(self.browser.picture(canvas), PANDA, 30), 50)
         self.assertIn("ur10e, new to the task", self.browser.text("#station .note"))

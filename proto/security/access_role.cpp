@@ -1,0 +1,27 @@
+#include "proto/security/access_role.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "proto/types/nearest_name.hpp"
+
+namespace kinship::security {
+
+std::span<const std::string> role_names() {
+  static const std::array<std::string, 4> names = {"robot", "reader", "operator", "admin"};
+  return names;  // in the order of AccessRole
+}
+
+std::string role_name(AccessRole role) { return role_names()[static_cast<std::size_t>(role)]; }
+
+Result<AccessRole> read_role(std::string_view name) {
+  const auto names = role_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    return invalid_input("role '" + std::string(name) +
+                         "' is not one of robot, reader, operator, admin" +
+                         suggestion(name, names));
+  return static_cast<AccessRole>(found - names.begin());
+}
+
+}  // namespace kinship::security

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/security/handles.hpp"
+#include "proto/types/failure.hpp"
+
+namespace kinship::security {
+
+/// From when to when something is valid, UTC.
+struct Validity {
+  std::chrono::sys_seconds begin = {};
+  std::chrono::sys_seconds end = {};
+};
+
+/// `days` from now on; begins a day earlier, for robots whose clocks are behind.
+Validity valid_for(std::chrono::days days, std::chrono::sys_seconds now);
+
+/// What a certificate may be used for.
+enum class Use {
+  Authority,         ///< issues certificates
+  CrossedAuthority,  ///< the key of another authority, as one that issues certificates
+  Identity,          ///< who a participant is: signs no documents
+  Documents          ///< signs governance and permissions: no participant's
+};
+
+/// What is to stand in a certificate.
+struct CertificateText {
+  std::string name;  ///< common name; the organization is Kinship
+  Use use = Use::Identity;
+  Validity validity;
+};
+
+/// A new key: EC P-256.
+Key make_key();
+
+/// A certificate that an authority signs with its own key.
+Certificate make_authority(const CertificateText& text, evp_pkey_st& key);
+
+/// A certificate for `subject_key`, signed with the key of `issuer`.
+Certificate issue(const CertificateText& text, evp_pkey_st& subject_key, x509_st& issuer,
+                  evp_pkey_st& issuer_key);
+
+std::string to_pem(x509_st& certificate);
+std::string to_pem(evp_pkey_st& key);  ///< PKCS#8, not encrypted
+
+/// All certificates of a PEM text, in order; none if it has none.
+/// \param what  names the text in messages.
+/// \throws Failure(InvalidInput) for one that cannot be read.
+std::vector<Certificate> certificates_from_pem(std::string_view pem, std::string_view what);
+
+/// \throws Failure(InvalidInput) if there is no private key in it.
+Key key_from_pem(std::string_view pem, std::string_view what);
+
+std::string common_name(x509_st& certificate);  ///< of its subject; empty if there is none
+std::string serial_text(x509_st& certificate);  ///< hexadecimal, lower case
+std::string fingerprint(x509_st& certificate);  ///< first 16 hexadecimal digits of its SHA-256
+std::chrono::sys_seconds expiry(x509_st& certificate);
+
+/// Whether the key is the one that the certificate is for.
+bool belongs_to(evp_pkey_st& key, x509_st& certificate);
+
+/// Why one of `authorities` does not vouch for the certificate at `now`; nothing if it does.
+std::optional<Error> check_issued(x509_st& certificate, const std::vector<Certificate>& authorities,
+                                  std::chrono::sys_seconds now);
+
+}  // namespace kinship::security

@@ -1,0 +1,90 @@
+#include "proto/security/client_directory.hpp"
+
+#include <sys/stat.h>
+
+#include <tuple>
+
+#include "proto/security/private_files.hpp"
+#include "proto/security/time_text.hpp"
+
+namespace kinship::security {
+namespace {
+
+constexpr std::chrono::seconds kFreshFor{1};
+constexpr std::size_t kMaxEntries = 100'000;  // names come from certificates; a bound all the same
+
+/// What tells one content of a file from another; all zeros: there is none.
+using FileMark = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
+
+FileMark mark_of(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0)
+    return {};
+  return {status.st_dev,         status.st_ino,          status.st_size,
+          status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ctim.tv_sec,
+          status.st_ctim.tv_nsec};
+}
+
+}  // namespace
+
+struct ClientDirectory::Entry {
+  std::chrono::steady_clock::time_point checked;
+  FileMark mark;
+  Result<ClientRecord> record;
+};
+
+ClientDirectory::ClientDirectory(std::filesystem::path folder, Clock clock)
+    : folder_(std::move(folder)), clock_(std::move(clock)) {}
+
+ClientDirectory::~ClientDirectory() = default;
+
+Result<ClientRecord> ClientDirectory::read(const std::filesystem::path& file,
+                                           const std::string& name) const {
+  try {
+    Result<ClientRecord> record = read_record(read_file(file), file.string());
+    if (record && record->name != name)
+      return invalid_input(file.string() + ": is of '" + record->name + "'");
+    return record;
+  } catch (const Failure& failure) {
+    if (failure.code() == ErrorCode::NotFound)
+      return Error{ErrorCode::NotFound, "client '" + name + "': is not in " + folder_.string()};
+    return failure.error();
+  }
+}
+
+Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
+  if (const auto error = check_client_name(name))
+    return *error;
+  const auto now = clock_();
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found != entries_.end() && now - found->second->checked < kFreshFor)
+    return found->second->record;
+  const std::filesystem::path file = folder_ / (name + ".toml");
+  const FileMark mark = mark_of(file);  // before it is read: what changes meanwhile is read again
+  if (found != entries_.end() && found->second->mark == mark) {
+    found->second->checked = now;
+    return found->second->record;
+  }
+  if (entries_.size() >= kMaxEntries)
+    entries_.clear();
+  return entries_
+      .insert_or_assign(name, std::make_unique<Entry>(Entry{now, mark, read(file, name)}))
+      .first->second->record;
+}
+
+Result<Caller> ClientDirectory::caller(const std::string& name,
+                                       std::chrono::sys_seconds now) const {
+  const Result<ClientRecord> record = find(name);
+  if (!record)
+    return record.error();
+  if (record->revoked)
+    return Error{ErrorCode::Unavailable,
+                 "client '" + name + "': revoked at " + time_text(*record->revoked)};
+  if (record->expires <= now)
+    return Error{ErrorCode::Unavailable,
+                 "client '" + name + "': expired at " + time_text(record->expires)};
+  return caller_of(*record);
+}
+
+}  // namespace kinship::security

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/types/caller.hpp"
+#include "proto/types/result.hpp"
+
+namespace kinship::security {
+
+/// What the server knows of a client: DIR/clients/NAME.toml.
+struct ClientRecord {
+  std::string name;
+  AccessRole role = AccessRole::Robot;
+  std::vector<std::string> tasks = {};   ///< patterns (`*`, `?`) it is narrowed to; empty: all
+  std::vector<std::string> robots = {};  ///< labels it is narrowed to; empty: all
+  std::string serial = {};               ///< of its newest certificate, hexadecimal
+  std::string authority = {};            ///< fingerprint of the authority that issued it
+  std::chrono::sys_seconds expires = {};
+  std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
+};
+
+/// What is wrong with the name of a client; nothing if it is 1 to 64 of [A-Za-z0-9_-] and not that
+/// of the server.
+std::optional<Error> check_client_name(std::string_view name);
+
+/// What is wrong with a pattern of tasks: 1 to 128 of what tasks are made of, and * and ?.
+std::optional<Error> check_task_pattern(std::string_view pattern);
+
+std::string record_text(const ClientRecord& record);  ///< as TOML
+
+/// \param what  names the text in messages.
+Result<ClientRecord> read_record(std::string_view text, const std::string& what);
+
+/// The rights of a client as they go with its requests.
+Caller caller_of(const ClientRecord& record);
+
+}  // namespace kinship::security
