@@ -70,18 +70,23 @@ store::SqliteOptions store_options(const ServerOptions& options) {
   return store;
 }
 
-}  // namespace
-
-int serve(const ServerOptions& options, std::ostream& out) {
-  start_log(options.log_level);
-  std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
-
+/// Before anything is opened.
+void tell_security(const ServerOptions& options) {
   if (!options.security.empty())  // never served as if it were not asked for
     throw Failure(ErrorCode::InvalidInput, "--security '" + options.security.string() +
                                                "': this kinshipd cannot secure a domain yet");
   // Whatever the log leaves out.
   if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
     std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
+}
+
+}  // namespace
+
+int serve(const ServerOptions& options, std::ostream& out) {
+  start_log(options.log_level);
+  std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
+
+  tell_security(options);
   hold_termination_signals();
 
   // Before the store: who cannot join the domain, or has no port, leaves no file behind.
