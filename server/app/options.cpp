@@ -129,6 +129,11 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->capture_default_str();
   app.add_option("--interface", options.network_interface,
                  "Network interface to serve, e.g. eth0; default: loopback, this machine only");
+  app.add_option("--security", options.security,
+                 "Security folder, made by 'kinshipd secure init': only who has a certificate of "
+                 "it is heard; default: none")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("FOLDER");
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();

@@ -16,7 +16,9 @@ namespace kinship::app {
 struct ServerOptions {
   std::filesystem::path store;
   std::uint32_t domain = 0;
-  std::string network_interface;        ///< empty: loopback
+  std::string network_interface;  ///< empty: loopback
+  /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.
+  std::filesystem::path security;
   std::size_t workers = 1;              ///< threads that transfer and fit
   std::filesystem::path backup_folder;  ///< empty: the folder of the store
   std::size_t fit_memory_mb = 2048;     ///< of all fits together, at most

@@ -16,6 +16,7 @@
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
+#include "proto/types/failure.hpp"
 #include "proto/types/names.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/join.hpp"
@@ -74,6 +75,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
   std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
 
+  if (!options.security.empty())  // never served as if it were not asked for
+    throw Failure(ErrorCode::InvalidInput, "--security '" + options.security.string() +
+                                               "': this kinshipd cannot secure a domain yet");
   hold_termination_signals();
 
   // Before the store: who cannot join the domain, or has no port, leaves no file behind.

@@ -97,6 +97,14 @@ TEST_F(Options, MetricsAreServedWhereSomebodySaysSo) {
   }
 }
 
+TEST_F(Options, ASecurityFolderMustBeThere) {
+  EXPECT_TRUE(good({}).security.empty());
+  const test::TemporaryDirectory directory;
+  const std::string folder = (directory / ".").string();
+  EXPECT_EQ(good({"--security", folder.c_str()}).security, folder);
+  EXPECT_EQ(code({"--security", "/no/such/folder"}), kWrongUsage);
+}
+
 TEST_F(Options, ArgumentsAreTaken) {
   const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
                                       "--interface", "eth0", "--log-level", "error"});
