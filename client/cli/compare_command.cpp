@@ -155,7 +155,10 @@ void print_comparison(const std::string& task, const std::vector<Transferability
                       std::ostream& out) {
   out << "What the experience of each source is worth to each target on '" << task
       << "': collision checks\nof planning without guidance to those with, by rehearsal of the "
-         "source's recorded queries; * the best of a row\n\n";
+         "source's recorded queries; * the best of a row. The path that once\nanswered a query "
+         "never "
+         "guides that query again, also on the diagonal, where a\nrobot uses its own "
+         "experience.\n\n";
   print_worths(pairs, out);
   out << '\n';
   print_remarks(pairs, out);

@@ -5,7 +5,7 @@
 /// The command line of each noun.
 namespace kinship::cli {
 
-void add_server_commands(CLI::App& app, Session& session);  ///< status, backup, watch
+void add_server_commands(CLI::App& app, Session& session);  ///< status, backup, watch, audit
 void add_jobs(CLI::App& app, Session& session);
 void add_robots(CLI::App& app, Session& session);
 void add_problems(CLI::App& app, Session& session);

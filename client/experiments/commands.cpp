@@ -5,21 +5,25 @@
 #include "client/experiments/comparison.hpp"
 #include "client/experiments/comparison_table.hpp"
 #include "client/experiments/page/page.hpp"
+#include "client/experiments/page/run_reader.hpp"
 #include "client/experiments/result_file.hpp"
-#include "client/experiments/shelf_problems.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/models/loaded_robot.hpp"
 
 namespace kinship::experiments {
-void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages) {
+
+void write_station_problems(const StationOptions& options, std::ostream& out,
+                            std::ostream& messages) {
   const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
   const std::string& label = robot.description.label;
-  const Eigen::Isometry3d T_task_base = options.T_task_base.value_or(shelf_placement(label));
+  const Eigen::Isometry3d T_task_base =
+      options.T_task_base.value_or(placement_at(options.station, label));
   std::uint32_t redrawn = 0;
   for (std::uint32_t index = 0; index < options.count; ++index) {
-    const Problem problem = draw_shelf_problem(robot, T_task_base, options.seed, index);
+    const Problem problem =
+        draw_station_problem(options.station, robot, T_task_base, {options.seed, index, 0});
     if (problem.name.find('.') != std::string::npos)
       ++redrawn;
     out << json::to_json(problem) << '\n';
@@ -30,21 +34,22 @@ void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::o
            << " of them in a scene drawn again\n";
 }
 
-void write_placement(const models::RobotArguments& robot, std::ostream& out) {
+void write_placement(Station station, const models::RobotArguments& robot, std::ostream& out) {
   const RobotDescription description = models::describe_robot(robot).value_or_throw();
-  const PoseArray pose = to_pose_array(shelf_placement(description.label));
+  const PoseArray pose = to_pose_array(placement_at(station, description.label));
   for (std::size_t i = 0; i < pose.size(); ++i)
     out << (i == 0 ? "" : " ") << pose[i];
   out << '\n';
 }
 
 void write_comparison(const CompareOptions& options, std::ostream& out) {
-  const Comparison comparison =
-      compare(read_results(options.uniform), read_results(options.guided)).value_or_throw();
+  const std::vector<ProblemResult> uniform = read_results(options.uniform);
+  const Comparison comparison = compare(uniform, read_results(options.guided)).value_or_throw();
+  const std::vector<AlsoCompared> also = compare_also(uniform, options.also);
   if (options.json)
-    write_json(comparison, out);
+    write_json(comparison, also, out);
   else
-    write_table(comparison, out);
+    write_table(comparison, also, out);
 }
 
 void write_page(const RunLocation& run, std::ostream& out) {

@@ -5,33 +5,38 @@
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
+#include <vector>
 
 #include "client/experiments/page/run_files.hpp"
+#include "client/experiments/station_problems.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 /// The commands of kinship-experiments: options in, streams out. They throw Failure.
 namespace kinship::experiments {
 
-struct ShelfOptions {
+struct StationOptions {
+  Station station = Station::Machine;
   models::RobotArguments robot;
   std::uint32_t count = 40;
   std::uint64_t seed = 1;
-  std::optional<Eigen::Isometry3d> T_task_base;  ///< empty: shelf_placement of the robot's label
+  std::optional<Eigen::Isometry3d> T_task_base;  ///< empty: placement_at of the robot's label
 };
 
-/// Writes `count` problems of the shelf task, one JSON document a line; progress on `messages`.
-void write_shelf_problems(const ShelfOptions& options, std::ostream& out, std::ostream& messages);
+/// Writes `count` problems of the task, one JSON document a line; progress on `messages`.
+void write_station_problems(const StationOptions& options, std::ostream& out,
+                            std::ostream& messages);
 
-/// Writes "x y z qx qy qz qw" of the robot's placement in the shelf task.
-void write_placement(const models::RobotArguments& robot, std::ostream& out);
+/// Writes "x y z qx qy qz qw" of the robot's placement in the task.
+void write_placement(Station station, const models::RobotArguments& robot, std::ostream& out);
 
 struct CompareOptions {
   std::filesystem::path uniform;
   std::filesystem::path guided;
+  std::vector<AlsoFile> also;
   bool json = false;
 };
 
-/// Compares two result files of kinship-plan.
+/// Compares two result files of kinship-plan, and others beside them.
 void write_comparison(const CompareOptions& options, std::ostream& out);
 
 /// Writes a page for people that tells what a run did, and shows it.

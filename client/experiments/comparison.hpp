@@ -41,6 +41,13 @@ struct Comparison {
   planner::UnplannedProblems unplanned;  ///< answered by both, and by one without a search
 };
 
+/// The comparison of uniform planning with something else than what is compared first, e.g. with
+/// one guide alone.
+struct AlsoCompared {
+  std::string name;  ///< for people
+  Comparison comparison;
+};
+
 /// Pairs results by name and compares them.
 /// \return InvalidInput if a name occurs twice on one side, or no problem was planned by both.
 Result<Comparison> compare(const std::vector<ProblemResult>& uniform,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/experiments/formatted.hpp"
+#include "client/page/json_text.hpp"
 #include "proto/types/duration_text.hpp"
 
 namespace kinship::experiments {
@@ -54,6 +55,15 @@ void write_row(std::ostream& out, const ComparisonRow& row) {
   out << '\n';
 }
 
+void write_row(std::ostream& out, const AlsoRow& row) {
+  constexpr std::size_t kName = 20;
+  constexpr std::size_t kColumn = 11;
+  out << "  " << row.name << std::string(kName - std::min(kName, row.name.size()), ' ');
+  for (const std::string& cell : {row.solved, row.checks, row.checks_ratio})
+    out << padded(cell, kColumn - 2);
+  out << padded(row.time, kColumn) << padded(row.time_ratio, kColumn - 2) << '\n';
+}
+
 std::string method_text(const WilcoxonSummary& test) {
   const std::string how = test.method == WilcoxonMethod::Exact
                               ? "exact"
@@ -86,6 +96,24 @@ std::string json_of(const planner::UnplannedProblems& unplanned) {
     members += (members.empty() ? "\"" : ",\"") + std::string(to_text(reason)) +
                "\":" + std::to_string(count);
   return "{" + members + "}";
+}
+
+std::string ratios_of(const Comparison& comparison) {
+  return "{\"mean_checks\":" + json_number(comparison.mean_checks_ratio) +
+         ",\"median_checks\":" + json_number(comparison.median_checks_ratio) +
+         ",\"mean_time\":" + json_number(comparison.mean_time_ratio) +
+         ",\"median_time\":" + json_number(comparison.median_time_ratio) + "}";
+}
+
+std::string json_of(const std::vector<AlsoCompared>& also) {
+  std::string members;
+  for (const AlsoCompared& each : also)
+    members += (members.empty() ? "" : ",") +
+               ("{\"name\":" + page::json_string(each.name) +
+                ",\"pairs\":" + std::to_string(each.comparison.pairs) +
+                ",\"uniform\":" + json_of(each.comparison.uniform) + ",\"guided\":" +
+                json_of(each.comparison.guided) + ",\"ratio\":" + ratios_of(each.comparison) + "}");
+  return "[" + members + "]";
 }
 
 std::string json_of(const WilcoxonSummary& test) {
@@ -142,28 +170,45 @@ std::vector<std::string> comparison_notes(const Comparison& comparison) {
   return notes;
 }
 
-void write_table(const Comparison& comparison, std::ostream& out) {
+std::vector<AlsoRow> also_rows(const std::vector<AlsoCompared>& also) {
+  std::vector<AlsoRow> rows;
+  for (const auto& [name, comparison] : also)
+    rows.push_back(
+        {name, solved_text(comparison.guided, comparison.pairs),
+         count_text(comparison.guided.mean_checks), ratio_text(comparison.mean_checks_ratio),
+         seconds_text(comparison.guided.mean_time_s), ratio_text(comparison.mean_time_ratio)});
+  return rows;
+}
+
+void write_table(const Comparison& comparison, const std::vector<AlsoCompared>& also,
+                 std::ostream& out) {
   out << comparison.pairs << " problems, each planned with both\n\n";
-  write_row(out, {"", "uniform", "guided", "ratio", "p"});
+  write_row(out, ComparisonRow{"", "uniform", "guided", "ratio", "p"});
   for (const ComparisonRow& row : comparison_rows(comparison))
     write_row(out, row);
   out << '\n';
   for (const std::string& note : comparison_notes(comparison))
     out << note << '\n';
   comparison.unplanned.write_first(out);
+  if (also.empty())
+    return;
+  out << "\nThe same problems, means and the ratio of uniform planning to each:\n\n";
+  write_row(out, AlsoRow{"", "solved", "checks", "ratio", "time", "ratio"});
+  for (const AlsoRow& row : also_rows(also))
+    write_row(out, row);
 }
 
-void write_json(const Comparison& comparison, std::ostream& out) {
+void write_json(const Comparison& comparison, const std::vector<AlsoCompared>& also,
+                std::ostream& out) {
   out << "{\"pairs\":" << comparison.pairs << ",\"uniform\":" << json_of(comparison.uniform)
-      << ",\"guided\":" << json_of(comparison.guided)
-      << ",\"ratio\":{\"mean_checks\":" << json_number(comparison.mean_checks_ratio)
-      << ",\"median_checks\":" << json_number(comparison.median_checks_ratio)
-      << ",\"mean_time\":" << json_number(comparison.mean_time_ratio)
-      << ",\"median_time\":" << json_number(comparison.median_time_ratio)
-      << "},\"wilcoxon_checks\":" << json_of(comparison.checks_test)
+      << ",\"guided\":" << json_of(comparison.guided) << ",\"ratio\":" << ratios_of(comparison)
+      << ",\"wilcoxon_checks\":" << json_of(comparison.checks_test)
       << ",\"wilcoxon_time\":" << json_of(comparison.time_test)
       << ",\"unpaired\":" << comparison.unpaired.size()
-      << ",\"not_planned\":" << json_of(comparison.unplanned) << "}\n";
+      << ",\"not_planned\":" << json_of(comparison.unplanned);
+  if (!also.empty())
+    out << ",\"also\":" << json_of(also);
+  out << "}\n";
 }
 
 }  // namespace kinship::experiments

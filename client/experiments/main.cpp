@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
-#include <array>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include "client/arguments/command_options.hpp"
@@ -21,9 +21,9 @@ using namespace kinship::experiments;  // NOLINT
 
 constexpr const char* kExamples = R"(
 Examples:
-  kinship-experiments shelf --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
+  kinship-experiments machine --model robots/models/panda --count 60 --seed 1 --output panda.problems.jsonl
   kinship-experiments placement --model robots/models/ur10e
-  kinship-experiments compare --uniform uniform.results.jsonl --guided guided.results.jsonl
+  kinship-experiments compare --uniform uniform.results.jsonl --guided guided.results.jsonl --also "mixture alone=mixture.results.jsonl"
 
   kinship-experiments page --run build/quickstart --models robots/models --output quickstart.html
       any run: kinship-experiments page --help
@@ -37,42 +37,51 @@ Examples:
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist, 4 its kinshipd did not start.)";
 
 struct CommandLine {
-  ShelfOptions shelf;
+  StationOptions machine{.station = Station::Machine}, shelf{.station = Station::Shelf};
   std::string placement;
   std::filesystem::path output;
+  Station placed_at = Station::Machine;
   models::RobotArguments placed;
   CompareOptions compare;
+  std::vector<std::string> also;
   PageOptions page;
   StudyOptions study;
 };
 
-void add_shelf(CLI::App& app, CommandLine& line) {
-  CLI::App* const shelf = app.add_subcommand(
-      "shelf", "write planning problems: a held box goes from a table into a shelf");
-  shelf
-      ->add_option("--model", line.shelf.robot.source,
+void add_station(CLI::App& app, const std::string& description, StationOptions& options,
+                 CommandLine& line) {
+  CLI::App* const station = app.add_subcommand(std::string(to_text(options.station)),
+                                               "write planning problems: " + description);
+  station
+      ->add_option("--model", options.robot.source,
                    "model folder of the robot, or a URDF file with --base and --tip")
       ->required();
-  arguments::add_robot_options(*shelf, line.shelf.robot);
-  shelf->add_option("--count", line.shelf.count, "problems to write")
+  arguments::add_robot_options(*station, options.robot);
+  station->add_option("--count", options.count, "problems to write")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  shelf->add_option("--seed", line.shelf.seed, "equal seeds give equal scenes for every robot")
+  station->add_option("--seed", options.seed, "equal seeds give equal scenes for every robot")
       ->capture_default_str();
-  shelf->add_option("--placement", line.placement,
-                    "base of the robot in the task frame, \"x y z qx qy qz qw\"; known for the "
-                    "robots of robots/models, otherwise identity");
-  shelf->add_option("--output", line.output, "file to write; standard output if missing");
+  station->add_option("--placement", line.placement,
+                      "base of the robot in the task frame, \"x y z qx qy qz qw\"; known for "
+                      "panda, iiwa14 and ur10e of robots/models, otherwise identity");
+  station->add_option("--output", line.output, "file to write; standard output if missing");
 }
 
 void add_placement(CLI::App& app, CommandLine& line) {
   CLI::App* const placement =
-      app.add_subcommand("placement", "print where the robot stands in the shelf task");
+      app.add_subcommand("placement", "print where the robot stands in the task of such problems");
   placement
       ->add_option("--model", line.placed.source,
                    "model folder of the robot, or a URDF file with --base and --tip")
       ->required();
   arguments::add_robot_options(*placement, line.placed);
+  const std::map<std::string, Station> stations = {{"machine", Station::Machine},
+                                                   {"shelf", Station::Shelf}};
+  placement->add_option("--station", line.placed_at, "which task: machine or shelf")
+      ->transform(CLI::CheckedTransformer(stations).description(""))
+      ->type_name("machine|shelf")
+      ->default_str("machine");
 }
 
 void add_compare(CLI::App& app, CommandLine& line) {
@@ -80,6 +89,11 @@ void add_compare(CLI::App& app, CommandLine& line) {
       "compare", "compare two result files of kinship-plan over the same problems");
   compare->add_option("--uniform", line.compare.uniform, "results without guidance")->required();
   compare->add_option("--guided", line.compare.guided, "results with guidance")->required();
+  compare
+      ->add_option("--also", line.also,
+                   "NAME=FILE: other results over the same problems, each compared with uniform "
+                   "planning in a line below; may be repeated")
+      ->take_all();
   compare->add_flag("--json", line.compare.json, "one JSON document instead of a table");
 }
 
@@ -97,10 +111,18 @@ Eigen::Isometry3d read_placement(const std::string& text) {
   return *pose;
 }
 
-void write_shelf(const CommandLine& line) {
+void write_problems(const CommandLine& line, StationOptions options) {
+  if (!line.placement.empty())
+    options.T_task_base = read_placement(line.placement);
   files::OutputFile output(line.output, std::cout);
-  write_shelf_problems(line.shelf, output.stream(), std::cerr);
+  write_station_problems(options, output.stream(), std::cerr);
   output.keep();
+}
+
+void write_compared(CommandLine& line) {
+  for (const std::string& also : line.also)
+    line.compare.also.push_back(parse_also(also));
+  write_comparison(line.compare, std::cout);
 }
 
 int run(int argc, char** argv) {
@@ -110,7 +132,9 @@ int run(int argc, char** argv) {
   manual::add_manual(app);
   app.footer(kExamples);
   app.require_subcommand(1);
-  add_shelf(app, line);
+  add_station(app, "a part goes from a pallet into a machine, through its door", line.machine,
+              line);
+  add_station(app, "a held box goes from a table into a shelf", line.shelf, line);
   add_placement(app, line);
   add_compare(app, line);
   add_page_command(app, line.page);
@@ -118,20 +142,22 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (!line.placement.empty())
-      line.shelf.T_task_base = read_placement(line.placement);
+      read_placement(line.placement);  // a wrong one is wrong usage
   } catch (const CLI::ParseError& error) {
     return manual::explain(app, error, std::cout, std::cerr);
   }
   if (!line.study.study.empty())
     run_study_command(line.study, std::cout, std::cerr);
+  else if (app.got_subcommand("machine"))
+    write_problems(line, line.machine);
   else if (app.got_subcommand("shelf"))
-    write_shelf(line);
+    write_problems(line, line.shelf);
   else if (app.got_subcommand("placement"))
-    write_placement(line.placed, std::cout);
+    write_placement(line.placed_at, line.placed, std::cout);
   else if (app.got_subcommand("page"))
     run_page_command(line.page);
   else
-    write_comparison(line.compare, std::cout);
+    write_compared(line);
   return kDone;
 }
 

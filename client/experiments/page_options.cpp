@@ -17,8 +17,8 @@ page shows besides, where their files are there, the robots whose experience it 
 Examples:
   kinship-experiments page --run build/quickstart --models robots/models --output quickstart.html
       a folder as deploy/quickstart leaves it: ROBOT.problems.jsonl, ROBOT-uniform.results.jsonl, ROBOT-guided.results.jsonl,
-      distribution.json; if there are, ROBOT-uniform.searches.jsonl, ROBOT-guided.searches.jsonl, advice.json and of teachers
-      TEACHER.problems.jsonl, TEACHER.results.jsonl
+      distribution.json; if there are, ROBOT-uniform.searches.jsonl, ROBOT-guided.searches.jsonl, ROBOT-GUIDE.results.jsonl of
+      a guide alone (mixture, ways, retreat), advice.json and of teachers TEACHER.problems.jsonl, TEACHER.results.jsonl
   kinship-plan cell.jsonl --robot robots/models/ur10e --task weld --guidance none --output uniform.jsonl --searches uniform.trees
   kinship-plan cell.jsonl --robot robots/models/ur10e --task weld --guidance always --output guided.jsonl --searches guided.trees
   kinship distributions fetch --task weld --robot ur10e --placement "0 0 0 0 0 0 1" --json > weld.json
@@ -47,6 +47,10 @@ void add_files(CLI::App& page, PageOptions& options) {
   page.add_option("--uniform-searches", files.uniform_searches,
                   "what kinship-plan --searches wrote, without guidance");
   page.add_option("--guided-searches", files.guided_searches, "and with guidance");
+  page.add_option("--also", options.also,
+                  "NAME=FILE: results over the same problems to show beside those, e.g. of one "
+                  "guide alone; may be repeated")
+      ->take_all();
   page.add_option("--teacher", options.teachers,
                   "MODEL,PROBLEMS,RESULTS of a robot whose experience it is; may be repeated")
       ->take_all();
@@ -75,6 +79,8 @@ void add_page_command(CLI::App& app, PageOptions& options) {
 void run_page_command(PageOptions options) {
   for (const std::string& teacher : options.teachers)
     options.run.files.teachers.push_back(parse_teacher(teacher));
+  for (const std::string& also : options.also)
+    options.run.files.also.push_back(parse_also(also));
   files::OutputFile output(options.output, std::cout);
   write_page(options.run, output.stream());
   output.keep();

@@ -16,6 +16,7 @@ namespace kinship::experiments {
 struct PageOptions {
   RunLocation run;
   std::vector<std::string> teachers;  ///< "MODEL,PROBLEMS,RESULTS" each
+  std::vector<std::string> also;      ///< "NAME=FILE" each
   std::filesystem::path output;       ///< empty: standard output
 };
 

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "client/experiments/studies/instance_random.hpp"
-
 namespace kinship::experiments {
 namespace {
 
@@ -26,22 +24,8 @@ constexpr double kShelfNoise_m = 0.02;
 constexpr double kTurnNoise_rad = 3 * std::numbers::pi / 180;
 constexpr double kPickTurnNoise_rad = 8 * std::numbers::pi / 180;
 
-Eigen::Isometry3d upright(double x, double y, double z, double yaw_rad = 0) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << x, y, z;
-  T.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return T;
-}
-
 Eigen::Isometry3d noisy(double x, double y, double z, double turn_noise_rad, Noise& noise) {
-  const double dx = noise(kShelfNoise_m);
-  const double dy = noise(kShelfNoise_m);
-  return upright(x + dx, y + dy, z, noise(turn_noise_rad));
-}
-
-void add_box(Scene& scene, std::string name, const Eigen::Vector3d& size,
-             const Eigen::Isometry3d& T_task_object) {
-  scene.objects.push_back({std::move(name), BoxShape{size}, T_task_object});
+  return displaced({x, y, z}, kShelfNoise_m, turn_noise_rad, noise);
 }
 
 /// Middle of a compartment's floor at the opening, in the shelf's frame.
@@ -95,8 +79,7 @@ void add_occupants(Scene& scene, const Eigen::Isometry3d& T_task_shelf, std::siz
 
 /// The table and what stands on it besides the shelf.
 void add_table(Scene& scene, Noise& noise) {
-  constexpr double kGap = 0.002;  // the top lies a little below z = 0
-  add_box(scene, kTableName, {1.8, 1.8, 0.04}, upright(0.3, 0, -0.02 - kGap));
+  add_table_top(scene, {0.3, 0}, {1.8, 1.8});
   const Eigen::Isometry3d T_task_post = noisy(0.42, -0.16, 0.19, 0, noise);
   scene.objects.push_back({"post", CylinderShape{0.03, 0.38}, T_task_post});
   add_box(scene, "neighbour_left", {0.08, 0.08, 0.14},
@@ -111,20 +94,18 @@ BoxShape held_box() { return {{0.07, 0.05, 0.12}}; }
 
 Eigen::Isometry3d T_transfer_box() { return upright(0, 0, 0.08); }
 
-ShelfScene draw_shelf_scene(std::mt19937_64& generator) {
+StationScene draw_shelf_scene(std::mt19937_64& generator) {
   Noise noise(generator);
-  ShelfScene instance;
+  StationScene instance;
   add_table(instance.scene, noise);
   const Eigen::Isometry3d T_task_shelf = noisy(0.50, 0.20, 0, kTurnNoise_rad, noise);
   add_shelf(instance.scene, T_task_shelf);
   const std::size_t goal = generator() % kCompartments;
   add_occupants(instance.scene, T_task_shelf, goal, generator);
 
-  // The gripper looks down, its fingers close along y.
-  Eigen::Isometry3d R_down = Eigen::Isometry3d::Identity();
-  R_down.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   const double above_table = T_transfer_box().translation().z() + held_box().size.z() / 2 + 0.03;
-  instance.T_task_pick = noisy(0.36, -0.42, above_table, kPickTurnNoise_rad, noise) * R_down;
+  instance.T_task_pick =
+      noisy(0.36, -0.42, above_table, kPickTurnNoise_rad, noise) * looking_down();
 
   // It looks into the shelf: a quarter turn about y away from the pick.
   Eigen::Isometry3d R_forward = Eigen::Isometry3d::Identity();
@@ -135,6 +116,9 @@ ShelfScene draw_shelf_scene(std::mt19937_64& generator) {
   const double above_floor = held_box().size.x() / 2 + 0.05;
   instance.T_task_place =
       T_task_shelf * upright(inward, floor.y() + sideways, floor.z() + above_floor) * R_forward;
+  instance.held_name = "box";
+  instance.held = held_box();
+  instance.T_transfer_held = T_transfer_box();
   return instance;
 }
 

@@ -61,7 +61,8 @@
   byId("lead").textContent = `Predicted before anybody planned with it: the server planned the recorded queries of ${listed(sources)} again for ${listed(targets)}, ` +
     "each time with the experience of one robot alone.";
   byId("matrix-text").textContent = "A row is a robot that plans, a column the robot that it learns from. The number is how many times the collision checks of guided planning are needed " +
-    "without guidance (means): above 1 the experience saves. * is the best of a row; a dashed frame is a robot\u2019s own experience; \u2013 is not known. Point at a cell, or step through them with Tab, for its counts.";
+    "without guidance (means): above 1 the experience saves. * is the best of a row; a dashed frame is a robot\u2019s own experience; \u2013 is not known. " +
+    "No query is helped by its own answer, in a robot\u2019s own cell neither: the path that once answered it is left out. Other paths of that robot stay, also to places nearby. Point at a cell, or step through them with Tab, for its counts.";
   byId("scale").append(...steps.map((step) => make("span", {style: shading(step)}, step[1])));
   byId("scale").setAttribute("aria-label", "Colours from orange, where the experience costs, over grey to dark blue, where it saves most.");
   fillTable(byId("matrix"), [["plans \\ teaches", ...sources], ...targets.map((target) => [target, ...sources.map((source) => cellOf(target, source))])]);

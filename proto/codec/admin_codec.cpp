@@ -58,7 +58,7 @@ Result<Message<kinship_wire_AdminRequest>> encode(const Head& head, const AdminR
 Result<AdminRequest> decode(const kinship_wire_AdminRequest& wire) {
   Reader reader;
   AdminRequest request;
-  request.verb = reader.enumerator("verb", wire.verb, AdminVerb::RemoveRobot);
+  request.verb = reader.enumerator("verb", wire.verb, kLastVerb);
   request.argument = reader.text("argument", wire.argument, max_argument_bytes(request.verb));
   request.robot = reader.text("robot", wire.robot, kMaxTaskBytes);
   request.task = reader.text("task", wire.task, kMaxTaskBytes);

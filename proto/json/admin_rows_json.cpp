@@ -34,6 +34,7 @@ std::string to_json(const Explanation& explanation) {
 std::string to_json(const Retirement& retirement) { return write_fields(retirement); }
 std::string to_json(const RobotRemoval& removal) { return write_fields(removal); }
 std::string to_json(const Job& job) { return write_fields(job); }
+std::string to_json(const AuditEntry& entry) { return write_fields(entry); }
 
 std::string eviction_to_json(const Digest& distribution_id) {
   OrderedJson object;
@@ -54,6 +55,10 @@ Result<RobotRemoval> robot_removal_from_json(std::string_view text) {
 }
 
 Result<Job> job_from_json(std::string_view text) { return read_fields<Job>(text, "job"); }
+
+Result<AuditEntry> audit_entry_from_json(std::string_view text) {
+  return read_fields<AuditEntry>(text, "audit entry");
+}
 
 Result<Digest> eviction_from_json(std::string_view text) {
   return read_document(text, "eviction",

@@ -119,8 +119,10 @@ enum class AdminVerb {
   JobRows,       ///< the rows of a job that is done, page by page
   ListAttempts,  ///< rows: AttemptSummary, in the order of arrival; filters robot and task
   RenameRobot,   ///< `robot` gets the label `argument`; row: RobotSummary
-  RemoveRobot    ///< row: RobotRemoval
+  RemoveRobot,   ///< row: RobotRemoval
+  ListAudit      ///< rows: AuditEntry, the newest first; `argument`: of this name alone
 };
+inline constexpr AdminVerb kLastVerb = AdminVerb::ListAudit;
 
 struct AdminRequest {
   AdminVerb verb = AdminVerb::Status;

@@ -7,6 +7,8 @@
 #include <type_traits>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/audit.hpp"
+#include "proto/types/caller.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/mesh_solids.hpp"
 #include "proto/types/profile.hpp"
@@ -82,6 +84,18 @@ struct Words<JobState> {
   static constexpr std::string_view kWhat = "state";
   static constexpr std::array<std::string_view, 5> kWords = {"queued", "running", "done", "failed",
                                                              "cancelled"};
+};
+
+template <>
+struct Words<AccessRole> {
+  static constexpr std::string_view kWhat = "role";
+  static constexpr std::array<std::string_view, 4> kWords = {"robot", "reader", "operator",
+                                                             "admin"};
+};
+template <>
+struct Words<AuditOutcome> {
+  static constexpr std::string_view kWhat = "outcome";
+  static constexpr std::array<std::string_view, 4> kWords = {"begun", "done", "refused", "failed"};
 };
 
 /// The enumerator with the largest value.

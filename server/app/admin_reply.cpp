@@ -25,7 +25,7 @@ bool is_listing(AdminVerb verb) {
   return verb == AdminVerb::ListRobots || verb == AdminVerb::ListTasks ||
          verb == AdminVerb::ListPaths || verb == AdminVerb::ListDistributions ||
          verb == AdminVerb::ExportPaths || verb == AdminVerb::ListJobs ||
-         verb == AdminVerb::ListAttempts;
+         verb == AdminVerb::ListAttempts || verb == AdminVerb::ListAudit;
 }
 
 template <typename Value>

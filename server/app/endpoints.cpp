@@ -7,6 +7,7 @@
 
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/replier.hpp"
+#include "server/app/access_gate.hpp"
 #include "server/app/admin_reply.hpp"
 
 namespace kinship::app {
@@ -25,14 +26,16 @@ std::string request_key_of(const codec::Head& head) {
 /// exceed what one message may carry: a listing is then asked for with fewer, a single row cut.
 void administer(service::Service& service, const AdminRequest& request, const RowCursor& begin,
                 const dds::Answer<AdminConversation>& answer) {
-  service.administer(request, request_key_of(answer.head()),
-                     [=, &service](const service::AdminPage& page) {
-                       AdminReply reply = to_reply(page);
-                       if (!fits_page(reply))
-                         if (const auto smaller = for_fewer_rows(request, page.rows.size()))
-                           return administer(service, *smaller, begin, answer);
-                       answer(page_of(std::move(reply), begin));
-                     });
+  service.administer(
+      request, request_key_of(answer.head()),
+      [=, &service](const service::AdminPage& page) {
+        AdminReply reply = to_reply(page);
+        if (!fits_page(reply))
+          if (const auto smaller = for_fewer_rows(request, page.rows.size()))
+            return administer(service, *smaller, begin, answer);
+        answer(page_of(std::move(reply), begin));
+      },
+      answer.caller());
 }
 
 void administer(service::Service& service, const AdminRequest& request,
@@ -50,16 +53,16 @@ class Endpoints::Implementation {
       : register_(participant, loop,
                   [&service](RobotDescription description,
                              const dds::Answer<RegisterConversation>& answer) {
-                    service.register_robot(std::move(description), answer, answer.caller().client);
+                    app::register_robot(service, answer.caller(), std::move(description), answer);
                   }),
         report_(participant, loop,
                 [&service](ReportRequest request, const dds::Answer<ReportConversation>& answer) {
-                  service.report(std::move(request), answer, answer.caller().client);
+                  app::report(service, answer.caller(), std::move(request), answer);
                 }),
         fetch_(
             participant, loop,
             [&service](const FetchRequest& request, const dds::Answer<FetchConversation>& answer) {
-              service.fetch(request, request_key_of(answer.head()), answer);
+              app::fetch(service, answer.caller(), request, request_key_of(answer.head()), answer);
             }),
         admin_(
             participant, loop,

@@ -18,6 +18,8 @@
 namespace kinship::app {
 namespace {
 
+constexpr const char* kLoopback = "lo";
+
 constexpr const char* kDescription =
     "kinshipd: keeps the planning experience of a fleet of robots and makes it of use to others";
 
@@ -30,6 +32,7 @@ Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
+  kinshipd --interface eth0 --security /etc/kinship/security      other hosts, with certificates
   kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
@@ -134,6 +137,9 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
                  "it is heard; default: none")
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER");
+  app.add_flag("--insecure", options.insecure,
+               "Serve other hosts without --security: whoever reaches the ports may read, report "
+               "and register; what changes or removes is for this machine alone");
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
@@ -221,6 +227,15 @@ void suggest_words(const CLI::App& app, const std::vector<std::string>& words, s
 
 }  // namespace
 
+std::string insecurity_of(const ServerOptions& options) {
+  if (!options.security.empty() || options.network_interface.empty() ||
+      options.network_interface == kLoopback)
+    return {};
+  return "interface '" + options.network_interface +
+         "' is served without security: whoever reaches its ports reads every robot and path, "
+         "reports and registers under any name; what changes or removes is for this machine alone";
+}
+
 std::filesystem::path default_store() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread
@@ -287,6 +302,13 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   }
   if (is_offline)
     return offline;
+  if (const std::string insecurity = insecurity_of(options);
+      !insecurity.empty() && !options.insecure) {
+    err << "kinshipd: " << insecurity
+        << ". Make certificates ('kinshipd secure init FOLDER') and say --security FOLDER; or say "
+           "--insecure if that is what you want\n";
+    return kWrongUsage;
+  }
   return options;
 }
 

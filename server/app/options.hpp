@@ -19,6 +19,7 @@ struct ServerOptions {
   std::string network_interface;  ///< empty: loopback
   /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.
   std::filesystem::path security;
+  bool insecure = false;                ///< may serve other hosts without security
   std::size_t workers = 1;              ///< threads that transfer and fit
   std::filesystem::path backup_folder;  ///< empty: the folder of the store
   std::size_t fit_memory_mb = 2048;     ///< of all fits together, at most
@@ -55,6 +56,10 @@ using Options = std::variant<ServerOptions, OfflineOptions, int>;
 /// from the environment (KINSHIP_DOMAIN).
 /// \return the options, or an exit code after help, the configuration or a message was written.
 Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
+
+/// What serving without security means, for people; empty if nobody but this machine is served, or
+/// security says who may do what.
+std::string insecurity_of(const ServerOptions& options);
 
 /// experience.db under $XDG_STATE_HOME/kinship, or under ~/.local/state/kinship. Empty if neither
 /// variable says where that is.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -78,6 +79,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   if (!options.security.empty())  // never served as if it were not asked for
     throw Failure(ErrorCode::InvalidInput, "--security '" + options.security.string() +
                                                "': this kinshipd cannot secure a domain yet");
+  // Whatever the log leaves out.
+  if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
+    std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
   hold_termination_signals();
 
   // Before the store: who cannot join the domain, or has no port, leaves no file behind.

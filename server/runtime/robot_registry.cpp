@@ -105,15 +105,17 @@ void RobotRegistry::take_geometry(Robot better, const RobotDescription& descript
     forget(reply.robot, false);
 }
 
-Result<bool> RobotRegistry::rename_robot(const Digest& robot, const std::string& label) {
-  Result<bool> renamed = store_.rename_robot(robot, label);
+Result<bool> RobotRegistry::rename_robot(const Digest& robot, const std::string& label,
+                                         const AuditEntry* audit) {
+  Result<bool> renamed = store_.rename_robot(robot, label, audit);
   forget(robot, false);
   return renamed;
 }
 
 Result<store::RemovedRobot> RobotRegistry::remove_robot(const Digest& robot,
-                                                        const std::stop_token& stop) {
-  Result<store::RemovedRobot> removed = store_.remove_robot(robot, stop);
+                                                        const std::stop_token& stop,
+                                                        const AuditEntry* audit) {
+  Result<store::RemovedRobot> removed = store_.remove_robot(robot, stop, audit);
   forget(robot, removed && removed->removal.is_deleted);
   return removed;
 }

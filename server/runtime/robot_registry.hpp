@@ -76,10 +76,12 @@ class RobotRegistry {
   Result<RobotPointer> find(const Digest& robot);
 
   /// Gives a robot another label, durably. \return as Store::rename_robot() does.
-  Result<bool> rename_robot(const Digest& robot, const std::string& label);
+  Result<bool> rename_robot(const Digest& robot, const std::string& label,
+                            const AuditEntry* audit = nullptr);
 
   /// Takes a robot out, durably. \return as Store::remove_robot() does.
-  Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {});
+  Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {},
+                                           const AuditEntry* audit = nullptr);
 
   /// From memory only; null if it is not there.
   RobotPointer find_in_memory(const Digest& robot) const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/audit.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/failure.hpp"
@@ -34,12 +35,12 @@ struct TextLine {
 /// RobotSummary, then the RobotDescription; ShowTask a TaskSummary; ShowPath an Attempt;
 /// ShowDistribution a Distribution; ExplainDistribution an Explanation; EvictDistribution an
 /// Eviction; ExportPaths first ExportedRobots, then Attempts; RetirePath and ResetTask a
-/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; JobRows TextLines; the other
-/// verbs of jobs a Job each.
+/// Retirement; RenameRobot a RobotSummary; RemoveRobot a RobotRemoval; JobRows TextLines; ListAudit
+/// AuditEntries; the other verbs of jobs a Job each.
 using AdminRow =
     std::variant<ServerStatus, RobotSummary, RobotDescription, TaskSummary, PathSummary,
                  AttemptSummary, Attempt, DistributionSummary, Distribution, Explanation, Eviction,
-                 ExportedRobot, Retirement, RobotRemoval, Job, TextLine>;
+                 ExportedRobot, Retirement, RobotRemoval, Job, AuditEntry, TextLine>;
 
 /// An AdminReply whose rows are values still.
 struct AdminPage {

@@ -4,15 +4,18 @@
 #include <optional>
 #include <utility>
 
+#include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
 #include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
+#include "server/access/verb_rules.hpp"
 #include "server/catalog/freshness.hpp"
 #include "server/service/explain_distribution.hpp"
 #include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
 #include "server/service/find_by_name.hpp"
 #include "server/service/job_verbs.hpp"
+#include "server/service/narrowing.hpp"
 
 namespace kinship::service {
 namespace {
@@ -42,9 +45,30 @@ std::string describe(const RobotRemoval& removal) {
 
 }  // namespace
 
-AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key) {
+AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key,
+                                 const Caller& caller) {
+  const AuditEntry audit = audit_entry(caller, request);
+  AdminPage page = attempt(request, request_key, caller, audit);
+  if (access::rule_of(request.verb).is_change)
+    trail_.not_done(audit, page);
+  return page;
+}
+
+AdminPage Administration::refuse(const AdminRequest& request, const Caller& caller,
+                                 const Error& refusal) {
+  AdminPage page = page_of(refusal);
+  trail_.not_done(audit_entry(caller, request), page);
+  return page;
+}
+
+AdminPage Administration::attempt(const AdminRequest& request, const std::string& request_key,
+                                  const Caller& caller, const AuditEntry& audit) {
   try {
-    return dispatch(request, request_key);
+    const Narrowing narrowing(parts_.store, caller);
+    narrowing.check(request);
+    AdminPage page = dispatch(request, request_key, audit);
+    narrowing.apply(page);
+    return page;
   } catch (const Failure& failure) {
     return page_of(failure.error());
   } catch (const std::exception& exception) {
@@ -52,7 +76,8 @@ AdminPage Administration::answer(const AdminRequest& request, const std::string&
   }
 }
 
-AdminPage Administration::dispatch(const AdminRequest& request, const std::string& request_key) {
+AdminPage Administration::dispatch(const AdminRequest& request, const std::string& request_key,
+                                   const AuditEntry& audit) {
   if (std::optional<Job> begun = parts_.jobs.begun_by(request_key))
     return page_of(std::move(*begun));
   switch (request.verb) {
@@ -78,33 +103,33 @@ AdminPage Administration::dispatch(const AdminRequest& request, const std::strin
     case AdminVerb::ExplainDistribution:
       return explain(request.argument);
     case AdminVerb::ExportConfigurations:
-      return export_configurations(request.argument, request_key);
+      return export_configurations(request.argument, request_key, audit);
     case AdminVerb::EvictDistribution:
-      return evict_distribution(request.argument);
+      return evict_distribution(request.argument, audit);
     case AdminVerb::ExportPaths:
       return export_paths(request);
     case AdminVerb::RetirePath:
-      return retire_path(request.argument);
+      return retire_path(request.argument, audit);
     case AdminVerb::ResetTask:
-      return reset_task(request.argument);
+      return reset_task(request.argument, audit);
     case AdminVerb::RenameRobot:
-      return rename_robot(request);
+      return rename_robot(request, audit);
     case AdminVerb::RemoveRobot:
-      return remove_robot(request.argument);
+      return remove_robot(request.argument, audit);
     case AdminVerb::Backup:
-      return begin(backup_job(parts_.store, request.argument, parts_.backups, request_key));
+      return back_up(request.argument, request_key, audit);
     case AdminVerb::ListJobs:
       return list_jobs(parts_.jobs, request);
     case AdminVerb::ShowJob:
       return page_of(parts_.jobs.find(request.argument));
     case AdminVerb::CancelJob:
-      return page_of(parts_.jobs.cancel(request.argument));
+      return cancel_job(request.argument, audit);
     case AdminVerb::JobRows:
       return job_rows(parts_.jobs, request);
     case AdminVerb::ListAttempts:
       return list_attempts(request);
-    default:
-      break;
+    case AdminVerb::ListAudit:
+      return page_of(parts_.store.list_audit(request.argument, request.cursor, page_size(request)));
   }
   return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
 }
@@ -183,17 +208,18 @@ AdminPage Administration::explain(const std::string& prefix) {
 }
 
 AdminPage Administration::export_configurations(const std::string& prefix,
-                                                const std::string& request_key) {
+                                                const std::string& request_key,
+                                                const AuditEntry& audit) {
   const fitting::FitContext context{.store = parts_.store,
                                     .robots = parts_.robots,
                                     .clock = parts_.clock,
                                     .memory = parts_.memory};
-  return begin(export_configurations_job(context, find_distribution(prefix), request_key));
+  return begin(export_configurations_job(context, find_distribution(prefix), request_key), audit);
 }
 
-AdminPage Administration::evict_distribution(const std::string& prefix) {
+AdminPage Administration::evict_distribution(const std::string& prefix, const AuditEntry& audit) {
   const Digest id = find_distribution_id(parts_.store, prefix).value_or_throw();
-  const bool was_there = parts_.store.evict_distribution(id);
+  const bool was_there = parts_.store.evict_distribution(id, &audit);
   // One that could not be stored is in memory only.
   parts_.forget_distribution(id);
   if (!was_there)
@@ -208,10 +234,10 @@ AdminPage Administration::export_paths(const AdminRequest& request) {
   return service::export_paths(parts_.store, robot, request);
 }
 
-AdminPage Administration::retire_path(const std::string& uuid) {
+AdminPage Administration::retire_path(const std::string& uuid, const AuditEntry& audit) {
   const Uuid report = report_of(uuid);
   try {
-    return retired(parts_.store.retire_path(report), "path " + uuid);
+    return retired(parts_.store.retire_path(report, &audit), "path " + uuid);
   } catch (const std::exception&) {  // it may be retired all the same
     if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
       parts_.forget_task(attempt->task);
@@ -219,10 +245,10 @@ AdminPage Administration::retire_path(const std::string& uuid) {
   }
 }
 
-AdminPage Administration::reset_task(const std::string& task) {
+AdminPage Administration::reset_task(const std::string& task, const AuditEntry& audit) {
   Result<Retirement> retirement = Error{};
   try {
-    retirement = parts_.store.reset_task(task, parts_.stop);
+    retirement = parts_.store.reset_task(task, parts_.stop, &audit);
   } catch (const std::exception&) {  // some of its paths may be retired
     parts_.forget_task(task);
     throw;
@@ -241,10 +267,10 @@ AdminPage Administration::retired(Result<Retirement> retirement, const std::stri
   return page_of(std::move(retirement).value());
 }
 
-AdminPage Administration::rename_robot(const AdminRequest& request) {
+AdminPage Administration::rename_robot(const AdminRequest& request, const AuditEntry& audit) {
   RobotSummary robot = find_robot(parts_.store, request.robot).value_or_throw();
   const std::string before = std::exchange(robot.label, request.argument);
-  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label).value_or_throw());
+  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label, &audit).value_or_throw());
   name_solver(robot);
   if (before != robot.label)
     parts_.on_change({}, "robot '" + before + "' (" + robot.robot.short_hex() + ") is called '" +
@@ -252,11 +278,11 @@ AdminPage Administration::rename_robot(const AdminRequest& request) {
   return page_of(std::move(robot));
 }
 
-AdminPage Administration::remove_robot(const std::string& name) {
+AdminPage Administration::remove_robot(const std::string& name, const AuditEntry& audit) {
   const RobotSummary robot = find_robot(parts_.store, name).value_or_throw();
   Result<store::RemovedRobot> removed = Error{};
   try {
-    removed = parts_.robots.remove_robot(robot.robot, parts_.stop);
+    removed = parts_.robots.remove_robot(robot.robot, parts_.stop, &audit);
   } catch (const std::exception&) {  // some of its paths may be retired
     forget_tasks_of(robot.robot);
     throw;
@@ -287,10 +313,28 @@ void Administration::forget_tasks_of(const Digest& robot) {
   } while (!cursor.empty());
 }
 
-AdminPage Administration::begin(Result<Jobs::Task> task) {
-  if (!task)
-    return page_of(task.error());
-  return page_of(parts_.jobs.begin(std::move(task).value()));
+AdminPage Administration::back_up(const std::string& file, const std::string& request_key,
+                                  const AuditEntry& audit) {
+  Jobs::Task task = backup_job(parts_.store, file, parts_.backups, request_key).value_or_throw();
+  trail_.begin(audit, "");
+  task.run = trail_.ending(audit, std::move(task.run));
+  return begin(std::move(task), audit);
+}
+
+AdminPage Administration::cancel_job(const std::string& id, const AuditEntry& audit) {
+  const Job job = parts_.jobs.find(id).value_or_throw();
+  const std::string before = job.verb + " " + job.argument + ": " + std::string(to_text(job.state));
+  trail_.begin(audit, before);
+  Result<Job> cancelled = parts_.jobs.cancel(id);
+  if (cancelled)
+    trail_.end(audit, before, "told to end: " + std::string(to_text(cancelled->state)));
+  return page_of(std::move(cancelled));
+}
+
+AdminPage Administration::begin(Result<Jobs::Task> task, const AuditEntry& audit) {
+  Jobs::Task begun = std::move(task).value_or_throw();
+  begun.owner = audit.client;
+  return page_of(parts_.jobs.begin(std::move(begun)));
 }
 
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {

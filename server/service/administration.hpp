@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "proto/types/audit.hpp"
+#include "proto/types/caller.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/result.hpp"
 #include "proto/types/summaries.hpp"
@@ -14,6 +16,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/admin_page.hpp"
+#include "server/service/audit_trail.hpp"
 #include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
 #include "server/store/store.hpp"
@@ -55,16 +58,25 @@ class Administration {
         [](const std::string&, const std::string&) {};
   };
 
-  explicit Administration(Parts parts) : parts_(std::move(parts)) {}
+  explicit Administration(Parts parts)
+      : parts_(std::move(parts)), trail_(parts_.store, parts_.clock) {}
 
   /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
   /// \param request_key  the request's name: sent again, as after a lost reply, it begins no second
   /// job.
   ///               Empty: it is never sent again.
-  AdminPage answer(const AdminRequest& request, const std::string& request_key = {});
+  /// \param caller  its role was looked at before (server/access); what it is narrowed to is here.
+  AdminPage answer(const AdminRequest& request, const std::string& request_key = {},
+                   const Caller& caller = {});
+
+  /// Keeps in the audit log that a change was refused. \return the page that says so.
+  AdminPage refuse(const AdminRequest& request, const Caller& caller, const Error& refusal);
 
  private:
-  AdminPage dispatch(const AdminRequest& request, const std::string& request_key);
+  AdminPage attempt(const AdminRequest& request, const std::string& request_key,
+                    const Caller& caller, const AuditEntry& audit);
+  AdminPage dispatch(const AdminRequest& request, const std::string& request_key,
+                     const AuditEntry& audit);
   AdminPage list_robots(const AdminRequest& request);
   AdminPage list_paths(const AdminRequest& request);
   AdminPage list_attempts(const AdminRequest& request);
@@ -74,14 +86,18 @@ class Administration {
   AdminPage show_path(const std::string& uuid);
   AdminPage show_distribution(const std::string& prefix);
   AdminPage explain(const std::string& prefix);
-  AdminPage export_configurations(const std::string& prefix, const std::string& request_key);
-  AdminPage evict_distribution(const std::string& prefix);
+  AdminPage export_configurations(const std::string& prefix, const std::string& request_key,
+                                  const AuditEntry& audit);
+  AdminPage evict_distribution(const std::string& prefix, const AuditEntry& audit);
   AdminPage export_paths(const AdminRequest& request);
-  AdminPage retire_path(const std::string& uuid);
-  AdminPage reset_task(const std::string& task);
-  AdminPage rename_robot(const AdminRequest& request);
-  AdminPage remove_robot(const std::string& name);
-  AdminPage begin(Result<Jobs::Task> task);
+  AdminPage retire_path(const std::string& uuid, const AuditEntry& audit);
+  AdminPage reset_task(const std::string& task, const AuditEntry& audit);
+  AdminPage rename_robot(const AdminRequest& request, const AuditEntry& audit);
+  AdminPage remove_robot(const std::string& name, const AuditEntry& audit);
+  AdminPage back_up(const std::string& file, const std::string& request_key,
+                    const AuditEntry& audit);
+  AdminPage cancel_job(const std::string& id, const AuditEntry& audit);
+  AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
 
   std::optional<Digest> robot_filter(const AdminRequest& request) const;
   void check_task_filter(const AdminRequest& request) const;
@@ -91,6 +107,7 @@ class Administration {
   AdminPage retired(Result<Retirement> retirement, const std::string& what);
 
   const Parts parts_;
+  AuditTrail trail_;
 };
 
 }  // namespace kinship::service

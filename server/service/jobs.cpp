@@ -169,6 +169,12 @@ Result<Job> Jobs::find(const std::string& id) const {
   return entry->now();
 }
 
+std::optional<std::string> Jobs::owner_of(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const EntryPointer entry = find_entry(id);
+  return entry ? std::optional<std::string>(entry->task.owner) : std::nullopt;
+}
+
 std::size_t Jobs::active() const {
   const std::lock_guard lock(mutex_);
   return count(JobState::Queued) + count(JobState::Running);

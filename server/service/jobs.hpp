@@ -67,6 +67,7 @@ class Jobs {
     /// The request that asks for it. Sent again, as after a lost reply, it begins no second job;
     /// empty: it is never sent again.
     std::string request_key;
+    std::string owner = {};  ///< the client that begins it (Caller::client)
     /// \return false if it ended early because it should stop. What it throws makes it Failed.
     std::function<bool(JobRun&)> run;
   };
@@ -82,7 +83,8 @@ class Jobs {
   std::optional<Job> begun_by(const std::string& request_key) const;
   std::vector<Job> list() const;                  ///< in the order in which they were begun
   Result<Job> find(const std::string& id) const;  ///< NotFound
-  std::size_t active() const;                     ///< not ended
+  std::optional<std::string> owner_of(const std::string& id) const;
+  std::size_t active() const;  ///< not ended
 
   /// A queued job ends at once and frees its place, a running one soon. One that finishes before
   /// it notices is Done. Ended ones stay as they are. \return the job as it stands; NotFound.

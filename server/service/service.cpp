@@ -289,33 +289,6 @@ void Service::fetch(const FetchRequest& request, const std::string& waiter,
   watch->set_asked();
 }
 
-void Service::administer(AdminRequest request, const std::string& request_key,
-                         const std::function<void(const AdminPage&)>& done) {
-  // From memory, and on the thread that then asks for the next deadline.
-  if (request.verb == AdminVerb::ShowJob)
-    return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
-                      [done](const Result<Job>& job) { done(page_of(job)); });
-  // These may take long, and nobody else's request waits for them.
-  const bool is_long =
-      request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot;
-  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
-  auto run = [this, request = std::move(request), request_key, done] {
-    const AdminPage page = administration_.answer(request, request_key);
-    count_admin(page);
-    done(page);
-  };
-  const auto decline = [this, done] {
-    AdminPage page;
-    page.message = "the server is busy or stopping";
-    count_admin(page);
-    done(page);
-  };
-  if (!pool.submit(Priority::Interactive, {.run = std::move(run),
-                                           .abandon = decline,
-                                           .client = std::string(catalog::client_of(request_key))}))
-    decline();
-}
-
 std::optional<catalog::Catalog::TimePoint> Service::next_deadline() const {
   const std::optional<catalog::Catalog::TimePoint> fetch = catalog_.next_deadline();
   std::optional<catalog::Catalog::TimePoint> next = fetch;

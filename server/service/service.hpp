@@ -3,13 +3,16 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
 
+#include "proto/types/caller.hpp"
 #include "proto/types/conversations.hpp"
 #include "server/catalog/advice_book.hpp"
 #include "server/catalog/catalog.hpp"
@@ -82,8 +85,20 @@ class Service {
   /// \param waiter  who asks; see Catalog::fetch.
   void fetch(const FetchRequest& request, const std::string& waiter, catalog::FetchDone done);
   /// \param request_key  the request's name; see Administration::answer.
+  /// \param caller  who asks: what it may not (server/access) is refused before anything is done.
   void administer(AdminRequest request, const std::string& request_key,
-                  const std::function<void(const AdminPage&)>& done);
+                  const std::function<void(const AdminPage&)>& done, const Caller& caller = {});
+
+  /// The labels of registered robots; those of others are missing, an error is of the store.
+  /// `done` is called at most once; not if the server is busy or stopping.
+  using RobotLabels = std::map<Digest, Result<std::string>>;
+  void name_robots(const std::set<Digest>& robots, std::function<void(const RobotLabels&)> done,
+                   const std::string& client);
+
+  /// Answers, and counts, what is refused before it is asked of the service.
+  void refuse_registration(const std::string& label, const std::string& why,
+                           const std::function<void(const RegisterReply&)>& done);
+  void refuse_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
   /// For the loop that waits: when to call expire(), and with what time.
   std::optional<catalog::Catalog::TimePoint> next_deadline() const;
@@ -110,6 +125,7 @@ class Service {
   void begin_epoch(const HistoryMark& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
+  std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   RegisterReply registered(const RobotDescription& description);
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);

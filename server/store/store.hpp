@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/types/attempt.hpp"
+#include "proto/types/audit.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/result.hpp"
@@ -128,6 +129,11 @@ struct Page {
 
 /// Keeps robots, attempts, paths and distributions. Every method may be called from any thread.
 /// Reads see committed data only. Unless said otherwise methods throw Failure(Storage).
+///
+/// What administrators ask for takes an `audit`: who asks for what. The store keeps it in the audit
+/// log, with what was before and is after, in the transaction of the change; where there are
+/// several, the first says Begun and the last Done. What is not done leaves no entry. Null: none is
+/// kept.
 class Store {
  public:
   virtual ~Store() = default;
@@ -157,7 +163,8 @@ class Store {
   /// that registers it under the old one is answered Known.
   /// \return NotFound for an unknown robot; Conflict if another robot has the label; InvalidInput
   ///         for what is no label.
-  virtual Result<bool> rename_robot(const Digest& robot, const std::string& label) = 0;
+  virtual Result<bool> rename_robot(const Digest& robot, const std::string& label,
+                                    const AuditEntry* audit = nullptr) = 0;
   /// Takes a robot out, durable on return: its label is free, it is neither found nor listed, its
   /// distributions are gone and its paths retired. One without attempts is deleted. Of another its
   /// attempts, paths and UUIDs stay for the record; registered again it is Registered, gets the
@@ -168,8 +175,8 @@ class Store {
   /// paths.
   /// \param stop  looked at between them.
   /// \return NotFound for an unknown robot; Unavailable if it was stopped.
-  virtual Result<RemovedRobot> remove_robot(const Digest& robot,
-                                            const std::stop_token& stop = {}) = 0;
+  virtual Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {},
+                                            const AuditEntry* audit = nullptr) = 0;
   /// Of robots whose geometry was ever taken over anew.
   virtual std::map<Digest, std::uint64_t> geometry_revisions() const = 0;
   virtual std::optional<RobotRecord> find_robot(const Digest& robot) const = 0;
@@ -223,9 +230,10 @@ class Store {
   /// \return what was retired; NotFound for an unknown report or task; InvalidInput for a report
   ///         that brought no path; Unavailable, with what was retired until then, for a reset that
   ///         was stopped.
-  virtual Result<Retirement> retire_path(const Uuid& report_uuid) = 0;
-  virtual Result<Retirement> reset_task(std::string_view task,
-                                        const std::stop_token& stop = {}) = 0;
+  virtual Result<Retirement> retire_path(const Uuid& report_uuid,
+                                         const AuditEntry* audit = nullptr) = 0;
+  virtual Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop = {},
+                                        const AuditEntry* audit = nullptr) = 0;
 
   virtual AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const = 0;
 
@@ -241,7 +249,11 @@ class Store {
   virtual void note_use(const Digest& id) const = 0;
   /// Forgets the mixture of a distribution, durable on return; its next fit gets the next revision.
   /// \return whether it was there.
-  virtual bool evict_distribution(const Digest& id) = 0;
+  virtual bool evict_distribution(const Digest& id, const AuditEntry* audit = nullptr) = 0;
+
+  /// Adds an entry of now to the audit log, durable on return; its number is given here. Nothing
+  /// changes or removes it.
+  virtual void add_audit(const AuditEntry& entry) = 0;
 
   /// Listings: at most `limit` rows after `cursor`, which is empty for the first page. What comes
   /// or goes between two pages neither repeats nor hides other rows. `solver` of a robot is left
@@ -270,6 +282,10 @@ class Store {
                                                        std::string_view task,
                                                        std::string_view cursor,
                                                        std::size_t limit) const = 0;
+
+  /// The audit log, the newest first. Empty name: of all.
+  virtual Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
+                                      std::size_t limit) const = 0;
 
   /// Copies the store as of one instant into a new file, while reports go on. A file that is not
   /// complete never has that name.

@@ -54,6 +54,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string geometry = "robots/geometry";
   const std::string collision = "robots/collision";
   const std::string planning = "robots/planning";
+  const std::string access = "server/access";
   const std::string metrics = "server/metrics";
   const std::string store = "server/store";
   const std::string transfer = "server/transfer";
@@ -93,6 +94,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {geometry, {{kinematics, types}, {"Eigen", "urdfdom", "assimp", "tinyxml2"}}},
       {collision, {{geometry, kinematics, types}, {"Eigen", "FCL", "OctoMap"}}},
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
+      {access, {{types}, {}}},
       {metrics, {{}, {}}},
       {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
@@ -104,10 +106,11 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
       {service,
-       {{rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence, types},
+       {{access, rehearsal, catalog, fitting, runtime, store, metrics, density, inverse, evidence,
+         types},
         {"Eigen"}}},
       {"server/app",
-       {{service, metrics, security, dds, codec, json, manual, types, store},
+       {{service, access, metrics, security, dds, codec, json, manual, types, store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},

@@ -192,6 +192,24 @@ Job every_job() {
   return job;
 }
 
+AuditEntry every_audit_entry() {
+  Distinct next(1650);
+  AuditEntry entry;
+  entry.number = next.count();
+  entry.time_ms = next.time_ms();
+  entry.name = next.name("name");
+  entry.role = next.name("role");
+  entry.client = next.text("client");
+  entry.is_local = false;
+  entry.verb = next.name("verb");
+  entry.target = next.text("target");
+  entry.outcome = AuditOutcome::Refused;
+  entry.before = next.text("before");
+  entry.after = next.text("after");
+  entry.message = next.text("message");
+  return entry;
+}
+
 ServerStatus every_status() {
   Distinct next(1600);
   ServerStatus status;

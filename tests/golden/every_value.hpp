@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/audit.hpp"
 #include "proto/types/conversations.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/publications.hpp"
@@ -77,6 +78,7 @@ Explanation every_explanation();
 Retirement every_retirement();
 RobotRemoval every_robot_removal();
 Job every_job();
+AuditEntry every_audit_entry();
 ServerStatus every_status();
 StoreCheck every_store_check();
 

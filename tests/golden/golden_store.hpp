@@ -65,6 +65,20 @@ inline MeshSolids golden_mesh_solids() {
           {{"arm", "hand"}}};
 }
 
+/// Kept in stores of schema 6 and later, after the entries of the retirement and the eviction.
+inline AuditEntry golden_audit_entry() {
+  AuditEntry entry;
+  entry.name = "anna";
+  entry.role = "operator";
+  entry.client = "anna";
+  entry.is_local = false;
+  entry.verb = "reset_task";
+  entry.target = "shelf";
+  entry.outcome = AuditOutcome::Refused;
+  entry.message = "anna (role reader) may not reset tasks: needs role operator";
+  return entry;
+}
+
 /// Evicted after one fit in stores of schema 2 and later.
 inline Distribution golden_evicted_distribution() {
   return make_distribution(golden_robots()[1].digest, "bin", 101);

@@ -12,8 +12,8 @@ namespace kinship::golden_store_test {
 namespace {
 
 // Of schema 1, 2 ...
-constexpr std::array<std::uint64_t, 5> kAttempts = {8, 9, 11, 11, 16};
-constexpr std::array<std::uint64_t, 5> kPaths = {7, 7, 9, 9, 11};
+constexpr std::array<std::uint64_t, 6> kAttempts = {8, 9, 11, 11, 16, 16};
+constexpr std::array<std::uint64_t, 6> kPaths = {7, 7, 9, 9, 11, 11};
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -161,6 +161,22 @@ TEST_P(GoldenStore, StillKnowsTheSolidsAroundItsMeshes) {
   EXPECT_EQ(found.unfiltered, wanted.unfiltered);
 }
 
+TEST_P(GoldenStore, StillHasItsAuditLogAndTakesEntries) {
+  const AuditEntry wanted = test::golden_audit_entry();
+  const std::vector<AuditEntry> log = store_->list_audit("anna", "", 10).rows;
+  ASSERT_EQ(log.size(), GetParam() < 6 ? 0U : 3U);
+  if (!log.empty()) {
+    EXPECT_EQ(log[0].message, wanted.message);
+    EXPECT_EQ(log[0].outcome, AuditOutcome::Refused);
+    EXPECT_FALSE(log[0].is_local);
+    EXPECT_EQ(log[1].after, "gone");
+    EXPECT_EQ(log[2].before, "task 'drawer': 1 path");
+    EXPECT_GT(log[2].time_ms, 1'790'000'000'000);
+  }
+  store_->add_audit(wanted);
+  EXPECT_EQ(store_->list_audit("", "", 10).rows.at(0).message, wanted.message);
+}
+
 TEST_P(GoldenStore, TakesASceneWithItsReport) {
   Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1001);
   fresh.scene = test::golden_attempts_with_scene()[0].scene;
@@ -175,7 +191,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5, 6));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

@@ -88,6 +88,7 @@ std::vector<Case> cases() {
       readable("retirement", every_retirement(), retirement_from_json),
       readable("robot_removal", every_robot_removal(), robot_removal_from_json),
       readable("job", every_job(), job_from_json),
+      readable("audit_entry", every_audit_entry(), audit_entry_from_json),
       {"eviction", eviction_to_json(every_distribution().id), eviction_again},
       readable("problem", every_problem(), problem_from_json),
       readable("problem_to_pose", every_pose_problem(), problem_from_json, false),

@@ -19,6 +19,7 @@ int make(const std::filesystem::path& file) {
   }
   {
     const std::unique_ptr<store::Store> store = store::open_sqlite_store(file);
+    const AuditEntry audit = test::golden_audit_entry();
     for (const store::RobotRecord& robot : test::golden_robots())
       static_cast<void>(store->register_robot(robot).value_or_throw());
     test::report(*store, test::golden_attempts());
@@ -27,9 +28,10 @@ int make(const std::filesystem::path& file) {
     store->put_distribution(test::golden_distribution());
     test::report(*store, {test::golden_retired_attempt()});
     static_cast<void>(
-        store->retire_path(test::golden_retired_attempt().report_uuid).value_or_throw());
+        store->retire_path(test::golden_retired_attempt().report_uuid, &audit).value_or_throw());
     store->put_distribution(test::golden_evicted_distribution());
-    store->evict_distribution(test::golden_evicted_distribution().id);
+    store->evict_distribution(test::golden_evicted_distribution().id, &audit);
+    store->add_audit(audit);
     store::RobotRecord robot = test::golden_robots()[0];
     robot.description.mesh_solids = test::golden_mesh_solids();
     ++robot.geometry_revision;

@@ -55,7 +55,19 @@ class Page(unittest.TestCase):
         page = [[cell.text for cell in row.find_elements("css selector", "th, td") if cell.text]
                 for row in self.browser.elements("#comparison tbody tr")]
         self.assertEqual(page, terminal)
-        self.assertIn(page[1][3], self.browser.text("#tiles"), "the ratio of the means")
+        tiles = self.browser.text("#tiles")
+        for row in (page[1], page[3]):
+            self.assertIn(row[0].removesuffix(", mean").split()[-1], tiles)
+            self.assertIn(f"uniform {row[1]}, guided {row[2]}", tiles.replace("\u202f", " "))
+        self.assertIn("ms of a processor", self.browser.element("#time-bars").get_attribute("innerHTML"))
+
+    def test_says_what_each_guide_alone_would_bring_as_the_terminal_does(self):
+        lines = (self.folder / "comparison.txt").read_text().splitlines()
+        alone = [re.split(r" {2,}", line.strip()) for line in lines if " alone " in line]
+        self.assertEqual([row[0] for row in alone], ["mixture alone", "ways alone", "retreat alone"])
+        page = [[cell.text for cell in row.find_elements("css selector", "th, td")]
+                for row in self.browser.elements("#alone-table tbody tr")]
+        self.assertEqual(page, alone)
 
     def test_nothing_is_cropped_from_a_phone_to_a_wide_screen(self):
         for width, height in ((360, 700), (2200, 1200)):

@@ -21,7 +21,7 @@ inline std::filesystem::path memory_root() {
   const std::filesystem::path memory = "/dev/shm";
   std::error_code error;
   const std::filesystem::space_info space = std::filesystem::space(memory, error);
-  const bool has_room = !error && space.available >= kRoom && access(memory.c_str(), W_OK) == 0;
+  const bool has_room = !error && space.available >= kRoom && ::access(memory.c_str(), W_OK) == 0;
   return has_room && !std::getenv("TMPDIR") ? memory : disk_root();
 }
 

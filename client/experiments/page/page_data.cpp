@@ -100,12 +100,20 @@ DrawnSamples draw_samples(const models::LoadedRobot& robot, const Problem& probl
   return drawn;
 }
 
-std::vector<double> checks_of(const std::vector<ProblemResult>& results) {
-  std::vector<double> checks;
+double checks_of(const ProblemResult& result) {
+  return static_cast<double>(result.collision_checks);
+}
+
+double time_s_of(const ProblemResult& result) { return result.planning_time_s; }
+
+/// Of what was planned.
+MeanInterval interval_of(const std::vector<ProblemResult>& results,
+                         double (*figure)(const ProblemResult&)) {
+  std::vector<double> figures;
   for (const ProblemResult& result : results)
     if (!result.not_planned)
-      checks.push_back(static_cast<double>(result.collision_checks));
-  return checks;
+      figures.push_back(figure(result));
+  return mean_interval(figures);
 }
 
 const ProblemResult& named(const std::vector<ProblemResult>& results, const std::string& name) {
@@ -153,8 +161,11 @@ PageData read_run(const RunFiles& run) {
     throw Failure(comparison.error().code, run.uniform.string() + " and " + run.guided.string() +
                                                ": " + comparison.error().message);
   data.comparison = *std::move(comparison);
-  data.uniform_checks = mean_interval(checks_of(uniform));
-  data.guided_checks = mean_interval(checks_of(guided));
+  data.also = compare_also(uniform, run.also);
+  data.uniform_checks = interval_of(uniform, checks_of);
+  data.guided_checks = interval_of(guided, checks_of);
+  data.uniform_time_s = interval_of(uniform, time_s_of);
+  data.guided_time_s = interval_of(guided, time_s_of);
   data.distribution = read_distribution(run.distribution);
   if (!run.advice.empty())
     data.advice = read_distribution(run.advice).advice;

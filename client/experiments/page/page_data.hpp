@@ -38,9 +38,11 @@ struct PageData {
   Distribution distribution;
   std::optional<Advice> advice;  ///< what the server makes of the new robot's attempts
   Comparison comparison;
+  std::vector<AlsoCompared> also;              ///< may be empty
   MeanInterval uniform_checks, guided_checks;  ///< means with 95 % intervals
-  std::map<Guide, std::size_t> guides;         ///< of the guided attempts, how many had each
-  std::size_t cheaper_guided = 0;              ///< instances that took fewer checks with guidance
+  MeanInterval uniform_time_s, guided_time_s;
+  std::map<Guide, std::size_t> guides;  ///< of the guided attempts, how many had each
+  std::size_t cheaper_guided = 0;       ///< instances that took fewer checks with guidance
   /// The instance that is shown: a typical one, or the first problem where none was solved by both.
   std::optional<TypicalInstance> typical;
   std::vector<SceneObject> obstacles;     ///< of it

@@ -109,8 +109,14 @@ std::string json_of(const MeanInterval& interval) {
 
 std::string json_of(const Comparison& comparison) {
   std::ostringstream text;
-  write_json(comparison, text);
+  write_json(comparison, {}, text);
   return text.str();
+}
+
+std::string json_of(const AlsoRow& row) {
+  return list(std::vector<std::string>{row.name, row.solved, row.checks, row.checks_ratio, row.time,
+                                       row.time_ratio},
+              json_string);
 }
 
 std::string guide_count(const std::pair<const Guide, std::size_t>& each) {
@@ -140,11 +146,14 @@ std::string to_json(const PageData& data) {
          ",\n\"newcomer\":" + or_null(data.newcomer) + ",\n\"searches\":" + or_null(data.searches) +
          ",\n\"samples\":" + json_of(data.samples) +
          ",\n\"comparison\":" + json_of(data.comparison) +
-         ",\"table\":" + table_of(data.comparison) +
+         ",\"table\":" + table_of(data.comparison) + ",\n\"also\":" +
+         list(also_rows(data.also), [](const AlsoRow& row) { return json_of(row); }) +
          ",\n\"guides\":" + list(data.guides, guide_count) +
          ",\n\"cheaper_guided\":" + std::to_string(data.cheaper_guided) +
          ",\n\"uniform_checks\":" + json_of(data.uniform_checks) +
-         ",\"guided_checks\":" + json_of(data.guided_checks) + "}";
+         ",\"guided_checks\":" + json_of(data.guided_checks) +
+         ",\"uniform_time_s\":" + json_of(data.uniform_time_s) +
+         ",\"guided_time_s\":" + json_of(data.guided_time_s) + "}";
 }
 
 }  // namespace kinship::experiments

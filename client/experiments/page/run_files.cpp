@@ -99,6 +99,17 @@ std::vector<TeacherFiles> find_teachers(const RunLocation& options, const Folder
   return teachers;
 }
 
+/// Of one guide alone, in the order in which a page tells them.
+std::vector<AlsoFile> find_alone(const Folder& folder, const std::string& robot) {
+  std::vector<AlsoFile> alone;
+  for (const char* const guide : {"mixture", "ways", "retreat"}) {
+    const fs::path file = folder.find(robot + "-" + guide + std::string(kResults));
+    if (!file.empty())
+      alone.push_back({std::string(guide) + " alone", file});
+  }
+  return alone;
+}
+
 /// A file without which there is no page.
 struct Needed {
   const fs::path& file;
@@ -130,6 +141,9 @@ void require(const RunFiles& files, const fs::path& folder) {
   for (const fs::path& file : {files.advice, files.uniform_searches, files.guided_searches})
     if (!file.empty() && !fs::exists(file))
       missing << "\n  there is no '" << file.string() << "'";
+  for (const AlsoFile& also : files.also)
+    if (!fs::exists(also.results))
+      missing << "\n  of '" << also.name << "': there is no '" << also.results.string() << "'";
   if (!missing.str().empty())
     throw Failure(ErrorCode::NotFound, "this run lacks what a page tells of:" + missing.str());
 }
@@ -146,6 +160,8 @@ RunFiles find_run(const RunLocation& options) {
     fill_in(files.guided, folder.find(robot + named_file(kGuided, kResults)));
     fill_in(files.uniform_searches, folder.find(robot + named_file(kUniform, kSearches)));
     fill_in(files.guided_searches, folder.find(robot + named_file(kGuided, kSearches)));
+    if (files.also.empty())
+      files.also = find_alone(folder, robot);
     if (!options.models.empty())
       fill_in(files.robot.source, options.models / robot);
   }
@@ -169,6 +185,13 @@ TeacherFiles parse_teacher(const std::string& text) {
   teacher.problems = parts[1];
   teacher.results = parts[2];
   return teacher;
+}
+
+AlsoFile parse_also(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw Failure(ErrorCode::InvalidInput, "--also '" + text + "' is not NAME=FILE");
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 }  // namespace kinship::experiments

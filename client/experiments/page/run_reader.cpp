@@ -1,7 +1,9 @@
 #include "client/experiments/page/run_reader.hpp"
 
 #include <iterator>
+#include <utility>
 
+#include "client/experiments/result_file.hpp"
 #include "client/files/lines.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
@@ -54,6 +56,18 @@ Distribution read_distribution(const std::filesystem::path& file) {
   if (!distribution->mixture)
     throw Failure(ErrorCode::InvalidInput, file.string() + ": the distribution has no mixture");
   return *std::move(distribution);
+}
+
+std::vector<AlsoCompared> compare_also(const std::vector<ProblemResult>& uniform,
+                                       const std::vector<AlsoFile>& also) {
+  std::vector<AlsoCompared> compared;
+  for (const auto& [name, results] : also) {
+    Result<Comparison> comparison = compare(uniform, read_results(results));
+    if (!comparison)
+      throw Failure(comparison.error().code, results.string() + ": " + comparison.error().message);
+    compared.push_back({name, *std::move(comparison)});
+  }
+  return compared;
 }
 
 std::map<std::string, RecordedSearch> read_searches(const std::filesystem::path& file) {

@@ -7,7 +7,7 @@
   const names = listed(fleet.map((robot) => robot.label));
   const taught = names || listed(distribution.sources.map((source) => source.label)) || "A fleet";
   const paths = total(fleet.map((robot) => robot.paths.length));
-  const ratio = comparison.ratio.mean_checks;
+  const ratio = comparison.ratio.mean_checks, timeRatio = comparison.ratio.mean_time;
   const instances = comparison.pairs;
 
   /// A probability for who reads no p-values: "once in about 28 000 such runs".
@@ -27,6 +27,26 @@
     return `Three things can guide a query: ${listed(Object.values(words))}. By planning recorded queries again the server found what costs ` +
       `this robot the fewest checks; here that was ` +
       data.guides.map(({guide, queries}) => `${listed(parts(guide))} (${count(queries)} of ${several(all, "query").replace(/ys$/, "ies")})`).join("; ") + ".";
+  }
+
+  /// The line of the terminal's table: its name, uniform, guided, ratio and p.
+  const tableRow = (name) => data.table.rows.find((row) => row[0] === name);
+
+  /// How many times as much was needed, and how much that is.
+  function ratioTile(times, what, name) {
+    const [, uniform, guided] = tableRow(name);
+    if (times === null) return ["\u2013", `no ratio, ${name}: nothing was solved`];
+    return [fixed(Math.max(times, 1 / times), 2) + "\u2009\u00d7",
+            `${what} ${times >= 1 ? "without" : "with"} guidance, in the mean: uniform ${uniform}, guided ${guided}` +
+            (times >= 1 ? "" : "; it did not help")];
+  }
+
+  /// Planning time as a sentence, and what it is.
+  function timeInWords() {
+    if (timeRatio === null) return "";
+    const [, uniform, guided] = tableRow("planning time, mean");
+    return (timeRatio >= 1 ? `Without guidance planning took ${fixed(timeRatio, 2)} times as long, ` : `With guidance planning took ${fixed(1 / timeRatio, 2)} times as long, `) +
+      `${uniform} to ${guided} of processor time in the mean; that counts what guidance itself costs, drawing samples and moving recorded ways onto the query. `;
   }
 
   /// What chance has to do with it, as a sentence.
@@ -49,10 +69,8 @@
       `The server moved it into the joint space of ${data.robot}, another robot, and fitted a sampling distribution. ${data.robot} then ` +
       `planned ${several(instances, "new instance")} twice: with uniform samples, and guided by what the server made of that experience.`;
     fillTiles(byId("tiles"), [
-      ratio === null ? ["\u2013", "no ratio: nothing was solved"]
-        : ratio >= 1 ? [fixed(ratio, 2) + "\u2009\u00d7", "as many collision checks without guidance, in the mean"]
-        : [fixed(1 / ratio, 2) + "\u2009\u00d7", "as many collision checks with guidance, in the mean: it did not help"],
-      [`${count(comparison.uniform.mean_checks)} \u2192 ${count(comparison.guided.mean_checks)}`, "collision checks per query in the mean, uniform \u2192 guided"],
+      ratioTile(ratio, "as many collision checks", "collision checks, mean"),
+      ratioTile(timeRatio, "as much planning time", "planning time, mean"),
       [`${count(data.cheaper_guided)} of ${count(instances)}`, "instances took fewer checks with guidance"],
       [`${percent(samples.uniform_free_share)} \u2192 ${percent(samples.free_share)}`, "of the samples are free of collision, uniform \u2192 distribution"]]);
   }
@@ -109,12 +127,29 @@
     const says = ratio === null ? "" : ratio >= 1 ? `Without guidance ${fixed(ratio, 2)} times as many collision checks were needed. `
       : `With guidance ${fixed(1 / ratio, 2)} times as many collision checks were needed. `;
     byId("worth-text").textContent =
-      `${says}${chance()} Both planned the same ${several(instances, "instance")} with the same seeds; bars are means, whiskers their 95\u202f% intervals.` +
+      `${says}${chance()} ${timeInWords()}Both planned the same ${several(instances, "instance")} with the same seeds; bars are means, whiskers their 95\u202f% intervals.` +
       (data.searches ? "" : " " + guidesInWords());
-    kinshipCharts.show(byId("bars"), `Mean collision checks: uniform ${rows[0].label}, guided ${rows[1].label}`, (width) => barsOf(rows, width));
+    kinshipCharts.show(byId("bars"), `Mean collision checks: uniform ${rows[0].label}, guided ${rows[1].label}`,
+                       (width) => barsOf(rows, "collision checks per query", width));
+    const told = tableRow("planning time, mean");
+    const times = [["uniform", data.uniform_time_s, told[1]], ["guided", data.guided_time_s, told[2]]].map(([planner, time, label]) =>
+      ({planner, mean: 1000 * time.mean, low: 1000 * time.low, high: 1000 * time.high, label}));
+    kinshipCharts.show(byId("time-bars"), `Mean planning time: uniform ${told[1]}, guided ${told[2]}`,
+                       (width) => barsOf(times, "planning time per query, ms of a processor", width));
   }
 
-  function barsOf(rows, width) {
+  /// What mixture, ways and retreat would have brought by themselves.
+  function showAlone() {
+    if (!data.also.length) return;
+    byId("alone").hidden = false;
+    byId("alone-text").textContent =
+      `The same ${several(instances, "instance")} and seeds once more, not reported. Mixture and ways are made of what the other robots reported; ` +
+      `retreat backs the hand out of its goal and needs no experience. Ratio: uniform planning to it, above 1 it helps.`;
+    fillTable(byId("alone-table"), [["guided by", "solved", "checks, mean", "ratio", "planning time, mean", "ratio"], ...data.also]);
+  }
+
+  /// Bars of means with their intervals; a row has planner, mean, low, high and label.
+  function barsOf(rows, title, width) {
     const ink = color("ink"), font = kinshipCharts.font;
     const whisker = (x, x2, band) => ({
       type: "rule", from: {data: "rows"}, encode: {update: {
@@ -128,7 +163,7 @@
         {name: "x", domain: {data: "rows", field: "high"}, range: "width", zero: true, nice: true},
         {name: "hue", type: "ordinal", domain: ["uniform", "guided"], range: [color("uniform"), color("guided")]}],
       axes: [
-        {orient: "bottom", scale: "x", grid: true, tickCount: Math.max(3, Math.min(7, Math.round(width / 110))), title: "collision checks per query",
+        {orient: "bottom", scale: "x", grid: true, tickCount: Math.max(3, Math.min(7, Math.round(width / 110))), title,
          encode: {labels: {update: {text: {signal: "replace(format(datum.value, ','), regexp(',', 'g'), '\u202f')"}}}}},
         {orient: "left", scale: "y", labelColor: ink, labelFontSize: 14, labelPadding: 10}],
       marks: [
@@ -171,6 +206,7 @@
   showTables();
   advise();
   showBars();
+  showAlone();
   showStation();
   showSearches();
   showSamples();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "proto/types/names.hpp"
+#include "server/store/sqlite/damage_item.hpp"
 #include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/database/call_item.hpp"
 #include "server/store/sqlite/database/checked_vfs.hpp"
@@ -25,6 +26,7 @@
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
+#include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
@@ -40,26 +42,6 @@
 
 namespace kinship::store {
 namespace {
-
-/// Sets aside what a reader found damaged; if it fails, the next reader finds it again.
-class DamageItem : public WriteItem {
- public:
-  DamageItem(AsideKind kind, std::vector<std::int64_t> rows)
-      : kind_(kind), rows_(std::move(rows)) {}
-
-  void apply(Batch& batch) override {
-    if (kind_ == AsideKind::Path)
-      set_aside(batch, rows_);
-    else
-      for (const std::int64_t row : rows_)
-        put_aside(batch.database(), kind_, row);
-  }
-  void finish(const Error* /*error*/) override {}
-
- private:
-  AsideKind kind_;
-  std::vector<std::int64_t> rows_;
-};
 
 /// Where the store is that a server is to open.
 std::filesystem::path locate_servable(const std::filesystem::path& file) {
@@ -150,20 +132,23 @@ class SqliteStore : public Store {
     return write([&](Batch& batch) { return update_robot(batch.database(), robot); });
   }
 
-  Result<bool> rename_robot(const Digest& robot, const std::string& label) override {
+  Result<bool> rename_robot(const Digest& robot, const std::string& label,
+                            const AuditEntry* audit) override {
     if (const auto error = check_label(label))
       return *error;
-    return write([&](Batch& batch) { return relabel_robot(batch.database(), robot, label); });
+    return write(
+        [&](Batch& batch) { return rename_audited(batch.database(), robot, label, audit); });
   }
 
-  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop) override {
+  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
+                                    const AuditEntry* audit) override {
     RemovedRobot removed;
     while (true) {
       // What a transaction that is undone has counted is not counted.
       RemovedRobot next;
       const Result<bool> is_out = write([&](Batch& batch) {
         next = removed;
-        return continue_removal(batch, robot, next);
+        return remove_audited(batch, robot, next, audit);
       });
       if (!is_out)
         return is_out.error();
@@ -242,18 +227,20 @@ class SqliteStore : public Store {
     return undamaged(select_scene(*reader, scene_id), scene_id);
   }
 
-  Result<Retirement> retire_path(const Uuid& report_uuid) override {
-    return write([&](Batch& batch) { return store::retire_path(batch, report_uuid); });
+  Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
+    return write([&](Batch& batch) { return retire_audited(batch, report_uuid, audit); });
   }
 
-  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop) override {
+  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
+                                const AuditEntry* audit) override {
     const Result<TaskReset> reset =
-        write([&](Batch& batch) { return begin_reset(batch.database(), task); });
+        write([&](Batch& batch) { return begin_reset_audited(batch.database(), task, audit); });
     if (!reset)
       return reset.error();
     Retirement retired;
     retired.task = task;
-    while (write([&](Batch& batch) { return continue_reset(batch, *reset, retired); }))
+    while (
+        write([&](Batch& batch) { return continue_reset_audited(batch, *reset, retired, audit); }))
       if (stop.stop_requested())
         return Error{ErrorCode::Unavailable, "task '" + retired.task +
                                                  "': the server is stopping after " +
@@ -281,8 +268,15 @@ class SqliteStore : public Store {
     writer_->submit(std::make_unique<CallItem<decltype(note)>>(note));
   }
 
-  bool evict_distribution(const Digest& id) override {
-    return write([&](Batch& batch) { return delete_distribution(batch.database(), id); });
+  bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
+    return write([&](Batch& batch) { return evict_audited(batch.database(), id, audit); });
+  }
+
+  void add_audit(const AuditEntry& entry) override {
+    write([&](Batch& batch) {
+      insert_audit(batch.database(), entry);
+      return true;
+    });
   }
 
   std::optional<Distribution> find_distribution(const Digest& id) const override {
@@ -350,6 +344,12 @@ class SqliteStore : public Store {
                                                std::size_t limit) const override {
     const ReaderPool::Lease reader = readers_.lease();
     return page_of_distributions(*reader, robot, task, cursor, limit);
+  }
+
+  Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
+                              std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_audit(*reader, name, cursor, limit);
   }
 
   Result<bool> backup(const std::filesystem::path& file,

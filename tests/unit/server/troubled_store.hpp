@@ -48,12 +48,13 @@ class TroubledStore final : public store::Store {
     on_geometry();
     return is_replaced;
   }
-  Result<bool> rename_robot(const Digest& robot, const std::string& label) override {
-    return store_.rename_robot(robot, label);
+  Result<bool> rename_robot(const Digest& robot, const std::string& label,
+                            const AuditEntry* audit) override {
+    return store_.rename_robot(robot, label, audit);
   }
-  Result<store::RemovedRobot> remove_robot(const Digest& robot,
-                                           const std::stop_token& stop) override {
-    return store_.remove_robot(robot, stop);
+  Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
+                                           const AuditEntry* audit) override {
+    return store_.remove_robot(robot, stop, audit);
   }
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
     return store_.geometry_revisions();
@@ -84,14 +85,15 @@ class TroubledStore final : public store::Store {
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     return store_.read_scene(scene_id);
   }
-  Result<Retirement> retire_path(const Uuid& report_uuid) override {
-    return store_.retire_path(report_uuid);
+  Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
+    return store_.retire_path(report_uuid, audit);
   }
   /// Called when a task is to be reset; may retire some of its paths, and throw.
   std::function<void(std::string_view task)> on_reset = [](std::string_view) {};
-  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop) override {
+  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
+                                const AuditEntry* audit) override {
     on_reset(task);
-    return store_.reset_task(task, stop);
+    return store_.reset_task(task, stop, audit);
   }
   store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
     return store_.attempt_totals(robot, task);
@@ -101,7 +103,19 @@ class TroubledStore final : public store::Store {
     ++uses_noted;
     store_.note_use(id);
   }
-  bool evict_distribution(const Digest& id) override { return store_.evict_distribution(id); }
+  bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
+    return store_.evict_distribution(id, audit);
+  }
+  /// Called before an entry is added to the audit log; may throw.
+  std::function<void(const AuditEntry&)> on_audit = [](const AuditEntry&) {};
+  void add_audit(const AuditEntry& entry) override {
+    on_audit(entry);
+    store_.add_audit(entry);
+  }
+  store::Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
+                                     std::size_t limit) const override {
+    return store_.list_audit(name, cursor, limit);
+  }
   store::Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
                                        std::string_view cursor, std::size_t limit,
                                        std::size_t max_bytes) const override {

@@ -27,7 +27,15 @@ struct EarlierAttempt {
   std::optional<std::int64_t> path_id;
   std::optional<std::int64_t> scene_id;
   std::int64_t received_ms = 0;
+  std::string machine = {};
 };
+
+/// Whether a report is the one that came before. Its machine may be called otherwise since: by the
+/// name in a certificate that it had not then, or has not any more.
+bool is_again(const PreparedAttempt& prepared, const EarlierAttempt& earlier) {
+  return earlier.body == prepared.body || (earlier.machine != prepared.attempt.machine &&
+                                           earlier.body == body_said_by(prepared, earlier.machine));
+}
 
 /// \param rows  of its UUID; a row that turns out to be damaged is moved to the damaged ones.
 std::optional<EarlierAttempt> read_earlier(Database& database, ReportRows& rows) {
@@ -35,13 +43,14 @@ std::optional<EarlierAttempt> read_earlier(Database& database, ReportRows& rows)
     return std::nullopt;
   try {
     const auto query = database.cached(
-        "SELECT body_sha256, path_id, scene_id, received_ms FROM attempt WHERE id = ?");
+        "SELECT body_sha256, path_id, scene_id, received_ms, machine FROM attempt WHERE id = ?");
     query->bind(1, *rows.row).step();
     EarlierAttempt earlier{.id = *rows.row,
                            .body = id_of<Digest>(query->column_blob(0)),
                            .path_id = {},
                            .scene_id = {},
-                           .received_ms = query->column_integer(3)};
+                           .received_ms = query->column_integer(3),
+                           .machine = std::string(query->column_text(4))};
     if (!query->column_is_null(1))
       earlier.path_id = query->column_integer(1);
     if (!query->column_is_null(2))
@@ -191,7 +200,7 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint6
   const Attempt& attempt = prepared.attempt;
   ReportRows rows = find_report(database, attempt.report_uuid);
   const std::optional<EarlierAttempt> earlier = read_earlier(database, rows);
-  if (earlier && earlier->body != prepared.body)
+  if (earlier && !is_again(prepared, *earlier))
     return refused(attempt.report_uuid, "this UUID was used for another report");
   const std::optional<RobotRow> robot = find_robot_row(database, attempt.robot);
   if (!robot)

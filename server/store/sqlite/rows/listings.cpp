@@ -133,6 +133,25 @@ DistributionSummary read_distribution_summary(const Statement& row) {
   return summary;
 }
 
+AuditEntry read_audit_entry(const Statement& row) {
+  constexpr std::int64_t kOutcomes = 4;
+  AuditEntry entry;
+  entry.number = count_of(row, 0);
+  entry.time_ms = row.column_integer(1);
+  entry.name = row.column_text(2);
+  entry.role = row.column_text(3);
+  entry.client = row.column_text(4);
+  entry.is_local = row.column_integer(5) != 0;
+  entry.verb = row.column_text(6);
+  entry.target = row.column_text(7);
+  entry.outcome =
+      static_cast<AuditOutcome>(std::clamp<std::int64_t>(row.column_integer(8), 1, kOutcomes) - 1);
+  entry.before = row.column_text(9);
+  entry.after = row.column_text(10);
+  entry.message = row.column_text(11);
+  return entry;
+}
+
 /// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
 std::string filters(const std::optional<Digest>& robot, std::string_view task) {
   std::string sql;
@@ -218,6 +237,21 @@ std::optional<PathSummary> select_path_summary(Database& database, std::int64_t 
 }
 
 }  // namespace
+
+Page<AuditEntry> page_of_audit(Database& database, std::string_view name, std::string_view cursor,
+                               std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  const auto query = database.cached(
+      "SELECT id, time_ms, name, role, client, is_local, verb, target, outcome, was, became,"
+      " message FROM audit WHERE id < ?1 " +
+      std::string(name.empty() ? "" : "AND name = ?3 ") + "ORDER BY id DESC LIMIT ?2");
+  query->bind_all(parse_id_cursor(cursor), rows + 1);
+  if (!name.empty())
+    query->bind(3, name);
+  return read_page<AuditEntry>(*query, rows, read_audit_entry, [](const Statement& row) {
+    return std::to_string(row.column_integer(0));
+  });
+}
 
 Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);

@@ -59,6 +59,12 @@ Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& pa
 
 }  // namespace
 
+Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine) {
+  Attempt said = prepared.attempt;
+  said.machine = machine;
+  return body_digest(said, prepared.path, prepared.scene);
+}
+
 Result<PreparedAttempt> prepare(Attempt attempt) {
   if (auto reason = reason_against(attempt))
     return Error{ErrorCode::InvalidInput,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
@@ -31,6 +32,9 @@ struct PreparedAttempt {
   std::optional<PreparedPath> path;
   std::optional<PreparedScene> scene;
 };
+
+/// The body as it would be if another machine said the same.
+Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);
 
 /// \return the reason if it cannot be stored: what find_fault() says, or a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);

@@ -22,6 +22,7 @@
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
+#include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 #include "server/store/sqlite/upkeep/store_repair.hpp"
 
@@ -98,11 +99,29 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
         throw Failure(ErrorCode::Storage,
                       named + std::to_string(check.problems) +
                           " problems, nothing was restored; the first: " + check.messages.front());
+      keep_audit_of_old(database);
+      note_maintenance(database, "restore", backup_, "epoch " + epoch_.text());
     }
     sync_file(copy_);
   } catch (const SqliteError& error) {
     throw Failure(ErrorCode::Storage, named + error.what());
   }
+}
+
+/// What was done since the backup was made is not forgotten with the store that it was done to.
+void Restoration::keep_audit_of_old(Database& database) const {
+  if (!fs::exists(file_))
+    return;
+  make_wal_durable(file_);
+  Transaction whole(database, Transaction::Kind::Write);
+  try {
+    Database old(file_, Access::ReadOnly);
+    copy_missing_audit(database, old);
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;  // a restore is what a damaged store is for: as far as its log can be read
+  }
+  whole.commit();
 }
 
 Repaired Restoration::repair(const std::function<void(double)>& progress) {
@@ -121,6 +140,9 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.damaged_pages = salvaged.damaged_pages;
     repaired.lost = std::move(salvaged.lost);
     epoch_ = write_new_epoch(*target, copy_);
+    note_maintenance(*target, "repair", file_,
+                     "epoch " + epoch_.text() + ", " + std::to_string(repaired.damaged_pages) +
+                         " damaged pages were left behind");
     repaired.check = check_database(
         *target, file_, [&](double done) { progress(kSalvageShare + (1 - kSalvageShare) * done); });
   }

@@ -32,6 +32,7 @@ class Restoration {
   Restored replace();
 
  private:
+  void keep_audit_of_old(Database& database) const;
   void fold_old();
   void set_companions_aside(const std::filesystem::path& replaced) const;
   std::filesystem::path name_copy() const;

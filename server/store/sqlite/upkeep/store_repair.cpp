@@ -40,8 +40,12 @@ struct TableShape {
   std::size_t columns;
   std::size_t least_columns;  ///< a row from before the last ones were added has fewer
 };
-constexpr std::array<TableShape, 5> kShapes = {
-    {{"task", 2, 2}, {"scene", 7, 7}, {"robot", 11, 11}, {"path", 16, 15}, {"attempt", 22, 22}}};
+constexpr std::array<TableShape, 6> kShapes = {{{"task", 2, 2},
+                                                {"scene", 7, 7},
+                                                {"robot", 11, 11},
+                                                {"audit", 12, 12},
+                                                {"path", 16, 15},
+                                                {"attempt", 22, 22}}};
 constexpr int kSqlError = 1;  // SQLITE_ERROR: no such table, no such index
 constexpr std::size_t kDistributionColumns = 14, kDistributionDigest = 1, kDistributionRevision = 2;
 

@@ -41,7 +41,7 @@ Comparison compared(const std::vector<ProblemResult>& uniform,
 
 std::string table_of(const Comparison& comparison) {
   std::ostringstream out;
-  write_table(comparison, out);
+  write_table(comparison, {}, out);
   return out.str();
 }
 
@@ -151,7 +151,7 @@ TEST(Comparison, LeavesOutWhatASideBeganNoSearchFor) {
             std::string::npos)
       << table;
   std::ostringstream json;
-  write_json(comparison, json);
+  write_json(comparison, {}, json);
   EXPECT_NE(json.str().find(R"("not_planned":{"start_collides":1,"error":1}})"), std::string::npos)
       << json.str();
 }
@@ -161,6 +161,31 @@ TEST(Comparison, SaysWhyThereIsNothingToCompare) {
       not_planned(attempt("d", false, 1, 0), NotPlanned::StartCollides, "collides")};
   EXPECT_EQ(compare(colliding, colliding).error().message,
             "no problem could be planned (start collides: 1)");
+}
+
+TEST(ComparisonTable, WhatElseWasComparedHasALineBelow) {
+  const std::vector<AlsoCompared> also = {{"retreat alone", compared(kUniform, kUniform)},
+                                          {"mixture alone", compared(kUniform, kGuided)}};
+  std::ostringstream out;
+  write_table(compared(kUniform, kGuided), also, out);
+  const std::string table = out.str();
+  EXPECT_TRUE(table.starts_with(table_of(compared(kUniform, kGuided)))) << "above, as without";
+  EXPECT_NE(table.find("  mixture alone             3/3    1 333    16.00     1.33 s    13.50\n"),
+            std::string::npos)
+      << table;
+  EXPECT_NE(table.find("  retreat alone             2/3   21 333     1.00     18.0 s     1.00\n"),
+            std::string::npos)
+      << table;
+  EXPECT_EQ(table_of(compared(kUniform, kGuided)).find("alone"), std::string::npos);
+}
+
+TEST(ComparisonJson, HasWhatElseWasCompared) {
+  std::ostringstream out;
+  write_json(compared(kUniform, kGuided), {{"say \"alone\"", compared(kUniform, kUniform)}}, out);
+  EXPECT_NE(out.str().find(R"(,"also":[{"name":"say \"alone\"","pairs":3,"uniform":{"solved":2,)"),
+            std::string::npos)
+      << out.str();
+  EXPECT_NE(out.str().find(R"("ratio":{"mean_checks":1,)"), std::string::npos);
 }
 
 TEST(ComparisonTable, SaysWhenGuidanceWasMissing) {
@@ -178,7 +203,8 @@ TEST(ComparisonTable, SaysUnsolvedInsteadOfInfinity) {
 
 TEST(ComparisonJson, IsOneDocumentWithNullForInfinity) {
   std::ostringstream out;
-  write_json(compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", true, 1000, 1)}), out);
+  write_json(compared({attempt("a", false, 60000, 9)}, {guided_attempt("a", true, 1000, 1)}), {},
+             out);
   EXPECT_EQ(out.str(),
             "{\"pairs\":1,\"uniform\":{\"solved\":0,\"with_guidance\":0,\"mean_checks\":60000,"
             "\"median_checks\":null,\"mean_time_s\":9,\"median_time_s\":null},"

@@ -28,6 +28,16 @@ models::LoadedRobot load(const std::string& name) {
   return models::load_robot(arguments).value_or_throw();
 }
 
+/// What find_run or read_run says is wrong.
+std::string fault_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
 class Page : public testing::Test {
  protected:
   Page() {
@@ -80,6 +90,7 @@ class Page : public testing::Test {
       result.guide = Guide::Ways;
       result.experience_revision = 1;
       result.collision_checks = checks[i];
+      result.planning_time_s = 1e-6 * static_cast<double>(checks[i]);
       result.waypoints.emplace(answered.start.size(), 2);
       *result.waypoints << answered.start, answered.goal_configurations;
       file << json::to_json(result) << '\n';
@@ -189,6 +200,39 @@ TEST_F(Page, GoesWithoutWhatARunNeedNotHave) {
   EXPECT_TRUE(data.newcomer);
 }
 
+TEST_F(Page, TellsWhatEachGuideAloneBringsBesideIt) {
+  write_results("ur10e", "ur10e-retreat", {8000, 12000});
+  write_results("ur10e", "ur10e-mixture", {1000, 1000});
+  const PageData data = read_run(run());
+  EXPECT_EQ(data.fleet.size(), 1U) << "they are no teachers";
+  ASSERT_EQ(data.also.size(), 2U);
+  EXPECT_EQ(data.also[0].name, "mixture alone");
+  EXPECT_EQ(data.also[0].comparison.mean_checks_ratio, 5);
+  EXPECT_EQ(data.also[1].name, "retreat alone");
+  EXPECT_EQ(data.also[1].comparison.mean_checks_ratio, 0.5);
+  const auto told = nlohmann::json::parse(to_json(data))["also"];
+  EXPECT_EQ(told[1], (std::vector<std::string>{"retreat alone", "2/2", "10 000", "0.50", "10.0 ms",
+                                               "0.50"}));
+}
+
+TEST_F(Page, ResultsBesideItMayHaveAnyName) {
+  write_results("ur10e", "tuned", {500, 1500});
+  RunLocation location;
+  location.folder = folder_;
+  location.models = kModels;
+  location.files.also = {
+      parse_also("with my option=" + (folder_ / "tuned.results.jsonl").string())};
+  const PageData data = read_run(find_run(location));
+  ASSERT_EQ(data.also.size(), 1U);
+  EXPECT_EQ(data.also[0].name, "with my option");
+  EXPECT_EQ(data.also[0].comparison.mean_checks_ratio, 5);
+  for (const char* const wrong : {"file", "=file", "name="})
+    EXPECT_NE(fault_of([&] { parse_also(wrong); }).find("is not NAME=FILE"), std::string::npos);
+  location.files.also = {parse_also("gone=" + (folder_ / "gone.jsonl").string())};
+  EXPECT_NE(fault_of([&] { find_run(location); }).find("of 'gone': there is no"),
+            std::string::npos);
+}
+
 TEST_F(Page, EqualFilesGiveAnEqualPage) { EXPECT_EQ(written(), written()); }
 
 TEST_F(Page, CarriesItsDataAsOneDocument) {
@@ -211,16 +255,9 @@ TEST_F(Page, CarriesItsDataAsOneDocument) {
   EXPECT_EQ(data["advice"]["share"], 0.25) << "of now, not of the fetch before the attempts";
   EXPECT_EQ(data["advice"]["evidence"], "guided 1 in 2");
   EXPECT_EQ(data["obstacles"][0]["name"], "</script><b>");
-}
-
-/// What find_run or read_run says is wrong.
-std::string fault_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return "";
+  EXPECT_EQ(data["also"], nlohmann::json::array());
+  EXPECT_EQ(data["uniform_time_s"]["mean"], 0.005);
+  EXPECT_EQ(data["guided_time_s"]["mean"], 0.002);
 }
 
 TEST_F(Page, AllThatIsMissingIsNamedAtOnce) {

@@ -11,19 +11,19 @@ namespace {
 constexpr std::uint64_t kSeed = 5;
 constexpr int kInstances = 200;
 
-ShelfScene drawn(std::uint64_t seed) {
+StationScene drawn(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   return draw_shelf_scene(generator);
 }
 
-const SceneObject& find(const ShelfScene& instance, const std::string& name) {
+const SceneObject& find(const StationScene& instance, const std::string& name) {
   for (const SceneObject& object : instance.scene.objects)
     if (object.name == name)
       return object;
   throw std::out_of_range("no object '" + name + "'");
 }
 
-int occupants(const ShelfScene& instance) {
+int occupants(const StationScene& instance) {
   int count = 0;
   for (const SceneObject& object : instance.scene.objects)
     if (object.name.starts_with("occupant_"))
@@ -41,8 +41,8 @@ bool inside(const SceneObject& object, const Eigen::Vector3d& p_task_point) {
 }
 
 TEST(ShelfScene, EqualSeedsGiveEqualScenes) {
-  const ShelfScene first = drawn(kSeed);
-  const ShelfScene second = drawn(kSeed);
+  const StationScene first = drawn(kSeed);
+  const StationScene second = drawn(kSeed);
   ASSERT_EQ(first.scene.objects.size(), second.scene.objects.size());
   for (std::size_t i = 0; i < first.scene.objects.size(); ++i)
     EXPECT_EQ(first.scene.objects[i].T_task_object.matrix(),
@@ -67,7 +67,7 @@ TEST(ShelfScene, EveryCompartmentIsAGoalAndOneOrTwoOthersAreOccupied) {
   std::map<std::string, int> goals;
   std::map<int, int> occupied;
   for (std::uint64_t seed = 0; seed < kInstances; ++seed) {
-    const ShelfScene instance = drawn(seed);
+    const StationScene instance = drawn(seed);
     const Eigen::Vector3d p =
         find(instance, "side_1").T_task_object.inverse() * instance.T_task_place.translation();
     ++goals[std::string(p.y() > 0 ? "left " : "right ") + (p.z() > 0 ? "upper" : "lower")];
@@ -82,7 +82,7 @@ TEST(ShelfScene, EveryCompartmentIsAGoalAndOneOrTwoOthersAreOccupied) {
 }
 
 TEST(ShelfScene, TheGripperLooksDownAtThePickAndIntoTheShelfAtTheGoal) {
-  const ShelfScene instance = drawn(kSeed);
+  const StationScene instance = drawn(kSeed);
   EXPECT_NEAR(instance.T_task_pick.linear().col(2).z(), -1, 1e-12);
   EXPECT_GT(instance.T_task_place.linear().col(2).x(), 0.98);
   EXPECT_NEAR(instance.T_task_pick.linear().determinant(), 1, 1e-12);
@@ -92,7 +92,7 @@ TEST(ShelfScene, TheGripperLooksDownAtThePickAndIntoTheShelfAtTheGoal) {
 TEST(ShelfScene, TheHeldBoxIsFreeAtThePickAndAtTheGoal) {
   const Eigen::Vector3d half = held_box().size / 2;
   for (std::uint64_t seed = 0; seed < kInstances; ++seed) {
-    const ShelfScene instance = drawn(seed);
+    const StationScene instance = drawn(seed);
     for (const Eigen::Isometry3d& T_task_transfer : {instance.T_task_pick, instance.T_task_place})
       for (int corner = 0; corner < 8; ++corner) {
         const Eigen::Vector3d sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1,

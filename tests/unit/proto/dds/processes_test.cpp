@@ -107,7 +107,7 @@ TEST(Processes, RequestThatBreaksARuleIsRefusedByTheServer) {
   });
   EXPECT_EQ(outcome, RequestLine::Outcome::Answered);
   EXPECT_EQ(reply.status, AdminStatus::Refused);
-  EXPECT_EQ(reply.message, "verb: 1000 is not between 0 and 22");
+  EXPECT_EQ(reply.message, "verb: 1000 is not between 0 and 23");
 }
 
 TEST(Processes, SecondServerOfADomainIsRefusedByName) {

@@ -105,9 +105,31 @@ TEST_F(Options, ASecurityFolderMustBeThere) {
   EXPECT_EQ(code({"--security", "/no/such/folder"}), kWrongUsage);
 }
 
+TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
+  const test::TemporaryDirectory directory;
+  const std::string folder = directory.path().string();
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << "interface = \"eth0\"\n";
+  for (const std::vector<const char*>& arguments :
+       std::vector<std::vector<const char*>>{{"--interface", "eth0"}, {"--config", file.c_str()}}) {
+    EXPECT_EQ(code(arguments), kWrongUsage);
+    EXPECT_EQ(out_.str(), "");
+    for (const char* const words : {"interface 'eth0' is served without security", "--insecure",
+                                    "kinshipd secure init", "--security FOLDER"})
+      EXPECT_NE(err_.str().find(words), std::string::npos) << err_.str();
+  }
+  EXPECT_NE(insecurity_of(good({"--interface", "eth0", "--insecure"})), "");
+  EXPECT_EQ(insecurity_of(good({"--interface", "eth0", "--security", folder.c_str()})), "");
+  EXPECT_EQ(insecurity_of(good({"--interface", "lo"})), "");
+  EXPECT_EQ(insecurity_of(good({"--insecure"})), "") << "nobody else is served";
+  std::ofstream(file, std::ios::app) << "insecure = true\n";
+  EXPECT_TRUE(good({"--config", file.c_str()}).insecure);
+  EXPECT_EQ(code({"--interface", "eth0", "--print-config"}), kDone);
+}
+
 TEST_F(Options, ArgumentsAreTaken) {
   const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
-                                      "--interface", "eth0", "--log-level", "error"});
+                                      "--interface", "eth0", "--insecure", "--log-level", "error"});
   EXPECT_EQ(options.store, "fleet.db");
   EXPECT_EQ(options.domain, 7U);
   EXPECT_EQ(options.workers, 4U);

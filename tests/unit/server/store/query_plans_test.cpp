@@ -61,7 +61,7 @@ class Recorder {
 /// others grow with robots and tasks), or sorts.
 bool is_costly(const std::string& step) {
   for (const char* const name :
-       {"path", "attempt", "newest", "scene", "distribution ", "set_aside"})
+       {"path", "attempt", "newest", "scene", "distribution ", "set_aside", "audit"})
     if (step.starts_with("SCAN " + std::string(name)))
       return true;
   return step.find("TEMP B-TREE") != std::string::npos;
@@ -142,13 +142,19 @@ TEST_F(QueryPlans, NoStatementOfAServingStoreReadsWhatOthersHave) {
     store_->list_distributions({}, task, "", 2);
     store_->list_distributions(robot, "", "", 2);
     store_->find_attempt(paths[0].report_uuid);
+    store_->list_audit("", "", 2);
+    store_->list_audit("anna", "7", 2);
     store_->export_attempts({}, "", "", 2, 1'000'000);
     store_->export_attempts(robot, task, "", 2, 1'000'000);
   });
   ask("retirement", [&] {
-    static_cast<void>(store_->retire_path(paths[0].report_uuid));
-    static_cast<void>(store_->reset_task(task));
-    store_->evict_distribution(test::id_from<Digest>(8));
+    AuditEntry audit;
+    audit.verb = "act";
+    static_cast<void>(store_->retire_path(paths[0].report_uuid, &audit));
+    static_cast<void>(store_->reset_task(task, {}, &audit));
+    store_->evict_distribution(test::id_from<Digest>(8), &audit);
+    static_cast<void>(store_->rename_robot(robot, "panda_2", &audit));
+    static_cast<void>(store_->remove_robot(robot, {}, &audit));
   });
   store_.reset();
   Database database(file_, Access::ReadOnly);

@@ -1,32 +1,31 @@
-#include "client/experiments/shelf_problems.hpp"
+#include "client/experiments/station_problems.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "client/experiments/machine_scene.hpp"
 #include "client/experiments/shelf_scene.hpp"
-#include "client/experiments/studies/instance_random.hpp"
-#include "proto/types/failure.hpp"
+#include "client/experiments/studies/instance_draws.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/inverse.hpp"
 
 namespace kinship::experiments {
 namespace {
 
-constexpr double kShelfTimeLimit_s =
+constexpr double kStationTimeLimit_s =
     60;  // far beyond what the checks take: checks end a query first
 
-/// Links that move with the tip hold the box; links before the second joint stand on the table.
-void add_touching_links(const kinematics::Chain& chain, AttachedObject& box, Problem& problem) {
-  const int last = static_cast<int>(chain.dof()) - 1;
-  for (const kinematics::ChainLink& link : chain.links()) {
-    if (link.joint == last)
-      box.touch_links.push_back(link.name);
+/// What the links that move with the tip hold; links before the second joint stand on the table.
+void add_contacts(const kinematics::Chain& chain, const StationScene& instance, Problem& problem) {
+  problem.attached.push_back({instance.held_name, chain.tip_link(), instance.held,
+                              chain.T_tip_transfer() * instance.T_transfer_held,
+                              last_links(chain)});
+  for (const kinematics::ChainLink& link : chain.links())
     if (link.joint < 1)
       problem.allowed_collisions.emplace_back(link.name, kTableName);
-  }
 }
 
 /// Configurations of the transfer frame's pose, in random order.
@@ -61,25 +60,23 @@ std::optional<Eigen::VectorXd> free_configuration(const models::LoadedRobot& rob
   return std::nullopt;
 }
 
+StationScene draw_scene(Station station, std::mt19937_64& generator) {
+  return station == Station::Machine ? draw_machine_scene(generator) : draw_shelf_scene(generator);
+}
+
 /// The instance of one sub-seed; empty if the robot cannot start or end it.
-std::optional<Problem> try_draw(const models::LoadedRobot& robot,
+std::optional<Problem> try_draw(Station station, const models::LoadedRobot& robot,
                                 const Eigen::Isometry3d& T_task_base, const InstanceKey& key) {
   std::mt19937_64 scene_generator = generator_for(key, Use::Scene);
-  const ShelfScene instance = draw_shelf_scene(scene_generator);
+  const StationScene instance = draw_scene(station, scene_generator);
   Problem problem;
-  problem.name = instance_name("shelf", key);
+  problem.name = instance_name(to_text(station), key);
   problem.T_task_base = T_task_base;
   problem.scene = instance.scene;
   problem.T_task_goal = instance.T_task_place;
-  problem.time_limit_s = kShelfTimeLimit_s;
+  problem.time_limit_s = kStationTimeLimit_s;
   problem.seed = planner_seed(key);
-  AttachedObject box{"box",
-                     robot.chain.tip_link(),
-                     held_box(),
-                     robot.chain.T_tip_transfer() * T_transfer_box(),
-                     {}};
-  add_touching_links(robot.chain, box, problem);
-  problem.attached.push_back(box);
+  add_contacts(robot.chain, instance, problem);
 
   std::mt19937_64 generator = generator_for(key, Use::Start);
   const auto start = free_configuration(robot, problem, instance.T_task_pick, generator);
@@ -91,26 +88,30 @@ std::optional<Problem> try_draw(const models::LoadedRobot& robot,
 
 }  // namespace
 
-Eigen::Isometry3d shelf_placement(std::string_view label) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (label == "panda")
-    T.translation().x() = -0.06;
-  if (label == "iiwa14")
-    T.translation().x() = -0.28;  // its elbow bends by 120 degrees at most
-  if (label == "ur10e")
-    T.translation().x() = -0.15;
-  return T;
+std::string_view to_text(Station station) {
+  return station == Station::Machine ? "machine" : "shelf";
 }
 
-Problem draw_shelf_problem(const models::LoadedRobot& robot, const Eigen::Isometry3d& T_task_base,
-                           std::uint64_t seed, std::uint32_t index) {
-  for (std::uint32_t draw = 0; draw < kMaxDraws; ++draw)
-    if (std::optional<Problem> problem = try_draw(robot, T_task_base, {seed, index, draw}))
-      return *std::move(problem);
-  throw Failure(ErrorCode::NotFound,
-                "robot '" + robot.description.label + "' has no free start and goal in " +
-                    std::to_string(kMaxDraws) + " draws of " +
-                    instance_name("shelf", {seed, index, 0}) + ": is its placement right?");
+Eigen::Isometry3d placement_at(Station station, std::string_view label) {
+  const bool at_machine = station == Station::Machine;
+  double x = 0;
+  if (label == "panda")
+    x = at_machine ? -0.3 : -0.06;
+  if (label == "iiwa14")
+    x = at_machine ? -0.34 : -0.28;  // its elbow bends by 120 degrees at most
+  if (label == "ur10e")
+    x = at_machine ? -0.6 : -0.15;
+  return upright(x, 0, 0);
+}
+
+Problem draw_station_problem(Station station, const models::LoadedRobot& robot,
+                             const Eigen::Isometry3d& T_task_base, const InstanceKey& key) {
+  return first_possible(
+      key, kMaxDraws,
+      "robot '" + robot.description.label +
+          "' where it stands (is its placement right?) has no free start and goal in",
+      std::string(to_text(station)),
+      [&](const InstanceKey& draw) { return try_draw(station, robot, T_task_base, draw); });
 }
 
 }  // namespace kinship::experiments

@@ -1,17 +1,17 @@
-#include "client/experiments/shelf_problems.hpp"
+#include "client/experiments/station_problems.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
-#include "client/experiments/shelf_scene.hpp"
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/loaded_robot.hpp"
 
-namespace kinship::experiments::shelf_problems_test {
+namespace kinship::experiments::station_problems_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -22,8 +22,9 @@ models::LoadedRobot robot_named(const std::string& name) {
   return models::load_robot({.source = folder}).value_or_throw();
 }
 
-Problem drawn(const models::LoadedRobot& robot, std::uint32_t index) {
-  return draw_shelf_problem(robot, shelf_placement(robot.description.label), kSeed, index);
+Problem drawn(Station station, const models::LoadedRobot& robot, std::uint32_t index) {
+  return draw_station_problem(station, robot, placement_at(station, robot.description.label),
+                              {kSeed, index, 0});
 }
 
 collision::CollisionWorld world_of(const models::LoadedRobot& robot, const Problem& problem) {
@@ -32,12 +33,18 @@ collision::CollisionWorld world_of(const models::LoadedRobot& robot, const Probl
           {*problem.T_task_base, problem.scene, problem.attached, problem.allowed_collisions}};
 }
 
-class ShelfProblems : public testing::TestWithParam<const char*> {};
+using RobotAtStation = std::tuple<Station, const char*>;
 
-TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
-  const models::LoadedRobot robot = robot_named(GetParam());
+class StationProblems : public testing::TestWithParam<RobotAtStation> {
+ protected:
+  Station station() const { return std::get<0>(GetParam()); }
+  models::LoadedRobot robot() const { return robot_named(std::get<1>(GetParam())); }
+};
+
+TEST_P(StationProblems, StartIsFreeAndHoldsTheThingAtThePick) {
+  const models::LoadedRobot robot = this->robot();
   for (std::uint32_t index = 0; index < kInstances; ++index) {
-    const Problem problem = drawn(robot, index);
+    const Problem problem = drawn(station(), robot, index);
     EXPECT_TRUE(robot.chain.within_limits(problem.start));
     EXPECT_FALSE(world_of(robot, problem).collides(problem.start)) << problem.name;
     const Eigen::Isometry3d T_task_transfer =
@@ -46,10 +53,10 @@ TEST_P(ShelfProblems, StartIsFreeAndHoldsTheBoxAtThePick) {
   }
 }
 
-TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
-  const models::LoadedRobot robot = robot_named(GetParam());
+TEST_P(StationProblems, TheGoalHasAFreeConfiguration) {
+  const models::LoadedRobot robot = this->robot();
   for (std::uint32_t index = 0; index < kInstances; ++index) {
-    const Problem problem = drawn(robot, index);
+    const Problem problem = drawn(station(), robot, index);
     collision::CollisionWorld world = world_of(robot, problem);
     const Eigen::Isometry3d T_base_tip = problem.T_task_base->inverse() * *problem.T_task_goal *
                                          robot.chain.T_tip_transfer().inverse();
@@ -64,26 +71,31 @@ TEST_P(ShelfProblems, TheGoalHasAFreeConfiguration) {
   }
 }
 
-TEST_P(ShelfProblems, EqualSeedsGiveEqualProblems) {
-  const models::LoadedRobot robot = robot_named(GetParam());
-  const Problem first = drawn(robot, 1);
-  const Problem second = drawn(robot, 1);
+TEST_P(StationProblems, EqualSeedsGiveEqualProblems) {
+  const models::LoadedRobot robot = this->robot();
+  const Problem first = drawn(station(), robot, 1);
+  const Problem second = drawn(station(), robot, 1);
   EXPECT_EQ(first.start, second.start);
   EXPECT_EQ(first.seed, second.seed);
   EXPECT_EQ(first.T_task_goal->matrix(), second.T_task_goal->matrix());
-  EXPECT_NE(first.start, drawn(robot, 2).start);
+  EXPECT_NE(first.start, drawn(station(), robot, 2).start);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryModel, ShelfProblems, testing::Values("panda", "iiwa14", "ur10e"),
-                         [](const auto& model) { return std::string(model.param); });
+INSTANTIATE_TEST_SUITE_P(EveryRobot, StationProblems,
+                         testing::Combine(testing::Values(Station::Machine, Station::Shelf),
+                                          testing::Values("panda", "iiwa14", "ur10e")),
+                         [](const auto& each) {
+                           return std::string(std::get<1>(each.param)) + "_at_" +
+                                  std::string(to_text(std::get<0>(each.param)));
+                         });
 
-TEST(ShelfProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
+TEST(StationProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
   const models::LoadedRobot panda = robot_named("panda");
   const models::LoadedRobot ur10e = robot_named("ur10e");
   int compared = 0;
   for (std::uint32_t index = 0; index < kInstances; ++index) {
-    const Problem one = drawn(panda, index);
-    const Problem other = drawn(ur10e, index);
+    const Problem one = drawn(Station::Machine, panda, index);
+    const Problem other = drawn(Station::Machine, ur10e, index);
     if (one.name != other.name)
       continue;  // drawn again for one of them
     ++compared;
@@ -97,12 +109,12 @@ TEST(ShelfProblemsOfSeveralRobots, EqualNamesAreEqualScenes) {
   EXPECT_GT(compared, kInstances / 2);
 }
 
-TEST(ShelfProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
+TEST(StationProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
   const models::LoadedRobot robot = robot_named("panda");
   Eigen::Isometry3d far_away = Eigen::Isometry3d::Identity();
   far_away.translation().x() = -5;
   try {
-    draw_shelf_problem(robot, far_away, kSeed, 0);
+    draw_station_problem(Station::Machine, robot, far_away, {kSeed, 0, 0});
     FAIL() << "drew a problem out of reach";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ErrorCode::NotFound);
@@ -111,4 +123,4 @@ TEST(ShelfProblemsOfSeveralRobots, APlacementOutOfReachIsAFailureThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace kinship::experiments::shelf_problems_test
+}  // namespace kinship::experiments::station_problems_test

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+
+#include "proto/types/field.hpp"
+#include "proto/types/limits.hpp"
+
+namespace kinship {
+
+/// How an administrative act stands.
+enum class AuditOutcome {
+  Begun,    ///< takes more than one transaction, or is no change of the store; its end follows
+  Done,     ///< as `after` says
+  Refused,  ///< nothing was changed, `message` says why
+  Failed    ///< some of it may have been done
+};
+
+/// An administrative act as the audit log keeps it. An entry never changes: an act that began and
+/// ended has two.
+struct AuditEntry {
+  std::uint64_t number = 0;  ///< 1, 2 ... as they were written
+  std::int64_t time_ms = 0;
+  std::string name = {};    ///< who, in the certificate; empty: nobody's, there was no security
+  std::string role = {};    ///< of that certificate; empty as the name
+  std::string client = {};  ///< the name, or the participant that asked
+  bool is_local = true;     ///< asked for on the server's machine
+  std::string verb = {};    ///< e.g. "reset_task"
+  std::string target = {};  ///< what it was done to, as it was asked for
+  AuditOutcome outcome = AuditOutcome::Done;
+  std::string before = {}, after = {};  ///< counts and labels, in words
+  std::string message = {};             ///< why refused or failed
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<AuditEntry>{
+    Field{"number", &AuditEntry::number},
+    Field{"time_ms", &AuditEntry::time_ms},
+    Field{"name", &AuditEntry::name, {.limit = kMaxWordBytes}},
+    Field{"role", &AuditEntry::role, {.limit = kMaxWordBytes}},
+    Field{"client", &AuditEntry::client, {.limit = kMaxMachineBytes}},
+    Field{"is_local", &AuditEntry::is_local},
+    Field{"verb", &AuditEntry::verb, {.limit = kMaxWordBytes}},
+    Field{"target", &AuditEntry::target, {.limit = kMaxFileNameBytes}},
+    Field{"outcome", &AuditEntry::outcome},
+    Field{"before", &AuditEntry::before, {.limit = kMaxMessageBytes}},
+    Field{"after", &AuditEntry::after, {.limit = kMaxMessageBytes}},
+    Field{"message", &AuditEntry::message, {.limit = kMaxMessageBytes}}};
+
+}  // namespace kinship

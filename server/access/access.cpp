@@ -1,0 +1,163 @@
+#include "server/access/access.hpp"
+
+#include <algorithm>
+
+#include "proto/types/enum_text.hpp"
+#include "server/access/verb_rules.hpp"
+
+namespace kinship::access {
+namespace {
+
+bool matches_any(const std::vector<std::string>& patterns, std::string_view text) {
+  return patterns.empty() || text.empty() ||
+         std::ranges::any_of(patterns,
+                             [&](const std::string& pattern) { return matches(pattern, text); });
+}
+
+std::string listed(const std::vector<std::string>& patterns) {
+  std::string text;
+  for (const std::string& pattern : patterns)
+    text += (text.empty() ? "" : ", ") + pattern;
+  return text;
+}
+
+/// "its certificate is for tasks bin_*, robots panda"
+std::string scope_of(const Caller& caller) {
+  std::string text = "its certificate is for";
+  if (!caller.tasks.empty())
+    text += " tasks " + listed(caller.tasks);
+  if (!caller.robots.empty())
+    text += (caller.tasks.empty() ? " robots " : ", robots ") + listed(caller.robots);
+  return text;
+}
+
+Error refused(const Caller& caller, std::string_view act, const std::string& why) {
+  return {ErrorCode::InvalidInput, describe(caller) + " may not " + std::string(act) + ": " + why};
+}
+
+bool has_role(const Caller& caller, AccessRole least) {
+  return static_cast<int>(caller.role) >= static_cast<int>(least);
+}
+
+std::optional<Error> refusal_by_place(const Caller& caller, std::string_view act) {
+  if (!caller.name.empty() || caller.is_local)
+    return std::nullopt;
+  return refused(caller, act,
+                 "this server runs without security, where that is for its own machine alone; "
+                 "kinshipd --security has certificates tell who may do it");
+}
+
+/// Robots and administrators only: whoever reads or operates has nothing to report.
+std::optional<Error> refusal_of_robots_act(const Caller& caller, std::string_view act) {
+  if (caller.role == AccessRole::Robot || caller.role == AccessRole::Admin)
+    return std::nullopt;
+  return refused(caller, act, "needs role robot or admin");
+}
+
+std::optional<Error> refusal_of_names(const Caller& caller, std::string_view task,
+                                      std::string_view robot, const std::string& act) {
+  if (!matches_any(caller.tasks, task))
+    return refused(caller, act + " task '" + std::string(task) + "'", scope_of(caller));
+  if (!matches_any(caller.robots, robot))
+    return refused(caller, act + " robot '" + std::string(robot) + "'", scope_of(caller));
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool matches(std::string_view pattern, std::string_view text) noexcept {
+  std::size_t at_pattern = 0, at_text = 0;
+  std::size_t star = std::string_view::npos, after_star = 0;  // the last one, and what it took
+  while (at_text < text.size()) {
+    if (at_pattern < pattern.size() && pattern[at_pattern] == '*') {
+      star = at_pattern++;
+      after_star = at_text;
+    } else if (at_pattern < pattern.size() &&
+               (pattern[at_pattern] == '?' || pattern[at_pattern] == text[at_text])) {
+      ++at_pattern;
+      ++at_text;
+    } else if (star != std::string_view::npos) {
+      at_pattern = star + 1;
+      at_text = ++after_star;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', at_pattern) == std::string_view::npos;
+}
+
+std::string describe(const Caller& caller) {
+  if (caller.name.empty())
+    return caller.is_local ? "a client on this machine" : "a client on another host";
+  return caller.name + " (role " + std::string(to_text(caller.role)) + ")";
+}
+
+bool is_narrowed(const Caller& caller) noexcept {
+  return !caller.tasks.empty() || !caller.robots.empty();
+}
+
+bool may_see(const Caller& caller, std::string_view task, std::string_view robot) {
+  return matches_any(caller.tasks, task) && matches_any(caller.robots, robot);
+}
+
+std::optional<Error> refusal_of(const Caller& caller, AdminVerb verb) {
+  const VerbRule& rule = rule_of(verb);
+  if (!has_role(caller, rule.least))
+    return refused(caller, rule.act, "needs role " + std::string(to_text(rule.least)));
+  if (rule.is_about_all && is_narrowed(caller))
+    return refused(caller, rule.act, "that is about all tasks and robots, " + scope_of(caller));
+  // All of a robot's paths go, or those of all robots.
+  if ((verb == AdminVerb::RemoveRobot && !caller.tasks.empty()) ||
+      (verb == AdminVerb::ResetTask && !caller.robots.empty()))
+    return refused(caller, rule.act, "that reaches beyond what it is for: " + scope_of(caller));
+  if (rule.is_change && verb != AdminVerb::CancelJob)
+    return refusal_by_place(caller, rule.act);
+  return std::nullopt;
+}
+
+std::optional<Error> refusal_of_task(const Caller& caller, std::string_view task) {
+  return refusal_of_names(caller, task, {}, "ask about");
+}
+
+std::optional<Error> refusal_of_robot(const Caller& caller, std::string_view label) {
+  return refusal_of_names(caller, {}, label, "ask about");
+}
+
+std::optional<Error> refusal_of_job(const Caller& caller, AdminVerb verb, const std::string& job) {
+  const std::string act =
+      std::string(verb == AdminVerb::CancelJob ? "cancel" : "see") + " job '" + job + "'";
+  if (!has_role(caller, AccessRole::Operator))
+    return refused(caller, act, "it is not its own, which needs role operator");
+  return verb == AdminVerb::CancelJob ? refusal_by_place(caller, act) : std::nullopt;
+}
+
+std::optional<Error> refusal_of_registration(const Caller& caller, std::string_view label) {
+  if (auto refusal = refusal_of_robots_act(caller, "register robots"))
+    return refusal;
+  return refusal_of_names(caller, {}, label, "register");
+}
+
+std::optional<Error> refusal_of_report(const Caller& caller, std::string_view task,
+                                       std::string_view robot) {
+  if (auto refusal = refusal_of_robots_act(caller, "report"))
+    return refusal;
+  return refusal_of_names(caller, task, robot, "report for");
+}
+
+std::optional<Error> refusal_of_fetch(const Caller& caller, std::string_view task,
+                                      std::string_view robot) {
+  return refusal_of_names(caller, task, robot, "fetch for");
+}
+
+bool may_hear(const Caller& caller, const Event& event) {
+  if (!has_role(caller, AccessRole::Reader))
+    return false;
+  if (!is_narrowed(caller))
+    return true;
+  // What names neither may have names of others in its words.
+  const bool names_enough = (caller.tasks.empty() || !event.task.empty()) &&
+                            (caller.robots.empty() || !event.robot.empty());
+  return names_enough && may_see(caller, event.task, event.robot);
+}
+
+}  // namespace kinship::access

@@ -1,0 +1,131 @@
+#include "server/service/narrowing.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "proto/types/failure.hpp"
+#include "server/access/access.hpp"
+#include "server/service/find_by_name.hpp"
+
+namespace kinship::service {
+namespace {
+
+void throw_if(const std::optional<Error>& refusal) {
+  if (refusal)
+    throw Failure(*refusal);
+}
+
+/// What went wrong for others may name their tasks and robots.
+void strip(ServerStatus& status) {
+  for (TroubleCount& trouble : status.troubles)
+    trouble.last.clear();
+}
+
+}  // namespace
+
+/// Of a robot that is not registered (any more) its digest, which no pattern is for.
+std::string Narrowing::label_of(const Digest& robot) const {
+  const std::optional<store::RobotRecord> record = store_.find_robot(robot);
+  return record ? record->description.label : robot.hex();
+}
+
+/// What is no robot's name, or could be several robots', stays what it is.
+std::string Narrowing::label_of(const std::string& name) const {
+  const Result<RobotSummary> robot = find_robot(store_, name);
+  return robot ? robot->label : name;
+}
+
+void Narrowing::check(const AdminRequest& request) const {
+  if (!access::is_narrowed(caller_))
+    return;
+  if (!request.task.empty())
+    throw_if(access::refusal_of_task(caller_, request.task));
+  if (!request.robot.empty() && !caller_.robots.empty() &&
+      access::refusal_of_robot(caller_, label_of(request.robot)))
+    throw_if(access::refusal_of_robot(caller_, request.robot));
+  check_argument(request);
+}
+
+void Narrowing::check_argument(const AdminRequest& request) const {
+  switch (request.verb) {
+    case AdminVerb::ShowTask:
+    case AdminVerb::ResetTask:
+      return throw_if(access::refusal_of_task(caller_, request.argument));
+    case AdminVerb::ShowRobot:
+    case AdminVerb::RemoveRobot:
+    case AdminVerb::RenameRobot:  // the label that it shall have
+      if (access::refusal_of_robot(caller_, label_of(request.argument)))
+        throw_if(access::refusal_of_robot(caller_, request.argument));
+      return;
+    case AdminVerb::ShowPath:
+    case AdminVerb::RetirePath:
+      return check_report(request.argument);
+    case AdminVerb::ShowDistribution:
+    case AdminVerb::ExplainDistribution:
+    case AdminVerb::ExportConfigurations:
+    case AdminVerb::EvictDistribution:
+      return check_distribution(request.argument);
+    default:
+      return;
+  }
+}
+
+void Narrowing::check_report(const std::string& uuid) const {
+  const std::optional<Uuid> report = Uuid::parse(uuid);
+  const std::optional<Attempt> attempt = report ? store_.find_attempt(*report) : std::nullopt;
+  if (attempt && !access::may_see(caller_, attempt->task, label_of(attempt->robot)))
+    throw Failure(not_found("report", uuid));
+}
+
+void Narrowing::check_distribution(const std::string& prefix) const {
+  const Digest id = find_distribution_id(store_, prefix).value_or_throw();
+  const std::optional<Distribution> found = store_.find_distribution(id);
+  if (found && !access::may_see(caller_, found->task, label_of(found->robot)))
+    throw Failure(not_found("distribution", prefix));
+}
+
+void Narrowing::apply(AdminPage& page) const {
+  if (access::is_narrowed(caller_))
+    std::erase_if(page.rows, [this](AdminRow& row) { return !keeps(row); });
+}
+
+/// Also cuts what of a row is about others.
+bool Narrowing::keeps(AdminRow& row) const {
+  const auto may_see = [this](const std::string& task, const std::string& robot) {
+    return access::may_see(caller_, task, robot);
+  };
+  if (auto* const task = std::get_if<TaskSummary>(&row)) {
+    std::erase_if(task->robots, [&](const auto& robot) { return !may_see("", robot.label); });
+    task->paths = task->attempts = task->dropped = 0;
+    for (const TaskRobotSummary& robot : task->robots) {
+      task->paths += robot.paths;
+      task->attempts += robot.attempts;
+      task->dropped += robot.dropped;
+    }
+    return may_see(task->task, "") && (caller_.robots.empty() || !task->robots.empty());
+  }
+  if (const auto* const robot = std::get_if<RobotSummary>(&row))
+    return may_see("", robot->label);
+  if (const auto* const robot = std::get_if<RobotDescription>(&row))
+    return may_see("", robot->label);
+  if (const auto* const robot = std::get_if<ExportedRobot>(&row))
+    return may_see("", robot->description.label);
+  if (const auto* const path = std::get_if<PathSummary>(&row))
+    return may_see(path->task, path->label);
+  if (const auto* const attempt = std::get_if<AttemptSummary>(&row))
+    return may_see(attempt->task, attempt->label);
+  if (const auto* const distribution = std::get_if<DistributionSummary>(&row))
+    return may_see(distribution->task, distribution->label);
+  if (const auto* const attempt = std::get_if<Attempt>(&row))
+    return may_see(attempt->task, caller_.robots.empty() ? "" : label_of(attempt->robot));
+  if (auto* const explanation = std::get_if<Explanation>(&row))
+    std::erase_if(explanation->experience,
+                  [&](const auto& robot) { return !may_see("", robot.label); });
+  if (auto* const status = std::get_if<ServerStatus>(&row))
+    strip(*status);
+  return true;
+}
+
+}  // namespace kinship::service

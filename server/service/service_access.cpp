@@ -1,0 +1,100 @@
+#include <string>
+#include <utility>
+
+#include "server/access/access.hpp"
+#include "server/access/verb_rules.hpp"
+#include "server/service/service.hpp"
+
+namespace kinship::service {
+
+std::optional<Error> Service::refusal_of(const Caller& caller, const AdminRequest& request) const {
+  if (auto refusal = access::refusal_of(caller, request.verb))
+    return refusal;
+  if (request.verb != AdminVerb::ShowJob && request.verb != AdminVerb::JobRows &&
+      request.verb != AdminVerb::CancelJob)
+    return std::nullopt;
+  const std::optional<std::string> owner = jobs_.owner_of(request.argument);
+  if (!owner || *owner == caller.client)
+    return std::nullopt;
+  return access::refusal_of_job(caller, request.verb, request.argument);
+}
+
+void Service::administer(AdminRequest request, const std::string& request_key,
+                         const std::function<void(const AdminPage&)>& done, const Caller& caller) {
+  const std::optional<Error> refusal = refusal_of(caller, request);
+  if (refusal && !access::rule_of(request.verb).is_change) {
+    const AdminPage page = page_of(*refusal);
+    count_admin(page);
+    return done(page);
+  }
+  // From memory, and on the thread that then asks for the next deadline.
+  if (request.verb == AdminVerb::ShowJob)
+    return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
+                      [done](const Result<Job>& job) { done(page_of(job)); });
+  // These may take long, and nobody else's request waits for them.
+  const bool is_long =
+      !refusal && (request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot);
+  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
+  auto run = [this, request = std::move(request), request_key, done, caller, refusal] {
+    const AdminPage page = refusal ? administration_.refuse(request, caller, *refusal)
+                                   : administration_.answer(request, request_key, caller);
+    count_admin(page);
+    done(page);
+  };
+  const auto decline = [this, done] {
+    AdminPage page;
+    page.message = "the server is busy or stopping";
+    count_admin(page);
+    done(page);
+  };
+  if (!pool.submit(runtime::WorkerPool::Priority::Interactive,
+                   {.run = std::move(run),
+                    .abandon = decline,
+                    .client = std::string(catalog::client_of(request_key))}))
+    decline();
+}
+
+void Service::name_robots(const std::set<Digest>& robots,
+                          std::function<void(const RobotLabels&)> done, const std::string& client) {
+  RobotLabels labels;
+  std::set<Digest> others;
+  for (const Digest& robot : robots)
+    if (const auto known = robots_.find_in_memory(robot))
+      labels.emplace(robot, known->label);
+    else
+      others.insert(robot);
+  if (others.empty())
+    return done(labels);
+  auto run = [this, labels = std::move(labels), others = std::move(others),
+              done = std::move(done)]() mutable {
+    for (const Digest& robot : others)
+      if (const auto found = robots_.find(robot))
+        labels.emplace(robot, found.value()->label);
+      else if (found.error().code != ErrorCode::NotFound)
+        labels.emplace(robot, found.error());
+    done(labels);
+  };
+  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
+                               {.run = std::move(run), .abandon = {}, .client = client}))
+    options_.log("robots: not looked up, busy or stopping");
+}
+
+void Service::refuse_registration(const std::string& label, const std::string& why,
+                                  const std::function<void(const RegisterReply&)>& done) {
+  troubles_.add(runtime::Trouble::RobotRefused, "'" + label + "': " + why);
+  RegisterReply reply;
+  reply.status = RegisterStatus::Refused;
+  reply.message = why;
+  done(reply);
+}
+
+void Service::refuse_fetch(const std::string& why,
+                           const std::function<void(const FetchReply&)>& done) {
+  FetchReply reply;
+  reply.status = FetchStatus::Refused;
+  reply.message = why;
+  count_fetch(reply);
+  done(reply);
+}
+
+}  // namespace kinship::service

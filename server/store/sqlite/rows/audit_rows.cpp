@@ -1,0 +1,196 @@
+#include "server/store/sqlite/rows/audit_rows.hpp"
+
+#include <unistd.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "proto/types/names.hpp"
+#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/sqlite/rows/distribution_rows.hpp"
+#include "server/store/sqlite/rows/robot_removal.hpp"
+#include "server/store/sqlite/rows/robot_rows.hpp"
+#include "server/store/sqlite/rows/row_values.hpp"
+
+namespace kinship::store {
+namespace {
+
+/// What an entry says of an act beyond who asked for what.
+void note(Database& database, const AuditEntry* audit, AuditOutcome outcome, std::string before,
+          std::string after = {}) {
+  if (audit == nullptr)
+    return;
+  AuditEntry entry = *audit;
+  entry.outcome = outcome;
+  entry.before = std::move(before);
+  entry.after = std::move(after);
+  insert_audit(database, entry);
+}
+
+std::string in_number(std::int64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::int64_t count_paths_of(Database& database, std::string_view task) {
+  const auto query = database.cached(
+      "SELECT coalesce(sum(paths), 0) FROM experience JOIN task ON task.id = experience.task_id "
+      "WHERE task.name = ?");
+  query->bind(1, task).step();
+  return query->column_integer(0);
+}
+
+std::string describe_paths(Database& database, std::string_view task) {
+  return "task '" + std::string(task) + "': " + in_number(count_paths_of(database, task), "path");
+}
+
+std::string name_of_task(Database& database, std::int64_t task_id) {
+  const auto query = database.cached("SELECT name FROM task WHERE id = ?");
+  return query->bind(1, task_id).step() ? std::string(query->column_text(0)) : std::string();
+}
+
+/// A robot as it is before it is removed.
+std::string describe_robot(Database& database, const Digest& robot) {
+  const auto query = database.cached(
+      "SELECT label, (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
+      " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id) "
+      "FROM robot WHERE digest = ?");
+  if (!query->bind(1, Bytes(robot.bytes)).step())
+    return {};
+  return "'" + std::string(query->column_text(0)) + "' (" + robot.short_hex() +
+         "): " + in_number(query->column_integer(1), "path") + ", " +
+         in_number(query->column_integer(2), "attempt");
+}
+
+std::string describe_removal(const RobotRemoval& removal) {
+  const std::string rest =
+      in_number(static_cast<std::int64_t>(removal.distributions), "distribution") + " gone";
+  if (removal.is_deleted)
+    return "deleted, " + rest;
+  return "removed, " + in_number(static_cast<std::int64_t>(removal.paths), "path") + " retired, " +
+         rest;
+}
+
+}  // namespace
+
+void insert_audit(Database& database, const AuditEntry& entry) {
+  const auto text = [](const std::string& value, std::size_t limit) {
+    return cut_text(value, limit);
+  };
+  database
+      .cached(
+          "INSERT INTO audit (time_ms, name, role, client, is_local, verb, target, outcome, was,"
+          " became, message) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      ->bind_all(now_ms(), std::string_view(text(entry.name, kMaxWordBytes)),
+                 std::string_view(text(entry.role, kMaxWordBytes)),
+                 std::string_view(text(entry.client, kMaxMachineBytes)),
+                 std::int64_t{entry.is_local}, std::string_view(text(entry.verb, kMaxWordBytes)),
+                 std::string_view(text(entry.target, kMaxFileNameBytes)),
+                 static_cast<std::int64_t>(entry.outcome) + 1,
+                 std::string_view(text(entry.before, kMaxMessageBytes)),
+                 std::string_view(text(entry.after, kMaxMessageBytes)),
+                 std::string_view(text(entry.message, kMaxMessageBytes)))
+      .run();
+}
+
+void note_maintenance(Database& database, const std::string& verb,
+                      const std::filesystem::path& target, const std::string& after) {
+  AuditEntry entry;
+  entry.client = "kinshipd of user " + std::to_string(getuid());
+  entry.verb = verb;
+  entry.target = target.string();
+  entry.after = after;
+  insert_audit(database, entry);
+}
+
+void copy_missing_audit(Database& database, Database& other) {
+  if (other.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") == 0)
+    return;
+  const std::string columns =
+      "time_ms, name, role, client, is_local, verb, target, outcome, was, became, message";
+  constexpr int kColumns = 11;
+  const auto insert =
+      database.cached("INSERT INTO audit (" + columns +
+                      ") SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 "
+                      "WHERE NOT EXISTS (SELECT 1 FROM audit WHERE id = ?12 AND (" +
+                      columns + ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11))");
+  Statement rows(other.connection(), "SELECT " + columns + ", id FROM audit ORDER BY id");
+  while (rows.step()) {
+    for (int column = 0; column <= kColumns; ++column)
+      insert->bind_column(column + 1, rows, column);
+    insert->run();
+    insert->reset();
+  }
+}
+
+Result<bool> rename_audited(Database& database, const Digest& robot, const std::string& label,
+                            const AuditEntry* audit) {
+  const std::optional<RobotRecord> before =
+      audit == nullptr ? std::nullopt : select_robot(database, robot);
+  Result<bool> renamed = relabel_robot(database, robot, label);
+  if (renamed && before)
+    note(database, audit, AuditOutcome::Done, "'" + before->description.label + "'",
+         "'" + label + "' (" + robot.short_hex() + ")");
+  return renamed;
+}
+
+Result<bool> remove_audited(Batch& batch, const Digest& robot, RemovedRobot& removed,
+                            const AuditEntry* audit) {
+  Database& database = batch.database();
+  const bool is_first = removed.removal.paths == 0;
+  std::string before = audit == nullptr ? std::string() : describe_robot(database, robot);
+  Result<bool> is_out = continue_removal(batch, robot, removed);
+  if (!is_out)
+    return is_out;
+  if (*is_out)
+    note(database, audit, AuditOutcome::Done, std::move(before), describe_removal(removed.removal));
+  else if (is_first)
+    note(database, audit, AuditOutcome::Begun, std::move(before));
+  return is_out;
+}
+
+Result<Retirement> retire_audited(Batch& batch, const Uuid& report_uuid, const AuditEntry* audit) {
+  Database& database = batch.database();
+  Result<Retirement> retired = retire_path(batch, report_uuid);
+  if (!retired || audit == nullptr)
+    return retired;
+  const std::int64_t left = count_paths_of(database, retired->task);
+  const auto gone = static_cast<std::int64_t>(retired->paths);
+  note(database, audit, AuditOutcome::Done,
+       "task '" + retired->task + "': " + in_number(left + gone, "path"), in_number(left, "path"));
+  return retired;
+}
+
+Result<TaskReset> begin_reset_audited(Database& database, std::string_view task,
+                                      const AuditEntry* audit) {
+  Result<TaskReset> reset = begin_reset(database, task);
+  if (reset && audit != nullptr)
+    note(database, audit, AuditOutcome::Begun, describe_paths(database, task));
+  return reset;
+}
+
+bool continue_reset_audited(Batch& batch, const TaskReset& reset, Retirement& retired,
+                            const AuditEntry* audit) {
+  const bool goes_on = continue_reset(batch, reset, retired);
+  if (goes_on || audit == nullptr)
+    return goes_on;
+  Database& database = batch.database();
+  note(database, audit, AuditOutcome::Done, {},
+       describe_paths(database, name_of_task(database, reset.task_id)) + ", " +
+           std::to_string(retired.paths) + " retired");
+  return false;
+}
+
+bool evict_audited(Database& database, const Digest& id, const AuditEntry* audit) {
+  std::string before;
+  if (audit != nullptr)
+    if (const std::optional<Distribution> known = select_distribution(database, id).distribution)
+      before = "task '" + known->task + "', robot " + known->robot.short_hex() + ": revision " +
+               std::to_string(known->revision);
+  const bool was_there = delete_distribution(database, id);
+  if (was_there)
+    note(database, audit, AuditOutcome::Done, std::move(before), "gone");
+  return was_there;
+}
+
+}  // namespace kinship::store

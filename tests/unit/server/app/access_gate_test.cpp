@@ -1,0 +1,136 @@
+#include "server/app/access_gate.hpp"
+
+#include "tests/unit/server/service/service_fixture.hpp"
+
+namespace kinship::app::access_gate_test {
+namespace {
+
+/// The gate before a real service, with a caller of role robot.
+class AccessGate : public service::ServiceFixture {
+ protected:
+  AccessGate() {
+    may_trouble_store_ = true;
+    start();
+    for (const RobotSummary& robot : real_store_->list_robots("", 100).rows)
+      (robot.label == "teacher" ? teacher_
+       : robot.label == "pupil" ? pupil_
+                                : dwarf_) = registry_->find(robot.robot).value_or_throw();
+    caller_ = {"robot_7", "robot_7", AccessRole::Robot, {}, {}, false};
+  }
+  ReportReply report(std::vector<Attempt> attempts) {
+    std::promise<ReportReply> reply;
+    app::report(*service_, caller_, {std::move(attempts), {}},
+                [&](const ReportReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+  RegisterReply register_robot(const RobotDescription& description) {
+    std::promise<RegisterReply> reply;
+    app::register_robot(*service_, caller_, description,
+                        [&](const RegisterReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+  FetchReply fetch(const runtime::Robot& robot, const std::string& task) {
+    FetchRequest request = request_for(robot);
+    request.task = task;
+    std::promise<FetchReply> reply;
+    app::fetch(*service_, caller_, request, "one",
+               [&](const FetchReply& r) { reply.set_value(r); });
+    return reply.get_future().get();
+  }
+  static const Receipt& of(const ReportReply& reply, const Attempt& attempt) {
+    for (const Receipt& receipt : reply.receipts)
+      if (receipt.report_uuid == attempt.report_uuid)
+        return receipt;
+    throw std::runtime_error("no receipt");
+  }
+
+  runtime::RobotRegistry::RobotPointer teacher_, pupil_, dwarf_;
+  Caller caller_;
+};
+
+TEST_F(AccessGate, TheNameInTheCertificateIsTheMachine) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  ASSERT_NE(attempt.machine, "robot_7");
+  EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::Stored);
+  EXPECT_EQ(real_store_->find_attempt(attempt.report_uuid)->machine, "robot_7");
+  EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::Duplicate);
+  caller_.name.clear();  // the same without security
+  const Attempt free = fleet::solved(*teacher_, "shelf", 2);
+  EXPECT_EQ(of(report({free}), free).status, ReceiptStatus::Stored);
+  EXPECT_EQ(real_store_->find_attempt(free.report_uuid)->machine, free.machine);
+}
+
+TEST_F(AccessGate, AReportOfBeforeThereWereCertificatesIsStillADuplicate) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  ASSERT_EQ(ServiceFixture::report({attempt}).receipts.at(0).status, ReceiptStatus::Stored);
+  EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::Duplicate);
+  caller_.name = "robot_8";
+  EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::Duplicate);
+  Attempt other = attempt;
+  other.record.planning_time_s += 1;
+  EXPECT_EQ(of(report({other}), other).status, ReceiptStatus::Refused);
+}
+
+TEST_F(AccessGate, AnAttemptThatIsNotItsToReportIsRefusedAlone) {
+  caller_.tasks = {"shelf"};
+  caller_.robots = {"teacher"};
+  const std::vector<Attempt> attempts = {
+      fleet::solved(*teacher_, "shelf", 1), fleet::solved(*teacher_, "bin", 2),
+      fleet::solved(*pupil_, "shelf", 3), fleet::unsolved(Digest(), "shelf")};
+  const ReportReply reply = report(attempts);
+  EXPECT_EQ(of(reply, attempts[0]).status, ReceiptStatus::Stored);
+  EXPECT_EQ(of(reply, attempts[1]).status, ReceiptStatus::Refused);
+  EXPECT_EQ(of(reply, attempts[1]).message,
+            "robot_7 (role robot) may not report for task 'bin': its certificate is for tasks "
+            "shelf, robots teacher");
+  EXPECT_EQ(of(reply, attempts[2]).status, ReceiptStatus::Refused);
+  EXPECT_EQ(of(reply, attempts[3]).status, ReceiptStatus::UnknownRobot);
+  EXPECT_FALSE(real_store_->find_attempt(attempts[1].report_uuid));
+  EXPECT_FALSE(real_store_->find_attempt(attempts[2].report_uuid));
+  EXPECT_TRUE(is_told("may not report for task 'bin'"));
+}
+
+TEST_F(AccessGate, ARobotThatCannotBeReadNowIsTriedAgain) {
+  caller_.robots = {"teacher"};
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  start();  // nothing is in memory
+  store::damage_robot(directory_ / "fleet.db", "teacher");
+  EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::TryAgain);
+}
+
+TEST_F(AccessGate, WithoutTheRoleNothingIsReportedOrRegistered) {
+  caller_.role = AccessRole::Operator;
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  EXPECT_EQ(of(report({attempt}), attempt).message,
+            "robot_7 (role operator) may not report: needs role robot or admin");
+  EXPECT_EQ(register_robot(fleet::planar("new", {0.1, 0.2, 0.3})).status, RegisterStatus::Refused);
+  EXPECT_NE(fetch(*teacher_, "shelf").status, FetchStatus::Refused);
+}
+
+TEST_F(AccessGate, ARobotRegistersUnderTheLabelsOfItsCertificate) {
+  caller_.robots = {"cell_*"};
+  const RegisterReply refused = register_robot(fleet::planar("other", {0.4, 0.3, 0.2, 0.15}));
+  EXPECT_EQ(refused.status, RegisterStatus::Refused);
+  EXPECT_EQ(refused.message,
+            "robot_7 (role robot) may not register robot 'other': its certificate is for robots "
+            "cell_*");
+  EXPECT_EQ(register_robot(fleet::planar("cell_1", {0.4, 0.3, 0.2, 0.15})).status,
+            RegisterStatus::Registered);
+}
+
+TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  report({attempt});
+  caller_.tasks = {"shelf"};
+  caller_.robots = {"teacher"};
+  EXPECT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready);
+  const FetchReply task = fetch(*teacher_, "bin");
+  EXPECT_EQ(task.status, FetchStatus::Refused);
+  EXPECT_EQ(task.message,
+            "robot_7 (role robot) may not fetch for task 'bin': its certificate is "
+            "for tasks shelf, robots teacher");
+  EXPECT_EQ(fetch(*pupil_, "shelf").status, FetchStatus::Refused);
+}
+
+}  // namespace
+}  // namespace kinship::app::access_gate_test
