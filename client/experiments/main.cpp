@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <sstream>
 
 #include "client/arguments/command_options.hpp"
@@ -37,10 +36,10 @@ Examples:
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 a file or folder does not exist, 4 its kinshipd did not start.)";
 
 struct CommandLine {
-  StationOptions machine{.station = Station::Machine}, shelf{.station = Station::Shelf};
+  StationOptions machine, shelf;
   std::string placement;
   std::filesystem::path output;
-  Station placed_at = Station::Machine;
+  std::string placed_at = std::string(to_text(Station::Machine));
   models::RobotArguments placed;
   CompareOptions compare;
   std::vector<std::string> also;
@@ -76,12 +75,10 @@ void add_placement(CLI::App& app, CommandLine& line) {
                    "model folder of the robot, or a URDF file with --base and --tip")
       ->required();
   arguments::add_robot_options(*placement, line.placed);
-  const std::map<std::string, Station> stations = {{"machine", Station::Machine},
-                                                   {"shelf", Station::Shelf}};
-  placement->add_option("--station", line.placed_at, "which task: machine or shelf")
-      ->transform(CLI::CheckedTransformer(stations).description(""))
-      ->type_name("machine|shelf")
-      ->default_str("machine");
+  placement->add_option("--station", line.placed_at, "the task that is meant")
+      ->check(CLI::IsMember(
+          {std::string(to_text(Station::Machine)), std::string(to_text(Station::Shelf))}))
+      ->capture_default_str();
 }
 
 void add_compare(CLI::App& app, CommandLine& line) {
@@ -127,6 +124,7 @@ void write_compared(CommandLine& line) {
 
 int run(int argc, char** argv) {
   CommandLine line;
+  line.shelf.station = Station::Shelf;
   CLI::App app{"kinship-experiments: planning problems and comparisons for experiments",
                "kinship-experiments"};
   manual::add_manual(app);
@@ -153,7 +151,8 @@ int run(int argc, char** argv) {
   else if (app.got_subcommand("shelf"))
     write_problems(line, line.shelf);
   else if (app.got_subcommand("placement"))
-    write_placement(line.placed_at, line.placed, std::cout);
+    write_placement(line.placed_at == to_text(Station::Shelf) ? Station::Shelf : Station::Machine,
+                    line.placed, std::cout);
   else if (app.got_subcommand("page"))
     run_page_command(line.page);
   else

@@ -10,8 +10,6 @@
 namespace kinship::security {
 namespace {
 
-constexpr std::chrono::days kWarnedBefore{30};
-
 void write_files(const CredentialFiles& files, const CredentialWish& wish,
                  const Authority& authority, const std::vector<Certificate>& trusted,
                  const Key& key, x509_st& certificate) {

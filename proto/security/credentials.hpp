@@ -15,6 +15,9 @@ namespace kinship::security {
 /// Common name of the server's certificate, and what no client may be called.
 inline constexpr const char* kServerName = "server";
 
+/// How long before credentials end people are told.
+inline constexpr std::chrono::days kWarnedBefore{30};
+
 /// Files of a credentials folder: what a participant needs to prove who it is.
 struct CredentialFiles {
   explicit CredentialFiles(const std::filesystem::path& folder)

@@ -1,5 +1,14 @@
 #include "proto/security/security_folder.hpp"
 
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
 #include "proto/security/access_role.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/security/private_files.hpp"
@@ -9,21 +18,9 @@
 namespace kinship::security {
 namespace {
 
-constexpr std::chrono::days kAuthorityDays{3653};
-constexpr std::chrono::days kMaxDays = kAuthorityDays;
-
-void check(const std::optional<Error>& error) {
+void throw_if(const std::optional<Error>& error) {
   if (error)
     throw Failure(*error);
-}
-
-/// A new authority, named so that it is told from others.
-Authority make_new_authority(std::chrono::sys_seconds now) {
-  Key key = make_key();
-  const std::string name = "authority since " + time_text(now);
-  Certificate certificate = make_authority(
-      {.name = name, .use = Use::Authority, .validity = valid_for(kAuthorityDays, now)}, *key);
-  return {std::move(key), std::move(certificate)};
 }
 
 /// `days` from now on, as far as the authority itself is valid.
@@ -47,89 +44,233 @@ void write_server_credentials(const std::filesystem::path& folder, const Authori
                     authority, trusted);
 }
 
+/// Puts the folder `next` in the place of `folder`, which is never missing meanwhile.
+/// \return where that is now.
+std::filesystem::path replace_folder(const std::filesystem::path& folder,
+                                     const std::filesystem::path& next,
+                                     std::chrono::sys_seconds now) {
+  std::filesystem::path kept = folder.string() + ".replaced-" + time_text(now);
+  for (int number = 2; std::filesystem::exists(kept); ++number)
+    kept = folder.string() + ".replaced-" + time_text(now) + "-" + std::to_string(number);
+  if (renameat2(AT_FDCWD, next.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) != 0)
+    throw Failure(ErrorCode::Storage, folder.string() + ": cannot be replaced by " + next.string() +
+                                          ": " + std::generic_category().message(errno));
+  std::filesystem::rename(next, kept);
+  return kept;
+}
+
+std::int64_t to_ms(std::chrono::sys_seconds time) {
+  return std::chrono::milliseconds(time.time_since_epoch()).count();
+}
+
+/// Sets what follows from the time until which credentials are valid.
+void set_expiry(CredentialList::Row& row, std::chrono::sys_seconds expires,
+                std::chrono::sys_seconds now) {
+  row.expires_ms = to_ms(expires);
+  row.days_left = std::chrono::round<std::chrono::days>(expires - now).count();
+  row.state = expires <= now ? "expired" : expires - now < kWarnedBefore ? "expires soon" : "valid";
+}
+
+CredentialList::Row client_row(const std::filesystem::path& file, std::chrono::sys_seconds now) {
+  CredentialList::Row row{.name = file.stem().string(), .state = "unreadable"};
+  try {
+    const ClientRecord record = read_record(read_file(file), file.string()).value_or_throw();
+    row.role = role_name(record.role);
+    row.tasks = record.tasks;
+    row.robots = record.robots;
+    row.authority = record.authority;
+    set_expiry(row, record.expires, now);
+    if (record.revoked) {
+      row.state = "revoked";
+      row.revoked_ms = to_ms(*record.revoked);
+    }
+  } catch (const Failure& failure) {
+    row.message = failure.what();
+  }
+  return row;
+}
+
+CredentialList::Row server_row(const std::filesystem::path& folder, std::chrono::sys_seconds now) {
+  CredentialList::Row row{.name = kServerName, .role = kServerName, .state = "unreadable"};
+  try {
+    const CredentialFiles files(folder);
+    const auto certificates =
+        certificates_from_pem(read_file(files.certificate), files.certificate.string());
+    const auto trusted =
+        certificates_from_pem(read_file(files.authorities), files.authorities.string());
+    if (certificates.empty() || trusted.empty())
+      throw Failure(ErrorCode::InvalidInput, folder.string() + ": a certificate is missing");
+    row.authority = fingerprint(*trusted.front());
+    set_expiry(row, expiry(*certificates.front()), now);
+  } catch (const Failure& failure) {
+    row.message = failure.what();
+  }
+  return row;
+}
+
+/// Files that root writes for somebody else's server could not be read by it.
+void require_owner(const std::filesystem::path& folder) {
+  struct stat status {};
+  if (stat(folder.c_str(), &status) == 0 && status.st_uid != geteuid())
+    throw Failure(ErrorCode::Conflict, folder.string() + ": belongs to user " +
+                                           std::to_string(status.st_uid) +
+                                           ", who has to do this: sudo -u '#" +
+                                           std::to_string(status.st_uid) + "' kinshipd secure ...");
+}
+
+/// \throws Failure(NotFound) if it is no security folder.
+AuthorityFolder open_authority(const std::filesystem::path& folder,
+                               const std::filesystem::path& key) {
+  try {
+    return AuthorityFolder(folder / "authority", key);
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(), folder.string() + ": is no security folder (" + failure.what() +
+                                      "); one is made by: kinshipd secure init " + folder.string());
+  }
+}
+
 }  // namespace
 
 SecurityFolder SecurityFolder::init(const std::filesystem::path& folder,
                                     std::chrono::days server_days, std::chrono::sys_seconds now) {
-  const Authority authority = make_new_authority(now);
-  const Validity validity = within(authority, server_days, now);
   make_private_folder(folder);
-  make_private_folder(folder / "authority");
   make_private_folder(folder / "clients");
-  write_new_file(folder / "authority" / "ca.key", to_pem(*authority.key), Readers::Owner);
-  const std::string pem = to_pem(*authority.certificate);
-  write_new_file(folder / "authority" / "ca.pem", pem, Readers::Everybody);
-  write_server_credentials(folder / "server", authority, certificates_from_pem(pem, "authority"),
-                           validity);
+  const AuthorityFolder authority = AuthorityFolder::init(folder / "authority", now);
+  const Authority issuer = authority.for_server();
+  write_server_credentials(folder / "server", issuer, authority.trusted(),
+                           within(issuer, server_days, now));
   return SecurityFolder(folder);
 }
 
-SecurityFolder::SecurityFolder(std::filesystem::path folder, std::filesystem::path authority_key)
-    : folder_(std::move(folder)), authority_key_(std::move(authority_key)) {
-  if (authority_key_.empty())
-    authority_key_ = folder_ / "authority" / "ca.key";
-  if (!std::filesystem::is_regular_file(folder_ / "authority" / "ca.pem"))
-    throw Failure(ErrorCode::NotFound, folder_.string() +
-                                           ": is no security folder: authority/ca.pem is not "
-                                           "there; one is made by: kinshipd secure init " +
-                                           folder_.string());
-}
-
-std::vector<Certificate> SecurityFolder::trusted() const {
-  const std::filesystem::path file = folder_ / "authority" / "ca.pem";
-  return certificates_from_pem(read_file(file), file.string());
-}
-
-Authority SecurityFolder::authority() const {
-  auto certificates = trusted();
-  Key key = key_from_pem(read_file(authority_key_), authority_key_.string());
-  if (certificates.empty() || !belongs_to(*key, *certificates.front()))
-    throw Failure(ErrorCode::InvalidInput, authority_key_.string() + ": is not the key of " +
-                                               (folder_ / "authority" / "ca.pem").string());
-  return {std::move(key), std::move(certificates.front())};
+SecurityFolder::SecurityFolder(std::filesystem::path folder,
+                               const std::filesystem::path& authority_key)
+    : folder_(std::move(folder)), authority_(open_authority(folder_, authority_key)) {
+  require_owner(folder_);
 }
 
 std::filesystem::path SecurityFolder::record_file(const std::string& name) const {
   return clients() / (name + ".toml");
 }
 
-ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem::path& out,
-                                 std::chrono::sys_seconds now) const {
-  check(check_client_name(client.name));
-  for (const std::string& pattern : client.tasks)
-    check(check_task_pattern(pattern));
-  for (const std::string& label : client.robots)
-    check(check_label(label));
-  if (std::filesystem::exists(record_file(client.name)))
-    throw Failure(ErrorCode::Conflict, "client '" + client.name + "' exists already: " +
-                                           record_file(client.name).string());
-  const Authority issuer = authority();
-  const Validity validity = within(issuer, client.days, now);
+ClientRecord SecurityFolder::record_of(const std::string& name) const {
+  throw_if(check_client_name(name));
+  if (!std::filesystem::exists(record_file(name)))
+    throw Failure(ErrorCode::NotFound, "client '" + name + "': is not in " + clients().string() +
+                                           "; who is there: kinshipd secure list");
+  return read_record(read_file(record_file(name)), record_file(name).string()).value_or_throw();
+}
+
+ClientRecord SecurityFolder::issue_to(ClientRecord record, std::chrono::days days,
+                                      const std::filesystem::path& out,
+                                      std::chrono::sys_seconds now) const {
+  const Authority issuer = authority_.for_clients();
+  const Validity validity = within(issuer, days, now);
   const Certificate certificate =
       write_credentials(out,
-                        {.name = client.name,
-                         .role = role_name(client.role),
+                        {.name = record.name,
+                         .role = role_name(record.role),
                          .validity = validity,
-                         .permissions = client_permissions(client.name, client.role, validity)},
-                        issuer, trusted());
-  ClientRecord record{.name = client.name,
-                      .role = client.role,
-                      .tasks = client.tasks,
-                      .robots = client.robots,
-                      .serial = serial_text(*certificate),
-                      .authority = fingerprint(*issuer.certificate),
-                      .expires = validity.end};
-  write_new_file(record_file(client.name), record_text(record), Readers::Everybody);
+                         .permissions = client_permissions(record.name, record.role, validity)},
+                        issuer, authority_.trusted_by(issuer));
+  record.serial = serial_text(*certificate);
+  record.authority = fingerprint(*issuer.certificate);
+  record.expires = validity.end;
+  return record;
+}
+
+ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem::path& out,
+                                 std::chrono::sys_seconds now) const {
+  throw_if(check_client_name(client.name));
+  for (const std::string& pattern : client.tasks)
+    throw_if(check_task_pattern(pattern));
+  for (const std::string& label : client.robots)
+    throw_if(check_label(label));
+  if (std::filesystem::exists(record_file(client.name)))
+    throw Failure(ErrorCode::Conflict, "client '" + client.name + "': exists already (" +
+                                           record_file(client.name).string() +
+                                           "); new credentials for it: kinshipd secure renew " +
+                                           client.name);
+  const ClientRecord record = issue_to(
+      {.name = client.name, .role = client.role, .tasks = client.tasks, .robots = client.robots},
+      client.days, out, now);
+  try {
+    write_new_file(record_file(client.name), record_text(record), Readers::Everybody);
+  } catch (...) {  // e.g. added twice at the same time: these credentials are nobody's
+    std::error_code ignored;
+    std::filesystem::remove_all(out, ignored);
+    throw;
+  }
+  return record;
+}
+
+ClientRecord SecurityFolder::renew(const std::string& name, std::chrono::days days,
+                                   const std::filesystem::path& out,
+                                   std::chrono::sys_seconds now) const {
+  const ClientRecord before = record_of(name);
+  if (before.revoked)
+    throw Failure(ErrorCode::Conflict, "client '" + name + "': revoked at " +
+                                           time_text(*before.revoked) +
+                                           "; give what is to come back another name");
+  const ClientRecord record = issue_to(before, days, out, now);
+  replace_file(record_file(name), record_text(record), Readers::Everybody);
   return record;
 }
 
 ClientRecord SecurityFolder::revoke(const std::string& name, std::chrono::sys_seconds now) const {
-  check(check_client_name(name));
-  ClientRecord record =
-      read_record(read_file(record_file(name)), record_file(name).string()).value_or_throw();
-  record.revoked = record.revoked.value_or(now);
-  replace_file(record_file(name), record_text(record), Readers::Everybody);
+  ClientRecord record = record_of(name);
+  if (!record.revoked) {
+    record.revoked = now;
+    replace_file(record_file(name), record_text(record), Readers::Everybody);
+  }
   return record;
+}
+
+CredentialList SecurityFolder::list(std::chrono::sys_seconds now) const {
+  CredentialList list;
+  for (const Certificate& one : authority_.trusted())
+    list.authorities.push_back({common_name(*one), fingerprint(*one), to_ms(expiry(*one))});
+  list.credentials.push_back(server_row(server_credentials(), now));
+  for (const auto& entry : std::filesystem::directory_iterator(clients()))
+    if (entry.path().extension() == ".toml")
+      list.credentials.push_back(client_row(entry.path(), now));
+  std::sort(list.credentials.begin() + 1, list.credentials.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  for (CredentialList::Row& row : list.credentials)
+    row.is_of_previous_authority =
+        !row.authority.empty() && row.authority != list.authorities.front().fingerprint;
+  return list;
+}
+
+std::filesystem::path SecurityFolder::renew_server(std::chrono::days days,
+                                                   std::chrono::sys_seconds now) const {
+  const Authority issuer = authority_.for_server();
+  const std::filesystem::path next = folder_ / "server.next";
+  std::filesystem::remove_all(next);  // of a change that was interrupted
+  write_server_credentials(next, issuer, authority_.trusted_by(issuer), within(issuer, days, now));
+  return replace_folder(server_credentials(), next, now);
+}
+
+std::filesystem::path SecurityFolder::renew_authority(std::chrono::days server_days,
+                                                      std::chrono::sys_seconds now) {
+  authority_.add_second(now);
+  return renew_server(server_days, now);
+}
+
+std::vector<std::string> SecurityFolder::clients_of_previous_authority(
+    std::chrono::sys_seconds now) const {
+  std::vector<std::string> names;
+  for (const CredentialList::Row& row : list(now).credentials)
+    if (row.is_of_previous_authority && row.role != kServerName && row.state != "revoked" &&
+        row.state != "expired")
+      names.push_back(row.name);
+  return names;
+}
+
+std::filesystem::path SecurityFolder::retire_authority(std::chrono::days server_days,
+                                                       std::chrono::sys_seconds now) {
+  const std::filesystem::path key = authority_.retire_previous();
+  renew_server(server_days, now);
+  return key;
 }
 
 }  // namespace kinship::security

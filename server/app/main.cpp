@@ -1,11 +1,13 @@
 #include <unistd.h>
 
+#include <chrono>
 #include <exception>
 #include <iostream>
 #include <variant>
 
 #include "server/app/offline.hpp"
 #include "server/app/options.hpp"
+#include "server/app/secure.hpp"
 #include "server/app/serve.hpp"
 
 int main(int argc, char** argv) {
@@ -16,6 +18,10 @@ int main(int argc, char** argv) {
       return *code;
     if (const auto* const offline = std::get_if<OfflineOptions>(&options))
       return run_offline(*offline, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+    if (const auto* const secure = std::get_if<SecureOptions>(&options))
+      return run_secure(*secure,
+                        std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()),
+                        std::cout, std::cerr);
     return serve(std::get<ServerOptions>(options), std::cout);
   } catch (const std::exception& exception) {
     std::cerr << "kinshipd: " << exception.what() << '\n';

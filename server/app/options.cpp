@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <thread>
@@ -38,7 +39,8 @@ Examples:
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
-  kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one)";
+  kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one
+  kinshipd secure init DIR                       certificates for the fleet; kinshipd secure --help)";
 
 /// What the help of a verb ends with, before its example.
 constexpr const char* kVerbFooter =
@@ -267,6 +269,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
                "Print the options that would serve, as a file for --config, and end")
       ->configurable(false);
   add_verbs(app, offline);
+  std::optional<SecureOptions> secure;
+  add_secure_verbs(app, secure);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
@@ -281,6 +285,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   } catch (const CLI::ParseError& error) {
     return manual::explain(app, error, out, err);
   }
+  if (secure)
+    return *secure;
   const bool is_offline = !app.get_subcommands().empty();
   const bool store_given = app.count("--store") > 0;
   if (is_offline && store_given) {

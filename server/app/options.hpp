@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "proto/types/exit_code.hpp"
+#include "server/app/secure_options.hpp"
 
 namespace kinship::app {
 
@@ -50,7 +51,7 @@ struct OfflineOptions {
   bool json = false;
 };
 
-using Options = std::variant<ServerOptions, OfflineOptions, int>;
+using Options = std::variant<ServerOptions, OfflineOptions, SecureOptions, int>;
 
 /// Options from the command line; what is not there from the file of --config; the domain then
 /// from the environment (KINSHIP_DOMAIN).

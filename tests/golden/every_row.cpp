@@ -279,6 +279,26 @@ StoreCheck every_store_check() {
   return check;
 }
 
+CredentialList every_credential_list() {
+  Distinct next(3300);
+  CredentialList list;
+  list.authorities.push_back({next.text("authority"), next.name("fingerprint"), next.time_ms()});
+  CredentialList::Row row;
+  row.name = next.name("name");
+  row.role = next.name("role");
+  row.tasks = {next.name("task"), next.name("task")};
+  row.robots = {next.name("robot"), next.name("robot")};
+  row.state = next.text("state");
+  row.expires_ms = next.time_ms();
+  row.days_left = static_cast<std::int64_t>(next.count());
+  row.revoked_ms = next.time_ms();
+  row.authority = next.name("fingerprint");
+  row.is_of_previous_authority = true;
+  row.message = next.text("message");
+  list.credentials.push_back(row);
+  return list;
+}
+
 Problem every_problem() {
   Distinct next(1800);
   Problem problem = problem_without_goal(next);

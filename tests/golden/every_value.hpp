@@ -5,6 +5,7 @@
 
 #include "proto/types/audit.hpp"
 #include "proto/types/conversations.hpp"
+#include "proto/types/credential_list.hpp"
 #include "proto/types/problem.hpp"
 #include "proto/types/publications.hpp"
 #include "proto/types/robot_check.hpp"
@@ -81,6 +82,7 @@ Job every_job();
 AuditEntry every_audit_entry();
 ServerStatus every_status();
 StoreCheck every_store_check();
+CredentialList every_credential_list();
 
 Problem every_problem();            ///< to configurations, in a scene
 Problem every_pose_problem();       ///< to a pose

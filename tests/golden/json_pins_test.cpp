@@ -7,6 +7,7 @@
 
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/attempt_json.hpp"
+#include "proto/json/credential_list_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/event_json.hpp"
 #include "proto/json/experience_line.hpp"
@@ -96,6 +97,7 @@ std::vector<Case> cases() {
       readable("problem_result", every_problem_result(), problem_result_from_json),
       {"event", to_json(every_event())},
       {"store_check", to_json(every_store_check())},
+      {"credential_list", to_json(every_credential_list())},
       {"inverse_answer", to_json(every_inverse_answer())},
       {"robot_check", to_json(every_robot_check())},
       {"register_reply", to_json(every_register_reply(), "label")},

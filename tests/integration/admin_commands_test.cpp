@@ -299,6 +299,9 @@ TEST_F(AdminCommands, RobotsAreComparedByWhatExperienceIsWorthToThem) {
   EXPECT_EQ(panda.code, 0) << panda.err;
   EXPECT_NE(panda.out.find("\nTARGET \\ SOURCE  panda\npanda            "), std::string::npos)
       << panda.out;
+  EXPECT_NE(panda.out.find("answered a query never guides that query again, also on the diagonal"),
+            std::string::npos)
+      << panda.out;
   EXPECT_NE(panda.err.find("rehearsing 1 of 1: panda with the experience of panda"),
             std::string::npos);
 

@@ -164,6 +164,7 @@ class PlotPages(unittest.TestCase):
         self.assertTrue(known)
         cells = {each.get_attribute("aria-label").split(":")[0]: each for each in self.browser.elements("#matrix button")}
         self.assertEqual(len(cells), len(data["rows"]))
+        self.assertIn("No query is helped by its own answer, in a robot\u2019s own cell neither", self.browser.text("#matrix-text"))
         for row in known:
             self.assertIn(f"{row['worth']:.2f}", cells[f"{row['target_label']} from {row['source_label']}"].text)
         own = cells["ur10e from ur10e"]

@@ -62,7 +62,7 @@ const kinshipSearches = (() => {
       draw() {
         view = kinshipView.show(figure, {
           label: `Trees of the ${name} search: ${several(search.parents.length, "node")} after ${several(total, "collision check")}`,
-          from: [-1.5, -2.4, 1.25], layers: [
+          from: [-1.7, 2.3, 1.35], layers: [
             {name: "scene", text: "obstacles", color: "scene", opacity: 0.14, objects: obstacles},
             layer("start", "start", "tree from the start"), layer("goal", "goal", "trees from the goals"),
             {name: "path", text: "path", color: "path", ways: []},

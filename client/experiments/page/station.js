@@ -108,7 +108,7 @@ const kinshipStation = (() => {
     const view = kinshipView.show(figure, {
       label: "The station: " + actors.map((each) => `${each.role} ${each.label}`).join(", ") +
              "; obstacles, a path of the hand with its start and its goal.",
-      from: [-1.5, -2.4, 1.25],
+      from: [-1.7, 2.3, 1.35],
       layers: [
         {name: "scene", text: "obstacles", color: "scene", opacity: 0.3, ...rest.scene},
         {name: "arm", ...now.get("arm")},

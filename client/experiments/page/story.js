@@ -112,7 +112,7 @@
       (samples.postures.length ? `${several(samples.postures.length, "sample")}, free of collision and far from each other, can be seen as the whole arm. ` : "") +
       `The planner checks every sample all the same: ${percent(samples.free_share)} of these are free in the scene shown, of uniform ones ${percent(samples.uniform_free_share)}.`;
     kinshipView.show(byId("samples-figure"), {
-      label: `${data.robot} in samples of its distribution, and where its hand is in ${count(drawn)} of them`, from: [-1.5, -2.4, 1.25], layers: [
+      label: `${data.robot} in samples of its distribution, and where its hand is in ${count(drawn)} of them`, from: [-1.7, 2.3, 1.35], layers: [
         {name: "scene", text: "obstacles", color: "scene", opacity: 0.3, objects: data.obstacles},
         {name: "samples", text: "its hand, a dot a sample", color: "sample",
          points: [{positions: metres(samples.hand.positions), size: 0.034, opacity: 0.85}]},

@@ -182,7 +182,8 @@ TEST(ComparisonTable, WhatElseWasComparedHasALineBelow) {
 TEST(ComparisonJson, HasWhatElseWasCompared) {
   std::ostringstream out;
   write_json(compared(kUniform, kGuided), {{"say \"alone\"", compared(kUniform, kUniform)}}, out);
-  EXPECT_NE(out.str().find(R"(,"also":[{"name":"say \"alone\"","pairs":3,"uniform":{"solved":2,)"),
+  EXPECT_NE(out.str().find(
+                R"(,"also":[{"name":"say \u0022alone\u0022","pairs":3,"uniform":{"solved":2,)"),
             std::string::npos)
       << out.str();
   EXPECT_NE(out.str().find(R"("ratio":{"mean_checks":1,)"), std::string::npos);

@@ -1,1 +1,92 @@
+#include "proto/security/client_record.hpp"
 
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "proto/security/access_role.hpp"
+
+namespace kinship::security {
+namespace {
+
+using std::chrono::sys_days;
+using namespace std::chrono_literals;
+
+ClientRecord sample() {
+  return {.name = "arm_7",
+          .role = AccessRole::Operator,
+          .tasks = {"shelf_*", "bin?"},
+          .robots = {"ur5e", "panda.left"},
+          .serial = "7f00ab",
+          .authority = "0123456789abcdef",
+          .expires = sys_days(2027y / 11 / 25) + 3h,
+          .revoked = sys_days(2026y / 12 / 1)};
+}
+
+TEST(ClientRecord, IsReadAsItWasWritten) {
+  const auto read = read_record(record_text(sample()), "arm_7.toml");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->name, "arm_7");
+  EXPECT_EQ(read->role, AccessRole::Operator);
+  EXPECT_EQ(read->tasks, sample().tasks);
+  EXPECT_EQ(read->robots, sample().robots);
+  EXPECT_EQ(read->serial, "7f00ab");
+  EXPECT_EQ(read->authority, "0123456789abcdef");
+  EXPECT_EQ(read->expires, sample().expires);
+  EXPECT_EQ(read->revoked, sample().revoked);
+}
+
+TEST(ClientRecord, WithoutRevocationIsNotRevoked) {
+  ClientRecord record = sample();
+  record.revoked.reset();
+  const auto read = read_record(record_text(record), "arm_7.toml");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_FALSE(read->revoked);
+}
+
+/// The record with one line of it changed.
+std::string with(const std::string& line, const std::string& other) {
+  std::string text = record_text(sample());
+  const std::size_t at = text.find(line);
+  EXPECT_NE(at, std::string::npos) << line;
+  return text.replace(at, line.size(), other);
+}
+
+TEST(ClientRecord, AFieldThatNarrowsIsNeverLostInSilence) {
+  for (const std::string& text :
+       {with("tasks = [\"shelf_*\", \"bin?\"]\n", ""), with("robots", "robot"),
+        with("[\"shelf_*\", \"bin?\"]", "\"shelf_*\""), with("\"bin?\"", "7"),
+        with("\"bin?\"", "\"\""), with("expires", "expired"), with("role = \"operator\"", ""),
+        with("\"operator\"", "\"root\""), with("revoked = 2026-12-01T00:00:00Z", "revoked = true"),
+        with("\"arm_7\"", "\"../arm\""), std::string("name ="), std::string()})
+    EXPECT_FALSE(read_record(text, "arm_7.toml")) << text;
+}
+
+TEST(ClientRecord, AMessageNamesFileFieldAndValue) {
+  const auto read = read_record(with("\"operator\"", "\"oprator\""), "clients/arm_7.toml");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().message,
+            "clients/arm_7.toml: field 'role': role 'oprator' is not one of robot, reader, "
+            "operator, admin (did you mean 'operator'?)");
+}
+
+TEST(ClientRecord, NamesMakeFileNamesAndPartitions) {
+  const std::vector<std::string> good = {"a", "arm_7", "A-9", "-", std::string(64, 'x')};
+  for (const std::string& name : good)
+    EXPECT_FALSE(check_client_name(name)) << name;
+  const std::vector<std::string> bad = {"",   "a b", "a/b",       "..",     "a*",
+                                        "a?", "ä",   "client[1]", "server", std::string(65, 'x')};
+  for (const std::string& name : bad)
+    EXPECT_TRUE(check_client_name(name)) << name;
+}
+
+TEST(ClientRecord, RolesHaveTheNamesOfTheirValues) {
+  EXPECT_EQ(role_name(AccessRole::Robot), "robot");
+  EXPECT_EQ(role_name(AccessRole::Reader), "reader");
+  EXPECT_EQ(role_name(AccessRole::Operator), "operator");
+  EXPECT_EQ(role_name(AccessRole::Admin), "admin");
+}
+
+}  // namespace
+}  // namespace kinship::security

@@ -71,5 +71,208 @@ TEST_F(SecurityFolderTest, CredentialsOfServerAndClientBelongTogether) {
   EXPECT_NEAR(static_cast<double>((client->expires - now_s()).count()), 365 * 86400.0, 60);
 }
 
+TEST_F(SecurityFolderTest, NothingThatIsThereIsOverwritten) {
+  const SecurityFolder folder = init();
+  const std::string key = read_file(folder_ / "authority/ca.key");
+  EXPECT_NE(failure_of([&] { init(); }).find("is not empty"), std::string::npos);
+  EXPECT_EQ(read_file(folder_ / "authority/ca.key"), key);
+
+  folder.add({.name = "r1"}, out_, now_s());
+  EXPECT_NE(failure_of([&] { folder.add({.name = "r2"}, out_, now_s()); }).find("is not empty"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.clients() / "r2.toml"));
+  EXPECT_NE(failure_of([&] {
+              folder.add({.name = "r1", .role = AccessRole::Admin}, scratch_ / "other", now_s());
+            }).find("client 'r1': exists already"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "other"));
+}
+
+TEST_F(SecurityFolderTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
+  const SecurityFolder folder = init();
+  const auto refusal = [&](const NewClient& client) {
+    const std::string message = failure_of([&] { folder.add(client, out_, now_s()); });
+    EXPECT_FALSE(std::filesystem::exists(out_)) << message;
+    return message;
+  };
+  EXPECT_EQ(refusal({.name = "a b"}), "name 'a b' is not 1 to 64 of letters, digits, _ and -");
+  EXPECT_EQ(refusal({.name = "server"}), "name 'server' is the server's own");
+  EXPECT_NE(refusal({.name = "r1", .tasks = {"a\"b"}}).find("task pattern"), std::string::npos);
+  EXPECT_NE(refusal({.name = "r1", .robots = {"a\nb"}}).find("label"), std::string::npos);
+  EXPECT_EQ(refusal({.name = "r1", .days = days(0)}), "days: 0 is not from 1 to 3653");
+}
+
+TEST_F(SecurityFolderTest, AFolderThatIsNoneSaysHowToMakeOne) {
+  EXPECT_NE(failure_of([&] {
+              SecurityFolder{folder_};
+            }).find("one is made by: kinshipd secure init " + folder_.string()),
+            std::string::npos);
+}
+
+TEST_F(SecurityFolderTest, ARevokedClientKeepsItsNameAndGetsNothingNew) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "r1"}, out_, now_s());
+  const auto first = folder.revoke("r1", now_s() - days(1));
+  EXPECT_EQ(folder.revoke("r1", now_s()).revoked, first.revoked) << "the first time counts";
+  EXPECT_NE(
+      failure_of([&] { folder.renew("r1", days(9), scratch_ / "b", now_s()); }).find("revoked"),
+      std::string::npos);
+  EXPECT_NE(failure_of([&] { folder.add({.name = "r1"}, scratch_ / "b", now_s()); }).find("exists"),
+            std::string::npos);
+  EXPECT_NE(failure_of([&] { folder.revoke("r9", now_s()); }).find("secure list"),
+            std::string::npos);
+}
+
+TEST_F(SecurityFolderTest, TheAuthoritysKeyMayBeKeptElsewhere) {
+  init();
+  const std::filesystem::path kept = scratch_ / "kept.key";
+  std::filesystem::rename(folder_ / "authority/ca.key", kept);
+  EXPECT_NE(failure_of([&] {
+              SecurityFolder(folder_).add({.name = "r1"}, out_, now_s());
+            }).find("--authority-key"),
+            std::string::npos);
+  SecurityFolder(folder_, kept).add({.name = "r1"}, out_, now_s());
+  EXPECT_TRUE(read_credentials(out_, now_s()));
+}
+
+TEST_F(SecurityFolderTest, CredentialsThatDoNotBelongTogetherAreNamed) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "r1"}, out_, now_s());
+  folder.add({.name = "r2", .role = AccessRole::Admin}, scratch_ / "r2", now_s());
+  const auto message = [&] {
+    const auto credentials = read_credentials(out_, now_s());
+    return credentials ? std::string() : credentials.error().message;
+  };
+  ASSERT_EQ(message(), "");
+  std::filesystem::permissions(out_ / "key.pem", std::filesystem::perms(0640));
+  EXPECT_NE(message().find("key.pem: others than its owner"), std::string::npos) << message();
+  std::filesystem::copy_file(scratch_ / "r2" / "key.pem", out_ / "key.pem",
+                             std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::permissions(out_ / "key.pem", std::filesystem::perms(0600));
+  EXPECT_NE(message().find("is not the key of certificate.pem"), std::string::npos) << message();
+  EXPECT_NE(read_credentials(scratch_ / "none", now_s()).error().message.find("key.pem"),
+            std::string::npos);
+}
+
+TEST_F(SecurityFolderTest, ThirtyDaysAheadPeopleAreWarned) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "r1", .days = days(40)}, out_, now_s());
+  const auto warning = [&](days later) {
+    const Credentials credentials = read_credentials(out_, now_s()).value_or_throw();
+    return expiry_warning(credentials, now_s() + later).value_or("");
+  };
+  EXPECT_EQ(warning(days(9)), "");
+  EXPECT_NE(warning(days(12)).find("the credentials of 'r1' expire in 2"), std::string::npos)
+      << warning(days(12));
+  EXPECT_NE(warning(days(12)).find("kinshipd secure renew r1 --out"), std::string::npos);
+  EXPECT_NE(warning(days(41)).find("have expired"), std::string::npos);
+  const auto expired = read_credentials(out_, now_s() + days(41));
+  ASSERT_FALSE(expired);
+  EXPECT_NE(expired.error().message.find("expired at"), std::string::npos);
+}
+
+TEST_F(SecurityFolderTest, TheListHasTheServerEveryClientAndWhatIsUnreadable) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "b", .tasks = {"shelf_*"}, .days = days(10)}, out_, now_s());
+  folder.add({.name = "a", .role = AccessRole::Admin}, scratch_ / "a", now_s());
+  folder.revoke("a", now_s());
+  write_new_file(folder.clients() / "c.toml", "name = \"c\"\n", Readers::Everybody);
+  const CredentialList list = folder.list(now_s());
+  ASSERT_EQ(list.credentials.size(), 4U);
+  EXPECT_EQ(list.credentials[0].name, "server");
+  EXPECT_EQ(list.credentials[0].state, "valid");
+  EXPECT_EQ(list.credentials[1].name, "a");
+  EXPECT_EQ(list.credentials[1].state, "revoked");
+  EXPECT_EQ(list.credentials[2].state, "expires soon");
+  EXPECT_EQ(list.credentials[2].tasks, std::vector<std::string>{"shelf_*"});
+  EXPECT_EQ(list.credentials[3].state, "unreadable");
+  EXPECT_NE(list.credentials[3].message.find("c.toml"), std::string::npos);
+  ASSERT_EQ(list.authorities.size(), 1U);
+  EXPECT_EQ(list.credentials[2].authority, list.authorities[0].fingerprint);
+}
+
+/// What Cyclone DDS's plugins check when two participants meet: each the other's certificate and
+/// permissions, with what stands in its own folder.
+std::string why_refused(const std::filesystem::path& by, const std::filesystem::path& whom) {
+  const CredentialFiles own(by);
+  const CredentialFiles other(whom);
+  const auto trusted = certificates_from_pem(read_file(own.authorities), "ca.pem");
+  const auto certificate = certificates_from_pem(read_file(other.certificate), "certificate.pem");
+  if (const auto error = check_issued(*certificate.at(0), trusted, now_s()))
+    return error->message;
+  const auto permissions = verify_document(read_file(other.permissions), *trusted.at(0));
+  return permissions ? std::string() : permissions.error().message;
+}
+
+std::string why_not_together(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return why_refused(a, b) + why_refused(b, a);
+}
+
+TEST_F(SecurityFolderTest, WhileThereAreTwoAuthoritiesFilesOfBothAreAccepted) {
+  SecurityFolder folder = init();
+  folder.add({.name = "old"}, out_, now_s());
+  folder.renew_authority(kDefaultDays, now_s());
+  folder.add({.name = "new"}, scratch_ / "new", now_s());
+  folder.renew("old", kDefaultDays, scratch_ / "renewed", now_s());
+
+  for (const auto& client : {out_, scratch_ / "new", scratch_ / "renewed"}) {
+    EXPECT_EQ(why_not_together(folder.server_credentials(), client), "") << client;
+    EXPECT_TRUE(read_credentials(client, now_s())) << client;
+  }
+  EXPECT_EQ(read_credentials(scratch_ / "new", now_s()).value_or_throw().authorities, 2U);
+  EXPECT_TRUE(read_credentials(folder.server_credentials(), now_s()));
+}
+
+TEST_F(SecurityFolderTest, ARetiredAuthoritysFilesAreRefusedAndTheNewOnesStayGood) {
+  SecurityFolder folder = init();
+  folder.add({.name = "old"}, out_, now_s());
+  folder.renew_authority(kDefaultDays, now_s());
+  folder.add({.name = "new"}, scratch_ / "new", now_s());
+  EXPECT_EQ(folder.clients_of_previous_authority(now_s()), std::vector<std::string>{"old"});
+  const std::filesystem::path key = folder.retire_authority(kDefaultDays, now_s());
+
+  EXPECT_EQ(mode_of(key), 0600U);
+  EXPECT_EQ(why_not_together(folder.server_credentials(), scratch_ / "new"), "");
+  EXPECT_NE(why_refused(folder.server_credentials(), out_), "");
+  EXPECT_NE(why_refused(out_, folder.server_credentials()), "");
+  folder.add({.name = "newest"}, scratch_ / "newest", now_s());
+  EXPECT_EQ(why_not_together(folder.server_credentials(), scratch_ / "newest"), "");
+}
+
+TEST_F(SecurityFolderTest, AuthoritiesChangeOneAtATime) {
+  SecurityFolder folder = init();
+  EXPECT_NE(failure_of([&] {
+              folder.retire_authority(kDefaultDays, now_s());
+            }).find("one authority only"),
+            std::string::npos);
+  folder.renew_authority(kDefaultDays, now_s());
+  EXPECT_NE(failure_of([&] {
+              folder.renew_authority(kDefaultDays, now_s());
+            }).find("two authorities already"),
+            std::string::npos);
+}
+
+TEST_F(SecurityFolderTest, AChangeThatStoppedHalfwayGoesOn) {
+  SecurityFolder folder = init();
+  // As after a stop before the list had the new authority: its key is nobody's.
+  write_new_file(folder_ / "authority/next.key", to_pem(*make_key()), Readers::Owner);
+  folder.renew_authority(kDefaultDays, now_s());
+  // As after a stop before the keys had their names.
+  std::filesystem::rename(folder_ / "authority/ca.key", folder_ / "authority/next.key");
+  std::filesystem::rename(folder_ / "authority/previous.key", folder_ / "authority/ca.key");
+  folder.renew_server(kDefaultDays, now_s());
+  folder.add({.name = "new"}, out_, now_s());
+  EXPECT_EQ(why_not_together(folder.server_credentials(), out_), "");
+}
+
+TEST_F(SecurityFolderTest, TheServersFormerCredentialsAreKept) {
+  const SecurityFolder folder = init();
+  const std::string key = read_file(folder_ / "server/key.pem");
+  const auto kept = folder.renew_server(kDefaultDays, now_s());
+  EXPECT_EQ(read_file(kept / "key.pem"), key);
+  EXPECT_NE(read_file(folder_ / "server/key.pem"), key);
+  EXPECT_NE(folder.renew_server(kDefaultDays, now_s()), kept) << "in the same second";
+}
+
 }  // namespace
 }  // namespace kinship::security

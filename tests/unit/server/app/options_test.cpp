@@ -20,7 +20,7 @@ class Options : public testing::Test {
     setenv("XDG_STATE_HOME", "/state", 1);
   }
 
-  std::variant<ServerOptions, OfflineOptions, int> parse(std::vector<const char*> arguments) {
+  app::Options parse(std::vector<const char*> arguments) {
     arguments.insert(arguments.begin(), "kinshipd");
     out_.str("");
     err_.str("");

@@ -1,0 +1,144 @@
+#include "proto/security/authority_folder.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "proto/security/private_files.hpp"
+#include "proto/security/time_text.hpp"
+
+namespace kinship::security {
+namespace {
+
+constexpr std::chrono::days kAuthorityDays{3653};  // 10 years
+
+std::string list_pem(const std::vector<Certificate>& certificates) {
+  std::string text;
+  for (const Certificate& certificate : certificates)
+    text += to_pem(*certificate);
+  return text;
+}
+
+/// A new authority, named so that it is told from others.
+Authority make_new_authority(std::chrono::sys_seconds now) {
+  Key key = make_key();
+  Certificate certificate = make_authority({.name = "authority since " + time_text(now),
+                                            .use = Use::Authority,
+                                            .validity = valid_for(kAuthorityDays, now)},
+                                           *key);
+  return {std::move(key), std::move(certificate)};
+}
+
+/// The key of `one`, vouched for by `other`, as long as both are valid.
+Certificate cross(const Authority& one, const Authority& other, std::chrono::sys_seconds now) {
+  Validity validity = valid_for(kAuthorityDays, now);
+  validity.end = std::min({validity.end, expiry(*one.certificate), expiry(*other.certificate)});
+  return issue(
+      {.name = common_name(*one.certificate), .use = Use::CrossedAuthority, .validity = validity},
+      *one.key, *other.certificate, *other.key);
+}
+
+}  // namespace
+
+AuthorityFolder AuthorityFolder::init(const std::filesystem::path& folder,
+                                      std::chrono::sys_seconds now) {
+  const Authority authority = make_new_authority(now);
+  make_private_folder(folder);
+  write_new_file(folder / "ca.key", to_pem(*authority.key), Readers::Owner);
+  write_new_file(folder / "ca.pem", to_pem(*authority.certificate), Readers::Everybody);
+  return AuthorityFolder(folder);
+}
+
+AuthorityFolder::AuthorityFolder(std::filesystem::path folder, std::filesystem::path key)
+    : folder_(std::move(folder)), key_(std::move(key)) {
+  if (!std::filesystem::is_regular_file(list_file()))
+    throw Failure(ErrorCode::NotFound, list_file().string() + ": is not there");
+}
+
+std::vector<Certificate> AuthorityFolder::trusted() const {
+  auto certificates = certificates_from_pem(read_file(list_file()), list_file().string());
+  if (certificates.empty())
+    throw Failure(ErrorCode::InvalidInput, list_file().string() + ": has no certificate");
+  return certificates;
+}
+
+Key AuthorityFolder::key_of(x509_st& certificate) const {
+  // By what they are for, not by their names: so a change that was interrupted is no trouble.
+  const std::array<std::filesystem::path, 4> files = {key_, folder_ / "ca.key", previous_key_file(),
+                                                      next_key_file()};
+  for (const std::filesystem::path& file : files) {
+    if (file.empty() || !std::filesystem::exists(file))
+      continue;
+    if (Key key = key_from_pem(read_file(file), file.string()); belongs_to(*key, certificate))
+      return key;
+  }
+  throw Failure(ErrorCode::NotFound,
+                (key_.empty() ? (folder_ / "ca.key").string() : key_.string()) +
+                    ": is not there, or not the key of '" + common_name(certificate) +
+                    "'; say where that is kept with --authority-key FILE");
+}
+
+Authority AuthorityFolder::authority(std::size_t number) const {
+  auto certificates = trusted();
+  Key key = key_of(*certificates.at(number));
+  Authority authority{std::move(key), std::move(certificates.at(number))};
+  if (certificates.size() > 1) {
+    auto crossed = certificates_from_pem(read_file(crossed_file()), crossed_file().string());
+    if (crossed.size() != certificates.size())
+      throw Failure(ErrorCode::InvalidInput,
+                    crossed_file().string() + ": must have two certificates");
+    authority.crossed.push_back(std::move(crossed.at(number)));
+  }
+  return authority;
+}
+
+Authority AuthorityFolder::for_clients() const { return authority(0); }
+
+Authority AuthorityFolder::for_server() const { return authority(trusted().size() - 1); }
+
+std::vector<Certificate> AuthorityFolder::trusted_by(const Authority& authority) const {
+  auto certificates = trusted();
+  const std::string first = fingerprint(*authority.certificate);
+  std::stable_partition(certificates.begin(), certificates.end(),
+                        [&](const Certificate& one) { return fingerprint(*one) == first; });
+  return certificates;
+}
+
+void AuthorityFolder::add_second(std::chrono::sys_seconds now) {
+  if (has_two())
+    throw Failure(ErrorCode::Conflict,
+                  list_file().string() +
+                      ": has two authorities already; the previous one is retired by: kinshipd "
+                      "secure retire-authority");
+  const Authority previous = for_clients();
+  const Authority next = make_new_authority(now);
+  std::filesystem::remove(next_key_file());  // of a change that was interrupted: no one's yet
+  write_new_file(next_key_file(), to_pem(*next.key), Readers::Owner);
+  replace_file(crossed_file(),
+               to_pem(*cross(next, previous, now)) + to_pem(*cross(previous, next, now)),
+               Readers::Everybody);
+  replace_file(list_file(), to_pem(*next.certificate) + to_pem(*previous.certificate),
+               Readers::Everybody);
+  if (std::filesystem::exists(folder_ / "ca.key"))
+    std::filesystem::rename(folder_ / "ca.key", previous_key_file());
+  std::filesystem::rename(next_key_file(), folder_ / "ca.key");
+}
+
+std::filesystem::path AuthorityFolder::retire_previous() {
+  auto certificates = trusted();
+  if (certificates.size() < 2)
+    throw Failure(ErrorCode::Conflict,
+                  list_file().string() +
+                      ": has one authority only; another one is made by: kinshipd secure "
+                      "renew-authority");
+  const std::string retired = fingerprint(*certificates.back());
+  certificates.pop_back();
+  replace_file(list_file(), list_pem(certificates), Readers::Everybody);
+  std::filesystem::remove(crossed_file());
+  if (!std::filesystem::exists(previous_key_file()))
+    return {};
+  const std::filesystem::path kept = folder_ / ("retired-" + retired + ".key");
+  std::filesystem::rename(previous_key_file(), kept);
+  return kept;
+}
+
+}  // namespace kinship::security

@@ -1,0 +1,192 @@
+#include "server/app/secure.hpp"
+
+#include <algorithm>
+#include <iomanip>
+#include <ostream>
+#include <string>
+
+#include "proto/json/credential_list_json.hpp"
+#include "proto/security/access_role.hpp"
+#include "proto/security/security_folder.hpp"
+#include "proto/security/time_text.hpp"
+#include "proto/types/exit_code.hpp"
+
+namespace kinship::app {
+namespace {
+
+using security::SecurityFolder;
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
+std::string date_text(std::int64_t unix_ms) {
+  const std::chrono::sys_time<std::chrono::milliseconds> time{std::chrono::milliseconds(unix_ms)};
+  return security::time_text(std::chrono::floor<std::chrono::seconds>(time));
+}
+
+/// What a client is narrowed to, in one cell.
+std::string narrowing(const CredentialList::Row& row) {
+  std::string text;
+  if (!row.tasks.empty())
+    text = "tasks " + joined(row.tasks);
+  if (!row.robots.empty())
+    text += (text.empty() ? "robots " : "; robots ") + joined(row.robots);
+  return text.empty() ? "-" : text;
+}
+
+void print_rows(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], row[i].size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i)
+      out << std::left << std::setw(static_cast<int>(widths[i]) + 2) << row[i];
+    out << row.back() << '\n';
+  }
+}
+
+void print(const CredentialList& list, std::ostream& out) {
+  std::vector<std::vector<std::string>> rows = {
+      {"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"}};
+  for (const CredentialList::Row& row : list.credentials) {
+    const bool is_readable = row.state != "unreadable";
+    rows.push_back({row.name, is_readable ? row.role : "-",
+                    row.state + (row.is_of_previous_authority ? ", previous authority" : ""),
+                    is_readable ? date_text(row.expires_ms) : "-",
+                    is_readable ? std::to_string(row.days_left) : "-",
+                    is_readable ? narrowing(row) : row.message});
+  }
+  print_rows(rows, out);
+  for (const CredentialList::Authority& authority : list.authorities)
+    out << authority.name << " (" << authority.fingerprint << "), expires "
+        << date_text(authority.expires_ms) << '\n';
+}
+
+void print_new_client(const security::ClientRecord& record, const SecureOptions& options,
+                      std::ostream& out) {
+  out << "client '" << record.name << "', role " << security::role_name(record.role)
+      << ", valid until " << security::time_text(record.expires) << ": credentials in "
+      << options.out.string() << "\nbring them to its machine, and start it with --security "
+      << options.out.filename().string() << " or KINSHIP_SECURITY\n";
+}
+
+int init(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream& out) {
+  SecurityFolder::init(options.folder, std::chrono::days(options.days), now);
+  out << "security folder " << options.folder.string()
+      << "\nstart the server with: kinshipd --security " << options.folder.string()
+      << "\nadmit clients with: kinshipd secure add NAME --security " << options.folder.string()
+      << " --role ROLE --out FOLDER\nwho has authority/ca.key can admit anybody; it is needed "
+         "for secure verbs only and may be kept elsewhere\n";
+  return kDone;
+}
+
+int add(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
+        std::ostream& out) {
+  const AccessRole role = security::read_role(options.role).value_or_throw();
+  print_new_client(folder.add({.name = options.name,
+                               .role = role,
+                               .tasks = options.tasks,
+                               .robots = options.robots,
+                               .days = std::chrono::days(options.days)},
+                              options.out, now),
+                   options, out);
+  return kDone;
+}
+
+int revoke(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
+           std::ostream& out) {
+  const security::ClientRecord record = folder.revoke(options.name, now);
+  out << "client '" << record.name << "': revoked at "
+      << security::time_text(record.revoked.value_or(now)) << '\n';
+  return kDone;
+}
+
+int list(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
+         std::ostream& out, std::ostream& err) {
+  const CredentialList found = folder.list(now);
+  if (options.json)
+    out << json::to_json(found) << '\n';
+  else
+    print(found, out);
+  const auto soon = std::count_if(found.credentials.begin(), found.credentials.end(),
+                                  [](const auto& row) { return row.state == "expires soon"; });
+  if (soon > 0)
+    err << "kinshipd: " << soon << " of them expire within " << security::kWarnedBefore.count()
+        << " days: kinshipd secure renew NAME, or renew-server\n";
+  return kDone;
+}
+
+int renew_authority(SecurityFolder& folder, const SecureOptions& options,
+                    std::chrono::sys_seconds now, std::ostream& out) {
+  const auto before = folder.renew_authority(std::chrono::days(options.days), now);
+  out << "a second authority issues from now on; what the server had is in " << before.string()
+      << "\n1. start the server anew: it trusts both then"
+         "\n2. kinshipd secure renew NAME for each client whose state says 'previous authority' in "
+         "kinshipd secure list"
+         "\n3. kinshipd secure retire-authority, and start the server anew\n";
+  return kDone;
+}
+
+int retire_authority(SecurityFolder& folder, const SecureOptions& options,
+                     std::chrono::sys_seconds now, std::ostream& out, std::ostream& err) {
+  if (const auto names = folder.clients_of_previous_authority(now);
+      !names.empty() && !options.force) {
+    err << "kinshipd: retire-authority would shut out " << names.size()
+        << " clients: " << joined(names) << "; renew or revoke them first, or say --force\n";
+    return kFailed;
+  }
+  const auto key = folder.retire_authority(std::chrono::days(options.days), now);
+  out << "the newer authority is the only one; start the server anew\n";
+  if (!key.empty())
+    out << "the key of the previous one is " << key.string() << ", of no use any more\n";
+  return kDone;
+}
+
+int run(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream& out,
+        std::ostream& err) {
+  if (options.verb == SecureVerb::Init)
+    return init(options, now, out);
+  SecurityFolder folder(options.folder, options.authority_key);
+  const std::chrono::days days(options.days);
+  switch (options.verb) {
+    case SecureVerb::Add:
+      return add(folder, options, now, out);
+    case SecureVerb::Renew:
+      print_new_client(folder.renew(options.name, days, options.out, now), options, out);
+      return kDone;
+    case SecureVerb::RenewServer:
+      out << "new credentials for the server, from its next start on; what it had is in "
+          << folder.renew_server(days, now).string() << '\n';
+      return kDone;
+    case SecureVerb::Revoke:
+      return revoke(folder, options, now, out);
+    case SecureVerb::List:
+      return list(folder, options, now, out, err);
+    case SecureVerb::RenewAuthority:
+      return renew_authority(folder, options, now, out);
+    case SecureVerb::RetireAuthority:
+      return retire_authority(folder, options, now, out, err);
+    case SecureVerb::Init:
+      break;
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+int run_secure(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream& out,
+               std::ostream& err) {
+  try {
+    return run(options, now, out, err);
+  } catch (const Failure& failure) {
+    err << "kinshipd: " << failure.what() << '\n';
+    return exit_code(failure.code());
+  }
+}
+
+}  // namespace kinship::app

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+
+#include "server/app/secure_options.hpp"
+
+namespace kinship::app {
+
+/// Does one verb to a security folder. What was done, and what is to be done next, goes to `out`,
+/// failures and warnings to `err`.
+/// \return kDone, kFailed, kWrongUsage or kNotFound.
+int run_secure(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream& out,
+               std::ostream& err);
+
+}  // namespace kinship::app
