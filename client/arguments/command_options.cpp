@@ -69,15 +69,19 @@ void add_selection_options(CLI::App& app, SelectionArguments& arguments) {
       });
 }
 
-void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain) {
+void add_server_address(CLI::App& app, const ServerAddress& address) {
   constexpr std::uint32_t kMaxDomain = 230;
-  app.add_option("--server", host, "host of kinshipd: a name or an address")
+  app.add_option("--server", address.host, "host of kinshipd: a name or an address")
       ->envname("KINSHIP_SERVER")
       ->capture_default_str();
-  app.add_option("--domain", domain, "DDS domain")
+  app.add_option("--domain", address.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
       ->check(between<std::uint32_t>(0, kMaxDomain))
       ->capture_default_str();
+  app.add_option("--security", address.security,
+                 "folder of credentials, made by 'kinshipd secure add' (default: none)")
+      ->envname("KINSHIP_SECURITY")
+      ->type_name("FOLDER");
 }
 
 }  // namespace kinship::arguments

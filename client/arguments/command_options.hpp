@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,17 @@ std::vector<CLI::Option*> add_profile_options(CLI::App& app, std::string& profil
 /// \param arguments  filled when the command line is parsed; must outlive that.
 void add_robot_options(CLI::App& app, models::RobotArguments& arguments);
 
-/// Adds --server and --domain, which may also come from the environment: KINSHIP_SERVER and
-/// KINSHIP_DOMAIN. \param host, domain  the defaults, and what is asked for once the command line
-/// is parsed; must outlive that.
-void add_server_address(CLI::App& app, std::string& host, std::uint32_t& domain);
+/// Where a server is, and as whom to talk to it.
+struct ServerAddress {
+  std::string& host;
+  std::uint32_t& domain;
+  std::filesystem::path& security;  ///< folder of credentials; empty: none
+};
+
+/// Adds --server, --domain and --security, which may also come from the environment:
+/// KINSHIP_SERVER, KINSHIP_DOMAIN and KINSHIP_SECURITY. \param address  the defaults, and what is
+/// asked for once the command line is parsed; what it refers to must outlive that.
+void add_server_address(CLI::App& app, const ServerAddress& address);
 
 /// Adds --sources, --weighting and --since. A malformed value is refused while the command line is
 /// parsed. \param arguments  filled when the command line is parsed; must outlive that.

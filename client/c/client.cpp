@@ -19,6 +19,7 @@ link::ClientOptions read_options(const kinship_client_options& given) {
   options.domain = given.domain;
   if (given.server != nullptr)
     options.server = given.server;
+  options.security = text_or_empty(given.security);
   options.outbox = text_or_empty(given.outbox);
   options.has_outbox = given.without_outbox == 0;
   if (given.timeout_ms != 0)

@@ -24,7 +24,7 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
              "Example:\n  kinship --domain 42 paths list --task box_to_shelf");
   app.require_subcommand(1);
   app.fallthrough();
-  arguments::add_server_address(app, session.host, session.domain);
+  arguments::add_server_address(app, {session.host, session.domain, session.security});
   app.add_option("--timeout", session.timeout_s, "Seconds to wait for an answer (default 5)")
       ->check(arguments::between(0.01, 86'400.0));
   app.add_flag("--progress", session.is_verbose,

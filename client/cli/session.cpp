@@ -17,7 +17,10 @@ int Session::with_server(const std::function<int(link::Client&)>& use) const {
   options.server = host;
   options.domain = domain;
   options.timeout = milliseconds(timeout_s);
+  options.security = security;
   link::Client server(options);
+  if (const auto warning = server.expiry_warning())
+    err << *warning << '\n';
   return use(server);
 }
 

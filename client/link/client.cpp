@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "client/link/delivery.hpp"
+#include "client/link/environment.hpp"
 #include "client/link/outbox.hpp"
 #include "client/link/report_sender.hpp"
 #include "proto/dds/requester.hpp"
+#include "proto/security/credentials.hpp"
 #include "robots/kinematics/urdf.hpp"
 
 namespace kinship::link {
@@ -60,8 +62,11 @@ std::optional<milliseconds> pause_after(const Result<FetchReply>& reply) {
 struct Client::Line {
   explicit Line(const ClientOptions& options)
       : timeout(options.timeout),
-        participant(std::make_shared<const dds::Participant>(
-            dds::ParticipantOptions{.domain = options.domain, .server = options.server})),
+        participant(std::make_shared<const dds::Participant>(dds::ParticipantOptions{
+            .domain = options.domain,
+            .server = options.server,
+            .security =
+                options.security.empty() ? security_from_environment() : options.security})),
         registering(*participant, client_id),
         reporting(*participant, client_id),
         fetching(*participant, client_id),
@@ -99,6 +104,14 @@ Client::Client(const ClientOptions& options) : line_(std::make_unique<Line>(opti
 Client::~Client() {
   cancel();
   line_->reporting.cancel();
+}
+
+std::optional<std::string> Client::expiry_warning() const {
+  const auto& credentials = line_->participant->credentials();
+  if (!credentials)
+    return std::nullopt;
+  return security::expiry_warning(
+      *credentials, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
 }
 
 Result<RegisterReply> Client::register_robot(const RobotDescription& description) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ namespace kinship::link {
 
 struct ClientOptions {
   std::uint32_t domain = 0;
-  std::string server = "127.0.0.1";         ///< host of kinshipd
+  std::string server = "127.0.0.1";  ///< host of kinshipd
+  /// Folder of credentials (kinshipd secure add); empty: what KINSHIP_SECURITY says, or none.
+  std::filesystem::path security = {};
   std::filesystem::path outbox;             ///< folder; empty: default_outbox_folder()
   bool has_outbox = true;                   ///< false: delivers nothing, report() is not allowed
   std::chrono::milliseconds timeout{5000};  ///< of register, deliver (a batch) and admin
@@ -32,12 +35,17 @@ struct ClientOptions {
 /// an outbox: one of them sends. May be shared between threads.
 class Client {
  public:
-  /// \throws Failure(InvalidInput) for options that cannot be, Failure(Storage) if the outbox
+  /// \throws Failure(InvalidInput) for options that cannot be, also credentials, Failure(Storage)
+  /// if the outbox
   ///         cannot be made, Failure(Unavailable) if DDS cannot start. Needs no server.
   explicit Client(const ClientOptions& options);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
+
+  /// What to tell people: that the credentials are valid for less than 30 days. Nothing before
+  /// that.
+  std::optional<std::string> expiry_warning() const;
 
   /// Keeps the description in the outbox, so that reports of the robot reach also a server that
   /// does not know it yet or any more.

@@ -14,6 +14,11 @@ constexpr std::uint32_t kMaxDomain = 230;  // DDS has no ports for higher ones
 
 }  // namespace
 
+std::filesystem::path security_from_environment() {
+  const char* const folder = std::getenv("KINSHIP_SECURITY");
+  return folder != nullptr ? folder : "";
+}
+
 ClientOptions options_from_environment() {
   ClientOptions options;
   if (const char* const text = std::getenv("KINSHIP_DOMAIN"); text != nullptr && *text != '\0') {
@@ -27,6 +32,7 @@ ClientOptions options_from_environment() {
   }
   if (const char* const host = std::getenv("KINSHIP_SERVER"); host != nullptr && *host != '\0')
     options.server = host;
+  options.security = security_from_environment();
   return options;
 }
 

@@ -164,7 +164,7 @@ void add_server_options(CLI::App& app, PlanOptions& options, RawOptions& raw) {
       ->capture_default_str();
   app.add_option("--machine", options.machine,
                  "name of this robot or cell in reports (default: the host's)");
-  arguments::add_server_address(app, options.server, options.domain);
+  arguments::add_server_address(app, {options.server, options.domain, options.security});
   app.add_option("--timeout", raw.timeout_s, "seconds to wait for a server")
       ->check(between(0.01, 3600.0))
       ->capture_default_str();

@@ -45,6 +45,7 @@ struct PlanOptions {
   bool json = false;               ///< results as JSON Lines also where people read them
   std::uint32_t domain = 0;
   std::string server = "127.0.0.1";  ///< host of kinshipd
+  std::filesystem::path security;    ///< folder of credentials; empty: none
   std::chrono::milliseconds timeout{5000};
   std::chrono::milliseconds wait{30000};
   std::filesystem::path outbox;  ///< empty: the client's default

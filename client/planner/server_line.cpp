@@ -38,6 +38,7 @@ ServerLine::ServerLine(const PlanOptions& options, RobotDescription description,
   link::ClientOptions client;
   client.domain = options_.domain;
   client.server = options_.server;
+  client.security = options_.security;
   client.has_outbox = options_.report;  // who only looks delivers nothing
   client.outbox = options_.outbox;
   client.timeout = options_.timeout;

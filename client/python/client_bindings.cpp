@@ -230,23 +230,26 @@ void bind_life(ClientClass& client) {
   client
       .def(py::init([](std::uint32_t domain, const std::string& server,
                        const std::optional<std::filesystem::path>& outbox, bool has_outbox,
-                       double timeout) {
+                       double timeout, const std::optional<std::filesystem::path>& security) {
              return std::make_unique<ClientHandle>(
                  link::ClientOptions{.domain = domain,
                                      .server = server,
+                                     .security = security.value_or(std::filesystem::path()),
                                      .outbox = outbox.value_or(std::filesystem::path()),
                                      .has_outbox = has_outbox,
                                      .timeout = to_milliseconds(timeout, "timeout")});
            }),
            py::kw_only(), py::arg("domain") = 0, py::arg("server") = "127.0.0.1",
            py::arg("outbox") = py::none(), py::arg("has_outbox") = true, py::arg("timeout") = 5.0,
+           py::arg("security") = py::none(),
            R"(Opens a line to a server; the server need not be there.
 
 domain      of DDS, as kinshipd's
 server      its host
 outbox      folder where reports wait for their receipts; by default one for this server
 has_outbox  False: delivers nothing that waits there, and report() is not allowed
-timeout     of register, deliver and listings, s)")
+timeout     of register, deliver and listings, s
+security    folder of credentials; by default what KINSHIP_SECURITY says, or none)")
       .def("close", &ClientHandle::close,
            "Ends every wait. What is in the outbox is sent by the next client.")
       .def(

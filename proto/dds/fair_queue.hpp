@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "proto/codec/conversation.hpp"
@@ -20,8 +21,8 @@ class FairQueue {
 
   std::size_t size() const noexcept { return size_; }
 
-  bool has(const codec::Head& head) const {
-    const auto mine = waiting_.find(head.client_id);
+  bool has(const std::string& client, const codec::Head& head) const {
+    const auto mine = waiting_.find(client);
     return mine != waiting_.end() && std::ranges::any_of(mine->second, [&](const auto& waits) {
              return waits.first == head;
            });
@@ -29,17 +30,18 @@ class FairQueue {
 
   /// Makes room for a request if the queue is full: the newest of the client of whom most wait has
   /// to go, and is sent again.
+  /// \param client  whose turn it is (Caller::client).
   /// \return false if this one has to go itself, or is waiting already.
-  bool admit(const codec::Head& head) {
-    const auto mine = waiting_.find(head.client_id);
+  bool admit(const std::string& client, const codec::Head& head) {
+    const auto mine = waiting_.find(client);
     const std::size_t count = mine == waiting_.end() ? 0 : mine->second.size();
     if (count > 0 &&
         std::ranges::any_of(mine->second, [&](const auto& waits) { return waits.first == head; }))
       return false;
     if (size_ < capacity_)
       return true;
-    const auto longest = std::ranges::max_element(
-        waiting_, {}, [](const auto& client) { return client.second.size(); });
+    const auto longest =
+        std::ranges::max_element(waiting_, {}, [](const auto& each) { return each.second.size(); });
     if (longest == waiting_.end() || longest->second.size() <= count + 1)
       return false;
     longest->second.pop_back();
@@ -48,10 +50,10 @@ class FairQueue {
   }
 
   /// \pre admit() said so.
-  void push(const codec::Head& head, Request request) {
-    auto& mine = waiting_[head.client_id];
+  void push(const std::string& client, const codec::Head& head, Request request) {
+    auto& mine = waiting_[client];
     if (mine.empty())
-      turns_.push_back(head.client_id);
+      turns_.push_back(client);
     mine.emplace_back(head, std::move(request));
     ++size_;
   }
@@ -74,8 +76,8 @@ class FairQueue {
  private:
   std::size_t capacity_;
   std::size_t size_ = 0;
-  std::map<Uuid, std::deque<std::pair<codec::Head, Request>>> waiting_;  // none is empty
-  std::deque<Uuid> turns_;                                               // each of these once
+  std::map<std::string, std::deque<std::pair<codec::Head, Request>>> waiting_;  // none is empty
+  std::deque<std::string> turns_;  // each of these once
 };
 
 }  // namespace kinship::dds

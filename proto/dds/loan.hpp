@@ -28,6 +28,9 @@ class Loan {
       dds_return_loan(reader_, samples_.data(), count_);
   }
 
+  /// Handle of the writer of a sample.
+  std::uint64_t writer(std::size_t i) const noexcept { return infos_[i].publication_handle; }
+
   std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
 
   /// The message, or null if this sample only tells about an instance.

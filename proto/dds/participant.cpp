@@ -2,13 +2,17 @@
 
 #include <dds/dds.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 #include <optional>
 
+#include "proto/dds/endpoint_guard.hpp"
 #include "proto/dds/log.hpp"
+#include "proto/dds/loopback_guard.hpp"
 #include "proto/dds/network_interface.hpp"
+#include "proto/dds/qos.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -51,6 +55,11 @@ class Participant::Domain {
         throw Failure(ErrorCode::InvalidInput, "domain " + std::to_string(options.domain) +
                                                    ": this process uses it already, with "
                                                    "another server or role");
+      // Cyclone DDS's access control knows one participant's permissions in a domain.
+      if (domain->security_ != options.security)
+        throw Failure(ErrorCode::InvalidInput, "domain " + std::to_string(options.domain) +
+                                                   ": this process uses it already, with "
+                                                   "other credentials");
       return domain;
     }
     auto domain = std::make_shared<Domain>(options, configuration);
@@ -59,11 +68,14 @@ class Participant::Domain {
   }
 
   Domain(const ParticipantOptions& options, const std::string& configuration)
-      : role_(options.role), configuration_(configuration) {
+      : role_(options.role), security_(options.security), configuration_(configuration) {
     limit_log();
     if (std::getenv("CYCLONEDDS_URI"))
       return;  // the user's configuration, read by Cyclone DDS
     require_usable_interface(options);
+    std::optional<LoopbackGuard> guard;
+    if (chosen_interface(options) == "lo")
+      guard.emplace();
     const Handle handle = dds_create_domain(options.domain, configuration.c_str());
     if (handle < 0)
       throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
@@ -72,14 +84,32 @@ class Participant::Domain {
 
  private:
   Role role_;
+  std::filesystem::path security_;
   std::string configuration_;
   std::optional<Entity> entity_;
 };
 
 namespace {
 
+/// \throws Failure(InvalidInput) for those with which nobody can join.
+std::optional<security::Credentials> credentials_of(const ParticipantOptions& options) {
+  if (options.security.empty())
+    return std::nullopt;
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  security::Credentials credentials =
+      security::read_credentials(options.security, now).value_or_throw();
+  const bool is_server = credentials.role == security::kServerName;
+  if (is_server != (options.role == Role::Server))
+    throw Failure(ErrorCode::InvalidInput,
+                  "security '" + options.security.string() + "': has the credentials of " +
+                      (is_server ? "the server, a client needs its own (kinshipd secure add)"
+                                 : "client '" + credentials.name + "', not of a server"));
+  return credentials;
+}
+
 Entity create_participant(const ParticipantOptions& options) {
-  const Handle handle = dds_create_participant(options.domain, nullptr, nullptr);
+  const Qos qos = options.security.empty() ? Qos() : security_qos(options.security);
+  const Handle handle = dds_create_participant(options.domain, qos.get(), nullptr);
   if (handle < 0)
     throw Failure(ErrorCode::Unavailable, describe_failure(options, handle));
   return {handle, "participant"};
@@ -88,7 +118,11 @@ Entity create_participant(const ParticipantOptions& options) {
 }  // namespace
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), domain_(Domain::join(options)), entity_(create_participant(options)) {}
+    : options_(options),
+      credentials_(credentials_of(options)),
+      guard_(credentials_ ? std::make_unique<EndpointGuard>() : nullptr),
+      domain_(Domain::join(options)),
+      entity_(create_participant(options)) {}
 
 Participant::~Participant() = default;
 Participant::Participant(Participant&&) noexcept = default;

@@ -2,17 +2,30 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "proto/dds/entity.hpp"
+#include "proto/security/credentials.hpp"
+#include "proto/types/caller.hpp"
+#include "proto/types/result.hpp"
 
 namespace kinship::dds {
+
+class EndpointGuard;
 
 enum class Role {
   Server,  ///< takes the first discovery port of the domain; knows no peers
   Client   ///< announces itself to the server, never to other clients
 };
+
+/// Whom the server knows by the name in its certificate; an error, which the client is told, if it
+/// knows nobody of that name, or not any more. Asked for each request: has to be quick. Called from
+/// any thread.
+using Directory = std::function<Result<Caller>(const std::string& name)>;
 
 struct ParticipantOptions {
   std::uint32_t domain = 0;  ///< 0 to kMaxDomain
@@ -21,6 +34,10 @@ struct ParticipantOptions {
   /// E.g. "eth0". Empty: at a server, or for a server on a loopback address, "lo"; otherwise
   /// what Cyclone DDS finds best.
   std::string network_interface = {};
+  /// Folder of credentials (kinshipd secure): only who has some of the same authority is heard.
+  /// Empty: no security.
+  std::filesystem::path security = {};
+  Directory directory = {};  ///< of a server with security; it refuses everybody without one
 };
 
 inline constexpr std::uint32_t kMaxDomain = 230;  ///< ports stay below 65536
@@ -43,10 +60,11 @@ std::string cyclone_configuration(const ParticipantOptions& options);
 /// A member of a DDS domain: root of every other entity. May be shared between threads.
 ///
 /// If CYCLONEDDS_URI is set in the environment it replaces the built-in configuration. All
-/// participants of a process on one domain share one configuration.
+/// participants of a process on one domain share one configuration and one folder of credentials.
 class Participant {
  public:
-  /// \throws Failure(InvalidInput) if the options cannot be; Failure(Unavailable) if the domain
+  /// \throws Failure(InvalidInput) if the options cannot be, also for credentials with which nobody
+  ///         can join; Failure(Unavailable) if the domain
   ///         cannot be joined, e.g. because its discovery port is taken by another server.
   explicit Participant(const ParticipantOptions& options);
   ~Participant();
@@ -55,10 +73,15 @@ class Participant {
   Handle get() const noexcept { return entity_.get(); }
   const ParticipantOptions& options() const noexcept { return options_; }
 
+  /// As whom it joined, with what role; nothing without security.
+  const std::optional<security::Credentials>& credentials() const noexcept { return credentials_; }
+
  private:
   class Domain;
 
   ParticipantOptions options_;
+  std::optional<security::Credentials> credentials_;
+  std::unique_ptr<EndpointGuard> guard_;  // with security
   std::shared_ptr<Domain> domain_;  // shared by the participants of this process on one domain
   Entity entity_;
 };

@@ -2,10 +2,16 @@
 
 #include <array>
 #include <atomic>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "proto/dds/client_writers.hpp"
 #include "proto/dds/loan.hpp"
+#include "proto/dds/role_topics.hpp"
 #include "proto/dds/wire.hpp"
 
 namespace kinship::dds {
@@ -16,35 +22,113 @@ Entity make_topic(const Participant& participant, const PublicationTopic& topic)
           "topic " + topic.name};
 }
 
+/// What a client that comes late is told of, beside what its writer keeps: nothing.
+template <typename Value>
+class Newest {
+ public:
+  void keep(const Value&) {}
+  std::vector<Value> all() const { return {}; }
+};
+
+/// The newest announcement of each distribution.
+template <>
+class Newest<Announcement> {
+ public:
+  void keep(const Announcement& announcement) {
+    const std::lock_guard lock(mutex_);
+    newest_.insert_or_assign(announcement.distribution_id, announcement);
+  }
+  void forget(const Digest& distribution_id) {
+    const std::lock_guard lock(mutex_);
+    newest_.erase(distribution_id);
+  }
+  std::vector<Announcement> all() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<Announcement> all;
+    for (const auto& [id, announcement] : newest_)
+      all.push_back(announcement);
+    return all;
+  }
+
+ private:
+  mutable std::mutex mutex_;  // guards newest_
+  std::map<Digest, Announcement> newest_;
+};
+
 }  // namespace
 
 template <typename Publication>
 class Publisher<Publication>::Implementation {
  public:
-  Implementation(const Participant& participant, const PublicationTopic& topic)
-      : topic_(make_topic(participant, topic)),
-        writer_(dds_create_writer(participant.get(), topic_.get(), topic.qos.get(), nullptr),
-                "writer " + topic.name) {}
+  Implementation(const Participant& participant, WaitLoop& loop, MayHear may_hear)
+      : directory_(participant.options().directory), may_hear_(std::move(may_hear)) {
+    PublicationTopic topic = Wire<Publication>::topic();
+    topic_.emplace(make_topic(participant, topic));
+    if (!participant.credentials()) {
+      writer_.emplace(dds_create_writer(participant.get(), topic_->get(), topic.qos.get(), nullptr),
+                      "writer " + topic.name);
+      return;
+    }
+    clients_.emplace(participant, loop, *topic_, topic.name, std::move(topic.qos));
+    clients_->on_new([this](const std::string& name, const Entity& writer) {
+      for (const Value& value : newest_.all())
+        tell(name, writer, value);
+    });
+  }
 
-  Handle writer() const noexcept { return writer_.get(); }
+  void publish(const Value& value) {
+    if (writer_)
+      return write(*writer_, value);
+    newest_.keep(value);
+    clients_->for_each(
+        [&](const std::string& name, const Entity& writer) { tell(name, writer, value); });
+  }
+
+  /// Sends and forgets an instance, in every client's writer.
+  void dispose(const void* key) {
+    const auto forget = [key](const Entity& writer) {
+      dds_dispose(writer.get(), key);
+      dds_unregister_instance(writer.get(), key);
+    };
+    if (writer_)
+      forget(*writer_);
+    else
+      clients_->for_each([&](const std::string&, const Entity& writer) { forget(writer); });
+  }
+
+  Newest<Value>& newest() noexcept { return newest_; }
 
  private:
-  Entity topic_;
-  Entity writer_;
+  void tell(const std::string& name, const Entity& writer, const Value& value) const {
+    const auto caller = directory_ ? directory_(name) : Result<Caller>(Error{});
+    if (caller && (!may_hear_ || may_hear_(*caller, value)))
+      write(writer, value);
+  }
+
+  static void write(const Entity& writer, const Value& value) {
+    if (const auto message = codec::encode(value))
+      dds_write(writer.get(), &message->wire);
+  }
+
+  Directory directory_;
+  MayHear may_hear_;
+  std::optional<Entity> topic_;
+  std::optional<Entity> writer_;          // without security
+  std::optional<ClientWriters> clients_;  // with security
+  Newest<Value> newest_;
 };
 
 template <typename Publication>
-Publisher<Publication>::Publisher(const Participant& participant)
-    : implementation_(std::make_unique<Implementation>(participant, Wire<Publication>::topic())) {}
+Publisher<Publication>::Publisher(const Participant& participant, WaitLoop& loop, MayHear may_hear)
+    : implementation_(std::make_unique<Implementation>(participant, loop, std::move(may_hear))) {}
 
 template <typename Publication>
 Publisher<Publication>::~Publisher() = default;
 
 template <typename Publication>
-void Publisher<Publication>::publish(const typename Publication::Value& value) const noexcept {
+void Publisher<Publication>::publish(const Value& value) const noexcept {
   try {
-    if (const auto message = codec::encode(value))
-      dds_write(implementation_->writer(), &message->wire);
+    implementation_->publish(value);
   } catch (const std::exception&) {  // out of memory: subscribers miss this one
   }
 }
@@ -55,8 +139,11 @@ void Publisher<Publication>::withdraw(const Digest& distribution_id)
   kinship_wire_Announcement key{};
   std::copy(distribution_id.bytes.begin(), distribution_id.bytes.end(),
             std::begin(key.distribution_id));
-  dds_dispose(implementation_->writer(), &key);
-  dds_unregister_instance(implementation_->writer(), &key);
+  try {
+    implementation_->newest().forget(distribution_id);
+    implementation_->dispose(&key);
+  } catch (const std::exception&) {  // out of memory: who comes late hears of it once more
+  }
 }
 
 template <typename Publication>
@@ -66,7 +153,13 @@ class Subscriber<Publication>::Implementation {
       : handlers_(std::move(handlers)),
         name_(topic.name),
         topic_(make_topic(participant, topic)),
-        reader_(dds_create_reader(participant.get(), topic_.get(), topic.qos.get(), nullptr),
+        subscriber_(dds_create_subscriber(participant.get(),
+                                          participant.credentials()
+                                              ? partition_qos(client_partition(participant)).get()
+                                              : nullptr,
+                                          nullptr),
+                    "subscriber"),
+        reader_(dds_create_reader(subscriber_.get(), topic_.get(), topic.qos.get(), nullptr),
                 "reader " + topic.name),
         condition_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
         stop_(dds_create_guardcondition(participant.get()), "guard condition"),
@@ -132,6 +225,7 @@ class Subscriber<Publication>::Implementation {
   Handlers handlers_;
   std::string name_;
   Entity topic_;
+  Entity subscriber_;
   Entity reader_;
   Entity condition_;
   Entity stop_;
@@ -141,9 +235,12 @@ class Subscriber<Publication>::Implementation {
 };
 
 template <typename Publication>
-Subscriber<Publication>::Subscriber(const Participant& participant, Handlers handlers)
-    : implementation_(std::make_unique<Implementation>(participant, std::move(handlers),
-                                                       Wire<Publication>::topic())) {}
+Subscriber<Publication>::Subscriber(const Participant& participant, Handlers handlers) {
+  if constexpr (std::same_as<Publication, codec::EventPublication>)
+    require_events(participant);
+  implementation_ = std::make_unique<Implementation>(participant, std::move(handlers),
+                                                     Wire<Publication>::topic());
+}
 
 template <typename Publication>
 Subscriber<Publication>::~Subscriber() = default;

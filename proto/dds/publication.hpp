@@ -6,6 +6,8 @@
 
 #include "proto/codec/conversation.hpp"
 #include "proto/dds/participant.hpp"
+#include "proto/dds/wait_loop.hpp"
+#include "proto/types/caller.hpp"
 
 namespace kinship::dds {
 
@@ -13,15 +15,22 @@ namespace kinship::dds {
 template <typename Publication>
 class Publisher {
  public:
+  using Value = typename Publication::Value;
+  /// With security each client has a writer of its own, and is told what it may hear.
+  using MayHear = std::function<bool(const Caller&, const Value&)>;
+
+  /// \param loop      on whose thread clients are noticed, with security; it outlives the publisher
+  ///                  and does not run yet.
+  /// \param may_hear  asked with security, from any thread; empty: everybody may.
   /// \throws Failure(Internal) if an entity cannot be created.
-  explicit Publisher(const Participant& participant);
+  Publisher(const Participant& participant, WaitLoop& loop, MayHear may_hear = {});
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
   /// Sends to whoever subscribes; a slow subscriber loses samples and holds nobody up. A value
   /// that breaks a rule of the contract is not sent. Never throws.
-  void publish(const typename Publication::Value& value) const noexcept;
+  void publish(const Value& value) const noexcept;
 
   /// Forgets the announcement of a distribution: who subscribes from now on is not told of it.
   /// Never throws.
@@ -48,7 +57,8 @@ class Subscriber {
     std::function<void()> on_server_gone = {};
   };
 
-  /// \throws Failure(Internal) if an entity cannot be created.
+  /// \throws Failure(Internal) if an entity cannot be created; Failure(InvalidInput) if the role in
+  ///         the participant's credentials may not hear of it.
   Subscriber(const Participant& participant, Handlers handlers);
 
   /// Waits for the handler that runs; none is called afterwards.

@@ -1,7 +1,12 @@
 #include "proto/dds/qos.hpp"
 
 #include <dds/dds.h>
+#include <dlfcn.h>
 
+#include <filesystem>
+
+#include "proto/security/credentials.hpp"
+#include "proto/security/permissions.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::dds {
@@ -23,6 +28,29 @@ Qos reliable_volatile_qos() {
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_writer_data_lifecycle(qos.get(), false);
   return qos;
+}
+
+/// A plugin of Cyclone DDS's security. Debian has them in a folder beside Cyclone DDS's library
+/// that is called after it; elsewhere the system's search finds them.
+std::string security_plugin(const std::string& name) {
+  Dl_info library{};
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): what dladdr asks for
+  if (dladdr(reinterpret_cast<void*>(&dds_create_participant), &library) != 0) {
+    const std::filesystem::path file = std::filesystem::path(library.dli_fname).parent_path() /
+                                       "libddsc0debian" / ("libdds_security_" + name + ".so");
+    std::error_code error;
+    if (std::filesystem::exists(file, error))
+      return file.string();
+  }
+  return "dds_security_" + name;
+}
+
+void set_plugin(dds_qos_t* qos, const std::string& role, const std::string& file,
+                const std::string& suffix) {
+  const std::string library = "dds.sec." + role + ".library.";
+  dds_qset_prop(qos, (library + "path").c_str(), security_plugin(file).c_str());
+  dds_qset_prop(qos, (library + "init").c_str(), ("init_" + suffix).c_str());
+  dds_qset_prop(qos, (library + "finalize").c_str(), ("finalize_" + suffix).c_str());
 }
 
 }  // namespace
@@ -60,6 +88,30 @@ Qos event_qos() {
   Qos qos = reliable_volatile_qos();
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kEventDepth);
   return qos;
+}
+
+Qos security_qos(const std::filesystem::path& credentials) {
+  Qos qos = make_qos();
+  set_plugin(qos.get(), "auth", "auth", "authentication");
+  set_plugin(qos.get(), "access", "ac", "access_control");
+  set_plugin(qos.get(), "crypto", "crypto", "crypto");
+  const security::CredentialFiles files(std::filesystem::absolute(credentials));
+  const auto set_file = [&](const char* property, const std::filesystem::path& file) {
+    dds_qset_prop(qos.get(), property, ("file:" + file.string()).c_str());
+  };
+  set_file("dds.sec.auth.identity_ca", files.authorities);
+  set_file("dds.sec.auth.identity_certificate", files.certificate);
+  set_file("dds.sec.auth.private_key", files.key);
+  set_file("dds.sec.access.permissions_ca", files.authorities);
+  set_file("dds.sec.access.governance", files.governance);
+  set_file("dds.sec.access.permissions", files.permissions);
+  // A folder, not a URI: while authorities change, others' certificates are of either.
+  dds_qset_prop(qos.get(), "dds.sec.auth.trusted_ca_dir", files.trusted.c_str());
+  return qos;
+}
+
+std::string client_partition(const Participant& participant) {
+  return security::client_partition(participant.credentials().value().name);
 }
 
 Qos partition_qos(const std::string& partition) {

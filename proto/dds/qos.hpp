@@ -1,8 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
+#include "proto/dds/participant.hpp"
 #include "proto/types/uuid.hpp"
 
 struct dds_qos;
@@ -34,10 +36,20 @@ Qos announcement_qos();
 /// misses some.
 Qos event_qos();
 
+/// Of a participant with security: the plugins of Cyclone DDS, and their files.
+Qos security_qos(const std::filesystem::path& credentials);
+
+/// Partition of a client with security, for all that it writes and reads.
+/// \pre it has credentials.
+std::string client_partition(const Participant& participant);
+
 /// Of a publisher or subscriber in one partition.
 Qos partition_qos(const std::string& partition);
 
 inline constexpr unsigned kReplyPartitions = 16;
+
+/// Partitions of all clients, for who reads in a domain with security.
+inline constexpr const char* kAllClients = "client_*";
 
 std::string reply_partition(unsigned number);  ///< "reply_00" to "reply_15"
 

@@ -15,18 +15,18 @@ namespace kinship::dds {
 template <typename Conversation>
 class Answer<Conversation>::State {
  public:
-  State(const std::shared_ptr<ReplyLine>& line, const codec::Head& head, Caller caller)
-      : line_(line), head_(head), caller_(std::move(caller)) {}
+  State(const std::shared_ptr<ReplyLine>& line, ReplyLine::Place place, Caller caller)
+      : line_(line), place_(std::move(place)), caller_(std::move(caller)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
     if (is_sent_)
       return;
     if (const auto line = line_.lock())
-      line->end(head_);
+      line->end(place_);
   }
 
-  const codec::Head& head() const noexcept { return head_; }
+  const codec::Head& head() const noexcept { return place_.head; }
   const Caller& caller() const noexcept { return caller_; }
 
   void send(const typename Conversation::Reply& reply) {
@@ -35,17 +35,17 @@ class Answer<Conversation>::State {
     const auto line = line_.lock();
     if (!line)
       return;
-    auto message = codec::encode(head_, reply);
+    auto message = codec::encode(place_.head, reply);
     if (!message)
-      message = codec::encode(head_, Conversation::refuse(message.error()));
+      message = codec::encode(place_.head, Conversation::refuse(message.error()));
     if (message)
-      line->send(head_, &message->wire);
-    line->end(head_);
+      line->send(place_, &message->wire);
+    line->end(place_);
   }
 
  private:
   std::weak_ptr<ReplyLine> line_;
-  codec::Head head_;
+  ReplyLine::Place place_;
   Caller caller_;
   std::atomic<bool> is_sent_ = false;
 };
@@ -72,7 +72,9 @@ template <typename Conversation>
 class Replier<Conversation>::Implementation {
  public:
   Implementation(const Participant& participant, WaitLoop& loop, Handler handler, Gate gate)
-      : line_(std::make_shared<ReplyLine>(participant, Wire<Conversation>::topics())),
+      : line_(std::make_shared<ReplyLine>(participant, loop, Wire<Conversation>::topics())),
+        has_security_(participant.credentials().has_value()),
+        directory_(participant.options().directory),
         handler_(std::move(handler)),
         gate_(std::move(gate)) {
     loop.attach(line_->reader(), [this] { return serve_some(); });
@@ -83,6 +85,10 @@ class Replier<Conversation>::Implementation {
  private:
   using WireRequest = typename Wire<Conversation>::Request;
   using Decoded = Result<typename Conversation::Request>;
+  struct Waiting {
+    Sender sender;
+    Decoded request;
+  };
 
   /// \return whether more waits.
   bool serve_some() {
@@ -105,32 +111,54 @@ class Replier<Conversation>::Implementation {
       const Loan requests(line_->reader(), what_);
       for (std::size_t j = 0; j < requests.size(); ++j)
         if (requests[j])
-          take(*static_cast<const WireRequest*>(requests[j]));
+          take(*static_cast<const WireRequest*>(requests[j]), requests.writer(j));
       if (requests.size() < Loan::kMaxSamples)
         return;
     }
   }
 
-  void take(const WireRequest& wire) {
+  void take(const WireRequest& wire, std::uint64_t writer) {
     const codec::Head head = codec::head_of(wire);
-    // What is sent again costs its client nothing, and one that is refused pushes nobody out.
-    if (line_->is_being_answered(head) || waiting_.has(head) || is_refused(head, wire))
+    std::optional<Sender> sender = line_->sender(writer);
+    if (!sender && has_security_)
+      return;  // gone, and nobody can say any more who it was
+    if (!sender)
+      sender = Sender{.client = head.client_id.text()};
+    // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
+    // may not ask at all is told so in its turn.
+    const ReplyLine::Place place{sender->name, head};
+    if (line_->is_being_answered(place) || waiting_.has(sender->client, head))
       return;
-    if (waiting_.admit(head))
-      waiting_.push(head, decoded(wire));
+    if (const auto caller = caller_of(*sender); caller && is_refused(place, *caller, wire))
+      return;
+    if (waiting_.admit(sender->client, head))
+      waiting_.push(sender->client, head, {std::move(*sender), decoded(wire)});
   }
 
-  static Caller caller_of(const codec::Head& head) { return {.client = head.client_id.text()}; }
+  /// \return why the sender is refused if it is.
+  Result<Caller> caller_of(const Sender& sender) const {
+    if (!has_security_)
+      return Caller{.client = sender.client, .is_local = sender.is_local};
+    if (!directory_)
+      return Error{ErrorCode::Internal, "the server knows no clients"};
+    Result<Caller> caller = directory_(sender.name);
+    if (!caller)
+      return caller;
+    Caller known = *std::move(caller);
+    known.is_local = sender.is_local;
+    return known;
+  }
 
   /// Whether the gate keeps a request out, which is answered then.
-  bool is_refused(const codec::Head& head, const WireRequest& wire) const {
+  bool is_refused(const ReplyLine::Place& place, const Caller& caller,
+                  const WireRequest& wire) const {
     if (!gate_)
       return false;
-    const auto reply = gate_(caller_of(head), codec::size_of(wire));
+    const auto reply = gate_(caller, codec::size_of(wire));
     if (!reply)
       return false;
-    if (const auto message = codec::encode(head, *reply))
-      line_->send(head, &message->wire);
+    if (const auto message = codec::encode(place.head, *reply))
+      line_->send(place, &message->wire);
     return true;
   }
 
@@ -143,13 +171,17 @@ class Replier<Conversation>::Implementation {
     }
   }
 
-  void serve(const codec::Head& head, Decoded request) {
-    if (!line_->begin(head))
+  void serve(const codec::Head& head, Waiting waiting) {
+    const ReplyLine::Place place{waiting.sender.name, head};
+    if (!line_->begin(place))
       return;
-    const Answer<Conversation> answer(
-        std::make_shared<typename Answer<Conversation>::State>(line_, head, caller_of(head)));
+    const Result<Caller> caller = caller_of(waiting.sender);
+    const Answer<Conversation> answer(std::make_shared<typename Answer<Conversation>::State>(
+        line_, place, caller ? *caller : Caller{.client = waiting.sender.client}));
     try {
-      handler_(std::move(request).value_or_throw(), answer);
+      if (!caller)
+        return answer(Conversation::refuse(caller.error()));
+      handler_(std::move(waiting.request).value_or_throw(), answer);
     } catch (const Failure& failure) {
       answer(Conversation::refuse(failure.error()));
     } catch (const std::exception& error) {
@@ -161,9 +193,11 @@ class Replier<Conversation>::Implementation {
 
   std::shared_ptr<ReplyLine> line_;  // shared for the moment in which an Answer sends
   const std::string what_ = "requests of " + line_->name();
+  const bool has_security_;
+  const Directory directory_;
   Handler handler_;
   Gate gate_;
-  FairQueue<Decoded> waiting_{kWaitingRequests};
+  FairQueue<Waiting> waiting_{kWaitingRequests};
 };
 
 template <typename Conversation>

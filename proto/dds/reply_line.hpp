@@ -1,43 +1,65 @@
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
+#include "proto/dds/client_writers.hpp"
 #include "proto/dds/participant.hpp"
+#include "proto/dds/senders.hpp"
+#include "proto/dds/wait_loop.hpp"
 #include "proto/dds/wire.hpp"
 
 namespace kinship::dds {
 
 /// The part of a Replier that does not depend on the conversation: the request reader, a reply
-/// writer per partition, and which requests are being answered. For sources of proto/dds only.
-/// May be shared between threads.
+/// writer per partition (with security per client), and which requests are being answered. For
+/// sources of proto/dds only. May be shared between threads.
 class ReplyLine {
  public:
-  ReplyLine(const Participant& participant, const Topics& topics);
+  /// Which request is answered, and to whom.
+  struct Place {
+    std::string name;  ///< in the certificate; empty without security
+    codec::Head head;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+
+  /// \param loop  on whose thread clients are noticed, with security.
+  ReplyLine(const Participant& participant, WaitLoop& loop, const Topics& topics);
 
   const Entity& reader() const noexcept { return reader_; }
   const std::string& name() const noexcept { return name_; }
 
-  bool is_being_answered(const codec::Head& head) const;
-  bool begin(const codec::Head& head);  ///< false: it is being answered already
-  void end(const codec::Head& head);
+  /// Who sent a request; nothing if nobody can say any more.
+  /// \param writer  of the sample. Of one thread only.
+  std::optional<Sender> sender(std::uint64_t writer) { return senders_.find(reader_, writer); }
+
+  bool is_being_answered(const Place& place) const;
+  bool begin(const Place& place);  ///< false: it is being answered already
+  void end(const Place& place);
 
   std::size_t clients() const;  ///< whose requests would reach it now
 
-  /// \param reply  the message, with `head` in it.
-  void send(const codec::Head& head, const void* reply) const noexcept;
+  /// \param reply  the message, with the place's head in it.
+  void send(const Place& place, const void* reply) noexcept;
 
  private:
   std::string name_;
   Entity request_topic_;
   Entity reply_topic_;
+  Entity subscriber_;
   Entity reader_;
-  std::vector<Entity> publishers_;  // one per partition
-  std::vector<Entity> writers_;     // one per partition
+  Senders senders_;
+  std::optional<ClientWriters> client_writers_;  // with security
+  std::vector<Entity> publishers_;               // without: one per partition
+  std::vector<Entity> writers_;                  // one per partition
 
   mutable std::mutex mutex_;  // guards being_answered_
-  std::set<codec::Head> being_answered_;
+  std::set<Place> being_answered_;
 };
 
 }  // namespace kinship::dds

@@ -21,13 +21,15 @@ std::chrono::milliseconds delay_after(int sends) {
 RequestLine::Waiter::Waiter(const RequestLine& line)
     : guard(dds_create_guardcondition(line.participant_), "guard condition"),
       waitset(dds_create_waitset(line.participant_), "waitset") {
-  for (const Handle entity : {guard.get(), line.condition_.get(), line.writer_.get()})
+  for (const Handle entity :
+       {guard.get(), line.condition_.get(), line.writer_.get(), line.reader_.get()})
     require(dds_waitset_attach(waitset.get(), entity, 0), "waitset");
 }
 
 RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
                          const Topics& topics)
     : participant_(participant.get()),
+      waits_for_replies_(participant.credentials().has_value()),
       client_id_(client_id),
       name_(topics.name),
       request_topic_(dds_create_topic(participant_, &topics.request, topics.request_topic().c_str(),
@@ -36,16 +38,28 @@ RequestLine::RequestLine(const Participant& participant, const Uuid& client_id,
       reply_topic_(dds_create_topic(participant_, &topics.reply, topics.reply_topic().c_str(),
                                     nullptr, nullptr),
                    "topic " + topics.reply_topic()),
-      subscriber_(dds_create_subscriber(
-                      participant_,
-                      partition_qos(reply_partition(reply_partition_of(client_id))).get(), nullptr),
-                  "subscriber"),
+      subscriber_(
+          dds_create_subscriber(participant_,
+                                partition_qos(participant.credentials()
+                                                  ? client_partition(participant)
+                                                  : reply_partition(reply_partition_of(client_id)))
+                                    .get(),
+                                nullptr),
+          "subscriber"),
       reader_(dds_create_reader(subscriber_.get(), reply_topic_.get(), reply_qos().get(), nullptr),
               "reader " + topics.reply_topic()),
       condition_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
-      writer_(dds_create_writer(participant_, request_topic_.get(), request_qos().get(), nullptr),
-              "writer " + topics.request_topic()) {
+      publisher_(dds_create_publisher(participant_,
+                                      participant.credentials()
+                                          ? partition_qos(client_partition(participant)).get()
+                                          : nullptr,
+                                      nullptr),
+                 "publisher"),
+      writer_(
+          dds_create_writer(publisher_.get(), request_topic_.get(), request_qos().get(), nullptr),
+          "writer " + topics.request_topic()) {
   require(dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS), "status mask");
+  require(dds_set_status_mask(reader_.get(), DDS_SUBSCRIPTION_MATCHED_STATUS), "status mask");
 }
 
 RequestLine::Outcome RequestLine::call(const codec::Head& head, const void* request,
@@ -110,7 +124,7 @@ RequestLine::Outcome RequestLine::wait_for_reply(const Call& call, const void* r
 }
 
 void RequestLine::wait(const Waiter& waiter, Clock::time_point until) const {
-  std::array<dds_attach_t, 3> ready{};
+  std::array<dds_attach_t, 4> ready{};
   const auto time = std::chrono::nanoseconds(until - Clock::now());
   require(dds_waitset_wait(waiter.waitset.get(), ready.data(), ready.size(),
                            std::max<dds_duration_t>(time.count(), 0)),
@@ -155,7 +169,12 @@ bool RequestLine::notice_servers() {
       ++servers_seen_;
     wake_all();  // reading the status took it from the other callers
   }
-  return status.current_count > 0;
+  dds_subscription_matched_status_t replies{};
+  require(dds_get_subscription_matched_status(reader_.get(), &replies), "reader " + name_);
+  if (replies.current_count_change != 0 || replies.total_count_change != 0)
+    wake_all();
+  // With security a writer of replies comes some time after the reader of requests.
+  return status.current_count > 0 && (!waits_for_replies_ || replies.current_count > 0);
 }
 
 std::uint64_t RequestLine::count_servers() {

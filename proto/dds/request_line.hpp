@@ -58,6 +58,7 @@ class RequestLine {
   void wake_all();
 
   Handle participant_;
+  bool waits_for_replies_;
   Uuid client_id_;
   std::string name_;
   Entity request_topic_;
@@ -65,6 +66,7 @@ class RequestLine {
   Entity subscriber_;
   Entity reader_;
   Entity condition_;
+  Entity publisher_;
   Entity writer_;
   std::atomic<std::uint64_t> last_sequence_number_ = 0;
   std::atomic<std::uint64_t> servers_seen_ = 0;

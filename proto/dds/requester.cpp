@@ -4,6 +4,7 @@
 #include <string>
 
 #include "proto/dds/request_line.hpp"
+#include "proto/dds/role_topics.hpp"
 
 namespace kinship::dds {
 
@@ -14,16 +15,21 @@ class Requester<Conversation>::Implementation {
 
   Implementation(const Participant& participant, const Uuid& client_id)
       : options_(participant.options()),
-        line_(participant, client_id, Wire<Conversation>::topics()) {}
+        refusal_(explain_not_allowed(participant, Conversation::kName)) {
+    if (!refusal_)
+      line_.emplace(participant, client_id, Wire<Conversation>::topics());
+  }
 
   Result<Reply> call(const typename Conversation::Request& request, Clock::time_point deadline) {
+    if (refusal_)
+      return *refusal_;
     const Clock::time_point start = Clock::now();
-    const codec::Head head = line_.next_head();
+    const codec::Head head = line_->next_head();
     const auto message = codec::encode(head, request);
     if (!message)
       return message.error();
     std::optional<Result<Reply>> reply;
-    const auto outcome = line_.call(head, &message->wire, deadline, [&reply](const void* wire) {
+    const auto outcome = line_->call(head, &message->wire, deadline, [&reply](const void* wire) {
       reply.emplace(codec::decode(*static_cast<const typename Wire<Conversation>::Reply*>(wire)));
     });
     if (outcome != RequestLine::Outcome::Answered)
@@ -34,21 +40,27 @@ class Requester<Conversation>::Implementation {
     return *std::move(reply);
   }
 
-  std::uint64_t count_servers() { return line_.count_servers(); }
-  void cancel() { line_.cancel(); }
+  std::uint64_t count_servers() { return line_ ? line_->count_servers() : 0; }
+  void cancel() {
+    if (line_)
+      line_->cancel();
+  }
 
  private:
   Error nobody_answered(Clock::time_point start) const {
     const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
     return {ErrorCode::Unavailable,
             std::string(Conversation::kName) + ": " +
-                (line_.has_server() ? "the server did not answer" : "no server answered") +
+                (line_->has_server() ? "the server did not answer" : "no server answered") +
                 " within " + std::to_string(waited.count()) + " ms (domain " +
-                std::to_string(options_.domain) + ", " + options_.server + ")"};
+                std::to_string(options_.domain) + ", " + options_.server +
+                (options_.security.empty() ? "" : ", security " + options_.security.string()) +
+                ")"};
   }
 
   ParticipantOptions options_;
-  RequestLine line_;
+  std::optional<Error> refusal_;     // of every request
+  std::optional<RequestLine> line_;  // unless
 };
 
 template <typename Conversation>

@@ -1,27 +1,11 @@
 #include "proto/security/permissions.hpp"
 
-#include <vector>
-
 #include "proto/security/time_text.hpp"
 
 namespace kinship::security {
 namespace {
 
 using Topics = std::vector<std::string>;
-
-/// Conversations that a role takes part in.
-std::vector<std::string> conversations_of(AccessRole role) {
-  switch (role) {
-    case AccessRole::Robot:
-      return {"register", "report", "fetch"};
-    case AccessRole::Reader:
-    case AccessRole::Operator:
-      return {"fetch", "admin"};
-    case AccessRole::Admin:
-      return {"register", "report", "fetch", "admin"};
-  }
-  return {};
-}
 
 std::string element(const std::string& indent, const std::string& name, std::string_view value) {
   return indent + "<" + name + ">" + std::string(value) + "</" + name + ">\n";
@@ -64,6 +48,19 @@ std::string document(std::string_view name, const Validity& validity, const std:
 }  // namespace
 
 std::string subject_text(std::string_view name) { return "CN=" + std::string(name) + ",O=Kinship"; }
+
+std::vector<std::string> conversations_of(AccessRole role) {
+  switch (role) {
+    case AccessRole::Robot:
+      return {"register", "report", "fetch"};
+    case AccessRole::Reader:
+    case AccessRole::Operator:
+      return {"fetch", "admin"};
+    case AccessRole::Admin:
+      return {"register", "report", "fetch", "admin"};
+  }
+  return {};
+}
 
 std::string client_partition(std::string_view name) { return "client_" + std::string(name); }
 

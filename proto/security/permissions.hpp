@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/security/certificate.hpp"
 #include "proto/types/caller.hpp"
@@ -13,6 +14,9 @@ std::string subject_text(std::string_view name);
 
 /// The partition of a client, in which it sends and is answered: "client_NAME".
 std::string client_partition(std::string_view name);
+
+/// Conversations in which a role has a part: "register", "report", "fetch", "admin".
+std::vector<std::string> conversations_of(AccessRole role);
 
 /// What the client may send and read, as a permissions document of DDS Security 1.1, unsigned: the
 /// topics that its role needs, in its partition only. The rest is denied.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,8 @@
 #include "proto/dds/network_interface.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "proto/security/client_directory.hpp"
+#include "proto/security/security_folder.hpp"
 #include "proto/types/failure.hpp"
 #include "server/app/port_holder.hpp"
 
@@ -88,11 +91,34 @@ std::string explain(const ServerOptions& options, std::uint16_t port, const Port
 
 }  // namespace
 
+namespace {
+
+/// Whom the server knows: the records of its security folder.
+dds::Directory directory_of(const std::filesystem::path& security) {
+  const auto clients =
+      std::make_shared<security::ClientDirectory>(security::SecurityFolder(security).clients());
+  return [clients](const std::string& name) {
+    return clients->caller(
+        name, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+  };
+}
+
+dds::ParticipantOptions participant_options(const ServerOptions& options) {
+  dds::ParticipantOptions participant{.domain = options.domain,
+                                      .role = dds::Role::Server,
+                                      .network_interface = options.network_interface};
+  if (!options.security.empty()) {
+    participant.security = security::SecurityFolder(options.security).server_credentials();
+    participant.directory = directory_of(options.security);
+  }
+  return participant;
+}
+
+}  // namespace
+
 dds::Participant join_domain(const ServerOptions& options) {
   try {
-    return dds::Participant({.domain = options.domain,
-                             .role = dds::Role::Server,
-                             .network_interface = options.network_interface});
+    return dds::Participant(participant_options(options));
   } catch (const Failure& failure) {
     const std::string address =
         address_of(options.network_interface.empty() ? "lo" : options.network_interface);

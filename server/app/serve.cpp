@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -17,8 +18,9 @@
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
-#include "proto/types/failure.hpp"
+#include "proto/security/credentials.hpp"
 #include "proto/types/names.hpp"
+#include "server/access/access.hpp"
 #include "server/app/endpoints.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
@@ -84,18 +86,27 @@ store::SqliteOptions store_options(const ServerOptions& options) {
   return store;
 }
 
+/// Before anything is opened.
+void tell_insecurity(const ServerOptions& options) {
+  // Whatever the log leaves out.
+  if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
+    std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
+}
+
+void warn_of_expiry(const dds::Participant& participant) {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  if (const auto& credentials = participant.credentials())
+    if (const auto warning = security::expiry_warning(*credentials, now))
+      spdlog::warn("security: {}", *warning);
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
   std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
 
-  if (!options.security.empty())  // never served as if it were not asked for
-    throw Failure(ErrorCode::InvalidInput, "--security '" + options.security.string() +
-                                               "': this kinshipd cannot secure a domain yet");
-  // Whatever the log leaves out.
-  if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
-    std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
+  tell_insecurity(options);
   hold_termination_signals();
 
   // Before the store: who cannot join the domain, or has no port, leaves no file behind.
@@ -103,9 +114,12 @@ int serve(const ServerOptions& options, std::ostream& out) {
   std::optional<MetricsPort> metrics_port;
   if (!options.metrics.empty())
     metrics_port.emplace(read_metrics_address(options.metrics).value_or_throw());
-  const dds::Publisher<codec::EventPublication> events(participant);
-  const dds::Publisher<codec::AnnouncementPublication> announcements(participant);
   dds::WaitLoop loop(participant);
+  const dds::Publisher<codec::EventPublication> events(participant, loop, access::may_hear);
+  const dds::Publisher<codec::AnnouncementPublication> announcements(
+      participant, loop, [](const Caller& caller, const Announcement& announcement) {
+        return access::may_see(caller, announcement.task, "");
+      });
   LineLimit log([](std::string_view line) { spdlog::info("{}", on_one_line(std::string(line))); },
                 {});
   service::ServiceOptions settings = service_options(options);
@@ -128,6 +142,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
                status.version, options.domain, options.store.string(), status.robots, status.paths,
                status.distributions);
+  warn_of_expiry(participant);
   if (!status.storage_message.empty())
     spdlog::warn("store: {}", status.storage_message);
   std::optional<MetricsListener> metrics;

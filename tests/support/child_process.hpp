@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -50,6 +51,12 @@ class ChildProcess {
     while (read(output_, &c, 1) == 1 && c != '\n')
       line.push_back(c);
     return line;
+  }
+
+  /// Whether there is something to read by now, which may be the end.
+  bool has_output() const {
+    pollfd waits{output_, POLLIN, 0};
+    return poll(&waits, 1, 0) > 0;
   }
 
   void signal(int number) const { ::kill(pid_, number); }

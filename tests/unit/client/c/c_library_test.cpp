@@ -280,6 +280,7 @@ TEST_F(CLibraryOffline, TheLineInTheHeaderIsOne) {
 // number of bytes grows, what stands here stays.
 TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_client_options, timeout_ms), 36U);
+  EXPECT_EQ(offsetof(kinship_client_options, security), 40U);
   EXPECT_EQ(offsetof(kinship_robot_description, never_colliding_pairs), 56U);
   EXPECT_EQ(offsetof(kinship_robot_description, held_joint_count), 80U);
   EXPECT_EQ(offsetof(kinship_robot_file, package_count), 88U);

@@ -121,6 +121,7 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"distributions", "plot", "--output", "-"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "plot", "3f9a"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"tasks", "plot", "pick"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"audit", "--since", "soon"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "explain", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(
       run_command({"distributions", "explain", "--task", "pick", "--distribution", "3f9a"}).code,
@@ -169,6 +170,7 @@ TEST(Commands, EachHasHelpWithAnExample) {
                                                           {"backup", "list"},
                                                           {"backup", "download"},
                                                           {"watch"},
+                                                          {"audit"},
                                                           {"jobs", "list"},
                                                           {"jobs", "wait"},
                                                           {"jobs", "cancel"},

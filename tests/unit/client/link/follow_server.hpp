@@ -23,7 +23,7 @@ class FollowServer {
         loop_(participant_),
         fetch_(participant_, loop_,
                [this](const FetchRequest& wanted, const auto& answer) { answer(take(wanted)); }),
-        announcements_(participant_),
+        announcements_(participant_, loop_),
         thread_(
             [this] { loop_.run([] { return std::chrono::steady_clock::time_point::max(); }); }) {}
   FollowServer(const FollowServer&) = delete;

@@ -1,25 +1,66 @@
-// A server for tests: echo_server DOMAIN. Prints "ready" when it serves, or "error: ..." and ends
-// with 1. Admin requests are answered with their argument; ListPaths with one row of `limit` KB.
+// A server for tests: echo_server DOMAIN [FOLDER]. Prints "ready" when it serves, or "error: ..."
+// and ends with 1. Admin requests are answered with their argument, "who" with who asks, "log" with
+// all others so far, NAME:ARGUMENT; ListPaths with one row of `limit` KB. FOLDER: with the security
+// that `kinshipd secure init` made there.
 
+#include <chrono>
+#include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include "proto/dds/replier.hpp"
+#include "proto/security/access_role.hpp"
+#include "proto/security/client_directory.hpp"
 
-int main(int /*argc*/, char** argv) {
-  using namespace kinship;
+namespace {
+
+using namespace kinship;
+
+dds::ParticipantOptions options(int argc, char** argv) {
+  dds::ParticipantOptions options{.domain = static_cast<std::uint32_t>(std::stoul(argv[1])),
+                                  .role = dds::Role::Server};
+  if (argc < 3)
+    return options;
+  const std::filesystem::path folder = argv[2];
+  options.security = folder / "server";
+  const auto clients = std::make_shared<security::ClientDirectory>(folder / "clients");
+  options.directory = [clients](const std::string& name) {
+    return clients->caller(
+        name, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+  };
+  return options;
+}
+
+std::string who(const Caller& caller) {
+  return caller.client + '|' + caller.name + '|' + security::role_name(caller.role) + '|' +
+         (caller.tasks.empty() ? "" : caller.tasks.front()) + '|' +
+         (caller.is_local ? "local" : "remote");
+}
+
+std::string answer_to(const AdminRequest& request, const Caller& caller, const std::string& log) {
+  if (request.verb == AdminVerb::ListPaths)
+    return std::string(std::size_t{1000} * request.limit, 'x');
+  if (request.argument == "who")
+    return who(caller);
+  return request.argument == "log" ? log : request.argument;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    const dds::Participant participant(
-        {.domain = static_cast<std::uint32_t>(std::stoul(argv[1])), .role = dds::Role::Server});
+    const dds::Participant participant(options(argc, argv));
     dds::WaitLoop loop(participant);
     const dds::Replier<codec::AdminConversation> admin(
         participant, loop,
-        [](const AdminRequest& request, const dds::Answer<codec::AdminConversation>& answer) {
+        [log = std::string()](const AdminRequest& request,
+                              const dds::Answer<codec::AdminConversation>& answer) mutable {
           AdminReply reply;
           reply.status = AdminStatus::Ok;
-          reply.rows = {request.verb == AdminVerb::ListPaths
-                            ? std::string(std::size_t{1000} * request.limit, 'x')
-                            : request.argument};
+          if (request.argument != "log")
+            log += answer.caller().name + ':' + request.argument + ' ';
+          reply.rows = {answer_to(request, answer.caller(), log)};
           answer(reply);
         });
     std::cout << "ready" << std::endl;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace kinship::dds::fair_queue_test {
@@ -20,9 +21,10 @@ class FairQueueTest : public testing::Test {
  protected:
   bool offer(std::uint8_t from, std::uint64_t number) {
     const codec::Head head{client(from), number};
-    if (!queue_.admit(head))
+    const std::string name = head.client_id.text();
+    if (!queue_.admit(name, head))
       return false;
-    queue_.push(head, static_cast<int>(number));
+    queue_.push(name, head, static_cast<int>(number));
     return true;
   }
   /// Who is served, in order.

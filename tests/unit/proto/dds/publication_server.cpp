@@ -24,9 +24,9 @@ class Server {
  public:
   explicit Server(std::uint32_t domain)
       : participant_({.domain = domain, .role = dds::Role::Server}),
-        announcements_(participant_),
-        events_(participant_),
         loop_(participant_),
+        announcements_(participant_, loop_),
+        events_(participant_, loop_),
         admin_(participant_, loop_,
                [this](const AdminRequest& request,
                       const dds::Answer<codec::AdminConversation>& answer) {
@@ -105,9 +105,9 @@ class Server {
   }
 
   dds::Participant participant_;
+  dds::WaitLoop loop_;
   dds::Publisher<codec::AnnouncementPublication> announcements_;
   dds::Publisher<codec::EventPublication> events_;
-  dds::WaitLoop loop_;
   dds::Replier<codec::AdminConversation> admin_;
   Event event_;
   unsigned churned_ = 0;

@@ -240,7 +240,8 @@ std::size_t size_of(const Participant& participant, const typename Publication::
       type.name);
   const Entity reader(dds_create_reader(participant.get(), topic.get(), type.qos.get(), nullptr),
                       type.name);
-  const Publisher<Publication> publisher(participant);
+  WaitLoop loop(participant);
+  const Publisher<Publication> publisher(participant, loop);
   publisher.publish(value);  // within a participant it arrives before this returns
   ddsi_serdata* sample = nullptr;
   dds_sample_info_t info{};

@@ -1,0 +1,130 @@
+#include "proto/dds/client_writers.hpp"
+
+#include <dds/dds.h>
+
+#include <cstring>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "proto/dds/loan.hpp"
+#include "proto/dds/senders.hpp"
+#include "proto/security/permissions.hpp"
+
+namespace kinship::dds {
+namespace {
+
+/// A reader that was discovered matches soon after; one that has gone may come again.
+constexpr std::chrono::seconds kKept{30};
+constexpr std::chrono::seconds kBetweenSweeps{10};
+
+}  // namespace
+
+ClientWriters::ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
+                             std::string name, Qos qos)
+    : participant_(participant.get()),
+      directory_(participant.options().directory),
+      topic_(topic.get()),
+      name_(std::move(name)),
+      qos_(std::move(qos)),
+      readers_(
+          dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
+          "reader of readers") {
+  loop.attach(readers_, [this] { return notice_readers(); });
+}
+
+std::shared_ptr<const Entity> ClientWriters::of(const std::string& name) {
+  if (auto known = find(name))
+    return known;
+  if (auto made = make(name))
+    return made;
+  return find(name);  // another thread was faster
+}
+
+std::shared_ptr<const Entity> ClientWriters::find(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  const auto known = writers_.find(name);
+  if (known == writers_.end())
+    return nullptr;
+  known->second.used = Clock::now();
+  return known->second.writer;
+}
+
+std::shared_ptr<const Entity> ClientWriters::make(const std::string& name) {
+  if (find(name))
+    return nullptr;
+  const std::string partition = security::client_partition(name);
+  const auto publisher = std::make_shared<const Entity>(
+      dds_create_publisher(participant_, partition_qos(partition).get(), nullptr),
+      "publisher " + partition);
+  const std::shared_ptr<const Entity> writer(
+      new Entity(dds_create_writer(publisher->get(), topic_, qos_.get(), nullptr),
+                 "writer " + name_),
+      [publisher](const Entity* each) { delete each; });  // before its publisher
+  free_unread(Clock::now());
+  const std::lock_guard lock(mutex_);
+  return writers_.try_emplace(name, Writer{writer, Clock::now()}).second ? writer : nullptr;
+}
+
+void ClientWriters::for_each(
+    const std::function<void(const std::string& name, const Entity& writer)>& use) const {
+  std::vector<std::pair<std::string, std::shared_ptr<const Entity>>> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, each] : writers_)
+      all.emplace_back(name, each.writer);
+  }
+  for (const auto& [name, writer] : all)
+    use(name, *writer);
+}
+
+bool ClientWriters::notice_readers() {
+  std::set<std::string> clients;
+  const Loan discovered(readers_, "readers of " + name_);
+  for (std::size_t i = 0; i < discovered.size(); ++i) {
+    if (!discovered[i])
+      continue;
+    const auto& reader = *static_cast<const dds_builtintopic_endpoint_t*>(discovered[i]);
+    if (reader.topic_name != name_)
+      continue;
+    if (const auto name = client_of_partitions(reader.qos))
+      clients.insert(*name);
+  }
+  for (const std::string& name : clients) {
+    if (!directory_ || !directory_(name))
+      continue;  // whom nobody knows hears nothing
+    if (const auto made = make(name); made && on_new_)
+      on_new_(name, *made);
+  }
+  free_unread(Clock::now());
+  return discovered.size() == Loan::kMaxSamples;
+}
+
+void ClientWriters::free_unread(Clock::time_point now) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (now - swept_ < kBetweenSweeps)
+      return;
+    swept_ = now;
+  }
+  std::set<std::string> read;
+  for_each([&](const std::string& name, const Entity& writer) {
+    if (dds_get_matched_subscriptions(writer.get(), nullptr, 0) > 0)
+      read.insert(name);
+  });
+  std::vector<Writer> unread;  // freed without the lock
+  const std::lock_guard lock(mutex_);
+  for (auto place = writers_.begin(); place != writers_.end();) {
+    Writer& each = place->second;
+    if (read.contains(place->first))
+      each.used = now;
+    if (now - each.used < kKept) {
+      ++place;
+      continue;
+    }
+    unread.push_back(std::move(each));
+    place = writers_.erase(place);
+  }
+}
+
+}  // namespace kinship::dds

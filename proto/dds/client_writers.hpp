@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "proto/dds/entity.hpp"
+#include "proto/dds/participant.hpp"
+#include "proto/dds/qos.hpp"
+#include "proto/dds/wait_loop.hpp"
+
+namespace kinship::dds {
+
+/// The server's writers of one topic in a domain with security: one for each client, in the
+/// partition that only this client may read. For sources of proto/dds only; may be shared between
+/// threads.
+///
+/// A client's is made when a reader of the client is discovered, or a reply to it is sent; it is
+/// freed some time after the last reader has gone. So there are as many as clients are there.
+class ClientWriters {
+ public:
+  /// Called with a new writer that a reader of its client was discovered for.
+  using OnNew = std::function<void(const std::string& name, const Entity& writer)>;
+
+  /// \param topic   of these writers; outlives them.
+  /// \param name    of the topic.
+  /// \param loop    on whose thread readers are noticed.
+  ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
+                std::string name, Qos qos);
+  ClientWriters(const ClientWriters&) = delete;
+  ClientWriters& operator=(const ClientWriters&) = delete;
+
+  /// To be set before the loop runs.
+  void on_new(OnNew handler) { on_new_ = std::move(handler); }
+
+  /// The client's writer, made if there is none. Shared: it may be freed on another thread while
+  /// something is written.
+  /// \throws Failure(Internal) if it cannot be made.
+  std::shared_ptr<const Entity> of(const std::string& name);
+
+  /// Calls `use` for every client's writer, not under a lock.
+  void for_each(
+      const std::function<void(const std::string& name, const Entity& writer)>& use) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Writer {
+    std::shared_ptr<const Entity> writer;  // owns its publisher too
+    Clock::time_point used;                // last time that it was asked for or had a reader
+  };
+
+  std::shared_ptr<const Entity> find(const std::string& name);
+  std::shared_ptr<const Entity> make(const std::string& name);  ///< null if there is one
+  bool notice_readers();
+  void free_unread(Clock::time_point now);
+
+  Handle participant_;
+  Directory directory_;
+  Handle topic_;
+  std::string name_;
+  Qos qos_;
+  OnNew on_new_;
+  Entity readers_;            // reader of what DDS knows of readers
+  mutable std::mutex mutex_;  // guards what follows
+  std::map<std::string, Writer> writers_;
+  Clock::time_point swept_;
+};
+
+}  // namespace kinship::dds

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "proto/dds/entity.hpp"
+#include "proto/dds/participant.hpp"
+
+struct dds_qos;
+
+namespace kinship::dds {
+
+/// Who writes requests, as far as DDS knows it and not the request.
+struct Sender {
+  /// Name in its certificate; without security the identifier of its participant, which is another
+  /// one in each process.
+  std::string client;
+  std::string name = {};  ///< in its certificate; empty without security
+  /// All of its participant's addresses are of this machine. Without security it says them itself.
+  bool is_local = false;
+};
+
+/// Finds senders by the writers of samples, and remembers them. For sources of proto/dds only; not
+/// to be shared between threads.
+class Senders {
+ public:
+  explicit Senders(const Participant& participant);
+
+  /// \param reader  which took the sample.
+  /// \param writer  its publication handle.
+  /// \return nothing if the writer is gone, or is in no partition of one client (with security).
+  std::optional<Sender> find(const Entity& reader, std::uint64_t writer);
+
+ private:
+  std::optional<Sender> look_up(const Entity& reader, std::uint64_t writer) const;
+  bool is_local(std::uint64_t participant) const;
+
+  bool has_security_;
+  Entity participants_;                              // reader of what DDS knows of participants
+  std::unordered_map<std::uint64_t, Sender> known_;  // by writer
+};
+
+/// The client whose partition, and no other, is in the QoS of a reader or writer.
+std::optional<std::string> client_of_partitions(const dds_qos* qos);
+
+/// Whether all addresses are of this machine: the form of Cyclone DDS, "udp/10.0.0.5:7411,...", or
+/// "localprocess".
+bool are_own_addresses(const std::string& addresses);
+
+}  // namespace kinship::dds

@@ -1,0 +1,194 @@
+// What security costs: a distribution of 30 KB from memory and durable reports of 8 KB, in turn by
+// the same clients from a kinshipd with security and from one without; and how long 100 clients,
+// ten to a certificate, are without an answer after their server was killed and starts again.
+//
+//   secured_bench
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/link/client.hpp"
+#include "proto/security/security_folder.hpp"
+#include "tests/bench/figure.hpp"
+#include "tests/bench/load_clients.hpp"
+#include "tests/bench/measure.hpp"
+#include "tests/support/reserved_domain.hpp"
+#include "tests/support/server_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace {
+
+using namespace kinship;
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPaths = 100;
+constexpr int kProcesses = 10, kClientsOfProcess = 10;
+
+std::chrono::sys_seconds now() {
+  return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+}
+
+/// A server and a client of it.
+struct Side {
+  Side(const fs::path& folder, const fs::path& security, const fs::path& credentials)
+      : credentials(credentials), options{folder / "fleet.db", domain.number(), {}} {
+    if (!security.empty())
+      options.arguments = {"--security", security.string()};
+    server = std::make_unique<test::ServerProcess>(options);
+    link::ClientOptions client_options = bench::without_outbox(domain.number());
+    client_options.security = credentials;
+    client = std::make_unique<link::Client>(client_options);
+    panda = bench::teach(*client, kPaths);
+  }
+
+  void fetch(int count, std::vector<double>& times_us) const {
+    for (int i = 0; i < count; ++i) {
+      const double start_s = bench::wall_s();
+      client->fetch(bench::request_for(panda)).value_or_throw();
+      times_us.push_back(1e6 * (bench::wall_s() - start_s));
+    }
+  }
+
+  double reports_per_s() const {
+    constexpr double kSeconds = 2;
+    if (!credentials.empty())
+      setenv("KINSHIP_SECURITY", credentials.c_str(), 1);
+    test::ChildProcess reporters =
+        bench::start_role("reports", domain.number(), panda, {"0", std::to_string(kSeconds)});
+    unsetenv("KINSHIP_SECURITY");
+    return std::stod(reporters.read_line()) / kSeconds;
+  }
+
+  const test::ReservedDomain domain;
+  const fs::path credentials;
+  test::ServerProcess::Options options;
+  std::unique_ptr<test::ServerProcess> server;
+  std::unique_ptr<link::Client> client;
+  Digest panda;
+};
+
+void compare(const Side& secured, const Side& open) {
+  constexpr int kRounds = 20, kBlock = 100;
+  std::vector<double> secured_us, open_us;
+  for (int round = 0; round < kRounds; ++round) {
+    secured.fetch(kBlock, secured_us);
+    open.fetch(kBlock, open_us);
+  }
+  bench::print({.name = "30 KB from memory with security, p50",
+                .value = bench::median(secured_us),
+                .unit = "us",
+                .reference = bench::Reference{"without", bench::median(open_us)}});
+  const double rate = secured.reports_per_s();
+  bench::print({.name = "reports of 8 KB over DDS with security, 4 clients",
+                .value = rate,
+                .unit = "reports/s",
+                .better = bench::Better::Higher,
+                .reference = bench::Reference{"without", open.reports_per_s()}});
+}
+
+/// Asks with every client until each has an answer.
+void ask_with_all(const std::vector<std::unique_ptr<link::Client>>& clients) {
+  std::vector<std::jthread> threads;
+  for (const auto& client : clients)
+    threads.emplace_back([&client] { client->admin({}).value_or_throw(); });
+}
+
+sigset_t start_signal() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGUSR1);
+  return signals;
+}
+
+/// Asks, says so, waits for a signal, asks again and says so. All with the same credentials: a
+/// process has one name in a domain, and each participant shakes hands for itself.
+int run_clients(std::uint32_t domain, const fs::path& credentials) {
+  const sigset_t signals = start_signal();
+  sigprocmask(SIG_BLOCK, &signals, nullptr);  // threads inherit it
+  std::vector<std::unique_ptr<link::Client>> clients;
+  for (int i = 0; i < kClientsOfProcess; ++i) {
+    link::ClientOptions options = bench::without_outbox(domain);
+    options.security = credentials;
+    clients.push_back(std::make_unique<link::Client>(options));
+  }
+  ask_with_all(clients);
+  std::cout << "connected" << std::endl;
+  int received = 0;
+  sigwait(&signals, &received);
+  std::cout << "asking" << std::endl;
+  ask_with_all(clients);
+  std::cout << "answered" << std::endl;
+  return 0;
+}
+
+using Processes = std::vector<std::unique_ptr<test::ChildProcess>>;
+
+void expect(const Processes& processes, const std::string& line) {
+  for (const auto& process : processes)
+    if (process->read_line() != line)
+      throw std::runtime_error("a process of clients has ended before '" + line + "'");
+}
+
+void restart(Side& secured, const std::vector<fs::path>& credentials) {
+  double start_s = bench::wall_s();
+  Processes processes;
+  for (const fs::path& folder : credentials)
+    processes.push_back(std::make_unique<test::ChildProcess>(std::vector<std::string>{
+        "/proc/self/exe", "clients", std::to_string(secured.domain.number()), folder.string()}));
+  expect(processes, "connected");
+  bench::print({.name = "100 clients with security start and are answered",
+                .value = bench::wall_s() - start_s,
+                .unit = "s"});
+  secured.server->kill();
+  for (const auto& process : processes)
+    process->signal(SIGUSR1);
+  expect(processes, "asking");
+  start_s = bench::wall_s();
+  secured.server = std::make_unique<test::ServerProcess>(secured.options);
+  expect(processes, "answered");
+  bench::print({.name = "100 clients with security answered after the server's start",
+                .value = bench::wall_s() - start_s,
+                .unit = "s",
+                .budget = 10});
+}
+
+void run() {
+  const test::TemporaryDirectory directory{test::disk_root()};
+  const security::SecurityFolder fleet =
+      security::SecurityFolder::init(directory / "security", security::kDefaultDays, now());
+  const auto add = [&](const std::string& name, const fs::path& out) {
+    fleet.add({.name = name, .role = AccessRole::Admin}, out, now());
+    return out;
+  };
+  for (const char* const name : {"secured", "open"})
+    fs::create_directories(directory / name);
+  Side secured(directory / "secured", directory / "security", add("bench", directory / "bench"));
+  const Side open(directory / "open", {}, {});
+  compare(secured, open);
+  std::vector<fs::path> credentials;
+  for (int i = 0; i < kProcesses; ++i) {
+    const std::string name = "client_" + std::to_string(i);
+    credentials.push_back(add(name, directory / name.c_str()));
+  }
+  restart(secured, credentials);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.size() == 3 && arguments[0] == "clients")
+    return run_clients(static_cast<std::uint32_t>(std::stoul(arguments[1])), arguments[2]);
+  if (!bench::run_role(arguments))
+    run();
+  return 0;
+}

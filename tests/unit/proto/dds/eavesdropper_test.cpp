@@ -1,0 +1,98 @@
+// What somebody hears who sees every packet, and what becomes of packets that he sends again. Each
+// first without security, where both succeed.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/unit/proto/dds/loopback_capture.hpp"
+#include "tests/unit/proto/dds/secured_fleet.hpp"
+
+namespace kinship::dds::eavesdropper_test {
+namespace {
+
+using namespace std::chrono_literals;
+using Messages = std::vector<test::CapturedMessage>;
+
+class Eavesdropper : public test::SecuredFleet {
+ protected:
+  void SetUp() override {
+    if (!capture_)
+      GTEST_SKIP() << "this process may not capture packets";
+    ASSERT_EQ(server_.read_line(), "ready");
+  }
+
+  const std::optional<test::LoopbackCapture> capture_ = test::LoopbackCapture::start();
+  const test::ReservedDomain open_;  // without security
+  test::ChildProcess open_server_{{KINSHIP_ECHO_SERVER, std::to_string(open_.number())}};
+};
+
+bool has(const Messages& messages, const std::string& text) {
+  return std::ranges::any_of(messages, [&](const test::CapturedMessage& message) {
+    return message.bytes.find(text) != std::string::npos;
+  });
+}
+
+/// How often the text is in it.
+std::size_t count(const std::string& in, const std::string& text) {
+  std::size_t found = 0;
+  for (std::size_t at = in.find(text); at != std::string::npos; at = in.find(text, at + 1))
+    ++found;
+  return found;
+}
+
+// Names of clients and topics are in their permissions, which they show each other.
+TEST_F(Eavesdropper, HearsNeitherTasksNorRobots) {
+  ASSERT_EQ(open_server_.read_line(), "ready");
+  const std::string urdf = "<robot name='panda'> shelf_pick";
+  {
+    const Participant open({.domain = open_.number()});
+    AdminRequester in_clear(open, Uuid::random());
+    ASSERT_EQ(ask(in_clear, urdf), urdf);
+  }
+  open_server_.kill();
+  EXPECT_TRUE(has(capture_->take(), urdf));
+
+  const Participant secured = join(alice_);
+  AdminRequester requester(secured, Uuid::random());
+  ASSERT_EQ(ask(requester, urdf), urdf);
+  const Messages sent = capture_->take();
+  EXPECT_GT(sent.size(), 10U);
+  for (const char* const secret : {"<robot", "panda", "shelf_"})
+    EXPECT_FALSE(has(sent, secret)) << secret;
+}
+
+/// Sends the requests of a session again, as they were and under further numbers.
+void replay(const Messages& session, std::uint16_t port) {
+  for (const test::CapturedMessage& message : session) {
+    if (message.port != port)
+      continue;
+    test::send_again(message);
+    for (std::uint32_t more = 1; more < 4; ++more)
+      if (const auto again = test::renumbered(message, more))
+        test::send_again(*again);
+  }
+}
+
+TEST_F(Eavesdropper, HasNothingDoneAgain) {
+  ASSERT_EQ(open_server_.read_line(), "ready");
+  const auto times_done = [&](std::uint32_t domain, const std::filesystem::path& credentials) {
+    const Participant participant({.domain = domain, .security = credentials});
+    AdminRequester requester(participant, Uuid::random());
+    capture_->take();
+    EXPECT_EQ(ask(requester, "retire"), "retire");
+    replay(capture_->take(), server_ports(domain)[1]);
+    // Another writer's: what was replayed is before it at the server.
+    const Participant second({.domain = domain, .security = credentials});
+    AdminRequester other(second, Uuid::random());
+    return count(ask(other, "log"), "retire");
+  };
+  EXPECT_GT(times_done(open_.number(), {}), 1U);
+  EXPECT_EQ(times_done(domain_.number(), alice_), 1U);
+}
+
+}  // namespace
+}  // namespace kinship::dds::eavesdropper_test

@@ -1,0 +1,138 @@
+// Who may talk to whom in a domain with security: client and server in processes of their own.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+#include "proto/dds/endpoint_guard.hpp"
+#include "proto/dds/senders.hpp"
+#include "tests/unit/proto/dds/secured_fleet.hpp"
+
+namespace kinship::dds::security_test {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class Security : public test::SecuredFleet {};
+
+TEST_F(Security, TheServerKnowsAClientByItsCertificate) {
+  ASSERT_EQ(server_.read_line(), "ready");
+  const Participant participant = join(alice_);
+  AdminRequester one(participant, Uuid::random());
+  EXPECT_EQ(ask(one, "who"), "alice|alice|operator|shelf_*|local");
+
+  // A program that runs twice.
+  const Participant again = join(alice_);
+  AdminRequester other(again, Uuid::random());
+  EXPECT_EQ(ask(other, "second"), "second");
+  EXPECT_EQ(ask(one, "first"), "first");
+}
+
+TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
+  ASSERT_EQ(server_.read_line(), "ready");
+  const Participant participant = join(alice_);
+  AdminRequester requester(participant, Uuid::random());
+  ASSERT_EQ(ask(requester, "before"), "before");
+  fleet_.revoke("alice", now());
+  const auto deadline = AdminRequester::Clock::now() + 5s;
+  std::string answer = "again";
+  while (answer == "again" && AdminRequester::Clock::now() < deadline)
+    answer = ask(requester, "again");  // the record is looked at once a second
+  EXPECT_NE(answer.find("alice"), std::string::npos) << answer;
+  EXPECT_NE(answer.find("revoked"), std::string::npos) << answer;
+}
+
+TEST_F(Security, NobodyElseIsHeard) {
+  ASSERT_EQ(server_.read_line(), "ready");
+  ASSERT_EQ(ask_as(alice_, "hello"), "hello");  // the server is heard by whom it may hear
+  const fs::path namesake =
+      add(init("another"), {.name = "alice", .role = AccessRole::Admin}, "namesake");
+  EXPECT_NE(ask_as(namesake, "other authority", 1500ms).find("no server answered"),
+            std::string::npos);
+  EXPECT_NE(ask_as({}, "no certificate", 1000ms).find("no server answered"), std::string::npos);
+}
+
+TEST_F(Security, ARoleWithoutPartInAConversationIsToldSo) {
+  const fs::path robot = add(fleet_, {.name = "r1"}, "r1");
+  const std::string answer = ask_as(robot, "who");
+  EXPECT_NE(answer.find("admin: not for the role 'robot'"), std::string::npos) << answer;
+}
+
+TEST_F(Security, CredentialsThatCannotBeAreRefusedInWords) {
+  const auto message = [&](const ParticipantOptions& options) -> std::string {
+    try {
+      const Participant participant(options);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "joined";
+  };
+  const std::string other_side =
+      message({.domain = domain_.number(), .security = fleet_.server_credentials()});
+  EXPECT_NE(other_side.find("has the credentials of the server"), std::string::npos) << other_side;
+  fs::remove(alice_ / "key.pem");
+  const std::string incomplete = message({.domain = domain_.number(), .security = alice_});
+  EXPECT_NE(incomplete.find("key.pem"), std::string::npos) << incomplete;
+}
+
+TEST_F(Security, AProcessHasOneNameInADomain) {
+  const Participant participant = join(alice_);
+  const fs::path bob = add(fleet_, {.name = "bob"}, "bob");
+  EXPECT_THROW(join(bob), Failure);  // Cyclone DDS would take alice's permissions for bob's
+  EXPECT_NO_THROW(join(alice_));
+}
+
+TEST(Loopback, AServerWithoutInterfaceIsNotHeardFromTheNetwork) {
+  const test::ReservedDomain domain;
+  test::ChildProcess server({KINSHIP_ECHO_SERVER, std::to_string(domain.number())});
+  ASSERT_EQ(server.read_line(), "ready");
+  std::ifstream sockets("/proc/net/udp");
+  int found = 0;
+  for (std::string line; std::getline(sockets, line);) {
+    std::istringstream words(line);
+    std::string number, address;
+    words >> number >> address;
+    for (const std::uint16_t port : server_ports(domain.number())) {
+      std::ostringstream end;
+      end << ':' << std::uppercase << std::hex << std::setfill('0') << std::setw(4) << port;
+      if (!address.ends_with(end.str()))
+        continue;
+      ++found;
+      EXPECT_EQ(address, "0100007F" + end.str());  // 127.0.0.1, as this machine has it
+    }
+  }
+  EXPECT_EQ(found, 2);
+}
+
+TEST(SecurityGuard, IsInFrontOfCycloneDds) { EXPECT_TRUE(is_endpoint_guard_in_place()); }
+
+TEST_F(Security, WithoutItCallersAreTheirParticipants) {
+  const test::ReservedDomain domain;
+  test::ChildProcess server({KINSHIP_ECHO_SERVER, std::to_string(domain.number())});
+  ASSERT_EQ(server.read_line(), "ready");
+  const Participant participant({.domain = domain.number()});
+  AdminRequester one(participant, Uuid::random());
+  AdminRequester other(participant, Uuid::random());  // an id that was made up
+  const std::string answer = ask(one, "who");
+  EXPECT_EQ(ask(other, "who"), answer);
+  EXPECT_NE(answer.find("||admin||local"), std::string::npos) << answer;
+  const Participant second({.domain = domain.number()});
+  AdminRequester third(second, Uuid::random());
+  EXPECT_NE(ask(third, "who"), answer);
+}
+
+TEST(Callers, AreLocalIfAllAddressesAreOfThisMachine) {
+  EXPECT_TRUE(are_own_addresses("localprocess"));
+  EXPECT_TRUE(are_own_addresses("udp/127.0.0.1:7411"));
+  EXPECT_FALSE(are_own_addresses("udp/192.0.2.7:7411"));
+  EXPECT_FALSE(are_own_addresses("udp/127.0.0.1:7411,udp/192.0.2.7:7411"));
+  EXPECT_FALSE(are_own_addresses(""));
+}
+
+}  // namespace
+}  // namespace kinship::dds::security_test
