@@ -34,10 +34,10 @@ std::string origin(const CLI::App& app, const CLI::Option& option,
   return file->as<std::string>();
 }
 
-/// A number as it is, else a string of TOML.
+/// A number, true or false as it is, else a string of TOML.
 std::string toml_value(const std::string& value) {
   double number = 0;
-  if (CLI::detail::lexical_cast(value, number))
+  if (value == "true" || value == "false" || CLI::detail::lexical_cast(value, number))
     return value;
   std::string text = "\"";
   for (const char letter : value) {
@@ -57,8 +57,10 @@ std::string configuration_text(const CLI::App& app, const std::vector<std::strin
   for (const CLI::Option* const option : app.get_options()) {
     if (!belongs_into_a_file(*option))
       continue;
-    const std::string value =
-        option->count() > 0 ? option->as<std::string>() : option->get_default_str();
+    const bool is_flag = option->get_expected_max() == 0;
+    const std::string value = option->count() > 0 ? option->as<std::string>()
+                              : is_flag           ? "false"
+                                                  : option->get_default_str();
     text += "\n# " + option->get_description() + " [" + origin(app, *option, arguments) + "]\n" +
             (value.empty() ? "# " : "") + option->get_lnames().front() + " = " + toml_value(value) +
             '\n';

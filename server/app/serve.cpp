@@ -72,15 +72,27 @@ store::SqliteOptions store_options(const ServerOptions& options) {
   return store;
 }
 
+/// Before anything is opened.
+void tell_insecurity(const ServerOptions& options) {
+  // Whatever the log leaves out.
+  if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
+    std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
+}
+
+void warn_of_expiry(const dds::Participant& participant) {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  if (const auto& credentials = participant.credentials())
+    if (const auto warning = security::expiry_warning(*credentials, now))
+      spdlog::warn("security: {}", *warning);
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
   start_log(options.log_level);
   std::signal(SIGPIPE, SIG_IGN);  // nobody needs to read what we print
 
-  // Whatever the log leaves out.
-  if (const std::string insecurity = insecurity_of(options); !insecurity.empty())
-    std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
+  tell_insecurity(options);
   hold_termination_signals();
 
   // Before the store: who cannot join the domain, or has no port, leaves no file behind.
@@ -116,11 +128,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
                status.version, options.domain, options.store.string(), status.robots, status.paths,
                status.distributions);
-  if (const auto& credentials = participant.credentials())
-    if (const auto warning = security::expiry_warning(
-            *credentials,
-            std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())))
-      spdlog::warn("security: {}", *warning);
+  warn_of_expiry(participant);
   if (!status.storage_message.empty())
     spdlog::warn("store: {}", status.storage_message);
   std::optional<MetricsListener> metrics;

@@ -1,6 +1,6 @@
 // What a season of queries costs a client that begins without evidence and chooses between guided
 // and uniform planning as it goes. No planning: checks are drawn, log-normal about the means and
-// medians of the quickstart (uniform 4299 and 2726, guided 2938 and 1810) times what the case says.
+// medians of a shelf task (uniform 4299 and 2726, guided 2938 and 1810) times what the case says.
 
 #include <cmath>
 #include <random>

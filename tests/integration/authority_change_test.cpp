@@ -115,7 +115,7 @@ int send(std::uint32_t domain, const std::filesystem::path& folder, const std::s
 
 class AuthorityChangeTest : public testing::Test {
  protected:
-  ~AuthorityChangeTest() override { stop(); }
+  void TearDown() override { stop(); }
 
   std::filesystem::path client(const std::string& name) const { return scratch_ / name.c_str(); }
 

@@ -117,6 +117,7 @@ TEST(Commands, WrongUsageIsCodeTwo) {
   EXPECT_EQ(run_command({"distributions", "plot", "--output", "-"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "plot", "3f9a"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"tasks", "plot", "pick"}).code, kWrongUsage);
+  EXPECT_EQ(run_command({"audit", "--since", "soon"}).code, kWrongUsage);
   EXPECT_EQ(run_command({"distributions", "explain", "--task", "pick"}).code, kWrongUsage);
   EXPECT_EQ(
       run_command({"distributions", "explain", "--task", "pick", "--distribution", "3f9a"}).code,
@@ -163,6 +164,7 @@ TEST(Commands, EachHasHelpWithAnExample) {
   const std::vector<std::vector<std::string>> commands = {{"status"},
                                                           {"backup"},
                                                           {"watch"},
+                                                          {"audit"},
                                                           {"jobs", "list"},
                                                           {"jobs", "wait"},
                                                           {"jobs", "cancel"},

@@ -93,7 +93,8 @@ TEST_F(AccessGate, AnAttemptThatIsNotItsToReportIsRefusedAlone) {
 TEST_F(AccessGate, ARobotThatCannotBeReadNowIsTriedAgain) {
   caller_.robots = {"teacher"};
   const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
-  start();  // nothing is in memory
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();  // another robot is in memory
   store::damage_robot(directory_ / "fleet.db", "teacher");
   EXPECT_EQ(of(report({attempt}), attempt).status, ReceiptStatus::TryAgain);
 }

@@ -125,6 +125,9 @@ TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
   std::ofstream(file, std::ios::app) << "insecure = true\n";
   EXPECT_TRUE(good({"--config", file.c_str()}).insecure);
   EXPECT_EQ(code({"--interface", "eth0", "--print-config"}), kDone);
+  EXPECT_NE(out_.str().find("[default]\ninsecure = false\n"), std::string::npos) << out_.str();
+  EXPECT_EQ(code({"--insecure", "--print-config"}), kDone);
+  EXPECT_NE(out_.str().find("[command line]\ninsecure = true\n"), std::string::npos);
 }
 
 TEST_F(Options, ArgumentsAreTaken) {

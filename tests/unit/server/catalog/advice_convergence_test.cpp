@@ -1,5 +1,5 @@
 // How soon the recommended share is right, in draws with fixed seeds. Checks are log-normal about
-// the means and medians of the quickstart: uniform 4299 and 2726, guided 2938 and 1810.
+// the means and medians of a shelf task: uniform 4299 and 2726, guided 2938 and 1810.
 
 #include <gtest/gtest.h>
 

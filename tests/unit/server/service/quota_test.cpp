@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/catalog/freshness.hpp"
 #include "tests/unit/server/service/catalog_fixture.hpp"
 
 namespace kinship::service::quota_test {

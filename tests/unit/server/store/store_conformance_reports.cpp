@@ -40,22 +40,33 @@ TEST_P(StoreConformance, ARetryInTheSameBatchIsADuplicateToo) {
 TEST_P(StoreConformance, OneUuidForTwoBodiesIsRefusedWhateverDiffers) {
   const Attempt first = solved(1);
   report(first);
-  std::vector<Attempt> others(10, first);
+  std::vector<Attempt> others(9, first);
   others[0].path = test::make_path(5);
   others[1].task = "table";
   others[2].robot = iiwa_.digest;
-  others[3].machine = "cell 8";
-  others[4].T_task_base.reset();
-  others[5].record.planning_time_s += 1;
-  others[6].record.sampling_mode = SamplingMode::Guided;
-  others[7].record.distribution_id.reset();
-  others[8].record.planner_options += "x";
-  others[9] = test::make_unsolved(panda_.digest, "shelf", 1);
+  others[3].T_task_base.reset();
+  others[4].record.planning_time_s += 1;
+  others[5].record.sampling_mode = SamplingMode::Guided;
+  others[6].record.distribution_id.reset();
+  others[7].record.planner_options += "x";
+  others[8] = test::make_unsolved(panda_.digest, "shelf", 1);
   for (const Receipt& receipt : test::report(*store_, others)) {
     EXPECT_EQ(receipt.status, ReceiptStatus::Refused);
     EXPECT_NE(receipt.message.find("another report"), std::string::npos);
   }
   EXPECT_EQ(store_->status().attempts, 1U);
+}
+
+TEST_P(StoreConformance, AReportAgainFromAMachineThatIsCalledOtherwiseSinceIsADuplicate) {
+  const Attempt first = solved(1);
+  report(first);
+  Attempt renamed = first;
+  renamed.machine = "robot_7";
+  EXPECT_EQ(report(renamed), ReceiptStatus::Duplicate);
+  EXPECT_EQ(report(first), ReceiptStatus::Duplicate);
+  EXPECT_EQ(store_->find_attempt(first.report_uuid)->machine, first.machine);
+  renamed.record.planning_time_s += 1;
+  EXPECT_EQ(report(renamed), ReceiptStatus::Refused);
 }
 
 TEST_P(StoreConformance, TheSameContentAgainIsAnAttemptWithoutASecondPath) {
