@@ -80,13 +80,13 @@ int list_audit(link::Client& server, const AuditOptions& options, std::ostream& 
   std::string document = "{\"rows\":[";
   bool is_first = true;
   const std::int64_t now = now_ms();
-  const int code = for_each_entry(server, options, err,
-                                  [&](const AuditEntry& entry, const std::string& row) {
-                                    if (!options.json)
-                                      return table.add_row(audit_cells(entry, now));
-                                    document += (is_first ? "\n" : ",\n") + row;
-                                    is_first = false;
-                                  });
+  const int code =
+      for_each_entry(server, options, err, [&](const AuditEntry& entry, const std::string& row) {
+        if (!options.json)
+          return table.add_row(audit_cells(entry, now));
+        document += (is_first ? "\n" : ",\n") + row;
+        is_first = false;
+      });
   if (code != kDone)
     return code;
   if (options.json)

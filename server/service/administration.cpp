@@ -49,9 +49,15 @@ std::string describe(const RobotRemoval& removal) {
 AdminPage Administration::answer(const AdminRequest& request, const std::string& request_key,
                                  const Caller& caller) {
   const AuditEntry audit = audit_entry(caller, request);
+  if (!access::rule_of(request.verb).is_change)
+    return attempt(request, request_key, caller, audit);
+  // Its number alone could be made up by another client.
+  const std::string key = request_key.empty() ? request_key : caller.client + ' ' + request_key;
+  if (std::optional<AdminPage> before = answered_.find(key))
+    return std::move(*before);
   AdminPage page = attempt(request, request_key, caller, audit);
-  if (access::rule_of(request.verb).is_change)
-    trail_.not_done(audit, page);
+  trail_.not_done(audit, page);
+  answered_.keep(key, page);
   return page;
 }
 

@@ -16,6 +16,7 @@
 #include "server/runtime/clock.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/service/admin_page.hpp"
+#include "server/service/answered_changes.hpp"
 #include "server/service/audit_trail.hpp"
 #include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
@@ -65,7 +66,7 @@ class Administration {
 
   /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
   /// \param request_key  the request's name: sent again, as after a lost reply, it begins no second
-  /// job.
+  /// job, and changes nothing a second time.
   ///               Empty: it is never sent again.
   /// \param caller  its role was looked at before (server/access); what it is narrowed to is here.
   AdminPage answer(const AdminRequest& request, const std::string& request_key = {},
@@ -115,6 +116,7 @@ class Administration {
 
   const Parts parts_;
   AuditTrail trail_;
+  AnsweredChanges answered_;
 };
 
 }  // namespace kinship::service

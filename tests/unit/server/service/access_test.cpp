@@ -155,6 +155,29 @@ TEST_F(Access, WhoIsRefusedForEverFillsNoDisk) {
       << log[0].message;
 }
 
+TEST_F(Access, AChangeThatIsAskedForAgainIsAnsweredAsItWasAndIsInTheLogOnce) {
+  AdminRequest rename;
+  rename.verb = AdminVerb::RenameRobot;
+  rename.robot = "dwarf";
+  rename.argument = "giant";
+  const auto ask_as = [&](const std::string& request_key) {
+    std::promise<AdminPage> page;
+    service_->administer(
+        rename, request_key, [&](const AdminPage& p) { page.set_value(p); },
+        named("root", AccessRole::Admin));
+    return page.get_future().get();
+  };
+  for (int i = 0; i < 2; ++i) {
+    const AdminPage page = ask_as("client 1");
+    ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
+    EXPECT_EQ(std::get<RobotSummary>(page.rows[0]).label, "giant");
+  }
+  EXPECT_EQ(log_entries(), Lines{"root rename_robot dwarf to giant done"});
+  EXPECT_EQ(ask_as("client 2").status, AdminStatus::NotFound) << "another request";
+  EXPECT_EQ(ask_as("client 2").status, AdminStatus::NotFound);
+  EXPECT_EQ(log_entries().size(), 2U);
+}
+
 TEST_F(Access, AJobIsForWhoBeganItAndForOperators) {
   report_some();
   const FetchReply fetched = fetch(request_for(*pupil_));
