@@ -27,6 +27,7 @@ template <typename Value>
 class Newest {
  public:
   void keep(const Value&) {}
+  void forget(const Digest&) {}
   std::vector<Value> all() const { return {}; }
 };
 

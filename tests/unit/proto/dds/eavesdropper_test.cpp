@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -92,6 +93,31 @@ TEST_F(Eavesdropper, HasNothingDoneAgain) {
   };
   EXPECT_GT(times_done(open_.number(), {}), 1U);
   EXPECT_EQ(times_done(domain_.number(), alice_), 1U);
+}
+
+TEST_F(Eavesdropper, DisturbsNobodyWithPacketsThatHeChanged) {
+  constexpr int kPackets = 20'000;
+  capture_->take();
+  const Participant participant = join(alice_);
+  AdminRequester requester(participant, Uuid::random());
+  ASSERT_EQ(ask(requester, "before"), "before");
+  Messages packets = capture_->take();
+  const auto ports = server_ports(domain_.number());
+  std::erase_if(packets, [&](const test::CapturedMessage& message) {
+    return std::ranges::find(ports, message.port) == ports.end() || message.bytes.size() < 24;
+  });
+  ASSERT_GT(packets.size(), 10U);
+  std::mt19937_64 generator(1);
+  for (int i = 0; i < kPackets; ++i) {
+    test::CapturedMessage changed = packets[generator() % packets.size()];
+    for (std::uint64_t changes = 1 + generator() % 4; changes > 0; --changes)
+      changed.bytes[20 + generator() % (changed.bytes.size() - 20)] =
+          static_cast<char>(generator());
+    test::send_again(changed);
+    if (i % 2000 == 0)
+      EXPECT_EQ(ask(requester, "meanwhile"), "meanwhile");
+  }
+  EXPECT_EQ(ask(requester, "after"), "after");
 }
 
 }  // namespace
