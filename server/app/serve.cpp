@@ -93,6 +93,11 @@ void tell_insecurity(const ServerOptions& options) {
     std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
 }
 
+/// Of a robot it has the digest, which says nothing to who does not know the robot.
+bool may_hear_announcement(const Caller& caller, const Announcement& announcement) {
+  return access::may_see(caller, announcement.task, "");
+}
+
 void warn_of_expiry(const dds::Participant& participant) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   if (const auto& credentials = participant.credentials())
@@ -116,10 +121,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
     metrics_port.emplace(read_metrics_address(options.metrics).value_or_throw());
   dds::WaitLoop loop(participant);
   const dds::Publisher<codec::EventPublication> events(participant, loop, access::may_hear);
-  const dds::Publisher<codec::AnnouncementPublication> announcements(
-      participant, loop, [](const Caller& caller, const Announcement& announcement) {
-        return access::may_see(caller, announcement.task, "");
-      });
+  const dds::Publisher<codec::AnnouncementPublication> announcements(participant, loop,
+                                                                     may_hear_announcement);
   LineLimit log([](std::string_view line) { spdlog::info("{}", on_one_line(std::string(line))); },
                 {});
   service::ServiceOptions settings = service_options(options);
