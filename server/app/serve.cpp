@@ -93,6 +93,19 @@ void tell_insecurity(const ServerOptions& options) {
     std::cerr << "kinshipd: --insecure: " << insecurity << std::endl;
 }
 
+using Events = dds::Publisher<codec::EventPublication>;
+using Announcements = dds::Publisher<codec::AnnouncementPublication>;
+
+/// What the service tells goes to these, which outlive it.
+void publish_with(service::ServiceOptions& settings, const Events& events,
+                  const Announcements& announcements) {
+  settings.on_event = [&events](const Event& event) { events.publish(event); };
+  settings.on_announcement = [&announcements](const Announcement& announcement) {
+    announcements.publish(announcement);
+  };
+  settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
+}
+
 /// Of a robot it has the digest, which says nothing to who does not know the robot.
 bool may_hear_announcement(const Caller& caller, const Announcement& announcement) {
   return access::may_see(caller, announcement.task, "");
@@ -120,18 +133,13 @@ int serve(const ServerOptions& options, std::ostream& out) {
   if (!options.metrics.empty())
     metrics_port.emplace(read_metrics_address(options.metrics).value_or_throw());
   dds::WaitLoop loop(participant);
-  const dds::Publisher<codec::EventPublication> events(participant, loop, access::may_hear);
-  const dds::Publisher<codec::AnnouncementPublication> announcements(participant, loop,
-                                                                     may_hear_announcement);
+  const Events events(participant, loop, access::may_hear);
+  const Announcements announcements(participant, loop, may_hear_announcement);
   LineLimit log([](std::string_view line) { spdlog::info("{}", on_one_line(std::string(line))); },
                 {});
   service::ServiceOptions settings = service_options(options);
   settings.log = [&log](std::string_view line) { log.write(line); };
-  settings.on_event = [&events](const Event& event) { events.publish(event); };
-  settings.on_announcement = [&announcements](const Announcement& announcement) {
-    announcements.publish(announcement);
-  };
-  settings.on_unfollowed = [&announcements](const Digest& id) { announcements.withdraw(id); };
+  publish_with(settings, events, announcements);
   settings.wake = [&loop] { loop.wake(); };
   service::Service service(store::open_sqlite_store(options.store, store_options(options)),
                            std::move(settings));
