@@ -25,38 +25,13 @@ using security::SecurityFolder;
 using std::chrono::seconds;
 using Wire = dds::Wire<codec::FetchConversation>;
 
-dds::Qos participant_qos(const std::filesystem::path& folder) {
-  const security::CredentialFiles files(folder);
-  dds::Qos qos(dds_create_qos());
-  const auto set = [&](const std::string& name, const std::string& value) {
-    dds_qset_prop(qos.get(), name.c_str(), value.c_str());
-  };
-  const auto plugin = [&](const std::string& name, const std::string& library,
-                          const std::string& function) {
-    set("dds.sec." + name + ".library.path", "dds_security_" + library);
-    set("dds.sec." + name + ".library.init", "init_" + function);
-    set("dds.sec." + name + ".library.finalize", "finalize_" + function);
-  };
-  plugin("auth", "auth", "authentication");
-  plugin("access", "ac", "access_control");
-  plugin("crypto", "crypto", "crypto");
-  set("dds.sec.auth.identity_ca", "file:" + files.authorities.string());
-  set("dds.sec.auth.identity_certificate", "file:" + files.certificate.string());
-  set("dds.sec.auth.private_key", "file:" + files.key.string());
-  set("dds.sec.auth.trusted_ca_dir", files.trusted.string());
-  set("dds.sec.access.permissions_ca", "file:" + files.authorities.string());
-  set("dds.sec.access.governance", "file:" + files.governance.string());
-  set("dds.sec.access.permissions", "file:" + files.permissions.string());
-  return qos;
-}
-
 /// A participant with the topic of fetches; its process ends if it cannot be.
 struct Peer {
   Peer(dds::Role role, std::uint32_t domain, const std::filesystem::path& folder) {
     const std::string configuration = dds::cyclone_configuration({.domain = domain, .role = role});
     if (dds_create_domain(domain, configuration.c_str()) < 0)
       _exit(3);
-    participant = dds_create_participant(domain, participant_qos(folder).get(), nullptr);
+    participant = dds_create_participant(domain, dds::security_qos(folder).get(), nullptr);
     const auto topics = Wire::topics();
     topic = dds_create_topic(participant, &topics.request, topics.request_topic().c_str(), nullptr,
                              nullptr);
