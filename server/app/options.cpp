@@ -258,6 +258,19 @@ void suggest_words(const CLI::App& app, const std::vector<std::string>& words, s
       err << word << near << '\n';
 }
 
+/// What is wrong with where the store is said to be; empty: nothing.
+std::string store_fault(const CLI::App& app, const std::filesystem::path& store) {
+  const bool is_offline = !app.get_subcommands().empty();
+  const bool store_given = app.count("--store") > 0;
+  if (is_offline && store_given)
+    return "--store belongs behind the verb";
+  if (!store.empty())
+    return {};
+  return store_given || is_offline
+             ? "--store is empty; it needs a file"
+             : "neither XDG_STATE_HOME nor HOME is set; say where with --store FILE";
+}
+
 }  // namespace
 
 std::string insecurity_of(const ServerOptions& options) {
@@ -319,18 +332,9 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   if (secure)
     return *secure;
   const bool is_offline = !app.get_subcommands().empty();
-  const bool store_given = app.count("--store") > 0;
-  if (is_offline && store_given) {
-    err << "kinshipd: --store belongs behind the verb\n";
-    return kWrongUsage;
-  }
-  const bool is_empty = is_offline ? offline.store.empty() : options.store.empty();
-  if (is_empty && (store_given || is_offline)) {
-    err << "kinshipd: --store is empty; it needs a file\n";
-    return kWrongUsage;
-  }
-  if (is_empty) {
-    err << "kinshipd: neither XDG_STATE_HOME nor HOME is set; say where with --store FILE\n";
+  if (const std::string fault = store_fault(app, is_offline ? offline.store : options.store);
+      !fault.empty()) {
+    err << "kinshipd: " << fault << '\n';
     return kWrongUsage;
   }
   if (print_config) {
