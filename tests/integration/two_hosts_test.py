@@ -1,0 +1,125 @@
+"""docs/operations.md, "Two hosts, from nothing to a secured fetch": its commands, each on its host. A host is a network namespace with
+a folder of its own; a pair of virtual interfaces is the cable."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
+PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
+CHAPTER = "Two hosts, from nothing to a secured fetch"
+UNSHARED = "KINSHIP_TEST_IS_UNSHARED"
+
+
+def commands_of_hosts() -> "list[list[str]]":
+    """Of the chapter's blocks: first the server's, then the robot's."""
+    text = (SOURCE / "docs" / "operations.md").read_text()
+    chapter = re.search(rf"^## {CHAPTER}\n(.*?)^## ", text, re.M | re.S).group(1)
+    return [re.findall(r"^\$ (.*)$", block, re.M) for block in re.findall(r"```console\n(.*?)```", chapter, re.S)]
+
+
+class Host:
+    """A network namespace, held by a process that waits for its input to end."""
+
+    def __init__(self, folder: pathlib.Path, address: str):
+        self.folder = folder
+        self.holder = subprocess.Popen(["unshare", "--net", "sh", "-c", "echo here; exec cat >/dev/null"],
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.holder.stdout.readline()  # it is in its namespace
+        self.address = address
+        folder.mkdir()
+        for name in ("docs", "robots"):
+            (folder / name).symlink_to(SOURCE / name)
+        # The other host's folder stands for its disk.
+        (folder / "scp").write_text('#!/bin/sh\nexec cp -r "$2" "../${3%%:*}/${3#*:}"\n')
+        (folder / "scp").chmod(0o755)
+        self.shell = None
+
+    def command(self, script: str) -> "list[str]":
+        return ["nsenter", "--target", str(self.holder.pid), "--net", "bash", "-e", "-c", script]
+
+    def environment(self) -> "dict[str, str]":
+        return {"PATH": f"{self.folder}:{PROGRAMS}:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": str(self.folder)}
+
+    def run(self, script: str, timeout: float = 120) -> subprocess.CompletedProcess:
+        return subprocess.run(self.command(script), cwd=self.folder, env=self.environment(), text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=timeout)
+
+    def configure_network(self) -> None:
+        done = self.run(f"ip address add {self.address}/24 dev eth0 && ip link set eth0 up && ip link set lo up")
+        if done.returncode != 0:
+            raise RuntimeError(done.stdout)
+
+    def end(self) -> None:
+        self.holder.stdin.close()
+        self.holder.wait()
+        self.holder.stdout.close()
+
+
+class TwoHosts(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        root = pathlib.Path(temporary.name)
+        self.server = Host(root / "10.77.0.1", "10.77.0.1")
+        self.addCleanup(self.server.end)
+        self.robot = Host(root / "10.77.0.2", "10.77.0.2")
+        self.addCleanup(self.robot.end)
+        subprocess.run(["ip", "link", "add", "eth0", "netns", str(self.server.holder.pid), "type", "veth", "peer", "name",
+                        "eth0", "netns", str(self.robot.holder.pid)], check=True)
+        self.server.configure_network()
+        self.robot.configure_network()
+        self.of_server, self.of_robot = commands_of_hosts()
+
+    def start_server(self) -> None:
+        *before, serve = self.of_server
+        done = self.server.run("\n".join(before))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        log = open(self.server.folder / "kinshipd.log", "w")
+        self.addCleanup(log.close)
+        kinshipd = subprocess.Popen(self.server.command("exec " + serve), cwd=self.server.folder, stdout=subprocess.PIPE,
+                                    env=self.server.environment(), stderr=log, text=True)
+        self.addCleanup(kinshipd.stdout.close)
+        self.addCleanup(kinshipd.wait)
+        self.addCleanup(kinshipd.terminate)
+        first_line = kinshipd.stdout.readline()
+        self.assertTrue(first_line.startswith("ready "), first_line + (self.server.folder / "kinshipd.log").read_text())
+
+    def test_commands_lead_to_a_secured_fetch(self):
+        self.start_server()
+        done = self.robot.run("\n".join(self.of_robot))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        guided = [json.loads(line) for line in (self.robot.folder / "guided.jsonl").read_text().splitlines()]
+        self.assertTrue(any(result["guidance"] for result in guided), guided[0])
+        key = self.robot.folder / "arm_7" / "key.pem"
+        self.assertEqual(key.stat().st_mode & 0o777, 0o600)
+        self.assertFalse((self.robot.folder / "arm_7" / "ca.key").exists(), "who holds it admits anybody")
+
+    def test_without_credentials_there_is_no_server(self):
+        self.start_server()
+        status = "kinship --server 10.77.0.1 --timeout 3 status"
+        self.server.run("kinshipd secure add desk --security security --role reader --out ../10.77.0.2/desk")
+        self.assertEqual(self.robot.run("kinship --security desk " + status.removeprefix("kinship ")).returncode, 0)
+        wrong_role = self.robot.run("kinship --security arm_7 " + status.removeprefix("kinship "))
+        self.assertEqual(wrong_role.returncode, 2, wrong_role.stdout)
+        self.assertIn("role 'robot'", wrong_role.stdout)
+        self.assertEqual(self.robot.run(status).returncode, 4)
+        made = self.robot.run("kinshipd secure init rogue; kinshipd secure add arm_7 --security rogue --role admin --out forged")
+        self.assertEqual(made.returncode, 0, made.stdout)
+        forged = self.robot.run("kinship --security forged " + status.removeprefix("kinship "))
+        self.assertEqual(forged.returncode, 4, forged.stdout)
+
+
+if __name__ == "__main__":
+    if not os.environ.get(UNSHARED):
+        # Who is not root is, among namespaces of his own, where the kernel lets him.
+        alone = ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--map-root-user", "--net"]
+        if not shutil.which("ip") or subprocess.run([*alone, "true"], stderr=subprocess.DEVNULL).returncode != 0:
+            print("SKIPPED: no network namespace may be made here")
+            raise SystemExit(77)
+        os.execvpe(alone[0], [*alone, "python3", "-B", __file__], {**os.environ, UNSHARED: "1"})
+    unittest.main()
