@@ -28,6 +28,17 @@ class FairQueue {
            });
   }
 
+  /// Whether admit() would take a request that does not wait yet: the queue is not full, or of
+  /// somebody else more wait.
+  bool has_room(const std::string& client) const {
+    if (size_ < capacity_)
+      return true;
+    const auto mine = waiting_.find(client);
+    const std::size_t count = mine == waiting_.end() ? 0 : mine->second.size();
+    return std::ranges::any_of(waiting_,
+                               [&](const auto& each) { return each.second.size() > count + 1; });
+  }
+
   /// Makes room for a request if the queue is full: the newest of the client of whom most wait has
   /// to go, and is sent again.
   /// \param client  whose turn it is (Caller::client).

@@ -119,11 +119,17 @@ class Replier<Conversation>::Implementation {
 
   void take(const WireRequest& wire, std::uint64_t writer) {
     const codec::Head head = codec::head_of(wire);
-    std::optional<Sender> sender = line_->sender(writer);
+    Sender unknown;
+    const Sender* sender = line_->sender(writer);
     if (!sender && has_security_)
       return;  // gone, and nobody can say any more who it was
-    if (!sender)
-      sender = Sender{.client = head.client_id.text()};
+    if (!sender) {
+      unknown.client = head.client_id.text();
+      sender = &unknown;
+    }
+    // A flood is mostly this, before each request that is served.
+    if (!waiting_.has_room(sender->client))
+      return;
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
     // may not ask at all is told so in its turn.
     const ReplyLine::Place place{sender->name, head};
@@ -132,7 +138,7 @@ class Replier<Conversation>::Implementation {
     if (const auto caller = caller_of(*sender); caller && is_refused(place, *caller, wire))
       return;
     if (waiting_.admit(sender->client, head))
-      waiting_.push(sender->client, head, {std::move(*sender), decoded(wire)});
+      waiting_.push(sender->client, head, {*sender, decoded(wire)});
   }
 
   /// \return why the sender is refused if it is.

@@ -34,9 +34,9 @@ class ReplyLine {
   const Entity& reader() const noexcept { return reader_; }
   const std::string& name() const noexcept { return name_; }
 
-  /// Who sent a request; nothing if nobody can say any more.
+  /// Who sent a request; null if nobody can say any more. Valid until the next call.
   /// \param writer  of the sample. Of one thread only.
-  std::optional<Sender> sender(std::uint64_t writer) { return senders_.find(reader_, writer); }
+  const Sender* sender(std::uint64_t writer) { return senders_.find(reader_, writer); }
 
   bool is_being_answered(const Place& place) const;
   bool begin(const Place& place);  ///< false: it is being answered already

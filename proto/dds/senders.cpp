@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <regex>
+#include <utility>
 #include <vector>
 
 #include "proto/dds/network_interface.hpp"
@@ -74,16 +75,15 @@ Senders::Senders(const Participant& participant)
           dds_create_reader(participant.get(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
           "reader of participants") {}
 
-std::optional<Sender> Senders::find(const Entity& reader, std::uint64_t writer) {
+const Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
   if (const auto known = known_.find(writer); known != known_.end())
-    return known->second;
+    return &known->second;
   std::optional<Sender> sender = look_up(reader, writer);
   if (!sender)
-    return std::nullopt;
+    return nullptr;
   if (known_.size() >= kMaxKnown)
     known_.clear();
-  known_.emplace(writer, *sender);
-  return sender;
+  return &known_.emplace(writer, *std::move(sender)).first->second;
 }
 
 std::optional<Sender> Senders::look_up(const Entity& reader, std::uint64_t writer) const {

@@ -30,8 +30,9 @@ class Senders {
 
   /// \param reader  which took the sample.
   /// \param writer  its publication handle.
-  /// \return nothing if the writer is gone, or is in no partition of one client (with security).
-  std::optional<Sender> find(const Entity& reader, std::uint64_t writer);
+  /// \return null if the writer is gone, or is in no partition of one client (with security); valid
+  ///         until the next call.
+  const Sender* find(const Entity& reader, std::uint64_t writer);
 
  private:
   std::optional<Sender> look_up(const Entity& reader, std::uint64_t writer) const;

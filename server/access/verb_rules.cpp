@@ -43,7 +43,7 @@ constexpr std::array kRules = {
     VerbRule{ListBackups, "list_backups", "list backups", Operator, kReads, kOfAll},
     // A copy of everything leaves the server: in the audit log once, and, without security, only
     // for its own machine. Reading the pieces of one is in it where it is refused.
-    VerbRule{HashBackup, "hash_backup", "download backups", Operator, kChanges, kOfAll},
+    VerbRule{HashBackup, "hash_backup", "digest backups", Operator, kChanges, kOfAll},
     VerbRule{ReadBackup, "read_backup", "download backups", Operator, kChanges, kOfAll}};
 
 constexpr bool is_complete() {

@@ -22,7 +22,10 @@ class FairQueueTest : public testing::Test {
   bool offer(std::uint8_t from, std::uint64_t number) {
     const codec::Head head{client(from), number};
     const std::string name = head.client_id.text();
-    if (!queue_.admit(name, head))
+    const bool has_room = queue_.has_room(name), waits = queue_.has(name, head);
+    const bool is_admitted = queue_.admit(name, head);
+    EXPECT_EQ(is_admitted, has_room && !waits);
+    if (!is_admitted)
       return false;
     queue_.push(name, head, static_cast<int>(number));
     return true;

@@ -70,7 +70,8 @@ TEST(VerbRules, ARoleMayWhatItIsForAndWhatTheOneBeforeItMay) {
   EXPECT_EQ(allowed(named("r", AccessRole::Reader)), reader);
   std::set<std::string> more = reader;
   for (const char* const name :
-       {"evict_distribution", "retire_path", "reset_task", "backup", "list_jobs", "list_audit"})
+       {"evict_distribution", "retire_path", "reset_task", "backup", "list_backups", "hash_backup",
+        "read_backup", "list_jobs", "list_clients", "list_audit"})
     more.insert(name);
   EXPECT_EQ(allowed(named("o", AccessRole::Operator)), more);
   more.insert({"rename_robot", "remove_robot"});
