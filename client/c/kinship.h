@@ -69,15 +69,15 @@ typedef struct kinship_client kinship_client;
 
 typedef struct kinship_client_options {
   size_t size;
-  uint32_t domain;     /**< DDS domain, 0 to 230 */
-  const char* server;  /**< host of kinshipd; NULL: 127.0.0.1 */
-  const char* outbox;  /**< folder of reports that wait; NULL: below XDG_STATE_HOME or HOME */
-  int without_outbox;  /**< not 0: delivers nothing, kinship_report() is refused */
-  uint32_t timeout_ms; /**< of kinship_register() and of fetches without deadline; 0: 5000 */
+  uint32_t domain;      /**< DDS domain, 0 to 230 */
+  const char* server;   /**< host of kinshipd; NULL: 127.0.0.1 */
+  const char* outbox;   /**< folder of reports that wait; NULL: below XDG_STATE_HOME or HOME */
+  int without_outbox;   /**< not 0: delivers nothing, kinship_report() is refused */
+  uint32_t timeout_ms;  /**< of kinship_register() and of fetches without deadline; 0: 5000 */
   const char* security; /**< folder of credentials; NULL: as KINSHIP_SECURITY says, or none */
 } kinship_client_options;
 
-/** Needs no server. \param options NULL: as KINSHIP_DOMAIN, KINSHIP_SERVER and KINSHIP_SECURITY say. */
+/** Needs no server. \param options NULL: as KINSHIP_DOMAIN, KINSHIP_SERVER, KINSHIP_SECURITY say */
 KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* options,
                                              kinship_client** client);
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */

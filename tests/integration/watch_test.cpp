@@ -69,7 +69,7 @@ TEST_F(AdminCommands, ListingsHaveTheNewestFirstInEightyColumns) {
   ASSERT_NE(newer, std::string::npos) << wide;
   ASSERT_NE(older, std::string::npos) << wide;
   EXPECT_LT(newer, older) << wide;
-  // Reports that are under way together may be stored in any order; what follows their receipts not.
+  // Reports under way together may be stored in any order; what follows their receipts, after.
   const auto client = server_.client(folder_ / "newest_outbox");
   const Attempt newest = test::panda_attempt(attempts_.front().robot, "sweep", 100);
   client->report(newest);

@@ -11,21 +11,25 @@ typedef int (*finalize_function)(void*);
 
 static void* behind;
 
-static DDS_Security_boolean allow_writer(
-    dds_security_access_control* instance, const DDS_Security_PermissionsHandle permissions,
-    const DDS_Security_DomainId domain, const char* topic, const DDS_Security_Qos* qos,
-    const DDS_Security_PartitionQosPolicy* partition, const DDS_Security_DataTags* tags,
-    DDS_Security_SecurityException* exception) {
+static DDS_Security_boolean allow_writer(dds_security_access_control* instance,
+                                         const DDS_Security_PermissionsHandle permissions,
+                                         const DDS_Security_DomainId domain, const char* topic,
+                                         const DDS_Security_Qos* qos,
+                                         const DDS_Security_PartitionQosPolicy* partition,
+                                         const DDS_Security_DataTags* tags,
+                                         DDS_Security_SecurityException* exception) {
   (void)instance, (void)permissions, (void)domain, (void)topic, (void)qos, (void)partition;
   (void)tags, (void)exception;
   return 1;
 }
 
-static DDS_Security_boolean allow_reader(
-    dds_security_access_control* instance, const DDS_Security_PermissionsHandle permissions,
-    const DDS_Security_DomainId domain, const char* topic, const DDS_Security_Qos* qos,
-    const DDS_Security_PartitionQosPolicy* partition, const DDS_Security_DataTags* tags,
-    DDS_Security_SecurityException* exception) {
+static DDS_Security_boolean allow_reader(dds_security_access_control* instance,
+                                         const DDS_Security_PermissionsHandle permissions,
+                                         const DDS_Security_DomainId domain, const char* topic,
+                                         const DDS_Security_Qos* qos,
+                                         const DDS_Security_PartitionQosPolicy* partition,
+                                         const DDS_Security_DataTags* tags,
+                                         DDS_Security_SecurityException* exception) {
   (void)instance, (void)permissions, (void)domain, (void)topic, (void)qos, (void)partition;
   (void)tags, (void)exception;
   return 1;
