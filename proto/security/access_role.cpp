@@ -1,18 +1,20 @@
 #include "proto/security/access_role.hpp"
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
+#include "proto/types/enum_text.hpp"
 #include "proto/types/nearest_name.hpp"
 
 namespace kinship::security {
 
 std::span<const std::string> role_names() {
-  static const std::array<std::string, 4> names = {"robot", "reader", "operator", "admin"};
-  return names;  // in the order of AccessRole
+  static const std::vector<std::string> names(Words<AccessRole>::kWords.begin(),
+                                              Words<AccessRole>::kWords.end());
+  return names;
 }
 
-std::string role_name(AccessRole role) { return role_names()[static_cast<std::size_t>(role)]; }
+std::string role_name(AccessRole role) { return std::string(to_text(role)); }
 
 Result<AccessRole> read_role(std::string_view name) {
   const auto names = role_names();
