@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/crc32c.hpp"
 
 namespace kinship::store {
 namespace {

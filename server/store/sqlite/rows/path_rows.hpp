@@ -8,8 +8,8 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
 

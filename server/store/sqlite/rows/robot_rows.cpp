@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/mesh_solids_blob.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/crc32c.hpp"
+#include "server/store/values/mesh_solids_blob.hpp"
 
 namespace kinship::store {
 namespace {

@@ -1,10 +1,10 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
 #include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/byte_stream.hpp"
+#include "server/store/values/crc32c.hpp"
 
 namespace kinship::store {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/scene_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
-#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/values/byte_stream.hpp"
+#include "server/store/values/compression.hpp"
 
 namespace kinship::store {
 namespace {
