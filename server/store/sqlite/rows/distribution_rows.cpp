@@ -10,8 +10,8 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
 #include "server/store/values/crc32c.hpp"
 #include "server/store/values/distribution_blob.hpp"
 

@@ -71,9 +71,6 @@ void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 /// be written is set aside as retired.
 void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id);
 
-/// How SQL tells a dropped path from others, without reading its waypoints.
-inline constexpr std::string_view kIsDropped = "length(path.waypoints) = 1";
-
 /// A part of a full check.
 struct PathsChecked {
   std::int64_t last_id = 0;
