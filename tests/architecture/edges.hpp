@@ -147,4 +147,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
 inline const std::vector<std::string> kStoreRooms = {"files", "database", "rows", "opening",
                                                      "upkeep"};
 
+/// What of server/store a file in server/store/values may include: it knows no engine.
+inline const std::set<std::string> kStoreForValues = {"server/store/store.hpp",
+                                                      "server/store/values/"};
+
 }  // namespace kinship::architecture

@@ -2,14 +2,15 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "server/store/values/bytes.hpp"
+
 namespace kinship::store::postgres {
 
-using Bytes = std::span<const std::uint8_t>;
+
 
 /// The parameters of a statement, in libpq's binary format: $1, $2, ... in the order in which they
 /// are added. Their types are those of the C++ values: bigint, double precision, boolean, text,

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {

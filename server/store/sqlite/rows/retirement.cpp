@@ -11,8 +11,8 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {

@@ -1,11 +1,11 @@
-#include "server/store/sqlite/rows/scene_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "proto/types/pose.hpp"
-#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/values/compression.hpp"
 #include "tests/support/random_values.hpp"
 
 namespace kinship::store::scene_blob_test {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/types/recorded_scene.hpp"
+#include "server/store/values/bytes.hpp"
 
 namespace kinship::store {
 
@@ -27,5 +28,9 @@ SceneBlob encode_scene(const RecordedScene& scene);
 /// \return empty if the blob is not what encode_scene makes, or breaks a rule of check_scene().
 std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encoding,
                                           std::span<const std::uint8_t> bytes);
+
+/// The checksum of a scene's row. The content's digest is under it: a scene that stands under
+/// another's digest would be taken for it.
+std::uint32_t scene_crc(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene);
 
 }  // namespace kinship::store

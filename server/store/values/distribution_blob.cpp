@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/distribution_blob.hpp"
+#include "server/store/values/distribution_blob.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
-#include "server/store/sqlite/rows/byte_fields.hpp"
+#include "server/store/values/byte_fields.hpp"
 
 namespace kinship::store {
 namespace {

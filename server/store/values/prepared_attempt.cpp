@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 #include <limits>
 #include <string>

@@ -1,11 +1,11 @@
-#include "server/store/sqlite/rows/waypoint_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
 
 #include <bit>
 #include <cstring>
 #include <utility>
 
 #include "proto/types/limits.hpp"
-#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/values/compression.hpp"
 
 namespace kinship::store {
 namespace {

@@ -10,7 +10,7 @@
 #include "proto/types/enum_text.hpp"
 #include "proto/types/field.hpp"
 #include "proto/types/limits.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
+#include "server/store/values/byte_stream.hpp"
 
 /// Values as bytes by the tables of their fields.
 namespace kinship::store {

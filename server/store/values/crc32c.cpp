@@ -1,4 +1,4 @@
-#include "server/store/crc32c.hpp"
+#include "server/store/values/crc32c.hpp"
 
 #include <array>
 #include <bit>

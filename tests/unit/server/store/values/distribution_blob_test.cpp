@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/distribution_blob.hpp"
+#include "server/store/values/distribution_blob.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/values/compression.hpp"
 
 #include <zstd.h>
 

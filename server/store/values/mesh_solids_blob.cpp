@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/mesh_solids_blob.hpp"
+#include "server/store/values/mesh_solids_blob.hpp"
 
 #include <array>
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 #include "proto/types/limits.hpp"
 #include "proto/types/recorded_scene.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
+#include "server/store/values/byte_stream.hpp"
 
 namespace kinship::store {
 namespace {

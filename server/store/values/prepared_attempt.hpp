@@ -6,8 +6,8 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
-#include "server/store/sqlite/rows/scene_blob.hpp"
-#include "server/store/sqlite/rows/waypoint_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
 
 namespace kinship::store {
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/waypoint_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
 
 #include <gtest/gtest.h>
 

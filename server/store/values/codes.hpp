@@ -9,10 +9,10 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/distribution.hpp"
 #include "proto/types/uuid.hpp"
-#include "server/store/sqlite/database/statement.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
+#include "server/store/values/byte_stream.hpp"
+#include "server/store/values/bytes.hpp"
 
-/// How values stand in columns. The codes of the enumerations are part of the schema.
+/// How values stand in columns. The codes of the enumerations are part of the schemas.
 namespace kinship::store {
 
 constexpr std::int64_t code_of(Outcome outcome) {
@@ -43,17 +43,6 @@ Id id_of(Bytes column) {
   if (column.size() == id.bytes.size())
     std::copy(column.begin(), column.end(), id.bytes.begin());
   return id;
-}
-
-template <typename Id>
-std::optional<Id> optional_id_of(const Statement& row, int column) {
-  if (row.column_is_null(column))
-    return std::nullopt;
-  return id_of<Id>(row.column_blob(column));
-}
-
-inline std::uint64_t count_of(const Statement& row, int column) {
-  return static_cast<std::uint64_t>(row.column_integer(column));
 }
 
 /// The blob of a pose that may be missing; bind it through blob_or_null().

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/byte_stream.hpp"
+#include "server/store/values/byte_stream.hpp"
 
 #include <cstring>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/rows/scene_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
-#include "server/store/sqlite/rows/compression.hpp"
+#include "server/store/values/byte_stream.hpp"
+#include "server/store/values/compression.hpp"
+#include "server/store/values/crc32c.hpp"
 
 namespace kinship::store {
 namespace {
@@ -170,6 +171,14 @@ std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encodi
   } catch (const std::out_of_range&) {
     return std::nullopt;
   }
+}
+
+std::uint32_t scene_crc(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene) {
+  ByteWriter header;
+  header.add(content);
+  for (const std::int64_t number : {size, encoding})
+    header.add(static_cast<std::uint64_t>(number));
+  return crc32c(scene, crc32c(header.bytes()));
 }
 
 }  // namespace kinship::store
