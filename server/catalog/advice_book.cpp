@@ -152,6 +152,21 @@ void AdviceBook::add(const AttemptCost& cost) {
     later_([this, key, id = *cost.distribution_id] { find_contexts(key, {id}); });
 }
 
+void AdviceBook::read_again(const std::string& task, const Digest& robot) {
+  const Key key(task, robot);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(key);
+    if (found == entries_.end())
+      return;
+    found->second.is_overtaken = true;  // for who reads them just now
+    if (found->second.state != State::Read)
+      return;
+  }
+  // Until then the sums of before are told. Two readings at a time do no harm.
+  later_([this, key] { read_totals(key); });
+}
+
 void AdviceBook::forget(const Digest& robot) {
   const std::lock_guard lock(mutex_);
   std::erase_if(entries_, [&robot](const auto& entry) { return entry.first.second == robot; });

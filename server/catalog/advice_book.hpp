@@ -81,6 +81,10 @@ class AdviceBook {
   /// An attempt was committed, Stored or Recorded.
   void add(const AttemptCost& cost);
 
+  /// Somebody else committed attempts: the sums are read anew, in the background, if they are
+  /// known.
+  void read_again(const std::string& task, const Digest& robot);
+
   /// A robot was removed: nothing is known of it until somebody asks for it again.
   void forget(const Digest& robot);
 

@@ -7,6 +7,8 @@
 #include "proto/types/failure.hpp"
 #include "proto/types/limits.hpp"
 #include "server/catalog/fetch_reply.hpp"
+#include "server/catalog/fit_turn.hpp"
+#include "server/catalog/freshness.hpp"
 #include "server/fitting/selected_experience.hpp"
 
 namespace kinship::catalog {
@@ -192,13 +194,19 @@ void Catalog::run_fit(const Digest& id) {
   if (!key)
     return;
   try {
+    const FitTurn turn(parts_.store, id, stop_source_.get_token());
     ExperienceVersion version;
+    if (turn.has_others()) {
+      change([&](Afterwards&) { version = state_.version_of(key->task); });
+      if (std::optional<Distribution> made = made_elsewhere(id, *key))
+        return complete(id, *key, std::move(*made), version, MadeBy::Another);
+    }
     fitting::FitOutcome outcome = fit(id, *key, version);
     if (outcome.kind == fitting::FitOutcome::Kind::Abandoned)
       return end(id, busy("the server is stopping"), std::nullopt);
     if (outcome.kind == fitting::FitOutcome::Kind::NoExperience)
       return end(id, no_experience(*key), version);
-    complete(id, *key, maker_.keep(std::move(outcome)), version);
+    complete(id, *key, maker_.keep(std::move(outcome), turn.right()), version, MadeBy::This);
   } catch (const Failure& failure) {
     fail(id, failure.code() == ErrorCode::TooLarge ? FetchStatus::Refused : FetchStatus::Busy,
          failure.what());
@@ -228,9 +236,18 @@ fitting::FitOutcome Catalog::fit(const Digest& id, const fitting::DistributionKe
   throw Failure(ErrorCode::Unavailable, "paths of task '" + key.task + "' are being retired");
 }
 
+/// What another server has stored, if a fit could say no more.
+std::optional<Distribution> Catalog::made_elsewhere(const Digest& id,
+                                                    const fitting::DistributionKey& key) {
+  const LookUp found = catalog::look_up(id, key, nullptr, parts_.store, parts_.robots);
+  if (found.end || !found.known || is_behind(*found.known->distribution, found.experience))
+    return std::nullopt;
+  return found.known->distribution;
+}
+
 void Catalog::complete(const Digest& id, const fitting::DistributionKey& key,
-                       Distribution distribution, const ExperienceVersion& version) {
-  ++fits_;
+                       Distribution distribution, const ExperienceVersion& version,
+                       MadeBy made_by) {
   const Announcement announcement = announcement_of(distribution);
   const double fit_s = distribution.transfer_time_s + distribution.fit_time_s;
   const AdvisedReply reply = adviser_.advise(with_distribution(std::move(distribution)), key);
@@ -239,10 +256,14 @@ void Catalog::complete(const Digest& id, const fitting::DistributionKey& key,
   {
     const std::lock_guard lock(mutex_);
     constexpr double kNewShare = 0.25;
-    typical_fit_s_ = (1 - kNewShare) * typical_fit_s_ + kNewShare * fit_s;
+    if (made_by == MadeBy::This)
+      typical_fit_s_ = (1 - kNewShare) * typical_fit_s_ + kNewShare * fit_s;
     is_followed = state_.complete(id, key.task, reply, version, after);
   }
-  options_.on_fit(*reply.reply->distribution);  // whoever is told of it and asks gets it
+  if (made_by == MadeBy::This) {
+    ++fits_;
+    options_.on_fit(*reply.reply->distribution);  // whoever is told of it and asks gets it
+  }
   finish(after);
   if (is_followed && announcement.revision > 0)
     options_.announce(announcement);

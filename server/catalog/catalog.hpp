@@ -122,6 +122,7 @@ class Catalog {
 
  private:
   using Afterwards = CatalogState::Afterwards;
+  enum class MadeBy { This, Another };  // server
 
   /// Changes the state under the lock, then does what follows from that.
   template <typename Change>
@@ -133,8 +134,9 @@ class Catalog {
   void run_fit(const Digest& id);
   fitting::FitOutcome fit(const Digest& id, const fitting::DistributionKey& key,
                           ExperienceVersion& version);
+  std::optional<Distribution> made_elsewhere(const Digest& id, const fitting::DistributionKey& key);
   void complete(const Digest& id, const fitting::DistributionKey& key, Distribution distribution,
-                const ExperienceVersion& version);
+                const ExperienceVersion& version, MadeBy made_by);
   void fail(const Digest& id, FetchStatus status, const std::string& message);
   void end(const Digest& id, const FetchReply& reply,
            const std::optional<ExperienceVersion>& version);

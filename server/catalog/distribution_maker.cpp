@@ -71,13 +71,14 @@ bool DistributionMaker::is_outdated(const Distribution& distribution) const {
   return is_retired(distribution, parts_.store.experience(distribution.task));
 }
 
-Distribution DistributionMaker::keep(fitting::FitOutcome outcome) const {
+Distribution DistributionMaker::keep(fitting::FitOutcome outcome,
+                                     const store::FitRight& right) const {
   Distribution distribution = std::move(outcome.distribution).value();
   try {
-    distribution.revision = parts_.store.put_distribution(distribution);
+    distribution.revision = parts_.store.put_distribution(distribution, right);
   } catch (const Failure& failure) {
-    if (failure.code() == ErrorCode::NotFound)
-      throw;  // its robot was removed meanwhile
+    if (failure.code() == ErrorCode::NotFound || failure.code() == ErrorCode::Unavailable)
+      throw;  // its robot was removed meanwhile, or another server fits it
     distribution.revision = 0;
     distribution.reason += (distribution.reason.empty() ? "not stored: " : "; not stored: ") +
                            std::string(failure.what());

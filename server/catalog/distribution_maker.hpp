@@ -40,10 +40,12 @@ class DistributionMaker {
   /// Stores it, gives it its revision and remembers what it left for the next fit. If the store
   /// cannot take it, it is of use all the same while this server runs: with revision 0, and the
   /// reason says so; the next fit is a full one then.
+  /// \param right    of the store's servers to fit it. \throws Failure(Unavailable) if another one
+  ///                 has it since.
   /// \param outcome  with a distribution. One with a date takes the place of others of its task and
   ///                 robot with dates that were not fitted for kDatedAge: who asks for the last
   ///                 two weeks each day means another one each day.
-  Distribution keep(fitting::FitOutcome outcome) const;
+  Distribution keep(fitting::FitOutcome outcome, const store::FitRight& right) const;
   static constexpr std::chrono::hours kDatedAge{7 * 24};
 
   /// The next fit of this distribution begins anew.

@@ -120,6 +120,15 @@ Result<store::RemovedRobot> RobotRegistry::remove_robot(const Digest& robot,
   return removed;
 }
 
+bool RobotRegistry::read_again(const Digest& robot) {
+  const std::optional<store::RobotRecord> record = store_.find_robot(robot);
+  forget(robot, false);
+  const std::lock_guard lock(mutex_);
+  if (record && record->geometry_revision > 0)
+    geometry_revisions_[robot] = record->geometry_revision;
+  return record.has_value();
+}
+
 /// It is read from the store when somebody asks for it next, also by who is reading it just now.
 void RobotRegistry::forget(const Digest& robot, bool is_deleted) {
   const std::lock_guard lock(mutex_);

@@ -83,6 +83,10 @@ class RobotRegistry {
   Result<store::RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop = {},
                                            const AuditEntry* audit = nullptr);
 
+  /// Another server of the same store changed a robot, or took it out: it is read when somebody
+  /// asks for it next. \return whether it is there. \throws Failure(Storage)
+  bool read_again(const Digest& robot);
+
   /// From memory only; null if it is not there.
   RobotPointer find_in_memory(const Digest& robot) const;
   std::size_t in_memory() const;

@@ -76,7 +76,8 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       ingest_(*store_, robots_, short_task_pool_, ingest_options()),
       jobs_(options_.clock, job_options(options_)),
       administration_(administration_parts()),
-      reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}) {}
+      reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}),
+      watch_(*store_, [this](const store::StoreChanges& changes) { take_changes(changes); }) {}
 
 Service::~Service() { shutdown(); }
 
@@ -147,12 +148,7 @@ Administration::Parts Service::administration_parts() {
               },
           .rehearsal = [this](const Digest& id) { return rehearsals_.find(id); },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
-          .forget_task =
-              [this](const std::string& task) {
-                experience_.forget(task);
-                rehearsals_.forget(task);
-                catalog_.forget(task);
-              },
+          .forget_task = [this](const std::string& task) { forget_task(task); },
           .forget_robot =
               [this](const Digest& robot) {
                 catalog_.forget_robot(robot);
@@ -439,6 +435,7 @@ void Service::log_fit(const Distribution& distribution) const {
 
 void Service::shutdown() {
   using runtime::WorkerPool;
+  watch_.stop();
   stop_source_.request_stop();  // resets
   robots_.stop();
   catalog_.stop();

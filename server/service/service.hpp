@@ -11,6 +11,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "proto/types/caller.hpp"
@@ -31,6 +32,7 @@
 #include "server/service/ingest.hpp"
 #include "server/service/jobs.hpp"
 #include "server/service/measures.hpp"
+#include "server/service/store_watch.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -113,6 +115,10 @@ class Service {
                            const std::function<void(const RegisterReply&)>& done);
   void refuse_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
+  /// What somebody else changed in the store is no longer served from memory. Called by itself where
+  /// a store has several servers. One call at a time. \throws Failure(Storage)
+  void take_changes(const store::StoreChanges& changes);
+
   /// For the loop that waits: when to call expire(), and with what time.
   std::optional<catalog::Catalog::TimePoint> next_deadline() const;
   void expire(catalog::Catalog::TimePoint now);
@@ -138,6 +144,8 @@ class Service {
   void take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
                const std::string& client);
   void begin_epoch(const HistoryMark& lost);
+  void notice_experience(std::string_view task);
+  void forget_task(const std::string& task);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   RegisterReply registered(const RobotDescription& description, const std::string& client);
@@ -176,7 +184,9 @@ class Service {
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;
-  runtime::WorkerPool reset_pool_;  // last: its thread uses the administration
+  runtime::WorkerPool reset_pool_;  // its thread uses the administration
+  std::map<std::pair<std::string, Digest>, std::uint64_t> retired_generations_;  // of the watch
+  StoreWatch watch_;  // last: its thread uses all of the above
 };
 
 }  // namespace kinship::service

@@ -56,6 +56,26 @@ struct ExperienceSummary {
   std::uint64_t dropped = 0;             ///< paths that were beyond the cap, since ever
 };
 
+/// A robot and task that changed, and how it is now.
+struct ChangedExperience {
+  std::string task;
+  ExperienceSummary now;
+};
+
+/// What anybody changed in a store since somebody looked.
+struct StoreChanges {
+  std::string cursor;                         ///< for the next look
+  std::vector<ChangedExperience> experience;  ///< new attempts, paths retired or dropped
+  std::vector<Digest> robots;   ///< registered, renamed, with better geometry, or removed
+  std::vector<Digest> evicted;  ///< distributions, by somebody; not for want of room
+};
+
+/// The right to fit a distribution, which one server of a store has at a time.
+struct FitRight {
+  std::uint64_t fence =
+      0;  ///< greater than that of anybody who had it before; 0: there is one server
+};
+
 /// What the attempts of one arm sum up to; the sums from which a ratio's interval follows.
 struct ModeTotals {
   std::uint64_t attempts = 0;
@@ -235,6 +255,15 @@ class Store {
   virtual Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop = {},
                                         const AuditEntry* audit = nullptr) = 0;
 
+  /// What was changed since a look, by this server or another of the same store; what is on its way
+  /// meanwhile is in the next look. Something may be told twice.
+  /// \param cursor  of the look before; empty: from now on, nothing is told.
+  /// \return nothing where a store has one server, which knows what it did.
+  virtual std::optional<StoreChanges> changes_since(std::string_view cursor) const {
+    (void)cursor;
+    return std::nullopt;
+  }
+
   virtual AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const = 0;
 
   /// Stores a distribution under its id with the next revision, durable on return. Where all of
@@ -242,7 +271,23 @@ class Store {
   /// forgotten. \return the revision given, greater than any that this id had. \throws
   /// Failure(NotFound) if its robot is not registered, Failure(InvalidInput) if a part
   ///         exceeds its limit.
-  virtual std::uint64_t put_distribution(const Distribution& distribution) = 0;
+  /// \param right  with which it was fitted. \throws Failure(Unavailable), and nothing is stored,
+  /// if
+  ///               another server has it since.
+  virtual std::uint64_t put_distribution(const Distribution& distribution,
+                                         const FitRight& right = {}) = 0;
+  /// Takes the right to fit a distribution. Of a server that died it is free a few seconds later.
+  /// \return nothing while another server has it.
+  virtual std::optional<FitRight> take_fit_right(const Digest& id) {
+    (void)id;
+    return FitRight{};
+  }
+  /// Others may have it from now on. Never throws: what is not given back is free once the server
+  /// takes it again or ends.
+  virtual void give_back_fit_right(const Digest& id, const FitRight& right) noexcept {
+    (void)id;
+    (void)right;
+  }
   /// The newest revision; nothing if its payload fails its CRC.
   virtual std::optional<Distribution> find_distribution(const Digest& id) const = 0;
   /// Says that a distribution was served; precise to the hour, lost in a crash. Returns at once.

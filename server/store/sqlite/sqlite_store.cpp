@@ -254,7 +254,7 @@ class SqliteStore : public Store {
     return totals_of(*reader, robot, task);
   }
 
-  std::uint64_t put_distribution(const Distribution& distribution) override {
+  std::uint64_t put_distribution(const Distribution& distribution, const FitRight&) override {
     return write([&](Batch& batch) {
       return upsert_distribution(batch.database(), distribution, options_.max_distribution_bytes);
     });

@@ -125,8 +125,9 @@ class TroubledStore final : public store::Store {
                       const std::function<bool(double)>& progress) const override {
     return store_.backup(file, progress);
   }
-  std::uint64_t put_distribution(const Distribution& distribution) override {
-    return store_.put_distribution(distribution);
+  std::uint64_t put_distribution(const Distribution& distribution,
+                                 const store::FitRight& right) override {
+    return store_.put_distribution(distribution, right);
   }
   std::optional<Distribution> find_distribution(const Digest& id) const override {
     return store_.find_distribution(id);
