@@ -6,7 +6,7 @@
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
-#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {
 namespace {

@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retention.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
