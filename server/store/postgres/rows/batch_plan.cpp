@@ -235,7 +235,7 @@ Receipt Planner::receipt_of(const PreparedAttempt& prepared, const AttemptPath& 
   if (path.is_in_use())
     return {uuid, ReceiptStatus::Stored, ""};
   if (path.is_retired)
-    return {uuid, ReceiptStatus::Recorded, "recorded, its path is retired"};
+    return {uuid, ReceiptStatus::Recorded, "recorded, but its path was retired before it came"};
   if (path.is_beyond_cap())
     return {uuid, ReceiptStatus::Recorded, beyond_cap_in_words(max_paths_)};
   return {uuid, prepared.path ? ReceiptStatus::Duplicate : ReceiptStatus::Recorded, ""};
