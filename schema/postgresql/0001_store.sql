@@ -45,7 +45,17 @@ CREATE TABLE robot (
   task_axes       bigint NOT NULL CHECK (task_axes BETWEEN 0 AND 63),  -- bit 0 x, y, z, roll, pitch, 5 yaw
   registered_ms   bigint NOT NULL,
   crc32c          bigint NOT NULL CHECK (crc32c BETWEEN 0 AND 4294967295),  -- of the whole description
-  urdf            text NOT NULL
+  urdf            text NOT NULL,
+  -- Here and below: the transaction that changed the row last, for other servers, which look for
+  -- what came since. Below pg_snapshot_xmin nothing comes any more.
+  changed_in      xid8 NOT NULL DEFAULT pg_current_xact_id()
+);
+CREATE INDEX robot_by_change ON robot (changed_in);
+
+-- Robots that were removed and left no row.
+CREATE TABLE gone_robot (
+  digest      bytea PRIMARY KEY CHECK (length(digest) = 32),
+  changed_in  xid8 NOT NULL DEFAULT pg_current_xact_id()
 );
 
 CREATE TABLE robot_held_joint (
@@ -98,6 +108,7 @@ CREATE TABLE experience (
   control_checks            double precision NOT NULL DEFAULT 0,
   control_checks_squared    double precision NOT NULL DEFAULT 0,
   control_checks_of_solved  double precision NOT NULL DEFAULT 0,
+  changed_in                xid8 NOT NULL DEFAULT pg_current_xact_id(),  -- no index: the rows are few, and HOT
   PRIMARY KEY (task_id, robot_id)
 ) WITH (fillfactor = 50);
 CREATE INDEX experience_by_robot ON experience (robot_id);
@@ -187,6 +198,7 @@ CREATE TABLE attempt (
   CHECK ((outcome = 1) = (status IN (1, 2)))
 );
 CREATE INDEX attempt_by_task_robot ON attempt (task_id, robot_id, arrived_in, id);
+CREATE INDEX attempt_by_task ON attempt (task_id, arrived_in, id);
 CREATE INDEX attempt_by_arrival ON attempt (arrived_in, id);
 -- The reports that are retired with a path, beside the one that brought it.
 CREATE INDEX attempt_of_same_content ON attempt (path_id) WHERE status = 2;
@@ -233,7 +245,24 @@ CREATE INDEX distribution_use_by_time ON distribution_use (used_ms, id);
 CREATE TABLE evicted_distribution (
   digest      bytea PRIMARY KEY CHECK (length(digest) = 32),
   revision    bigint NOT NULL CHECK (revision >= 1),
-  evicted_ms  bigint NOT NULL
+  evicted_ms  bigint NOT NULL,
+  evicted_in  xid8 NOT NULL DEFAULT pg_current_xact_id()
+);
+CREATE INDEX evicted_distribution_by_change ON evicted_distribution (evicted_in);
+
+-- The servers that have the store open; who is not alive any more holds nothing.
+CREATE TABLE server (
+  run          bytea PRIMARY KEY CHECK (length(run) = 16),
+  alive_until  timestamptz NOT NULL,
+  name         text NOT NULL
+);
+
+-- Which server fits a distribution. The fence grows with each lease: what a server that lost its
+-- lease writes under an older one is not taken.
+CREATE TABLE fit_lease (
+  digest  bytea PRIMARY KEY CHECK (length(digest) = 32),
+  fence   bigint NOT NULL CHECK (fence >= 1),
+  holder  bytea NOT NULL
 );
 
 -- Who had what done to the store, and what was refused.

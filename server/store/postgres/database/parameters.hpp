@@ -10,8 +10,6 @@
 
 namespace kinship::store::postgres {
 
-
-
 /// The parameters of a statement, in libpq's binary format: $1, $2, ... in the order in which they
 /// are added. Their types are those of the C++ values: bigint, double precision, boolean, text,
 /// bytea, and arrays of these (for unnest and = ANY). Copies what it is given.

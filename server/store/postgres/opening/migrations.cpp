@@ -6,7 +6,7 @@
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
-#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {
 namespace {
@@ -56,7 +56,7 @@ void migrate(Connection& connection, std::span<const Migration> migrations) {
   const auto newest = static_cast<std::int64_t>(migrations.size());
   if (checked_version(connection, migrations) == newest)
     return;
-  Transaction transaction(connection, Transaction::Kind::Write);
+  Transaction transaction(connection, Transaction::Kind::Local);
   // Of the transaction, not of the session: a pooler may give each transaction another session.
   connection.query("SELECT pg_advisory_xact_lock($1) IS NULL", kMigrationLock);
   const std::int64_t version = checked_version(connection, migrations);

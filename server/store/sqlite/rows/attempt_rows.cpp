@@ -2,14 +2,15 @@
 
 #include <string>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retention.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
+#include "server/store/values/receipt_texts.hpp"
 #include "server/store/values/robot_columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 
@@ -17,10 +18,6 @@ namespace kinship::store {
 namespace {
 
 enum class AttemptStatus : std::uint8_t { Stored = 1, DuplicateContent = 2, Unsolved = 3 };
-
-Receipt refused(const Uuid& report_uuid, const std::string& why) {
-  return {report_uuid, ReceiptStatus::Refused, "attempt " + report_uuid.text() + ": " + why};
-}
 
 /// What is known of a report that came before under the same UUID.
 struct EarlierAttempt {

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/values/audit_texts.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 
 namespace kinship::store {

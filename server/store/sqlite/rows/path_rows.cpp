@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
 

@@ -69,9 +69,4 @@ void drop_excess(Batch& batch, const ExperienceKey& key, std::uint64_t max_paths
     drop_path(batch, key, path.id);
 }
 
-std::string beyond_cap_in_words(std::uint64_t max_paths) {
-  return "recorded, but its path is not kept: its robot and task have " +
-         std::to_string(max_paths) + " paths, the most that are kept (--max-paths-per-pair)";
-}
-
 }  // namespace kinship::store

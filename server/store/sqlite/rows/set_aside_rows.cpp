@@ -1,6 +1,6 @@
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 
-#include "server/store/sqlite/database/clock.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 
 namespace kinship::store {

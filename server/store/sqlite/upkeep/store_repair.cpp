@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/page_seal.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -16,6 +15,7 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/upkeep/row_salvage.hpp"
+#include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/summary_columns.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "proto/types/conversations.hpp"
 #include "proto/types/digest.hpp"
-#include "server/store/sqlite/opening/run_log.hpp"
+#include "server/store/values/history_point.hpp"
 
 namespace kinship::store {
 

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/opening/history_seal.hpp"
+#include "server/store/values/history_seal.hpp"
 
 #include <algorithm>
 #include <array>
