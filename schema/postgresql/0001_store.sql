@@ -257,8 +257,8 @@ CREATE TABLE server (
   name         text NOT NULL
 );
 
--- Which server fits a distribution. The fence grows with each lease: what a server that lost its
--- lease writes under an older one is not taken.
+-- Which server fits a distribution; no bytes: none. The fence grows with each lease: what a server
+-- that lost its lease writes under an older one is not taken.
 CREATE TABLE fit_lease (
   digest  bytea PRIMARY KEY CHECK (length(digest) = 32),
   fence   bigint NOT NULL CHECK (fence >= 1),

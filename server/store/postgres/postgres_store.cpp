@@ -12,11 +12,13 @@
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
+#include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
 #include "server/store/postgres/rows/audit_rows.hpp"
 #include "server/store/postgres/rows/distribution_rows.hpp"
 #include "server/store/postgres/rows/experience_rows.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
+#include "server/store/postgres/rows/fit_lease_rows.hpp"
 #include "server/store/postgres/rows/listings.hpp"
 #include "server/store/postgres/rows/path_rows.hpp"
 #include "server/store/postgres/rows/retirement.hpp"
@@ -235,8 +237,22 @@ class PostgresStore : public Store {
         [&](Connection& connection) { return totals_of(connection, robot, task); });
   }
 
-  std::uint64_t put_distribution(const Distribution& distribution) override {
+  std::optional<StoreChanges> changes_since(std::string_view cursor) const override {
+    return presence_.changes_since(cursor);
+  }
+  std::optional<FitRight> take_fit_right(const Digest& id) override {
+    return presence_.take_fit_right(id);
+  }
+  void give_back_fit_right(const Digest& id, const FitRight& right) noexcept override {
+    presence_.give_back_fit_right(id, right);
+  }
+
+  std::uint64_t put_distribution(const Distribution& distribution,
+                                 const FitRight& right) override {
     return write([&](Connection& connection) {
+      if (right.fence > 0 && !has_fit_right(connection, distribution.id, right))
+        throw Failure(ErrorCode::Unavailable,
+                      "distribution " + distribution.id.short_hex() + ": another server fits it");
       return upsert_distribution(connection, distribution, options_.max_distribution_bytes);
     });
   }
@@ -426,6 +442,7 @@ class PostgresStore : public Store {
   Primary primary_;
   History history_;
   mutable ConnectionPool readers_, writers_;
+  mutable Presence presence_{readers_};
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
   mutable std::mutex mutex_;
   mutable StoreStatus counts_;            // guarded by mutex_

@@ -17,7 +17,8 @@ Rows write_lightly(Connection& connection, const Request& request) {
 
 void note_alive(Connection& connection, const Uuid& server) {
   write_lightly(connection,
-                {"INSERT INTO server (run, alive_until) VALUES ($1, now() + interval '6 s')"
+                {"INSERT INTO server (run, alive_until, name)"
+                 " VALUES ($1, now() + interval '6 s', coalesce(inet_client_addr()::text, 'local'))"
                  " ON CONFLICT (run) DO UPDATE SET alive_until = excluded.alive_until",
                  Parameters(Bytes(server.bytes))});
   write_lightly(connection, {"DELETE FROM server WHERE alive_until < now() - interval '1 day'"});
