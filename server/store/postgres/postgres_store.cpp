@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "proto/types/names.hpp"
+#include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
@@ -347,11 +348,14 @@ class PostgresStore : public Store {
   }
 
   Result<bool> backup(const std::filesystem::path& file,
-                      const std::function<bool(double)>& /*progress*/) const override {
-    return Error{ErrorCode::Unavailable,
-                 "backup '" + file.string() +
-                     "': the store is a PostgreSQL database; pg_dump, or what its administrators "
-                     "use (pg_basebackup, pgBackRest), copies it while servers go on"};
+                      const std::function<bool(double)>& progress) const override {
+    if (is_backing_up_.exchange(true))
+      return Error{ErrorCode::Unavailable,
+                   "backup '" + file.string() + "': another backup is on its way"};
+    const std::unique_ptr<std::atomic<bool>, void (*)(std::atomic<bool>*)> end(
+        &is_backing_up_, [](std::atomic<bool>* on_its_way) { on_its_way->store(false); });
+    // On a connection of its own: it reads for as long as it takes.
+    return copy_to_sqlite(*primary_.connect(), file, progress);
   }
 
  private:
@@ -439,10 +443,11 @@ class PostgresStore : public Store {
 
   const PostgresOptions options_;
   Interrupt interrupt_;
-  Primary primary_;
+  mutable Primary primary_;
   History history_;
   mutable ConnectionPool readers_, writers_;
   mutable Presence presence_{readers_};
+  mutable std::atomic<bool> is_backing_up_ = false;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
   mutable std::mutex mutex_;
   mutable StoreStatus counts_;            // guarded by mutex_

@@ -34,10 +34,12 @@ struct PathColumn {
 
 /// All that schema 1 of SQLite has.
 inline constexpr std::string_view kPathContentColumns =
-    "id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
+    "path.id, path.report_uuid, path.T_task_base, path.dof, path.waypoint_count, path.encoding, "
+    "path.crc32c, path.waypoints ";
 inline constexpr std::string_view kPathColumns =
-    "id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
-    " received_ms, scene_id ";
+    "path.id, path.report_uuid, path.T_task_base, path.dof, path.waypoint_count, path.encoding, "
+    "path.crc32c, path.waypoints,"
+    " path.received_ms, path.scene_id ";
 
 /// \param row  of kPathContentColumns, or of kPathColumns.
 template <Columns Row>

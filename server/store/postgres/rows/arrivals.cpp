@@ -18,10 +18,14 @@ constexpr std::string_view kArrivedColumns =
     " 8 * path.dof * path.waypoint_count, attempt.scene_id, ";
 constexpr int kFirstOfRecord = 14;
 
+/// OFFSET 0 keeps PostgreSQL from reading all of a table for the rows of a page, whose number it
+/// does not know.
 constexpr std::string_view kArrivedTables =
     "JOIN robot ON robot.id = attempt.robot_id JOIN task ON task.id = attempt.task_id "
-    "LEFT JOIN path AS named ON named.id = attempt.path_id "
-    "LEFT JOIN path ON path.id = coalesce(named.replaced_by, named.id) ";
+    "LEFT JOIN LATERAL (SELECT id, replaced_by FROM path AS found"
+    " WHERE found.id = attempt.path_id OFFSET 0) AS named ON TRUE "
+    "LEFT JOIN LATERAL (SELECT id, retired_ms, damaged_ms, dof, waypoint_count FROM path AS found"
+    " WHERE found.id = coalesce(named.replaced_by, named.id) OFFSET 0) AS path ON TRUE ";
 
 ArrivedAttempt read_arrived(const Row& row) {
   ArrivedAttempt arrived;
@@ -78,11 +82,12 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
                                            const Arrival& after, std::int64_t count) {
   Parameters parameters(after.transaction, after.id, count);
   const std::string page = next_arrivals(filter, parameters);
-  const Rows rows =
-      connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" +
-                           page + ") AS page JOIN attempt ON attempt.id = page.id " +
-                           std::string(kArrivedTables) + "ORDER BY attempt.arrived_in, attempt.id",
-                       parameters);
+  const Rows rows = connection.query(
+      std::string(kArrivedColumns) + std::string(kRecordColumns) + "FROM (" + page +
+          ") AS page CROSS JOIN LATERAL (SELECT * FROM attempt AS found WHERE found.id = page.id"
+          " OFFSET 0) AS attempt " +
+          std::string(kArrivedTables) + "ORDER BY attempt.arrived_in, attempt.id",
+      parameters);
   std::vector<ArrivedAttempt> arrived;
   for (const Row row : rows)
     arrived.push_back(read_arrived(row));
@@ -90,10 +95,10 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
 }
 
 std::optional<ArrivedAttempt> select_arrived(Connection& connection, const Uuid& report_uuid) {
-  const Rows rows =
-      connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) +
-                           "FROM attempt " + std::string(kArrivedTables) + "WHERE attempt.report_uuid = $1",
-                       Bytes(report_uuid.bytes));
+  const Rows rows = connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) +
+                                         "FROM attempt " + std::string(kArrivedTables) +
+                                         "WHERE attempt.report_uuid = $1",
+                                     Bytes(report_uuid.bytes));
   if (rows.empty())
     return std::nullopt;
   return read_arrived(rows.front());

@@ -80,11 +80,11 @@ void make_room_beside(Connection& connection, std::int64_t row, std::uint64_t ma
     return;
   // Not many at once: after the limit was lowered others go on.
   const Rows gone = connection.query(
-      "DELETE FROM distribution WHERE id IN (SELECT id FROM "
+      "DELETE FROM distribution WHERE id = ANY (ARRAY (SELECT id FROM "
       "(SELECT id, coalesce(sum(bytes) OVER (ORDER BY used_ms, id ROWS BETWEEN UNBOUNDED PRECEDING"
       " AND 1 PRECEDING), 0) AS bytes_before FROM "
       "(SELECT id, used_ms, bytes FROM distribution_use WHERE id <> $1 ORDER BY used_ms, id"
-      " LIMIT 64) AS oldest) AS summed WHERE bytes_before < $2) RETURNING revision",
+      " LIMIT 64) AS oldest) AS summed WHERE bytes_before < $2)) RETURNING revision",
       row, static_cast<std::int64_t>(bytes - max_bytes));
   std::int64_t newest = 0;
   for (const Row revision : gone)
@@ -143,6 +143,7 @@ bool delete_distribution(Connection& connection, const Digest& id) {
   connection.query(
       "INSERT INTO evicted_distribution (digest, revision, evicted_ms) VALUES ($1, $2, $3) "
       "ON CONFLICT (digest) DO UPDATE SET evicted_ms = excluded.evicted_ms,"
+      " evicted_in = excluded.evicted_in,"
       " revision = greatest(evicted_distribution.revision, excluded.revision)",
       Bytes(id.bytes), gone.front().column_integer(0), now_ms());
   return true;

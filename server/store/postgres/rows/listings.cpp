@@ -111,10 +111,12 @@ Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter
   return page_of<PathSummary>(
       connection.query("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
                            ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
-                           ") AS page JOIN path ON path.id = page.id "
+                           ") AS page CROSS JOIN LATERAL (SELECT * FROM path AS found"
+                           " WHERE found.id = page.id OFFSET 0) AS path "
                            "JOIN robot ON robot.id = path.robot_id "
                            "JOIN task ON task.id = path.task_id "
-                           "JOIN attempt ON attempt.report_uuid = path.report_uuid "
+                           "CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
+                           " WHERE found.report_uuid = path.report_uuid OFFSET 0) AS attempt "
                            "ORDER BY path.id DESC",
                        parameters),
       rows, read_path_summary<Row>,

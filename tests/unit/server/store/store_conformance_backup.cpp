@@ -141,9 +141,12 @@ TEST_P(StoreBackup, ReportsGoOnDuringABackupThatIsOfOneInstant) {
   }));
   EXPECT_GT(acknowledged_at_end, 2U);  // it was in steps
   const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path(), {});
-  EXPECT_EQ(copy->status().paths, kManyPaths + acknowledged_at_end);
+  const std::uint64_t paths = copy->status().paths;
+  EXPECT_GE(paths, kManyPaths);
+  EXPECT_LE(paths, kManyPaths + acknowledged_at_end);
+  EXPECT_EQ(paths % 2, 0U) << "half of a batch";
   EXPECT_EQ(copy->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 10'000}).size(),
-            kManyPaths + acknowledged_at_end);
+            paths);
   EXPECT_EQ(store_->status().paths, kManyPaths + number - kFirst);
 }
 

@@ -4,6 +4,7 @@
 
 #include <future>
 
+#include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/postgres_programs.hpp"
 #include "tests/unit/server/store/postgres/fresh_database.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
@@ -21,6 +22,8 @@ std::vector<Engine> postgres_engines() {
   if (!test::missing_postgres().empty())
     return {};
   return {{"Postgres", [](const std::filesystem::path& directory, const EngineLimits& limits) {
+             if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
+               return open_sqlite_store(copy);  // a backup is one
              return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
                                      .max_paths_per_pair = limits.paths_per_pair});
            }}};
