@@ -1,7 +1,6 @@
 #include "server/store/sqlite/rows/export_rows.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <utility>
 
@@ -9,21 +8,13 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/pages.hpp"
 
 namespace kinship::store {
 namespace {
-
-std::int64_t parse_cursor(std::string_view cursor) {
-  std::int64_t id = 0;
-  const auto [end, error] = std::from_chars(cursor.data(), cursor.data() + cursor.size(), id);
-  if (!cursor.empty() && (error != std::errc() || end != cursor.data() + cursor.size() || id < 0))
-    throw Failure(ErrorCode::InvalidInput,
-                  "cursor '" + std::string(cursor) + "' is not one of this listing");
-  return id;
-}
 
 constexpr std::string_view kNotAsideAttempt =
     "AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id) ";
@@ -151,7 +142,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   constexpr std::int64_t kCandidates = 64;
   const std::size_t rows = std::max<std::size_t>(limit, 1);
   ExportRead read;
-  std::int64_t last_id = parse_cursor(cursor);
+  std::int64_t last_id = parse_rising_cursor(cursor);
   std::size_t bytes = 0;
   while (true) {
     const std::vector<std::int64_t> candidates =
@@ -179,7 +170,7 @@ Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Di
   const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
   RobotNames names(database);
   Page<AttemptSummary> page;
-  std::int64_t last_id = parse_cursor(cursor);
+  std::int64_t last_id = parse_rising_cursor(cursor);
   while (true) {
     const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
     const std::vector<std::int64_t> ids = next_ids(database, robot, task, last_id, more);

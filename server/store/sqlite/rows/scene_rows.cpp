@@ -1,44 +1,18 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/scene_columns.hpp"
 
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kSceneColumns =
-    "SELECT id, content_sha256, size, encoding, crc32c, scene FROM scene ";
-
-/// The content's digest is under the checksum: a scene that stands under another's digest would be
-/// taken for it.
-std::uint32_t crc_of(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene) {
-  ByteWriter header;
-  header.add(content);
-  for (const std::int64_t number : {size, encoding})
-    header.add(static_cast<std::uint64_t>(number));
-  return crc32c(scene, crc32c(header.bytes()));
-}
-
-/// \param row  of kSceneColumns.
-bool has_right_crc_of_scene(const Statement& row) {
-  return crc_of(row.column_blob(1), row.column_integer(2), row.column_integer(3),
-                row.column_blob(5)) == row.column_integer(4);
-}
-
-/// \param row  of kSceneColumns.
-std::optional<RecordedScene> read_scene(const Statement& row) {
-  if (!has_right_crc_of_scene(row))
-    return std::nullopt;
-  return decode_scene(row.column_integer(2), row.column_integer(3), row.column_blob(5));
-}
-
 bool can_read_scene(Database& database, std::int64_t id) {
   try {
-    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
-    return query->bind(1, id).step() && has_right_crc_of_scene(*query);
+    const auto query =
+        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
+    return query->bind(1, id).step() && has_right_scene_crc(*query);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
@@ -100,7 +74,7 @@ std::int64_t ensure_scene(Database& database, const PreparedScene& scene,
   }
   const auto encoding = static_cast<std::int64_t>(scene.blob.encoding);
   const Bytes bytes(scene.blob.bytes);
-  const std::int64_t crc = crc_of(content, scene.blob.size, encoding, bytes);
+  const std::int64_t crc = scene_crc(content, scene.blob.size, encoding, bytes);
   database
       .cached(
           "INSERT INTO scene (content_sha256, received_ms, size, encoding, crc32c, scene) "
@@ -119,9 +93,10 @@ SceneRead select_scene(Database& database, std::int64_t id) {
   if (!row)
     return read;
   try {
-    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
+    const auto query =
+        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
     if (query->bind(1, *row).step()) {
-      read.scene = read_scene(*query);
+      read.scene = read_scene_columns(*query);
       read.damaged = !read.scene;
     }
   } catch (const SqliteError& error) {

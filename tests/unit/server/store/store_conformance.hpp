@@ -59,6 +59,9 @@ class StoreConformance : public testing::TestWithParam<Engine> {
   RobotRecord iiwa_;
 };
 
+/// The same for an engine that can copy its store into a file.
+class StoreBackup : public StoreConformance {};
+
 /// The same for a store with a cap of paths: what it keeps, and what it says of the others.
 class StoreRetention : public StoreConformance {
  public:
@@ -95,5 +98,7 @@ class StoreRetention : public StoreConformance {
 
   std::uint64_t number_ = kReports + 1;  ///< of the next report
 };
+
+class StoreRetentionBackup : public StoreRetention {};
 
 }  // namespace kinship::store
