@@ -92,7 +92,7 @@ std::vector<ArrivedAttempt> select_arrived(Connection& connection, const PairFil
 std::optional<ArrivedAttempt> select_arrived(Connection& connection, const Uuid& report_uuid) {
   const Rows rows =
       connection.query(std::string(kArrivedColumns) + std::string(kRecordColumns) +
-                           "FROM attempt " + std::string(kArrivedTables) + "WHERE report_uuid = $1",
+                           "FROM attempt " + std::string(kArrivedTables) + "WHERE attempt.report_uuid = $1",
                        Bytes(report_uuid.bytes));
   if (rows.empty())
     return std::nullopt;

@@ -87,8 +87,9 @@ std::string paths_of_contents() {
   return "SELECT " + std::string(kPathContentColumns) +
          ", (SELECT digest FROM robot WHERE robot.id = path.robot_id), wanted.task, content_sha256"
          " FROM unnest($1, $2, $3) AS wanted (task, wanted_robot, content)"
-         " JOIN task ON task.name = wanted.task JOIN path ON path.robot_id = wanted_robot"
-         " AND path.task_id = task.id AND path.content_sha256 = wanted.content"
+         " JOIN (SELECT id AS wanted_task, name FROM task) AS named ON named.name = wanted.task"
+         " JOIN path ON path.robot_id = wanted_robot AND path.task_id = wanted_task"
+         " AND path.content_sha256 = wanted.content"
          " WHERE retired_ms IS NULL AND damaged_ms IS NULL";
 }
 

@@ -86,24 +86,23 @@ constexpr std::string_view kNoteResent =
     "UPDATE attempt SET resent = resent + 1 WHERE report_uuid = ANY($1)";
 
 constexpr std::string_view kChangePairs =
-    "UPDATE experience SET changed_in = pg_current_xact_id(), generation = generation + "
-    "new.changed, paths = paths + new_paths,"
-    " attempts = attempts + new_attempts, dropped = dropped + new_dropped,"
-    " guided_attempts = guided_attempts + new.guided,"
-    " guided_solved = guided_solved + new.guided_solved,"
-    " guided_checks = guided_checks + new.guided_checks,"
-    " guided_checks_squared = guided_checks_squared + new.guided_squared,"
-    " guided_checks_of_solved = guided_checks_of_solved + new.guided_of_solved,"
-    " control_attempts = control_attempts + new.control,"
-    " control_solved = control_solved + new.control_solved,"
-    " control_checks = control_checks + new.control_checks,"
-    " control_checks_squared = control_checks_squared + new.control_squared,"
-    " control_checks_of_solved = control_checks_of_solved + new.control_of_solved"
+    "UPDATE experience AS old SET changed_in = pg_current_xact_id(),"
+    " generation = old.generation + new.changed, paths = old.paths + new.paths,"
+    " attempts = old.attempts + new.attempts, dropped = old.dropped + new.dropped,"
+    " guided_attempts = old.guided_attempts + new.guided,"
+    " guided_solved = old.guided_solved + new.guided_solved,"
+    " guided_checks = old.guided_checks + new.guided_checks,"
+    " guided_checks_squared = old.guided_checks_squared + new.guided_squared,"
+    " guided_checks_of_solved = old.guided_checks_of_solved + new.guided_of_solved,"
+    " control_attempts = old.control_attempts + new.control,"
+    " control_solved = old.control_solved + new.control_solved,"
+    " control_checks = old.control_checks + new.control_checks,"
+    " control_checks_squared = old.control_checks_squared + new.control_squared,"
+    " control_checks_of_solved = old.control_checks_of_solved + new.control_of_solved"
     " FROM unnest($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16) AS new ("
-    "task_id, robot_id, changed, new_paths, new_attempts, new_dropped, guided, guided_solved,"
-    " guided_checks, guided_squared, guided_of_solved, control, control_solved, control_checks,"
-    " control_squared, control_of_solved)"
-    " WHERE experience.task_id = new.task_id AND experience.robot_id = new.robot_id";
+    "task_id, robot_id, changed, paths, attempts, dropped, guided, guided_solved, guided_checks,"
+    " guided_squared, guided_of_solved, control, control_solved, control_checks, control_squared,"
+    " control_of_solved) WHERE old.task_id = new.task_id AND old.robot_id = new.robot_id";
 
 /// Poses as blobs, which stay where they are while columns point to them.
 class PoseBlobs {

@@ -61,7 +61,7 @@ class PostgresStoreTest : public testing::Test {
 };
 
 TEST_F(PostgresStoreTest, TwoServersOnTheSameHotKeysLoseNothingAndCountEveryChange) {
-  constexpr std::uint64_t kReports = 100;
+  constexpr std::uint64_t kReports = 60;
   const std::unique_ptr<Store> other = another();
   // Both write the same four tasks, in opposite orders, and half of the contents are the same.
   const auto write = [&](Store& store, std::uint64_t first, bool backwards) {
@@ -102,7 +102,7 @@ TEST_F(PostgresStoreTest, TwoServersOnTheSameHotKeysLoseNothingAndCountEveryChan
 }
 
 TEST_F(PostgresStoreTest, OneReportThatTwoServersGetIsStoredOnce) {
-  constexpr std::uint64_t kReports = 200;
+  constexpr std::uint64_t kReports = 100;
   const std::unique_ptr<Store> other = another();
   const auto write = [&](Store& store) {
     std::uint64_t stored = 0;
