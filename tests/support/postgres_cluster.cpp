@@ -2,6 +2,7 @@
 
 #include <sys/ipc.h>
 #include <sys/shm.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -33,6 +34,29 @@ hot_standby = on
 jit = off
 )";
 
+/// initdb, which takes longer than all that most tests do: so its outcome is kept beside the tests'
+/// programs, and copied. All clusters have one system identifier then.
+void make_cluster(const std::filesystem::path& data, const std::filesystem::path& log) {
+  const std::filesystem::path pattern = KINSHIP_BIN_DIR "/../tests/postgresql-15-cluster";
+  const auto copy = [&](const std::filesystem::path& from, const std::filesystem::path& to) {
+    run_to_end({"/bin/cp", "--archive", "--reflink=auto", from, to}, log);
+  };
+  if (std::filesystem::exists(pattern)) {
+    copy(pattern, data);
+    return;
+  }
+  run_to_end(as_postgres({postgres_program("initdb"), "--pgdata", data, "--username=kinship",
+                          "--auth=trust", "--encoding=UTF8", "--locale=C", "--wal-segsize=1",
+                          "--no-sync", "--no-instructions"}),
+             log);
+  const std::filesystem::path copied = pattern.string() + "-" + std::to_string(getpid());
+  copy(data, copied);
+  std::error_code another_was_first;
+  std::filesystem::rename(copied, pattern, another_was_first);
+  if (another_was_first)
+    std::filesystem::remove_all(copied);
+}
+
 std::string quoted(const std::string& value, char quote) {
   std::string text(1, quote);
   for (const char c : value)
@@ -53,10 +77,7 @@ void append_lines(const std::filesystem::path& file, const std::vector<std::stri
 PostgresCluster::PostgresCluster(const Options& options)
     : name_(options.name), folder_(options.root) {
   give_to_postgres(folder_.path());
-  run_to_end(as_postgres({postgres_program("initdb"), "--pgdata", data(), "--username=kinship",
-                          "--auth=trust", "--encoding=UTF8", "--locale=C", "--wal-segsize=1",
-                          "--no-sync", "--no-instructions"}),
-             log());
+  make_cluster(data(), log());
   append_lines(data() / "postgresql.conf", {kSettings});
   append_lines(data() / "postgresql.conf", options.settings);
   start();
