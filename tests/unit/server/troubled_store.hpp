@@ -31,6 +31,33 @@ class TroubledStore final : public store::Store {
     store_.commit_reports(std::move(attempts), std::move(done));
   }
 
+  store::Feed<store::ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                                  std::size_t limit) const override {
+    return store_.list_arrivals(task, cursor, limit);
+  }
+  store::Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
+    return store_.list_retirements(cursor, limit);
+  }
+  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+    return store_.known_reports(reports);
+  }
+  store::SharedReports read_reports(std::span<const Uuid> reports,
+                                    std::size_t max_bytes) const override {
+    return store_.read_reports(reports, max_bytes);
+  }
+  void commit_shared(std::vector<store::SharedReport> reports, ReportsDone done) override {
+    store_.commit_shared(std::move(reports), std::move(done));
+  }
+  std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    return store_.retire_reports(reports);
+  }
+  std::map<std::string, std::string> notes(std::string_view prefix) const override {
+    return store_.notes(prefix);
+  }
+  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    store_.put_notes(notes);
+  }
+
   Uuid epoch() const override { return store_.epoch(); }
   store::StorePoint point() const override { return store_.point(); }
   bool has_lost(const HistoryMark& mark) const override { return store_.has_lost(mark); }
