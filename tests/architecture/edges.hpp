@@ -29,6 +29,7 @@ inline const std::map<std::string, std::set<std::string>> kExternalLibraries = {
     {"OctoMap", {"octomap/"}},
     {"OMPL", {"ompl/"}},
     {"SQLite", {"sqlite3.h"}},
+    {"libpq", {"libpq-fe.h"}},
     {"zstd", {"zstd.h", "zstd_errors.h"}},
     {"CLI11", {"CLI/"}},
     {"spdlog", {"spdlog/"}},
@@ -98,7 +99,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {planning, {{inverse, collision, geometry, kinematics, mixture, types}, {"Eigen"}}},
       {access, {{types}, {}}},
       {metrics, {{}, {}}},
-      {store, {{types}, {"Eigen", "SQLite", "zstd"}}},
+      {store, {{types}, {"Eigen", "SQLite", "libpq", "zstd"}}},
       {transfer, {{inverse, collision, geometry, kinematics, types}, {"Eigen"}}},
       {density, {{mixture, types}, {"Eigen"}}},
       {runtime, {{store, inverse, geometry, kinematics, types}, {"Eigen"}}},
@@ -147,5 +148,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
 /// Rooms of server/store/sqlite: each may include what stands before it, and the folder itself all.
 inline const std::vector<std::string> kStoreRooms = {"files", "database", "rows", "opening",
                                                      "upkeep"};
+
+/// What of server/store a file in server/store/values may include: it knows no engine.
+inline const std::set<std::string> kStoreForValues = {"server/store/store.hpp",
+                                                      "server/store/values/"};
 
 }  // namespace kinship::architecture

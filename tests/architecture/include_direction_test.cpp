@@ -113,6 +113,16 @@ TEST(Architecture, RoomsOfTheStoreLeanOnThoseBeforeThem) {
   }
 }
 
+TEST(Architecture, ValuesOfTheStoreKnowNoEngine) {
+  for (const Include& include : all_includes())
+    if (include.file.starts_with("server/store/values/") &&
+        include.target.starts_with("server/store/"))
+      EXPECT_TRUE(std::ranges::any_of(
+          kStoreForValues,
+          [&](const std::string& allowed) { return include.target.starts_with(allowed); }))
+          << include.file << " includes " << include.target;
+}
+
 TEST(Architecture, FilesStayReadable) {
   constexpr std::ptrdiff_t kMaxLines = 500;
   std::vector<std::string> roofs = kRoofs;

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <span>
 
-#include "server/store/sqlite/rows/distribution_blob.hpp"
-#include "server/store/sqlite/rows/scene_blob.hpp"
-#include "server/store/sqlite/rows/waypoint_blob.hpp"
+#include "server/store/values/distribution_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
 #include "tests/fuzz/demand.hpp"
 
 namespace kinship::fuzz {

@@ -6,10 +6,10 @@
 
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
-#include "server/store/sqlite/rows/compression.hpp"
-#include "server/store/sqlite/rows/distribution_blob.hpp"
-#include "server/store/sqlite/rows/scene_blob.hpp"
-#include "server/store/sqlite/rows/waypoint_blob.hpp"
+#include "server/store/values/compression.hpp"
+#include "server/store/values/distribution_blob.hpp"
+#include "server/store/values/scene_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
 #include "tests/golden/every_value.hpp"
 #include "tests/golden/pins.hpp"
 

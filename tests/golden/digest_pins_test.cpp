@@ -4,7 +4,7 @@
 
 #include "proto/types/profile_text.hpp"
 #include "server/fitting/distribution_key.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 #include "tests/golden/every_value.hpp"
 #include "tests/golden/pins.hpp"
 #include "tests/support/robots.hpp"

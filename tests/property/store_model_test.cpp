@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 

@@ -9,8 +9,8 @@
 #include "server/store/sqlite/damaged_reports.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/opening/history.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
 

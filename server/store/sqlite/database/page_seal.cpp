@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "server/store/crc32c.hpp"
+#include "server/store/values/crc32c.hpp"
 
 namespace kinship::store {
 namespace {

@@ -3,16 +3,15 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+
+#include "server/store/values/bytes.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace kinship::store {
-
-using Bytes = std::span<const std::uint8_t>;
 
 /// A prepared statement: the owner of one sqlite3_stmt. Move-only; used by one thread at a time.
 ///

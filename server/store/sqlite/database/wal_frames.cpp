@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "server/store/crc32c.hpp"
+#include "server/store/values/crc32c.hpp"
 
 // https://sqlite.org/walformat.html: a header of 32 bytes, then frames: 24 bytes and a page.
 namespace kinship::store {

@@ -1,7 +1,6 @@
 #include "server/store/sqlite/opening/connection.hpp"
 
 #include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/wal_file.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -10,6 +9,7 @@
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
-#include "server/store/sqlite/opening/history_seal.hpp"
 #include "server/store/sqlite/opening/run_log.hpp"
 #include "server/store/sqlite/opening/witness_file.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/history_seal.hpp"
 
 namespace kinship::store {
 

@@ -6,12 +6,12 @@
 
 #include "proto/types/sha256.hpp"
 #include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {

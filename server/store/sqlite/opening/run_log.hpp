@@ -7,22 +7,15 @@
 #include <vector>
 
 #include "proto/types/uuid.hpp"
+#include "server/store/values/history_point.hpp"
 
 namespace kinship::store {
 
-/// A point of a store's history: the run that wrote it, and the position, which is the largest id
-/// of an attempt by then.
-struct HistoryPoint {
-  Uuid run;
-  std::uint64_t position = 0;
-
-  bool operator==(const HistoryPoint&) const = default;
-};
-
-/// The runs of a store, oldest first: each wrote what lies between its start and the start of the
-/// next one. Once a file is rolled back and written anew, points of the lost runs, and those of the
-/// run that was cut off which lie behind the cut, are not on it any more, whatever its position is
-/// by now. (Like the timelines of PostgreSQL.)
+/// The runs of a store (positions: the largest id of an attempt by then), oldest first: each wrote
+/// what lies between its start and the start of the next one. Once a file is rolled back and
+/// written anew, points of the lost runs, and those of the run that was cut off which lie behind
+/// the cut, are not on it any more, whatever its position is by now. (Like the timelines of
+/// PostgreSQL.)
 class RunLog {
  public:
   explicit RunLog(const Uuid& epoch) : epoch_(epoch) {}

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "server/store/crc32c.hpp"
+#include "server/store/values/crc32c.hpp"
 
 namespace kinship::store {
 namespace {

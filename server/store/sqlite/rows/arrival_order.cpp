@@ -1,10 +1,8 @@
 #include "server/store/sqlite/rows/arrival_order.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 
-#include "proto/types/failure.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 
@@ -56,15 +54,6 @@ std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
 }
 
 }  // namespace
-
-std::int64_t id_of_cursor(std::string_view cursor) {
-  std::int64_t id = 0;
-  const auto [end, error] = std::from_chars(cursor.data(), cursor.data() + cursor.size(), id);
-  if (!cursor.empty() && (error != std::errc() || end != cursor.data() + cursor.size() || id < 0))
-    throw Failure(ErrorCode::InvalidInput,
-                  "cursor '" + std::string(cursor) + "' is not one of this listing");
-  return id;
-}
 
 std::vector<std::int64_t> next_attempts(Database& database, const std::optional<Digest>& robot,
                                         std::string_view task, std::int64_t after_id,

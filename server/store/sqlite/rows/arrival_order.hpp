@@ -17,9 +17,6 @@ struct DamagedRows {
   std::vector<std::int64_t> paths, scenes, attempts;
 };
 
-/// The id in a cursor; 0 for an empty one. \throws Failure(InvalidInput) if it is none.
-std::int64_t id_of_cursor(std::string_view cursor);
-
 /// The next attempts by id, those that are not set aside: of a robot, a task, both, or all of them.
 std::vector<std::int64_t> next_attempts(Database& database, const std::optional<Digest>& robot,
                                         std::string_view task, std::int64_t after_id,

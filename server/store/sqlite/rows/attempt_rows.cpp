@@ -2,25 +2,24 @@
 
 #include <string>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retention.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/receipt_texts.hpp"
+#include "server/store/values/robot_columns.hpp"
+#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {
 
 enum class AttemptStatus : std::uint8_t { Stored = 1, DuplicateContent = 2, Unsolved = 3 };
-
-Receipt refused(const Uuid& report_uuid, const std::string& why) {
-  return {report_uuid, ReceiptStatus::Refused, "attempt " + report_uuid.text() + ": " + why};
-}
 
 /// What is known of a report that came before under the same UUID.
 struct EarlierAttempt {
@@ -49,14 +48,10 @@ std::optional<EarlierAttempt> read_earlier(Database& database, ReportRows& rows)
     query->bind(1, *rows.row).step();
     EarlierAttempt earlier{.id = *rows.row,
                            .body = id_of<Digest>(query->column_blob(0)),
-                           .path_id = {},
-                           .scene_id = {},
+                           .path_id = optional_integer_of(*query, 1),
+                           .scene_id = optional_integer_of(*query, 2),
                            .received_ms = query->column_integer(3),
                            .machine = std::string(query->column_text(4))};
-    if (!query->column_is_null(1))
-      earlier.path_id = query->column_integer(1);
-    if (!query->column_is_null(2))
-      earlier.scene_id = query->column_integer(2);
     return earlier;
   } catch (const SqliteError& error) {
     if (!error.is_damage())
@@ -285,23 +280,6 @@ ReportRows find_report(Database& database, const Uuid& report_uuid) {
   return rows;
 }
 
-PlanningRecord read_record(const Statement& row, int first_column) {
-  int column = first_column;
-  PlanningRecord record;
-  record.outcome = outcome_of(row.column_integer(column++));
-  record.planner = row.column_text(column++);
-  record.planner_options = row.column_text(column++);
-  record.planning_time_s = row.column_real(column++);
-  record.collision_checks = count_of(row, column++);
-  record.projections = count_of(row, column++);
-  record.time_limit_s = row.column_real(column++);
-  record.sampling_mode = mode_of(row.column_integer(column++));
-  record.share = row.column_real(column++);
-  record.distribution_id = optional_id_of<Digest>(row, column++);
-  record.distribution_revision = count_of(row, column);
-  return record;
-}
-
 AttemptRow select_attempt(Database& database, std::int64_t id) {
   constexpr int kFirstOfRecord = 8;
   AttemptRow row;
@@ -316,10 +294,8 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
   row.task_id = query->column_integer(2);
   row.attempt.machine = query->column_text(3);
   row.attempt.T_task_base = pose_from_blob(query->column_blob(4));
-  if (!query->column_is_null(5))
-    row.path_id = query->column_integer(5);
-  if (!query->column_is_null(6))
-    row.scene_id = query->column_integer(6);
+  row.path_id = optional_integer_of(*query, 5);
+  row.scene_id = optional_integer_of(*query, 6);
   row.received_ms = query->column_integer(7);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;

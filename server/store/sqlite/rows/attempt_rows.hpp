@@ -6,8 +6,8 @@
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
 
@@ -44,12 +44,5 @@ AttemptRow select_attempt(Database& database, std::int64_t id);
 /// With the names. Nothing if there is none, or it lies on a damaged page.
 std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id);
 void name_robot_and_task(Database& database, AttemptRow& row);
-
-/// The columns of a planning record in the order in which read_record() takes them.
-inline constexpr std::string_view kRecordColumns =
-    "attempt.outcome, attempt.planner, attempt.planner_options, attempt.planning_time_s,"
-    " attempt.collision_checks, attempt.projections, attempt.time_limit_s, attempt.arm,"
-    " attempt.share, attempt.distribution_digest, attempt.distribution_revision ";
-PlanningRecord read_record(const Statement& row, int first_column);
 
 }  // namespace kinship::store

@@ -6,12 +6,12 @@
 #include <string>
 #include <utility>
 
-#include "proto/types/names.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/audit_texts.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {
@@ -28,10 +28,6 @@ void note(Database& database, const AuditEntry* audit, AuditOutcome outcome, std
   insert_audit(database, entry);
 }
 
-std::string in_number(std::int64_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::int64_t count_paths_of(Database& database, std::string_view task) {
   const auto query = database.cached(
       "SELECT coalesce(sum(paths), 0) FROM experience JOIN task ON task.id = experience.task_id "
@@ -40,8 +36,8 @@ std::int64_t count_paths_of(Database& database, std::string_view task) {
   return query->column_integer(0);
 }
 
-std::string describe_paths(Database& database, std::string_view task) {
-  return "task '" + std::string(task) + "': " + in_number(count_paths_of(database, task), "path");
+std::string paths_of(Database& database, std::string_view task) {
+  return describe_paths(task, count_paths_of(database, task));
 }
 
 std::string name_of_task(Database& database, std::int64_t task_id) {
@@ -50,46 +46,30 @@ std::string name_of_task(Database& database, std::int64_t task_id) {
 }
 
 /// A robot as it is before it is removed.
-std::string describe_robot(Database& database, const Digest& robot) {
+std::string robot_of(Database& database, const Digest& robot) {
   const auto query = database.cached(
       "SELECT label, (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
       " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id) "
       "FROM robot WHERE digest = ?");
   if (!query->bind(1, Bytes(robot.bytes)).step())
     return {};
-  return "'" + std::string(query->column_text(0)) + "' (" + robot.short_hex() +
-         "): " + in_number(query->column_integer(1), "path") + ", " +
-         in_number(query->column_integer(2), "attempt");
-}
-
-std::string describe_removal(const RobotRemoval& removal) {
-  const std::string rest =
-      in_number(static_cast<std::int64_t>(removal.distributions), "distribution") + " gone";
-  if (removal.is_deleted)
-    return "deleted, " + rest;
-  return "removed, " + in_number(static_cast<std::int64_t>(removal.paths), "path") + " retired, " +
-         rest;
+  return describe_robot(query->column_text(0), robot, query->column_integer(1),
+                        query->column_integer(2));
 }
 
 }  // namespace
 
 void insert_audit(Database& database, const AuditEntry& entry) {
-  const auto text = [](const std::string& value, std::size_t limit) {
-    return cut_text(value, limit);
-  };
+  const AuditEntry written = cut_to_fit(entry);
   database
       .cached(
           "INSERT INTO audit (time_ms, name, role, client, is_local, verb, target, outcome, was,"
           " became, message) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-      ->bind_all(now_ms(), std::string_view(text(entry.name, kMaxWordBytes)),
-                 std::string_view(text(entry.role, kMaxWordBytes)),
-                 std::string_view(text(entry.client, kMaxMachineBytes)),
-                 std::int64_t{entry.is_local}, std::string_view(text(entry.verb, kMaxWordBytes)),
-                 std::string_view(text(entry.target, kMaxFileNameBytes)),
-                 static_cast<std::int64_t>(entry.outcome) + 1,
-                 std::string_view(text(entry.before, kMaxMessageBytes)),
-                 std::string_view(text(entry.after, kMaxMessageBytes)),
-                 std::string_view(text(entry.message, kMaxMessageBytes)))
+      ->bind_all(now_ms(), std::string_view(written.name), std::string_view(written.role),
+                 std::string_view(written.client), std::int64_t{written.is_local},
+                 std::string_view(written.verb), std::string_view(written.target),
+                 static_cast<std::int64_t>(written.outcome) + 1, std::string_view(written.before),
+                 std::string_view(written.after), std::string_view(written.message))
       .run();
 }
 
@@ -138,7 +118,7 @@ Result<bool> remove_audited(Batch& batch, const Digest& robot, RemovedRobot& rem
                             const AuditEntry* audit) {
   Database& database = batch.database();
   const bool is_first = removed.removal.paths == 0;
-  std::string before = audit == nullptr ? std::string() : describe_robot(database, robot);
+  std::string before = audit == nullptr ? std::string() : robot_of(database, robot);
   Result<bool> is_out = continue_removal(batch, robot, removed);
   if (!is_out)
     return is_out;
@@ -156,8 +136,8 @@ Result<Retirement> retire_audited(Batch& batch, const Uuid& report_uuid, const A
     return retired;
   const std::int64_t left = count_paths_of(database, retired->task);
   const auto gone = static_cast<std::int64_t>(retired->paths);
-  note(database, audit, AuditOutcome::Done,
-       "task '" + retired->task + "': " + in_number(left + gone, "path"), in_number(left, "path"));
+  note(database, audit, AuditOutcome::Done, describe_paths(retired->task, left + gone),
+       in_number(left, "path"));
   return retired;
 }
 
@@ -165,7 +145,7 @@ Result<TaskReset> begin_reset_audited(Database& database, std::string_view task,
                                       const AuditEntry* audit) {
   Result<TaskReset> reset = begin_reset(database, task);
   if (reset && audit != nullptr)
-    note(database, audit, AuditOutcome::Begun, describe_paths(database, task));
+    note(database, audit, AuditOutcome::Begun, paths_of(database, task));
   return reset;
 }
 
@@ -176,7 +156,7 @@ bool continue_reset_audited(Batch& batch, const TaskReset& reset, Retirement& re
     return goes_on;
   Database& database = batch.database();
   note(database, audit, AuditOutcome::Done, {},
-       describe_paths(database, name_of_task(database, reset.task_id)) + ", " +
+       paths_of(database, name_of_task(database, reset.task_id)) + ", " +
            std::to_string(retired.paths) + " retired");
   return false;
 }
@@ -185,8 +165,7 @@ bool evict_audited(Database& database, const Digest& id, const AuditEntry* audit
   std::string before;
   if (audit != nullptr)
     if (const std::optional<Distribution> known = select_distribution(database, id).distribution)
-      before = "task '" + known->task + "', robot " + known->robot.short_hex() + ": revision " +
-               std::to_string(known->revision);
+      before = describe_distribution(*known);
   const bool was_there = delete_distribution(database, id);
   if (was_there)
     note(database, audit, AuditOutcome::Done, std::move(before), "gone");

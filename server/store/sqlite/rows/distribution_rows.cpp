@@ -5,15 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/crc32c.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
-#include "server/store/sqlite/rows/distribution_blob.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/crc32c.hpp"
+#include "server/store/values/distribution_blob.hpp"
 
 namespace kinship::store {
 

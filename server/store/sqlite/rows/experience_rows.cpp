@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/recent_attempts.hpp"
 
 namespace kinship::store {
 namespace {
@@ -29,48 +30,6 @@ std::string_view sums_of(SamplingMode mode) {
   return "";
 }
 
-ModeTotals read_totals(const Statement& row, int first_column) {
-  return {count_of(row, first_column), count_of(row, first_column + 1),
-          row.column_real(first_column + 2), row.column_real(first_column + 3),
-          row.column_real(first_column + 4)};
-}
-
-/// The newest judged attempts of each arm, as they are met.
-class RecentAttempts {
- public:
-  bool complete() const { return std::min(guided_, control_) >= kKnownAttemptsPerMode; }
-
-  /// \param row  of kColumns, newest first.
-  void add(const Statement& row) {
-    const SamplingMode mode = mode_of(row.column_integer(0));
-    const Outcome outcome = outcome_of(row.column_integer(1));
-    if (mode == SamplingMode::Uniform || outcome == Outcome::Failed)
-      return;
-    if ((mode == SamplingMode::Guided ? guided_ : control_)++ < kKnownAttemptsPerMode) {
-      KnownAttempt known{.judged = {.sampling_mode = mode,
-                                    .solved = outcome == Outcome::Solved,
-                                    .checks = count_of(row, 2),
-                                    .age = age_},
-                         .planner = std::string(row.column_text(3))};
-      if (!row.column_is_null(4))
-        known.distribution_id = id_of<Digest>(row.column_blob(4));
-      newest_first_.push_back(std::move(known));
-    }
-    ++age_;
-  }
-  std::vector<KnownAttempt> oldest_first() const {
-    return {newest_first_.rbegin(), newest_first_.rend()};
-  }
-
-  static constexpr std::string_view kColumns =
-      "SELECT arm, outcome, collision_checks, planner, distribution_digest FROM attempt ";
-
- private:
-  std::vector<KnownAttempt> newest_first_;
-  std::size_t guided_ = 0, control_ = 0;
-  std::uint32_t age_ = 0;
-};
-
 /// One by one, without those that cannot be read.
 std::vector<KnownAttempt> readable_recent_of(Database& database, const ExperienceKey& key,
                                              std::int64_t max_rows) {
@@ -80,7 +39,8 @@ std::vector<KnownAttempt> readable_recent_of(Database& database, const Experienc
   ids->bind_all(key.task_id, key.robot_id, max_rows);
   RecentAttempts recent;
   while (!recent.complete() && ids->step()) {
-    const auto query = database.cached(std::string(RecentAttempts::kColumns) + "WHERE id = ?");
+    const auto query = database.cached("SELECT " + std::string(RecentAttempts::kColumns) +
+                                       "FROM attempt WHERE id = ?");
     try {
       if (query->bind(1, ids->column_integer(0)).step())
         recent.add(*query);
@@ -92,15 +52,13 @@ std::vector<KnownAttempt> readable_recent_of(Database& database, const Experienc
   return recent.oldest_first();
 }
 
-/// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRows alone: an
-/// arm that had no attempts among so many is as good as unknown.
+/// The newest judged attempts of each arm, oldest first. Looks at the newest kMaxRecentRows alone.
 std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key) {
-  constexpr std::int64_t kMaxRows = 10'000;
   try {
     const auto query =
-        database.cached(std::string(RecentAttempts::kColumns) +
-                        "WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
-    query->bind_all(key.task_id, key.robot_id, kMaxRows);
+        database.cached("SELECT " + std::string(RecentAttempts::kColumns) +
+                        "FROM attempt WHERE task_id = ? AND robot_id = ? ORDER BY id DESC LIMIT ?");
+    query->bind_all(key.task_id, key.robot_id, kMaxRecentRows);
     RecentAttempts recent;
     while (!recent.complete() && query->step())
       recent.add(*query);
@@ -108,7 +66,7 @@ std::vector<KnownAttempt> recent_of(Database& database, const ExperienceKey& key
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
-    return readable_recent_of(database, key, kMaxRows);
+    return readable_recent_of(database, key, kMaxRecentRows);
   }
 }
 
@@ -235,14 +193,13 @@ AttemptTotals totals_of(Database& database, const Digest& robot, std::string_vie
   const std::optional<ExperienceKey> key = find_experience(database, robot, task);
   if (!key)
     return {};
-  const auto query = database.cached(
-      "SELECT guided_attempts, guided_solved, guided_checks, guided_checks_squared,"
-      " guided_checks_of_solved, control_attempts, control_solved, control_checks,"
-      " control_checks_squared, control_checks_of_solved "
-      "FROM experience WHERE task_id = ? AND robot_id = ?");
+  const auto query = database.cached("SELECT " + std::string(kTotalsColumns) +
+                                     "FROM experience WHERE task_id = ? AND robot_id = ?");
   if (!query->bind_all(key->task_id, key->robot_id).step())
     return {};
-  return {read_totals(*query, 0), read_totals(*query, 5), recent_of(database, *key)};
+  AttemptTotals totals = read_totals(*query);
+  totals.recent = recent_of(database, *key);
+  return totals;
 }
 
 }  // namespace kinship::store

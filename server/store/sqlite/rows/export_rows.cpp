@@ -9,9 +9,10 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/pages.hpp"
 
 namespace kinship::store {
 namespace {
@@ -82,7 +83,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   constexpr std::int64_t kCandidates = 64;
   const std::size_t rows = std::max<std::size_t>(limit, 1);
   ExportRead read;
-  std::int64_t last_id = id_of_cursor(cursor);
+  std::int64_t last_id = parse_rising_cursor(cursor);
   std::size_t bytes = 0;
   while (true) {
     const std::vector<std::int64_t> candidates =
@@ -110,7 +111,7 @@ Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Di
   const auto rows = static_cast<std::int64_t>(std::max<std::size_t>(limit, 1));
   RobotNames names(database);
   Page<AttemptSummary> page;
-  std::int64_t last_id = id_of_cursor(cursor);
+  std::int64_t last_id = parse_rising_cursor(cursor);
   while (true) {
     const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
     const std::vector<std::int64_t> ids = next_attempts(database, robot, task, last_id, more);

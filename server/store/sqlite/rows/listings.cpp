@@ -1,9 +1,7 @@
 #include "server/store/sqlite/rows/listings.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -12,144 +10,43 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/pages.hpp"
+#include "server/store/values/robot_columns.hpp"
+#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {
-
-std::int64_t rows_of_page(std::size_t limit) {
-  constexpr std::size_t kMaxRows = 10'000;
-  return static_cast<std::int64_t>(std::clamp<std::size_t>(limit, 1, kMaxRows));
-}
 
 /// Reads up to `rows` rows; a row more says that another page follows.
 /// \param read       makes a row of the statement.
 /// \param cursor_of  the cursor that continues after the row at the statement.
 template <typename Row, typename Read, typename CursorOf>
 Page<Row> read_page(Statement& query, std::int64_t rows, Read read, CursorOf cursor_of) {
-  Page<Row> page;
-  std::string cursor;
-  while (query.step()) {
-    if (std::ssize(page.rows) == rows) {
-      page.next_cursor = std::move(cursor);
+  PageFiller<Row> page(rows);
+  while (query.step())
+    if (!page.add(read(query), cursor_of(query)))
       break;
-    }
-    page.rows.push_back(read(query));
-    cursor = cursor_of(query);
-  }
-  return page;
-}
-
-[[noreturn]] void refuse_cursor(std::string_view cursor) {
-  throw Failure(ErrorCode::InvalidInput,
-                "cursor '" + std::string(cursor) + "' is not one of this listing");
-}
-
-/// The id of the last row shown; at the beginning one that no row reaches.
-std::int64_t parse_id_cursor(std::string_view cursor) {
-  std::int64_t id = std::numeric_limits<std::int64_t>::max();
-  const char* const end = cursor.data() + cursor.size();
-  const auto [after, error] = std::from_chars(cursor.data(), end, id);
-  if (!cursor.empty() && (error != std::errc() || after != end || id < 0))
-    refuse_cursor(cursor);
-  return id;
-}
-
-/// What an arm's attempts cost, by three columns: attempts, solved, checks.
-std::optional<ModeEvidence> evidence_of(const Statement& row, int first) {
-  if (row.column_integer(first) == 0)
-    return std::nullopt;
-  ModeEvidence mode{count_of(row, first), count_of(row, first + 1)};
-  if (mode.solved > 0)
-    mode.checks_per_solution = row.column_real(first + 2) / static_cast<double>(mode.solved);
-  return mode;
+  return page.take();
 }
 
 std::vector<TaskRobotSummary> robots_of_task(Database& database, RobotNames& names,
                                              std::int64_t task_id) {
-  const auto query = database.cached(
-      "SELECT robot_id, paths, attempts, generation, dropped,"
-      " guided_attempts, guided_solved, guided_checks,"
-      " control_attempts, control_solved, control_checks FROM experience WHERE task_id = ?");
+  const auto query = database.cached("SELECT " + std::string(kTaskRobotColumns) +
+                                     "FROM experience WHERE task_id = ?");
   query->bind(1, task_id);
-  constexpr int kGuided = 5, kControl = 8;
   std::vector<TaskRobotSummary> robots;
   while (query->step())
     if (const RobotNames::Name* const robot = names.find(query->column_integer(0));
         robot != nullptr && !is_removed_label(robot->label))
-      robots.push_back({robot->digest, robot->label, count_of(*query, 1), count_of(*query, 2),
-                        count_of(*query, 3), count_of(*query, 4), evidence_of(*query, kGuided),
-                        evidence_of(*query, kControl)});
-  std::ranges::sort(robots, {}, &TaskRobotSummary::label);
+      robots.push_back(read_task_robot(*query, robot->digest, robot->label));
   return robots;
 }
 
 /// \param row  of task id and name.
 TaskSummary read_task(Database& database, RobotNames& names, const Statement& row) {
-  TaskSummary summary;
-  summary.task = row.column_text(1);
-  summary.robots = robots_of_task(database, names, row.column_integer(0));
-  for (const TaskRobotSummary& robot : summary.robots) {
-    summary.paths += robot.paths;
-    summary.attempts += robot.attempts;
-    summary.dropped += robot.dropped;
-  }
-  return summary;
-}
-
-PathSummary read_path_summary(const Statement& row) {
-  constexpr int kFirstOfRecord = 11;
-  PathSummary summary;
-  summary.retired_ms = row.column_integer(0);  // NULL: 0
-  summary.report_uuid = id_of<Uuid>(row.column_blob(1));
-  summary.robot = id_of<Digest>(row.column_blob(2));
-  summary.label = row.column_text(3);
-  summary.task = row.column_text(4);
-  summary.waypoints = count_of(row, 5);
-  summary.length = row.column_real(6);
-  summary.machine = row.column_text(7);
-  summary.received_ms = row.column_integer(8);
-  summary.T_task_base = pose_from_blob(row.column_blob(9));
-  summary.dropped = row.column_integer(10) != 0;
-  summary.record = read_record(row, kFirstOfRecord);
-  return summary;
-}
-
-DistributionSummary read_distribution_summary(const Statement& row) {
-  DistributionSummary summary;
-  summary.id = id_of<Digest>(row.column_blob(0));
-  summary.revision = count_of(row, 1);
-  summary.task = row.column_text(2);
-  summary.robot = id_of<Digest>(row.column_blob(3));
-  summary.label = row.column_text(4);
-  summary.profile = row.column_text(5);
-  summary.state = state_of(row.column_integer(6));
-  summary.reason = row.column_text(7);
-  summary.components = count_of(row, 8);
-  summary.configurations = count_of(row, 9);
-  summary.paths = count_of(row, 10);
-  summary.fitted_ms = row.column_integer(11);
-  return summary;
-}
-
-AuditEntry read_audit_entry(const Statement& row) {
-  constexpr std::int64_t kOutcomes = 4;
-  AuditEntry entry;
-  entry.number = count_of(row, 0);
-  entry.time_ms = row.column_integer(1);
-  entry.name = row.column_text(2);
-  entry.role = row.column_text(3);
-  entry.client = row.column_text(4);
-  entry.is_local = row.column_integer(5) != 0;
-  entry.verb = row.column_text(6);
-  entry.target = row.column_text(7);
-  entry.outcome =
-      static_cast<AuditOutcome>(std::clamp<std::int64_t>(row.column_integer(8), 1, kOutcomes) - 1);
-  entry.before = row.column_text(9);
-  entry.after = row.column_text(10);
-  entry.message = row.column_text(11);
-  return entry;
+  return summary_of(row.column_text(1), robots_of_task(database, names, row.column_integer(0)));
 }
 
 /// The filters that a listing was asked for, as SQL; numbered parameters ?1 robot, ?2 task.
@@ -218,15 +115,13 @@ std::vector<std::int64_t> all_paths_before(Database& database, std::int64_t befo
 
 /// Nothing if it lies on a damaged page, or lost its attempt in a repair.
 std::optional<PathSummary> select_path_summary(Database& database, std::int64_t id) try {
-  const auto query = database.cached(
-      "SELECT path.retired_ms, path.report_uuid, robot.digest, robot.label,"
-      " task.name, path.waypoint_count, path.length, attempt.machine, attempt.received_ms,"
-      " path.T_task_base, " +
-      std::string(kIsDropped) + ", " + std::string(kRecordColumns) +
-      "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
-      "CROSS JOIN task ON task.id = path.task_id "
-      "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "
-      "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ?");
+  const auto query =
+      database.cached("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
+                      ", " + std::string(kRecordColumns) +
+                      "FROM path CROSS JOIN robot ON robot.id = path.robot_id "
+                      "CROSS JOIN task ON task.id = path.task_id "
+                      "CROSS JOIN attempt ON attempt.id = (SELECT max(id) FROM attempt AS newest "
+                      "WHERE newest.report_uuid = path.report_uuid) WHERE path.id = ?");
   if (!query->bind(1, id).step())
     return std::nullopt;
   return read_path_summary(*query);
@@ -242,13 +137,12 @@ Page<AuditEntry> page_of_audit(Database& database, std::string_view name, std::s
                                std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   const auto query = database.cached(
-      "SELECT id, time_ms, name, role, client, is_local, verb, target, outcome, was, became,"
-      " message FROM audit WHERE id < ?1 " +
+      "SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < ?1 " +
       std::string(name.empty() ? "" : "AND name = ?3 ") + "ORDER BY id DESC LIMIT ?2");
-  query->bind_all(parse_id_cursor(cursor), rows + 1);
+  query->bind_all(parse_falling_cursor(cursor), rows + 1);
   if (!name.empty())
     query->bind(3, name);
-  return read_page<AuditEntry>(*query, rows, read_audit_entry, [](const Statement& row) {
+  return read_page<AuditEntry>(*query, rows, read_audit_entry<Statement>, [](const Statement& row) {
     return std::to_string(row.column_integer(0));
   });
 }
@@ -256,28 +150,13 @@ Page<AuditEntry> page_of_audit(Database& database, std::string_view name, std::s
 Page<RobotSummary> page_of_robots(Database& database, std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   const auto query = database.cached(
-      "SELECT digest, label, base_link, tip_link, dof, registered_ms,"
-      " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
-      " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id),"
-      " (SELECT coalesce(max(taken_ms), 0) FROM robot_geometry WHERE robot_id = robot.id) "
+      "SELECT " + std::string(kRobotSummaryColumns) +
       "FROM robot WHERE label > ? AND base_link <> '' AND label NOT GLOB 'removed *' "
       "ORDER BY label LIMIT ?");
   query->bind_all(cursor, rows + 1);  // without base link: a repair knew its name alone
-  const auto read = [](const Statement& row) {
-    RobotSummary summary;
-    summary.robot = id_of<Digest>(row.column_blob(0));
-    summary.label = row.column_text(1);
-    summary.base_link = row.column_text(2);
-    summary.tip_link = row.column_text(3);
-    summary.dof = static_cast<std::uint32_t>(row.column_integer(4));
-    summary.registered_ms = row.column_integer(5);
-    summary.paths = count_of(row, 6);
-    summary.attempts = count_of(row, 7);
-    summary.geometry_ms = row.column_integer(8);
-    return summary;
-  };
   return read_page<RobotSummary>(
-      *query, rows, read, [](const Statement& row) { return std::string(row.column_text(1)); });
+      *query, rows, read_robot_summary<Statement>,
+      [](const Statement& row) { return std::string(row.column_text(1)); });
 }
 
 Page<TaskSummary> page_of_tasks(Database& database, std::string_view cursor, std::size_t limit) {
@@ -305,7 +184,7 @@ Page<PathSummary> page_of_paths(Database& database, const std::optional<Digest>&
   const bool is_filtered = robot || !task.empty();
   const std::vector<ExperienceKey> keys =
       is_filtered ? select_experience(database, robot, task) : std::vector<ExperienceKey>();
-  std::int64_t before_id = parse_id_cursor(cursor);
+  std::int64_t before_id = parse_falling_cursor(cursor);
   Page<PathSummary> page;
   while (true) {
     const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
@@ -331,11 +210,11 @@ Page<DistributionSummary> page_of_distributions(Database& database,
                                                 std::string_view task, std::string_view cursor,
                                                 std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
-  const std::int64_t before_id = parse_id_cursor(cursor);
+  const std::int64_t before_id = parse_falling_cursor(cursor);
   // Each fit is a row of its own: the greatest id is the newest fit.
   const auto query = database.cached(
-      "SELECT distribution.digest, revision, task.name, robot.digest, robot.label, profile, state,"
-      " reason, components, configurations, paths, fitted_ms, distribution.id FROM distribution "
+      "SELECT " + std::string(kDistributionSummaryColumns) +
+      "FROM distribution "
       "JOIN robot ON robot.id = distribution.robot_id JOIN task ON task.id = distribution.task_id "
       "WHERE distribution.id < ?3 AND NOT EXISTS "
       "(SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)" +
@@ -343,8 +222,9 @@ Page<DistributionSummary> page_of_distributions(Database& database,
   bind_filters(*query, robot, task);
   query->bind(3, before_id).bind(4, rows + 1);
   return read_page<DistributionSummary>(
-      *query, rows, read_distribution_summary,
-      [](const Statement& row) { return std::to_string(row.column_integer(12)); });
+      *query, rows, read_distribution_summary<Statement>, [](const Statement& row) {
+        return std::to_string(row.column_integer(kIdOfDistributionSummary));
+      });
 }
 
 void count_rows(Database& database, StoreStatus& status) {

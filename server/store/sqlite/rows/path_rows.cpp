@@ -4,97 +4,30 @@
 #include <string>
 #include <utility>
 
-#include "server/store/crc32c.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/path_content.hpp"
 
 namespace kinship::store {
 namespace {
 
-/// Where a column stands among the selected ones. Schema 1 has no more than its content.
-struct PathColumn {
-  static constexpr int kId = 0, kReportUuid = 1, kPlacement = 2, kDof = 3, kWaypointCount = 4,
-                       kEncoding = 5, kCrc = 6, kWaypoints = 7, kReceivedMs = 8, kSceneId = 9;
-};
-
-constexpr std::string_view kPathContentColumns =
-    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints ";
-constexpr std::string_view kPathColumns =
-    "SELECT id, report_uuid, T_task_base, dof, waypoint_count, encoding, crc32c, waypoints,"
-    " received_ms, scene_id FROM path ";
-
-/// Everything that a transfer relies on is under the checksum, not the waypoints alone.
-struct PathContent {
-  Bytes report_uuid;
-  Bytes T_task_base;  // empty: missing
-  std::int64_t dof = 0;
-  std::int64_t waypoint_count = 0;
-  std::int64_t encoding = 0;
-  Bytes waypoints;
-
-  /// No encoding makes so short a blob.
-  bool is_dropped() const { return waypoints.size() == 1; }
-  std::uint32_t crc() const {
-    ByteWriter header;
-    header.add(report_uuid).add(T_task_base);
-    for (const std::int64_t number : {dof, waypoint_count, encoding})
-      header.add(static_cast<std::uint64_t>(number));
-    return crc32c(waypoints, crc32c(header.bytes()));
-  }
-};
-
-PathContent content_of(const Statement& row) {
-  return {row.column_blob(PathColumn::kReportUuid),  row.column_blob(PathColumn::kPlacement),
-          row.column_integer(PathColumn::kDof),      row.column_integer(PathColumn::kWaypointCount),
-          row.column_integer(PathColumn::kEncoding), row.column_blob(PathColumn::kWaypoints)};
-}
-
-/// \param row  of kPathContentColumns.
-bool has_right_crc(const Statement& row) {
-  return content_of(row).crc() == row.column_integer(PathColumn::kCrc);
-}
-
-/// A path without the time it was received and its scene, or nothing if it is damaged.
-/// \param row  of kPathContentColumns, or of kPathColumns.
-std::optional<StoredPath> read_path_content(const Statement& row) {
-  const PathContent content = content_of(row);
-  if (content.crc() != row.column_integer(PathColumn::kCrc))
-    return std::nullopt;
-  std::optional<Path> path =
-      decode_waypoints(content.dof, content.waypoint_count, content.encoding, content.waypoints);
-  if (!path)
-    return std::nullopt;
-  std::optional<Eigen::Isometry3d> T_task_base;
-  if (!row.column_is_null(PathColumn::kPlacement)) {
-    T_task_base = pose_from_blob(content.T_task_base);
-    if (!T_task_base)
-      return std::nullopt;
-  }
-  return StoredPath{row.column_integer(PathColumn::kId), id_of<Uuid>(content.report_uuid),
-                    T_task_base, 0, std::move(*path)};
-}
-
 /// \param row  of kPathContentColumns.
 bool is_intact(const Statement& row) {
-  return content_of(row).is_dropped() ? has_right_crc(row) : read_path_content(row).has_value();
+  return path_content_of(row).is_dropped() ? has_right_path_crc(row)
+                                           : read_path_content(row).has_value();
 }
 
 /// \param row  of kPathColumns.
 void take_row(const Statement& row, PathsRead& read) {
-  if (content_of(row).is_dropped() && has_right_crc(row))
+  if (path_content_of(row).is_dropped() && has_right_path_crc(row))
     return;
-  std::optional<StoredPath> path = read_path_content(row);
-  if (!path) {
+  if (std::optional<StoredPath> path = read_path(row))
+    read.paths.push_back(std::move(*path));
+  else
     read.damaged.push_back(row.column_integer(PathColumn::kId));
-    return;
-  }
-  path->received_ms = row.column_integer(PathColumn::kReceivedMs);
-  if (!row.column_is_null(PathColumn::kSceneId))
-    path->scene_id = row.column_integer(PathColumn::kSceneId);
-  read.paths.push_back(std::move(*path));
 }
 
 constexpr std::int64_t kFirstWithAside = 4;  // schema
@@ -117,8 +50,9 @@ bool can_read(Read read) {
 /// \return whether the path is there and its checksum is right.
 bool is_readable(Database& database, std::int64_t id) {
   return can_read([&] {
-    const auto query = database.cached(std::string(kPathContentColumns) + "FROM path WHERE id = ?");
-    return query->bind(1, id).step() && has_right_crc(*query);
+    const auto query =
+        database.cached("SELECT " + std::string(kPathContentColumns) + "FROM path WHERE id = ?");
+    return query->bind(1, id).step() && has_right_path_crc(*query);
   });
 }
 
@@ -158,7 +92,8 @@ void put_path_aside(Batch& batch, const ExperienceKey& key, std::int64_t id,
 /// Reads the row of one path.
 void take_path(Database& database, std::int64_t id, PathsRead& read) {
   if (!can_read([&] {
-        const auto query = database.cached(std::string(kPathColumns) + "WHERE id = ?");
+        const auto query =
+            database.cached("SELECT " + std::string(kPathColumns) + "FROM path WHERE id = ?");
         if (query->bind(1, id).step())
           take_row(*query, read);
         return true;
@@ -213,7 +148,7 @@ bool remove_waypoints(Database& database, std::int64_t id) {
           "WHERE id = ?");
       if (!query->bind(1, id).step())
         return false;
-      crc = content_of(*query).crc();
+      crc = path_content_of(*query).crc();
     }
     Savepoint savepoint(database);
     database
@@ -320,11 +255,11 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
 PathsRead select_paths(Database& database, const ExperienceKey& key, const PathRange& range) {
   PathsRead read;
   const bool whole = can_read([&] {
-    const auto query =
-        database.cached(std::string(kPathColumns) +
-                        "WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
-                        "AND retired_ms IS NULL" +
-                        std::string(kNotAside) + "ORDER BY id");
+    const auto query = database.cached(
+        "SELECT " + std::string(kPathColumns) +
+        "FROM path WHERE task_id = ? AND robot_id = ? AND id > ? AND received_ms >= ? "
+        "AND retired_ms IS NULL" +
+        std::string(kNotAside) + "ORDER BY id");
     query->bind_all(key.task_id, key.robot_id, range.after_id, range.since_ms);
     while (read.paths.size() < range.limit && query->step())
       take_row(*query, read);
@@ -391,8 +326,8 @@ PathsChecked check_paths(Database& database, std::int64_t schema, std::int64_t a
   PathsChecked checked;
   if (can_read([&] {
         const auto query =
-            database.cached(std::string(kPathContentColumns) + "FROM path WHERE id > ?" + others +
-                            "ORDER BY id LIMIT ?");
+            database.cached("SELECT " + std::string(kPathContentColumns) +
+                            "FROM path WHERE id > ?" + others + "ORDER BY id LIMIT ?");
         query->bind_all(after_id, limit);
         while (query->step()) {
           checked.last_id = query->column_integer(PathColumn::kId);

@@ -8,8 +8,8 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
 #include "server/store/store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 namespace kinship::store {
 
@@ -71,9 +71,6 @@ void retire_damaged(Batch& batch, const ExperienceKey& key, std::int64_t id);
 /// Takes a path out of use for good: its row stays, retired, its waypoints do not. One that cannot
 /// be written is set aside as retired.
 void drop_path(Batch& batch, const ExperienceKey& key, std::int64_t id);
-
-/// How SQL tells a dropped path from others, without reading its waypoints.
-inline constexpr std::string_view kIsDropped = "length(path.waypoints) = 1";
 
 /// A part of a full check.
 struct PathsChecked {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {
@@ -67,11 +67,6 @@ void drop_excess(Batch& batch, const ExperienceKey& key, std::uint64_t max_paths
   for (const KeptPath& path :
        last_kept(database, key, 0, std::min(paths - max_paths, kMostDroppedAtOnce)))
     drop_path(batch, key, path.id);
-}
-
-std::string beyond_cap_in_words(std::uint64_t max_paths) {
-  return "recorded, but its path is not kept: its robot and task have " +
-         std::to_string(max_paths) + " paths, the most that are kept (--max-paths-per-pair)";
 }
 
 }  // namespace kinship::store

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "proto/types/digest.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -21,8 +20,5 @@ bool is_within_cap(Database& database, const ExperienceKey& key, const Digest& c
 /// Drops paths beyond the cap, but not many at a time: after the cap was lowered the next reports
 /// drop the others.
 void drop_excess(Batch& batch, const ExperienceKey& key, std::uint64_t max_paths);
-
-/// Why a report's path was not kept, for its receipt.
-std::string beyond_cap_in_words(std::uint64_t max_paths);
 
 }  // namespace kinship::store

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/arrival_order.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/pages.hpp"
 
 namespace kinship::store {
 namespace {
@@ -84,7 +84,7 @@ Feed<Uuid> page_of_retirements(Database& database, std::string_view cursor, std:
   feed.cursor = cursor;
   const auto query = database.cached(
       "SELECT id, report_uuid FROM retired_report WHERE id > ? ORDER BY id LIMIT ?");
-  query->bind_all(id_of_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
+  query->bind_all(parse_rising_cursor(cursor), static_cast<std::int64_t>(limit) + 1);
   while (query->step()) {
     if (feed.rows.size() == limit) {
       feed.has_more = true;

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {

@@ -9,7 +9,8 @@
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/robot_columns.hpp"
 
 namespace kinship::store {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/mesh_solids_blob.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/mesh_solids_blob.hpp"
+#include "server/store/values/robot_columns.hpp"
 
 namespace kinship::store {
 namespace {
@@ -14,47 +14,6 @@ namespace {
 constexpr std::string_view kRobotColumns =
     "SELECT id, digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes, registered_ms,"
     " crc32c, urdf FROM robot ";
-
-constexpr std::string_view kRemoved = "removed ";
-
-std::int64_t mask_of(const TaskAxes& axes) {
-  std::int64_t mask = 0;
-  for (std::size_t i = 0; i < axes.matters.size(); ++i)
-    if (axes.matters[i])
-      mask |= std::int64_t{1} << i;
-  return mask;
-}
-
-TaskAxes axes_of(std::int64_t mask) {
-  TaskAxes axes;
-  for (std::size_t i = 0; i < axes.matters.size(); ++i)
-    axes.matters[i] = ((mask >> i) & 1) != 0;
-  return axes;
-}
-
-/// Robots without one have the checksums that they had before there were such rows.
-bool has_geometry_row(const RobotRecord& robot) {
-  return robot.geometry_revision > 0 || !robot.description.mesh_solids.solids.empty();
-}
-
-/// \param T_tip_transfer, mesh_solids  as stored: a pose does not come back from its 7 numbers to
-/// the last bit.
-std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer, Bytes mesh_solids) {
-  const RobotDescription& description = robot.description;
-  ByteWriter all;
-  all.add(Bytes(robot.digest.bytes)).add(std::uint64_t{robot.dof}).add(description.label);
-  all.add(description.urdf).add(description.base_link).add(description.tip_link);
-  all.add(T_tip_transfer).add(static_cast<std::uint64_t>(mask_of(description.task_axes)));
-  for (const auto& [joint, position] : description.held_joints)
-    all.add(joint).add(position);
-  for (const auto& [a, b] : description.never_colliding)
-    all.add(a).add(b);
-  if (has_geometry_row(robot))
-    all.add(robot.geometry_revision)
-        .add(static_cast<std::uint64_t>(robot.geometry_ms))
-        .add(Bytes(mesh_solids));
-  return crc32c(all.bytes());
-}
 
 void insert_parts(Database& database, std::int64_t robot_id, const RobotDescription& description) {
   for (const auto& [joint, position] : description.held_joints)
@@ -118,17 +77,7 @@ std::optional<RobotRecord> read_robot(Database& database, const Statement& row, 
   const std::vector<std::uint8_t> solids =
       has_geometry ? select_geometry(database, row.column_integer(0), robot)
                    : std::vector<std::uint8_t>();
-  const std::optional<MeshSolids> mesh_solids = decode_mesh_solids(solids);
-  if (!mesh_solids)
-    return std::nullopt;
-  description.mesh_solids = *mesh_solids;
-  if (robot_crc(robot, row.column_blob(6), solids) != row.column_integer(9))
-    return std::nullopt;
-  const std::optional<Eigen::Isometry3d> T_tip_transfer = pose_from_blob(row.column_blob(6));
-  if (!T_tip_transfer)
-    return std::nullopt;
-  description.T_tip_transfer = *T_tip_transfer;
-  return robot;
+  return complete_robot(std::move(robot), row.column_blob(6), solids, row.column_integer(9));
 }
 
 /// Nothing, also if the row lies on a damaged page.
@@ -165,12 +114,7 @@ std::optional<Error> check_free(Database& database, const std::string& label, co
   query->bind(1, std::string_view(label));
   if (!query->step() || query->column_integer(0) == id_of_robot(database, robot))
     return std::nullopt;
-  return Error{ErrorCode::Conflict,
-               "another robot has the label '" + label +
-                   "': one with another URDF, base or tip link, transfer frame, axes or held "
-                   "joints. Take another label, or free this one: 'kinship robots rename " +
-                   label + " NEW' keeps that robot under a new name, 'kinship robots remove " +
-                   label + "' takes it out"};
+  return label_conflict(label);
 }
 
 /// \return the id of the row, the old one if the digest is there.
@@ -236,13 +180,6 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
   write_robot(database, written, T_tip_transfer);
   return RegisterStatus::Registered;
 }
-
-std::string removed_label(const Digest& robot) {
-  constexpr std::size_t kDigits = 24;
-  return std::string(kRemoved) + robot.hex().substr(0, kDigits);
-}
-
-bool is_removed_label(std::string_view label) { return label.starts_with(kRemoved); }
 
 bool is_removed(Database& database, const Digest& robot) {
   const auto query = database.cached("SELECT label FROM robot WHERE label = ?");

@@ -17,10 +17,6 @@ namespace kinship::store {
 /// \return Known if the digest is there, undamaged; Conflict if another robot has the label.
 Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot);
 
-/// The label of a removed robot's row, which nobody can register: labels have no blanks. It says
-/// that the robot is removed, to whoever reads the row or the index of labels alone.
-std::string removed_label(const Digest& robot);
-bool is_removed_label(std::string_view label);
 /// From the index of labels.
 bool is_removed(Database& database, const Digest& robot);
 

@@ -1,10 +1,9 @@
 #include "server/store/sqlite/rows/scene_rows.hpp"
 
-#include "server/store/crc32c.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
-#include "server/store/sqlite/rows/byte_stream.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/scene_blob.hpp"
 
 namespace kinship::store {
 namespace {
@@ -12,20 +11,10 @@ namespace {
 constexpr std::string_view kSceneColumns =
     "SELECT id, content_sha256, size, encoding, crc32c, scene FROM scene ";
 
-/// The content's digest is under the checksum: a scene that stands under another's digest would be
-/// taken for it.
-std::uint32_t crc_of(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene) {
-  ByteWriter header;
-  header.add(content);
-  for (const std::int64_t number : {size, encoding})
-    header.add(static_cast<std::uint64_t>(number));
-  return crc32c(scene, crc32c(header.bytes()));
-}
-
 /// \param row  of kSceneColumns.
 bool has_right_crc_of_scene(const Statement& row) {
-  return crc_of(row.column_blob(1), row.column_integer(2), row.column_integer(3),
-                row.column_blob(5)) == row.column_integer(4);
+  return scene_crc(row.column_blob(1), row.column_integer(2), row.column_integer(3),
+                   row.column_blob(5)) == row.column_integer(4);
 }
 
 /// \param row  of kSceneColumns.
@@ -100,7 +89,7 @@ std::int64_t ensure_scene(Database& database, const PreparedScene& scene,
   }
   const auto encoding = static_cast<std::int64_t>(scene.blob.encoding);
   const Bytes bytes(scene.blob.bytes);
-  const std::int64_t crc = crc_of(content, scene.blob.size, encoding, bytes);
+  const std::int64_t crc = scene_crc(content, scene.blob.size, encoding, bytes);
   database
       .cached(
           "INSERT INTO scene (content_sha256, received_ms, size, encoding, crc32c, scene) "

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
-#include "server/store/sqlite/rows/prepared_attempt.hpp"
+#include "server/store/values/prepared_attempt.hpp"
 
 /// Scenes, one row for each content.
 namespace kinship::store {

@@ -1,7 +1,7 @@
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 
-#include "server/store/sqlite/database/clock.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
 
 namespace kinship::store {
 namespace {

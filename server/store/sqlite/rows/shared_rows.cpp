@@ -9,9 +9,10 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retired_reports.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/pages.hpp"
 
 namespace kinship::store {
 namespace {
@@ -101,8 +102,9 @@ Feed<ArrivedReport> page_of_arrivals(Database& database, std::string_view task,
                                      std::string_view cursor, std::size_t limit) {
   Feed<ArrivedReport> feed;
   feed.cursor = cursor;
-  std::vector<std::int64_t> ids = next_attempts(database, std::nullopt, task, id_of_cursor(cursor),
-                                                static_cast<std::int64_t>(limit) + 1);
+  std::vector<std::int64_t> ids =
+      next_attempts(database, std::nullopt, task, parse_rising_cursor(cursor),
+                    static_cast<std::int64_t>(limit) + 1);
   feed.has_more = ids.size() > limit;
   if (feed.has_more)
     ids.resize(limit);

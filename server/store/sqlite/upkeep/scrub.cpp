@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "server/store/sqlite/database/call_item.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/page_scan.hpp"
+#include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {

@@ -14,8 +14,9 @@
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {

@@ -8,15 +8,16 @@
 #include <utility>
 
 #include "server/store/sqlite/database/checked_vfs.hpp"
-#include "server/store/sqlite/database/clock.hpp"
 #include "server/store/sqlite/database/page_seal.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
-#include "server/store/sqlite/rows/row_values.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/sqlite/upkeep/row_salvage.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/summary_columns.hpp"
 
 namespace kinship::store {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/store/sqlite/opening/history_seal.hpp"
+#include "server/store/values/history_seal.hpp"
 
 namespace kinship::store::run_log_test {
 namespace {

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/store/postgres/database/connection_string.hpp"
+#include "server/store/postgres/database/interrupt.hpp"
+#include "server/store/postgres/database/parameters.hpp"
+#include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/database/rows.hpp"
+
+struct pg_conn;
+
+namespace kinship::store::postgres {
+
+/// A statement with its parameters.
+struct Request {
+  std::string_view sql;
+  Parameters parameters = {};
+};
+
+struct ConnectionOptions {
+  /// Of one statement, or of a pipeline of them; then the connection is given up.
+  std::chrono::milliseconds patience{30'000};
+  const Interrupt* interrupt = nullptr;  ///< ends every wait; outlives the connection
+  /// Whether statements are prepared once and kept: not behind a pooler that changes sessions.
+  bool keeps_statements = true;
+};
+
+/// A connection to PostgreSQL: the owner of one PGconn. Used by one thread at a time. Statements
+/// are prepared when they are first run. Every method throws PostgresError, whose message names no
+/// password; after one of kind Lost the connection is of no use any more.
+class Connection {
+ public:
+  /// Waits a few seconds at most for each host.
+  explicit Connection(const ConnectionString& where, const ConnectionOptions& options = {});
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection();
+
+  /// Runs one statement with its parameters.
+  template <typename... Values>
+  Rows query(std::string_view sql, const Values&... values) {
+    return run_one({sql, Parameters(values...)});
+  }
+  Rows query(std::string_view sql, const Parameters& parameters) {
+    return run_one({sql, parameters});
+  }
+
+  /// Runs statements one after the other in one round trip (pipeline mode). The first that fails
+  /// ends them and is thrown; outside of a transaction those before it are undone too.
+  /// \return the rows of each.
+  std::vector<Rows> query_all(std::span<const Request> requests);
+
+  /// Runs a script of statements without parameters, drops rows.
+  void execute(const std::string& script);
+
+  /// COMMIT, however long it takes: only the interrupt ends the wait.
+  Rows query_without_limit(std::string_view sql);
+
+  bool is_alive() const noexcept;  ///< as far as libpq knows
+  bool in_transaction() const noexcept;
+  int server_version() const noexcept;            ///< 150004 for 15.4
+  std::string parameter(const char* name) const;  ///< that the server reports; empty: none
+
+  /// The first WARNING since the last call; empty: none.
+  std::string take_warning();
+
+  /// Closes the socket, whatever is on its way.
+  void abandon() noexcept;
+
+ private:
+  using Deadline = std::optional<std::chrono::steady_clock::time_point>;  // empty: none
+
+  struct Finish {
+    void operator()(pg_conn* connection) const noexcept;
+  };
+
+  /// What one answer of a pipeline belongs to.
+  struct Command {
+    std::string_view sql;
+    bool is_preparation = false;
+  };
+
+  Rows run_one(const Request& request);
+  std::vector<Rows> run(std::span<const Request> requests, Deadline deadline);
+  std::vector<Command> send(std::span<const Request> requests);
+  const std::string& name_of(const Request& request, std::vector<Command>& commands);
+  void send_one(const Request& request, std::vector<Command>& commands);
+  std::vector<Rows> receive(const std::vector<Command>& commands, Deadline deadline);
+  pg_result* next_result(Deadline deadline);
+  void flush(Deadline deadline);
+  void wait(short events, Deadline deadline);
+  Deadline deadline() const;
+  [[noreturn]] void throw_lost(const std::string& doing);
+  PostgresError error_of(const pg_result* result, std::string_view sql);
+  static void notice(void* self, const pg_result* result);
+
+  ConnectionString where_;
+  ConnectionOptions options_;
+  std::string warning_;
+  std::map<std::string, std::string, std::less<>> statements_;  // text -> name
+  std::uint64_t last_statement_ = 0;
+  std::unique_ptr<pg_conn, Finish> connection_;
+};
+
+}  // namespace kinship::store::postgres

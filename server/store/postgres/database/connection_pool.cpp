@@ -1,0 +1,38 @@
+#include "server/store/postgres/database/connection_pool.hpp"
+
+namespace kinship::store::postgres {
+
+std::unique_ptr<Connection> ConnectionPool::take() {
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return lent_ < kMaxConnections; });
+    ++lent_;
+    if (!idle_.empty()) {
+      std::unique_ptr<Connection> connection = std::move(idle_.back());
+      idle_.pop_back();
+      return connection;
+    }
+  }
+  try {
+    return std::make_unique<Connection>(where_, options_);
+  } catch (...) {
+    give_back(nullptr);
+    throw;
+  }
+}
+
+void ConnectionPool::give_back(std::unique_ptr<Connection> connection) noexcept {
+  const std::lock_guard lock(mutex_);
+  --lent_;
+  if (connection && connection->is_alive() && !connection->in_transaction())
+    idle_.push_back(std::move(connection));
+  changed_.notify_one();
+}
+
+void ConnectionPool::forget_idle() {
+  std::vector<std::unique_ptr<Connection>> dead;
+  const std::lock_guard lock(mutex_);
+  dead.swap(idle_);
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,82 @@
+#include "server/store/postgres/database/connection_string.hpp"
+
+#include <libpq-fe.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+struct FreeOptions {
+  void operator()(PQconninfoOption* options) const noexcept { PQconninfoFree(options); }
+};
+
+/// The first of several, and how many more there are.
+std::string first_of(const std::string& list) {
+  const auto others = std::ranges::count(list, ',');
+  const std::string first = list.substr(0, list.find(','));
+  return others == 0 ? first : first + " (and " + std::to_string(others) + " more)";
+}
+
+}  // namespace
+
+bool is_connection_string(std::string_view text) {
+  return text.starts_with("postgresql://") || text.starts_with("postgres://");
+}
+
+ConnectionString::ConnectionString(const std::string& text) {
+  char* why = nullptr;
+  const std::unique_ptr<PQconninfoOption, FreeOptions> options(PQconninfoParse(text.c_str(), &why));
+  PQfreemem(why);  // it may repeat a part of the text, and with it a password
+  if (!options || !is_connection_string(text))
+    throw Failure(ErrorCode::InvalidInput,
+                  "the store's address is no connection string that libpq can read; it looks like "
+                  "postgresql://USER@HOST:PORT/DATABASE?sslmode=verify-full, with special "
+                  "characters written as %XX");
+  for (const PQconninfoOption* option = options.get(); option->keyword != nullptr; ++option) {
+    if (option->val == nullptr)
+      continue;
+    parameters_.emplace_back(option->keyword, option->val);
+    // libpq marks with a star what is not to be shown while it is typed.
+    if (std::string_view(option->dispchar) == "*" && *option->val != '\0')
+      secrets_.emplace_back(option->val);
+  }
+  set_default("client_encoding", "UTF8");
+  set_default("fallback_application_name", "kinshipd");
+  set_default("connect_timeout", "3");
+  set_default("keepalives_idle", "10");
+  set_default("keepalives_interval", "5");
+  set_default("keepalives_count", "3");
+  set_default("tcp_user_timeout", "20000");
+  if (value_of("host").find(',') != std::string::npos)
+    set_default("target_session_attrs", "read-write");
+  const std::string user = value_of("user"), port = value_of("port");
+  const std::string host = value_of("host").empty() ? value_of("hostaddr") : value_of("host");
+  description_ = "postgresql://" + (user.empty() ? "" : user + "@") + first_of(host) +
+                 (port.empty() ? "" : ":" + port.substr(0, port.find(','))) + "/" +
+                 value_of("dbname");
+}
+
+void ConnectionString::set_default(std::string_view keyword, std::string_view value) {
+  if (value_of(keyword).empty())
+    parameters_.emplace_back(keyword, value);
+}
+
+std::string ConnectionString::value_of(std::string_view keyword) const {
+  const auto found =
+      std::ranges::find(parameters_, keyword, &std::pair<std::string, std::string>::first);
+  return found == parameters_.end() ? std::string() : found->second;
+}
+
+std::string ConnectionString::without_secrets(std::string message) const {
+  for (const std::string& secret : secrets_)
+    for (std::size_t at = message.find(secret); at != std::string::npos;
+         at = message.find(secret, at))
+      message.replace(at, secret.size(), "*");
+  return message;
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kinship::store::postgres {
+
+/// Whether a text names a PostgreSQL database: it begins with postgresql:// or postgres://.
+bool is_connection_string(std::string_view text);
+
+/// A connection string, taken apart by libpq. Only this object knows its passwords: what is said to
+/// people is description().
+class ConnectionString {
+ public:
+  /// \throws Failure(InvalidInput), which does not repeat the text, if libpq cannot read it.
+  explicit ConnectionString(const std::string& text);
+
+  /// "postgresql://user@host:port/database", of the first host and how many more there are; never
+  /// a password, nor other parameters.
+  const std::string& description() const noexcept { return description_; }
+
+  /// libpq's keywords and values, ours where the string says nothing: time limits for a connection
+  /// that is made or has died, the encoding, and with several hosts the one that can be written.
+  const std::vector<std::pair<std::string, std::string>>& parameters() const noexcept {
+    return parameters_;
+  }
+
+  /// A message without any of the passwords of this string.
+  std::string without_secrets(std::string message) const;
+
+ private:
+  void set_default(std::string_view keyword, std::string_view value);
+  std::string value_of(std::string_view keyword) const;
+
+  std::vector<std::pair<std::string, std::string>> parameters_;
+  std::vector<std::string> secrets_;
+  std::string description_;
+};
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "server/store/postgres/database/connection.hpp"
+
+namespace kinship::store::postgres {
+
+/// One file of schema/postgresql.
+struct Migration {
+  std::int64_t version = 0;  ///< 1, 2, 3, ... without gaps
+  std::string_view name;     ///< of the file, without ".sql"
+  std::string_view text;
+};
+
+/// All migrations that this binary knows, by version (written by cmake/embed_texts.cmake).
+std::span<const Migration> embedded_migrations();
+
+/// Applies those of `migrations` that a database lacks, all in one transaction, while no other
+/// server does. Where nothing is to be done nothing is written.
+/// \throws Failure(Storage) if the database is newer than `migrations`, or was made by a migration
+///         of another text, or has tables of our names that are not ours.
+void migrate(Connection& connection, std::span<const Migration> migrations);
+
+}  // namespace kinship::store::postgres

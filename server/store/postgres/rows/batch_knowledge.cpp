@@ -1,0 +1,286 @@
+#include "server/store/postgres/rows/batch_knowledge.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "server/store/values/columns.hpp"
+#include "server/store/values/path_content.hpp"
+#include "server/store/values/robot_columns.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+/// The distinct pairs of a batch, as columns.
+struct WantedPairs {
+  std::vector<std::string> tasks;
+  std::vector<std::int64_t> robots;
+  std::vector<std::int64_t> paths;  // that come
+};
+
+/// The distinct contents of a batch, as columns.
+struct WantedContents {
+  std::vector<std::string> tasks;
+  std::vector<std::int64_t> robots;
+  std::vector<Bytes> contents;
+};
+
+constexpr std::string_view kRobots =
+    "SELECT digest, id, dof, label FROM robot WHERE digest = ANY($1) ORDER BY id FOR KEY SHARE";
+
+constexpr std::string_view kBodies =
+    "SELECT report_uuid, body_sha256, machine FROM attempt WHERE report_uuid = ANY($1)";
+
+constexpr std::string_view kMakeTasks =
+    "INSERT INTO task (name) SELECT name FROM unnest($1) AS wanted (name)"
+    " WHERE NOT EXISTS (SELECT 1 FROM task WHERE task.name = wanted.name)"
+    " ORDER BY name COLLATE \"C\" ON CONFLICT (name) DO NOTHING";
+
+constexpr std::string_view kMakePairs =
+    "INSERT INTO experience (task_id, robot_id) SELECT task.id, wanted.robot_id"
+    " FROM unnest($1, $2) AS wanted (task, robot_id) JOIN task ON task.name = wanted.task"
+    " WHERE NOT EXISTS (SELECT 1 FROM experience AS old"
+    "  WHERE old.task_id = task.id AND old.robot_id = wanted.robot_id)"
+    " ORDER BY task.id, wanted.robot_id ON CONFLICT (task_id, robot_id) DO NOTHING";
+
+constexpr std::string_view kLockPairs =
+    "SELECT robot.digest, task.name, experience.task_id, experience.robot_id, experience.paths"
+    " FROM unnest($1, $2) AS wanted (task, robot_id) JOIN task ON task.name = wanted.task"
+    " JOIN experience ON experience.task_id = task.id AND experience.robot_id = wanted.robot_id"
+    " JOIN robot ON robot.id = experience.robot_id"
+    " ORDER BY experience.task_id, experience.robot_id FOR NO KEY UPDATE OF experience";
+
+constexpr std::string_view kReports =
+    "SELECT attempt.report_uuid, body_sha256, machine, attempt.received_ms, path_id,"
+    " scene.damaged_ms IS NOT NULL FROM attempt LEFT JOIN scene ON scene.id = attempt.scene_id"
+    " WHERE attempt.report_uuid = ANY($1)";
+
+constexpr std::string_view kRetired =
+    "SELECT report_uuid FROM retired_report WHERE report_uuid = ANY($1)";
+
+constexpr std::string_view kScenes =
+    "SELECT content_sha256, damaged_ms IS NULL FROM scene WHERE content_sha256 = ANY($1)";
+
+constexpr std::string_view kPathIds =
+    "SELECT nextval(pg_get_serial_sequence('path', 'id')) FROM generate_series(1, $1)";
+
+// Of the pairs that may have more than $4 paths in the end, those with the largest digests: all
+// that the batch can drop, and the one after, which is the threshold.
+constexpr std::string_view kLargest =
+    "SELECT robot.digest, task.name, kept.id, kept.content_sha256, kept.report_uuid,"
+    " kept.T_task_base, kept.dof, kept.waypoint_count"
+    " FROM unnest($1, $2, $3) AS wanted (task, robot_id, paths)"
+    " JOIN task ON task.name = wanted.task JOIN robot ON robot.id = wanted.robot_id"
+    " JOIN experience ON experience.task_id = task.id AND experience.robot_id = robot.id"
+    " CROSS JOIN LATERAL (SELECT * FROM path WHERE path.robot_id = experience.robot_id"
+    "  AND path.task_id = experience.task_id AND retired_ms IS NULL AND damaged_ms IS NULL"
+    "  ORDER BY content_sha256 DESC LIMIT CASE WHEN experience.paths + wanted.paths <= $4 THEN 0"
+    "   ELSE least(greatest(experience.paths - $4, 0) + wanted.paths, $5 * wanted.paths) + $5 + 1"
+    "   END) AS kept WHERE wanted.paths > 0";
+
+std::string paths_of_reports() {
+  return "SELECT " + std::string(kPathContentColumns) +
+         ", retired_ms IS NOT NULL, damaged_ms IS NOT NULL FROM path"
+         " WHERE id IN (SELECT path_id FROM attempt WHERE report_uuid = ANY($1))";
+}
+
+std::string paths_of_contents() {
+  return "SELECT " + std::string(kPathContentColumns) +
+         ", (SELECT digest FROM robot WHERE robot.id = path.robot_id), wanted.task, content_sha256"
+         " FROM unnest($1, $2, $3) AS wanted (task, wanted_robot, content)"
+         " JOIN task ON task.name = wanted.task JOIN path ON path.robot_id = wanted_robot"
+         " AND path.task_id = task.id AND path.content_sha256 = wanted.content"
+         " WHERE retired_ms IS NULL AND damaged_ms IS NULL";
+}
+
+std::vector<Bytes> uuids_of(PreparedAttempts attempts) {
+  std::vector<Bytes> uuids;
+  for (const PreparedAttempt* const each : attempts)
+    uuids.emplace_back(each->attempt.report_uuid.bytes);
+  return uuids;
+}
+
+std::vector<Bytes> robots_of(PreparedAttempts attempts) {
+  std::set<Digest> distinct;
+  std::vector<Bytes> robots;
+  for (const PreparedAttempt* const each : attempts)
+    if (distinct.insert(each->attempt.robot).second)
+      robots.emplace_back(each->attempt.robot.bytes);
+  return robots;
+}
+
+std::vector<Bytes> scenes_of(PreparedAttempts attempts) {
+  std::set<Digest> distinct;
+  std::vector<Bytes> scenes;
+  for (const PreparedAttempt* const each : attempts)
+    if (each->scene && distinct.insert(each->scene->content).second)
+      scenes.emplace_back(each->scene->content.bytes);
+  return scenes;
+}
+
+/// Those that may be written: of robots that are registered, and not known to be another report.
+std::vector<const PreparedAttempt*> promising(PreparedAttempts attempts,
+                                              const BatchKnowledge& known) {
+  std::vector<const PreparedAttempt*> rest;
+  for (const PreparedAttempt* const each : attempts) {
+    const auto robot = known.robots.find(each->attempt.robot);
+    const auto earlier = known.reports.find(each->attempt.report_uuid);
+    if (robot == known.robots.end() || (each->path && each->path->blob.dof != robot->second.dof) ||
+        (earlier != known.reports.end() && !is_again(*each, earlier->second)))
+      continue;
+    rest.push_back(each);
+  }
+  return rest;
+}
+
+WantedPairs pairs_of(PreparedAttempts attempts, const BatchKnowledge& known) {
+  std::map<std::pair<std::string, std::int64_t>, std::int64_t> paths;
+  for (const PreparedAttempt* const each : attempts)
+    paths[{each->attempt.task, known.robots.at(each->attempt.robot).id}] += each->path ? 1 : 0;
+  WantedPairs pairs;
+  for (const auto& [pair, count] : paths) {
+    pairs.tasks.push_back(pair.first);
+    pairs.robots.push_back(pair.second);
+    pairs.paths.push_back(count);
+  }
+  return pairs;
+}
+
+WantedContents contents_of(PreparedAttempts attempts, const BatchKnowledge& known) {
+  std::set<std::pair<PairName, Digest>> distinct;
+  WantedContents wanted;
+  for (const PreparedAttempt* const each : attempts) {
+    const PairName pair{each->attempt.robot, each->attempt.task};
+    if (!each->path || !distinct.insert({pair, each->path->content}).second)
+      continue;
+    wanted.tasks.push_back(each->attempt.task);
+    wanted.robots.push_back(known.robots.at(each->attempt.robot).id);
+    wanted.contents.emplace_back(each->path->content.bytes);
+  }
+  return wanted;
+}
+
+/// What decides which pairs are to be locked.
+void learn_robots(Connection& connection, PreparedAttempts attempts, BatchKnowledge& known) {
+  const std::array<Request, 2> requests = {Request{kRobots, Parameters(robots_of(attempts))},
+                                           Request{kBodies, Parameters(uuids_of(attempts))}};
+  const std::vector<Rows> rows = connection.query_all(requests);
+  for (const Row row : rows[0])
+    if (!is_removed_label(row.column_text(3)))
+      known.robots[id_of<Digest>(row.column_blob(0))] = {row.column_integer(1),
+                                                         row.column_integer(2)};
+  for (const Row row : rows[1])
+    known.reports[id_of<Uuid>(row.column_blob(0))] = {.body = id_of<Digest>(row.column_blob(1)),
+                                                      .machine = std::string(row.column_text(2))};
+}
+
+void take_pairs(const Rows& rows, BatchKnowledge& known) {
+  for (const Row row : rows)
+    known.pairs[{id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))}] = {
+        .key = {row.column_integer(2), row.column_integer(3)},
+        .paths = count_of(row, 4),
+        .contents = {},
+        .largest = {}};
+}
+
+void take_reports(const Rows& rows, const Rows& paths, BatchKnowledge& known) {
+  constexpr int kIsRetired = 8, kIsDamaged = 9;
+  std::map<std::int64_t, bool> vouched_for;
+  for (const Row row : paths)
+    vouched_for[row.column_integer(0)] =
+        row.column_integer(kIsRetired) != 0 ||
+        (row.column_integer(kIsDamaged) == 0 && has_right_path_crc(row));
+  known.reports.clear();
+  for (const Row row : rows) {
+    EarlierReport report{.body = id_of<Digest>(row.column_blob(1)),
+                         .machine = std::string(row.column_text(2)),
+                         .received_ms = row.column_integer(3),
+                         .path_id = optional_integer_of(row, 4),
+                         .is_scene_readable = row.column_integer(5) == 0};
+    if (report.path_id)
+      report.is_path_vouched_for = vouched_for[*report.path_id];
+    known.reports.emplace(id_of<Uuid>(row.column_blob(0)), std::move(report));
+  }
+}
+
+void take_contents(const Rows& rows, BatchKnowledge& known) {
+  constexpr int kRobot = 8, kTask = 9, kContent = 10;
+  for (const Row row : rows) {
+    Pair& pair = known.pairs.at(
+        {id_of<Digest>(row.column_blob(kRobot)), std::string(row.column_text(kTask))});
+    pair.contents[id_of<Digest>(row.column_blob(kContent))] = {row.column_integer(0),
+                                                               has_right_path_crc(row)};
+  }
+}
+
+void take_largest(const Rows& rows, BatchKnowledge& known) {
+  for (const Row row : rows)
+    known.pairs.at({id_of<Digest>(row.column_blob(0)), std::string(row.column_text(1))})
+        .largest.insert({id_of<Digest>(row.column_blob(3)), row.column_integer(2),
+                         crc_when_dropped(row.column_blob(4), row.column_blob(5),
+                                          row.column_integer(6), row.column_integer(7))});
+}
+
+void learn_pairs(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths,
+                 BatchKnowledge& known) {
+  const WantedPairs pairs = pairs_of(attempts, known);
+  const WantedContents contents = contents_of(attempts, known);
+  const std::string of_reports = paths_of_reports(), of_contents = paths_of_contents();
+  const Parameters uuids(uuids_of(attempts));
+  const auto paths = std::ranges::count_if(
+      attempts, [](const PreparedAttempt* each) { return each->path.has_value(); });
+  std::vector<Request> requests = {
+      {kMakeTasks, Parameters(pairs.tasks)},
+      {kMakePairs, Parameters(pairs.tasks, pairs.robots)},
+      {kLockPairs, Parameters(pairs.tasks, pairs.robots)},
+      // What follows sees what was committed before the locks were had.
+      {kReports, uuids},
+      {of_reports, uuids},
+      {kRetired, uuids},
+      {of_contents, Parameters(contents.tasks, contents.robots, contents.contents)},
+      {kScenes, Parameters(scenes_of(attempts))},
+      {kPathIds, Parameters(static_cast<std::int64_t>(paths))}};
+  if (max_paths > 0)
+    requests.push_back({kLargest, Parameters(pairs.tasks, pairs.robots, pairs.paths,
+                                             static_cast<std::int64_t>(max_paths),
+                                             static_cast<std::int64_t>(kMostDroppedAtOnce))});
+  const std::vector<Rows> rows = connection.query_all(requests);
+  take_pairs(rows[2], known);
+  take_reports(rows[3], rows[4], known);
+  for (const Row row : rows[5])
+    known.retired.insert(id_of<Uuid>(row.column_blob(0)));
+  take_contents(rows[6], known);
+  for (const Row row : rows[7])
+    known.scenes[id_of<Digest>(row.column_blob(0))] = row.column_integer(1) != 0;
+  for (const Row row : rows[8])
+    known.path_ids.push_back(row.column_integer(0));
+  if (max_paths > 0)
+    take_largest(rows[9], known);
+}
+
+}  // namespace
+
+BatchKnowledge learn(Connection& connection, PreparedAttempts attempts, std::uint64_t max_paths) {
+  BatchKnowledge known;
+  learn_robots(connection, attempts, known);
+  const std::vector<const PreparedAttempt*> rest = promising(attempts, known);
+  if (!rest.empty()) {
+    const auto refused = known.reports;
+    learn_pairs(connection, rest, max_paths, known);
+    known.reports.insert(refused.begin(), refused.end());
+  }
+  return known;
+}
+
+std::uint32_t crc_when_dropped(Bytes report_uuid, Bytes T_task_base, std::int64_t dof,
+                               std::int64_t waypoint_count) {
+  constexpr std::array<std::uint8_t, 1> kNone = {0};
+  constexpr std::int64_t kEncoding = 2;
+  return PathContent{report_uuid, T_task_base, dof, waypoint_count, kEncoding, Bytes(kNone)}.crc();
+}
+
+bool is_again(const PreparedAttempt& prepared, const EarlierReport& earlier) {
+  return earlier.body == prepared.body || (earlier.machine != prepared.attempt.machine &&
+                                           earlier.body == body_said_by(prepared, earlier.machine));
+}
+
+}  // namespace kinship::store::postgres

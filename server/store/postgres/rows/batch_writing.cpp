@@ -1,0 +1,350 @@
+#include "server/store/postgres/rows/batch_writing.hpp"
+
+#include <array>
+#include <deque>
+#include <string>
+
+#include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/values/codes.hpp"
+#include "server/store/values/path_content.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+using Integers = std::vector<std::int64_t>;
+using OptionalIntegers = std::vector<std::optional<std::int64_t>>;
+using Blobs = std::vector<Bytes>;
+using OptionalBlobs = std::vector<std::optional<Bytes>>;
+
+constexpr std::array<std::uint8_t, 1> kNoWaypoints = {0};
+
+// A scene that is damaged is written anew under its id: its paths and attempts have it again.
+constexpr std::string_view kWriteScenes =
+    "INSERT INTO scene (content_sha256, received_ms, size, encoding, crc32c, scene)"
+    " SELECT content, $1, size, encoding, crc, bytes"
+    " FROM unnest($2, $3, $4, $5, $6) AS new (content, size, encoding, crc, bytes)"
+    " ORDER BY content ON CONFLICT (content_sha256) DO UPDATE SET damaged_ms = NULL,"
+    " received_ms = excluded.received_ms, size = excluded.size, encoding = excluded.encoding,"
+    " crc32c = excluded.crc32c, scene = excluded.scene WHERE scene.damaged_ms IS NOT NULL";
+
+constexpr std::string_view kSetAside =
+    "UPDATE path SET damaged_ms = coalesce(damaged_ms, $1),"
+    " replaced_by = coalesce(new.replaced_by, path.replaced_by)"
+    " FROM unnest($2, $3) AS new (id, replaced_by) WHERE path.id = new.id";
+
+// What came with the damaged path, and what was answered with it, has the new one.
+constexpr std::string_view kFollowReplacement =
+    "UPDATE attempt SET path_id = new.replaced_by"
+    " FROM unnest($1, $2) AS new (id, replaced_by) JOIN path ON path.id = new.id"
+    " WHERE new.replaced_by IS NOT NULL AND attempt.report_uuid = path.report_uuid"
+    " AND attempt.path_id = new.id";
+constexpr std::string_view kFollowReplacementOfSame =
+    "UPDATE attempt SET path_id = new.replaced_by"
+    " FROM unnest($1, $2) AS new (id, replaced_by)"
+    " WHERE new.replaced_by IS NOT NULL AND attempt.path_id = new.id AND attempt.status = 2";
+
+constexpr std::string_view kDrop =
+    "UPDATE path SET retired_ms = $1, encoding = 2, crc32c = old.crc, waypoints = $2"
+    " FROM unnest($3, $4) AS old (id, crc) WHERE path.id = old.id";
+
+constexpr std::string_view kWritePaths =
+    "INSERT INTO path (id, task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
+    " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, retired_ms, scene_id)"
+    " SELECT new.id, new.task_id, new.robot_id, new.report_uuid, new.content, new.length,"
+    " new.T_task_base, new.dof, new.waypoint_count, new.encoding, new.crc, new.waypoints,"
+    " new.received_ms, new.retired_ms, scene.id"
+    " FROM unnest($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15) AS new (id,"
+    " task_id, robot_id, report_uuid, content, length, T_task_base, dof, waypoint_count, encoding,"
+    " crc, waypoints, received_ms, retired_ms, scene)"
+    " LEFT JOIN scene ON scene.content_sha256 = new.scene";
+
+constexpr std::string_view kWriteAttempts =
+    "INSERT INTO attempt (report_uuid, body_sha256, task_id, robot_id, path_id, status, machine,"
+    " T_task_base, outcome, planner, planner_options, planning_time_s, collision_checks,"
+    " projections, time_limit_s, arm, share, distribution_digest, distribution_revision,"
+    " received_ms, scene_id)"
+    " SELECT new.report_uuid, new.body, new.task_id, new.robot_id, new.path_id, new.status,"
+    " new.machine, new.T_task_base, new.outcome, new.planner, new.planner_options,"
+    " new.planning_time_s, new.collision_checks, new.projections, new.time_limit_s, new.arm,"
+    " new.share, new.distribution_digest, new.distribution_revision, $1, scene.id"
+    " FROM unnest($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18,"
+    " $19, $20, $21) WITH ORDINALITY AS new (report_uuid, body, task_id, robot_id, path_id,"
+    " status, machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
+    " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
+    " distribution_revision, scene, place)"
+    " LEFT JOIN scene ON scene.content_sha256 = new.scene"
+    " ORDER BY new.place ON CONFLICT (report_uuid) DO NOTHING";
+
+constexpr std::string_view kMend =
+    "UPDATE attempt SET path_id = new.path_id, status = new.status"
+    " FROM unnest($1, $2, $3) AS new (report_uuid, path_id, status)"
+    " WHERE attempt.report_uuid = new.report_uuid";
+
+// A resend is answered when this is where the first answer's rows are: it writes, so that its
+// COMMIT waits for the standby too.
+constexpr std::string_view kNoteResent =
+    "UPDATE attempt SET resent = resent + 1 WHERE report_uuid = ANY($1)";
+
+constexpr std::string_view kChangePairs =
+    "UPDATE experience SET changed_in = pg_current_xact_id(), generation = generation + "
+    "new.changed, paths = paths + new_paths,"
+    " attempts = attempts + new_attempts, dropped = dropped + new_dropped,"
+    " guided_attempts = guided_attempts + new.guided,"
+    " guided_solved = guided_solved + new.guided_solved,"
+    " guided_checks = guided_checks + new.guided_checks,"
+    " guided_checks_squared = guided_checks_squared + new.guided_squared,"
+    " guided_checks_of_solved = guided_checks_of_solved + new.guided_of_solved,"
+    " control_attempts = control_attempts + new.control,"
+    " control_solved = control_solved + new.control_solved,"
+    " control_checks = control_checks + new.control_checks,"
+    " control_checks_squared = control_checks_squared + new.control_squared,"
+    " control_checks_of_solved = control_checks_of_solved + new.control_of_solved"
+    " FROM unnest($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16) AS new ("
+    "task_id, robot_id, changed, new_paths, new_attempts, new_dropped, guided, guided_solved,"
+    " guided_checks, guided_squared, guided_of_solved, control, control_solved, control_checks,"
+    " control_squared, control_of_solved)"
+    " WHERE experience.task_id = new.task_id AND experience.robot_id = new.robot_id";
+
+/// Poses as blobs, which stay where they are while columns point to them.
+class PoseBlobs {
+ public:
+  std::optional<Bytes> add(const std::optional<Eigen::Isometry3d>& T_a_b) {
+    return blob_or_null(blobs_.emplace_back(optional_pose_blob(T_a_b)));
+  }
+
+ private:
+  std::deque<std::optional<std::vector<std::uint8_t>>> blobs_;
+};
+
+std::optional<Bytes> scene_of(const PreparedAttempt& prepared) {
+  if (!prepared.scene)
+    return std::nullopt;
+  return Bytes(prepared.scene->content.bytes);
+}
+
+Parameters scenes_in_columns(const BatchPlan& plan, std::int64_t now_ms) {
+  Blobs contents, bytes;
+  Integers sizes, encodings, crcs;
+  for (const auto& [content, scene] : plan.scenes) {
+    const auto encoding = static_cast<std::int64_t>(scene->blob.encoding);
+    contents.emplace_back(content.bytes);
+    bytes.emplace_back(scene->blob.bytes);
+    sizes.push_back(scene->blob.size);
+    encodings.push_back(encoding);
+    crcs.push_back(scene_crc(content.bytes, scene->blob.size, encoding, scene->blob.bytes));
+  }
+  return Parameters(now_ms, contents, sizes, encodings, crcs, bytes);
+}
+
+struct DamagedColumns {
+  Integers ids;
+  OptionalIntegers replaced_by;
+
+  explicit DamagedColumns(const BatchPlan& plan) {
+    for (const DamagedPath& path : plan.damaged) {
+      ids.push_back(path.id);
+      replaced_by.push_back(path.replaced_by);
+    }
+  }
+};
+
+Parameters dropped_in_columns(const BatchPlan& plan, std::int64_t now_ms) {
+  Integers ids, crcs;
+  for (const KeptPath& path : plan.dropped) {
+    ids.push_back(path.id);
+    crcs.push_back(path.crc_when_dropped);
+  }
+  return Parameters(now_ms, Bytes(kNoWaypoints), ids, crcs);
+}
+
+/// The columns of kWritePaths.
+class PathColumns {
+ public:
+  void add(const PlannedPath& path, std::int64_t now_ms) {
+    const PreparedPath& prepared = *path.from->path;
+    const Bytes uuid(path.from->attempt.report_uuid.bytes);
+    const std::optional<Bytes> pose = poses_.add(path.from->attempt.T_task_base);
+    PathContent content{uuid,
+                        pose.value_or(Bytes()),
+                        prepared.blob.dof,
+                        prepared.blob.waypoint_count,
+                        static_cast<std::int64_t>(prepared.blob.encoding),
+                        Bytes(prepared.blob.bytes)};
+    if (path.is_dropped) {
+      content.encoding = 2;
+      content.waypoints = Bytes(kNoWaypoints);
+    }
+    ids_.push_back(path.id);
+    tasks_.push_back(path.key.task_id);
+    robots_.push_back(path.key.robot_id);
+    uuids_.push_back(uuid);
+    contents_.emplace_back(prepared.content.bytes);
+    lengths_.push_back(prepared.length);
+    placements_.push_back(pose);
+    dofs_.push_back(content.dof);
+    counts_.push_back(content.waypoint_count);
+    encodings_.push_back(content.encoding);
+    crcs_.push_back(content.crc());
+    waypoints_.push_back(content.waypoints);
+    received_.push_back(path.received_ms);
+    retired_.push_back(path.is_dropped || path.is_retired ? std::optional(now_ms) : std::nullopt);
+    scenes_.push_back(scene_of(*path.from));
+  }
+
+  Parameters parameters() const {
+    return Parameters(ids_, tasks_, robots_, uuids_, contents_, lengths_, placements_, dofs_,
+                      counts_, encodings_, crcs_, waypoints_, received_, retired_, scenes_);
+  }
+
+ private:
+  PoseBlobs poses_;
+  Integers ids_, tasks_, robots_, dofs_, counts_, encodings_, crcs_, received_;
+  OptionalIntegers retired_;
+  std::vector<double> lengths_;
+  Blobs uuids_, contents_, waypoints_;
+  OptionalBlobs placements_, scenes_;
+};
+
+/// The columns of kWriteAttempts.
+class AttemptColumns {
+ public:
+  void add(const PlannedAttempt& planned) {
+    const Attempt& attempt = planned.from->attempt;
+    uuids_.emplace_back(attempt.report_uuid.bytes);
+    bodies_.emplace_back(planned.from->body.bytes);
+    tasks_.push_back(planned.key.task_id);
+    robots_.push_back(planned.key.robot_id);
+    paths_.push_back(planned.path_id);
+    statuses_.push_back(static_cast<std::int64_t>(planned.status));
+    machines_.push_back(attempt.machine);
+    placements_.push_back(poses_.add(attempt.T_task_base));
+    scenes_.push_back(scene_of(*planned.from));
+    add(attempt.record);
+  }
+
+  Parameters parameters(std::int64_t received_ms) const {
+    return Parameters(received_ms, uuids_, bodies_, tasks_, robots_, paths_, statuses_, machines_,
+                      placements_, outcomes_, planners_, options_, times_, checks_, projections_,
+                      limits_, arms_, shares_, distributions_, revisions_, scenes_);
+  }
+
+ private:
+  void add(const PlanningRecord& record) {
+    outcomes_.push_back(code_of(record.outcome));
+    planners_.push_back(record.planner);
+    options_.push_back(record.planner_options);
+    times_.push_back(record.planning_time_s);
+    checks_.push_back(static_cast<std::int64_t>(record.collision_checks));
+    projections_.push_back(static_cast<std::int64_t>(record.projections));
+    limits_.push_back(record.time_limit_s);
+    arms_.push_back(code_of(record.sampling_mode));
+    shares_.push_back(record.share);
+    distributions_.push_back(record.distribution_id
+                                 ? std::optional(Bytes(record.distribution_id->bytes))
+                                 : std::nullopt);
+    revisions_.push_back(static_cast<std::int64_t>(record.distribution_revision));
+  }
+
+  PoseBlobs poses_;
+  Integers tasks_, robots_, statuses_, outcomes_, checks_, projections_, arms_, revisions_;
+  OptionalIntegers paths_;
+  std::vector<double> times_, limits_, shares_;
+  std::vector<std::string> machines_, planners_, options_;
+  Blobs uuids_, bodies_;
+  OptionalBlobs placements_, distributions_, scenes_;
+};
+
+Parameters mended_in_columns(const BatchPlan& plan) {
+  Blobs uuids;
+  OptionalIntegers paths;
+  Integers statuses;
+  for (const MendedAttempt& attempt : plan.mended) {
+    uuids.emplace_back(attempt.report_uuid.bytes);
+    paths.push_back(attempt.path_id);
+    statuses.push_back(static_cast<std::int64_t>(attempt.status));
+  }
+  return Parameters(uuids, paths, statuses);
+}
+
+/// The columns of what a sampling mode cost.
+struct TotalsColumns {
+  Integers attempts, solved;
+  std::vector<double> checks, squared, of_solved;
+
+  void add(const ModeTotals& totals) {
+    attempts.push_back(static_cast<std::int64_t>(totals.attempts));
+    solved.push_back(static_cast<std::int64_t>(totals.solved));
+    checks.push_back(totals.checks);
+    squared.push_back(totals.checks_squared);
+    of_solved.push_back(totals.checks_of_solved);
+  }
+};
+
+Parameters changes_in_columns(const BatchPlan& plan) {
+  Integers tasks, robots, changed, paths, attempts, dropped;
+  TotalsColumns guided, control;
+  for (const auto& [key, change] : plan.changes) {
+    tasks.push_back(key.task_id);
+    robots.push_back(key.robot_id);
+    changed.push_back(change.is_changed ? 1 : 0);
+    paths.push_back(change.paths);
+    attempts.push_back(change.attempts);
+    dropped.push_back(change.dropped);
+    guided.add(change.guided);
+    control.add(change.control);
+  }
+  return Parameters(tasks, robots, changed, paths, attempts, dropped, guided.attempts,
+                    guided.solved, guided.checks, guided.squared, guided.of_solved,
+                    control.attempts, control.solved, control.checks, control.squared,
+                    control.of_solved);
+}
+
+std::vector<Request> requests_of(const BatchPlan& plan, std::int64_t now_ms) {
+  std::vector<Request> requests;
+  if (!plan.scenes.empty())
+    requests.push_back({kWriteScenes, scenes_in_columns(plan, now_ms)});
+  if (!plan.damaged.empty()) {
+    const DamagedColumns damaged(plan);
+    requests.push_back({kSetAside, Parameters(now_ms, damaged.ids, damaged.replaced_by)});
+  }
+  if (!plan.dropped.empty())
+    requests.push_back({kDrop, dropped_in_columns(plan, now_ms)});
+  if (!plan.paths.empty()) {
+    PathColumns columns;
+    for (const PlannedPath& path : plan.paths)
+      columns.add(path, now_ms);
+    requests.push_back({kWritePaths, columns.parameters()});
+  }
+  if (!plan.damaged.empty()) {
+    const DamagedColumns damaged(plan);
+    const Parameters parameters(damaged.ids, damaged.replaced_by);
+    requests.push_back({kFollowReplacement, parameters});
+    requests.push_back({kFollowReplacementOfSame, parameters});
+  }
+  if (!plan.mended.empty())
+    requests.push_back({kMend, mended_in_columns(plan)});
+  if (!plan.resent.empty()) {
+    Blobs uuids;
+    for (const Uuid& uuid : plan.resent)
+      uuids.emplace_back(uuid.bytes);
+    requests.push_back({kNoteResent, Parameters(uuids)});
+  }
+  if (!plan.changes.empty())
+    requests.push_back({kChangePairs, changes_in_columns(plan)});
+  return requests;
+}
+
+}  // namespace
+
+void write_plan(Connection& connection, const BatchPlan& plan, std::int64_t now_ms) {
+  std::vector<Request> requests = requests_of(plan, now_ms);
+  AttemptColumns columns;
+  for (const PlannedAttempt& attempt : plan.attempts)
+    columns.add(attempt);
+  requests.push_back({kWriteAttempts, columns.parameters(now_ms)});
+  const std::vector<Rows> rows = connection.query_all(requests);
+  if (rows.back().changed() != std::ssize(plan.attempts))
+    throw PostgresError("40001", "another server wrote one of these reports meanwhile");
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,48 @@
+#include "server/store/values/audit_texts.hpp"
+
+#include <utility>
+
+#include "proto/types/names.hpp"
+
+namespace kinship::store {
+
+AuditEntry cut_to_fit(AuditEntry entry) {
+  const auto cut = [](std::string& text, std::size_t limit) { text = cut_text(text, limit); };
+  for (std::string* const word : {&entry.name, &entry.role, &entry.verb})
+    cut(*word, kMaxWordBytes);
+  cut(entry.client, kMaxMachineBytes);
+  cut(entry.target, kMaxFileNameBytes);
+  for (std::string* const message : {&entry.before, &entry.after, &entry.message})
+    cut(*message, kMaxMessageBytes);
+  return entry;
+}
+
+std::string in_number(std::int64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string describe_paths(std::string_view task, std::int64_t paths) {
+  return "task '" + std::string(task) + "': " + in_number(paths, "path");
+}
+
+std::string describe_robot(std::string_view label, const Digest& robot, std::int64_t paths,
+                           std::int64_t attempts) {
+  return "'" + std::string(label) + "' (" + robot.short_hex() + "): " + in_number(paths, "path") +
+         ", " + in_number(attempts, "attempt");
+}
+
+std::string describe_removal(const RobotRemoval& removal) {
+  const std::string rest =
+      in_number(static_cast<std::int64_t>(removal.distributions), "distribution") + " gone";
+  if (removal.is_deleted)
+    return "deleted, " + rest;
+  return "removed, " + in_number(static_cast<std::int64_t>(removal.paths), "path") + " retired, " +
+         rest;
+}
+
+std::string describe_distribution(const Distribution& distribution) {
+  return "task '" + distribution.task + "', robot " + distribution.robot.short_hex() +
+         ": revision " + std::to_string(distribution.revision);
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "proto/types/audit.hpp"
+#include "server/store/store.hpp"
+
+/// What entries of the audit log say of an act.
+namespace kinship::store {
+
+/// An entry whose texts fit.
+AuditEntry cut_to_fit(AuditEntry entry);
+
+/// "1 path", "2 paths".
+std::string in_number(std::int64_t count, const std::string& noun);
+
+std::string describe_paths(std::string_view task, std::int64_t paths);
+
+/// A robot as it is before it is removed.
+std::string describe_robot(std::string_view label, const Digest& robot, std::int64_t paths,
+                           std::int64_t attempts);
+
+std::string describe_removal(const RobotRemoval& removal);
+
+/// A distribution as it is before it is evicted.
+std::string describe_distribution(const Distribution& distribution);
+
+}  // namespace kinship::store

@@ -1,0 +1,53 @@
+#include "server/store/values/history_seal.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "proto/types/sha256.hpp"
+
+namespace kinship::store {
+namespace {
+
+constexpr std::size_t kUuidBytes = 16, kPositionBytes = 8, kMarkSealBytes = 16;
+constexpr std::size_t kMarkBytes = kUuidBytes + kPositionBytes + kMarkSealBytes;
+
+/// HMAC (RFC 2104) with SHA-256, whose block has 64 bytes.
+Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
+  std::array<std::uint8_t, 64> inner{}, outer{};
+  std::copy(key.bytes.begin(), key.bytes.end(), inner.begin());
+  outer = inner;
+  for (std::uint8_t& byte : inner)
+    byte ^= 0x36;
+  for (std::uint8_t& byte : outer)
+    byte ^= 0x5c;
+  const Digest within = Sha256().add(std::span<const std::uint8_t>(inner)).add(message).finish();
+  return Sha256().add(std::span<const std::uint8_t>(outer)).add(within).finish();
+}
+
+}  // namespace
+
+HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point) {
+  HistoryMark mark(point.run.bytes.begin(), point.run.bytes.end());
+  for (std::size_t i = 0; i < kPositionBytes; ++i)
+    mark.push_back(static_cast<std::uint8_t>(point.position >> (8 * i)));
+  std::vector<std::uint8_t> message(epoch.bytes.begin(), epoch.bytes.end());
+  message.insert(message.end(), mark.begin(), mark.end());
+  const Digest whole = hmac(key, message);
+  mark.insert(mark.end(), whole.bytes.begin(), whole.bytes.begin() + kMarkSealBytes);
+  return mark;
+}
+
+std::optional<HistoryPoint> open_seal(const Digest& key, const Uuid& epoch,
+                                      const HistoryMark& mark) {
+  if (mark.size() != kMarkBytes)
+    return std::nullopt;
+  HistoryPoint point;
+  std::copy_n(mark.begin(), kUuidBytes, point.run.bytes.begin());
+  for (std::size_t i = 0; i < kPositionBytes; ++i)
+    point.position |= static_cast<std::uint64_t>(mark[kUuidBytes + i]) << (8 * i);
+  if (seal(key, epoch, point) != mark)
+    return std::nullopt;
+  return point;
+}
+
+}  // namespace kinship::store

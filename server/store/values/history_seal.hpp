@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+
+#include "proto/types/conversations.hpp"
+#include "proto/types/digest.hpp"
+#include "server/store/values/history_point.hpp"
+
+namespace kinship::store {
+
+/// A point as bytes for clients, with a seal (HMAC-SHA-256 of epoch, run and position, its first 16
+/// bytes) that only this store can make: nobody can name a point at which the store never was.
+/// \param key  of the store, secret.
+HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point);
+
+/// \return empty unless the mark was sealed with this key in this epoch.
+std::optional<HistoryPoint> open_seal(const Digest& key, const Uuid& epoch,
+                                      const HistoryMark& mark);
+
+}  // namespace kinship::store

@@ -1,0 +1,99 @@
+#include "server/store/values/prepared_attempt.hpp"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "proto/types/field_digest.hpp"
+#include "proto/types/pose.hpp"
+#include "proto/types/sha256.hpp"
+
+namespace kinship::store {
+namespace {
+
+std::optional<std::string> reason_against(const Attempt& attempt) {
+  if (const std::optional<Error> error = find_fault(attempt))
+    return error->message;
+  constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const PlanningRecord& record = attempt.record;
+  for (const std::uint64_t counter :
+       {record.collision_checks, record.projections, record.distribution_revision})
+    if (counter > kLargest)
+      return "counter " + std::to_string(counter) + " exceeds " + std::to_string(kLargest);
+  return std::nullopt;
+}
+
+double length_of(const Eigen::MatrixXd& waypoints) {
+  const Eigen::Index segments = waypoints.cols() - 1;
+  return (waypoints.rightCols(segments) - waypoints.leftCols(segments)).colwise().norm().sum();
+}
+
+/// What makes a path new: its waypoints and the cell of its placement. Waypoints alone would drop
+/// the same motion at another placement, which passes through other poses of the task.
+Digest content_digest(const Digest& waypoints,
+                      const std::optional<Eigen::Isometry3d>& T_task_base) {
+  Sha256 hash;
+  hash.add(waypoints).add(std::uint64_t{T_task_base ? 1U : 0U});
+  if (T_task_base) {
+    const Eigen::MatrixXd placement = snapped(*T_task_base).matrix().topRows<3>();  // 3 x 4
+    hash.add(placement);
+  }
+  return hash.finish();
+}
+
+Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& path,
+                   const std::optional<PreparedScene>& scene) {
+  Sha256 hash;
+  hash.add(attempt.robot).add(attempt.machine).add(attempt.task);
+  hash.add(std::uint64_t{attempt.T_task_base ? 1U : 0U});
+  if (attempt.T_task_base)
+    for (const double number : to_pose_array(*attempt.T_task_base))
+      hash.add(number);
+  add_fields(attempt.record, hash);
+  if (path)
+    hash.add(path->waypoints);  // the placement is in it already, unsnapped
+  if (scene)
+    hash.add(scene->content);
+  return hash.finish();
+}
+
+}  // namespace
+
+Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine) {
+  Attempt said = prepared.attempt;
+  said.machine = machine;
+  return body_digest(said, prepared.path, prepared.scene);
+}
+
+Result<PreparedAttempt> prepare(Attempt attempt) {
+  if (auto reason = reason_against(attempt))
+    return Error{ErrorCode::InvalidInput,
+                 "attempt " + attempt.report_uuid.text() + ": " + std::move(*reason)};
+  std::optional<PreparedPath> path;
+  if (attempt.path) {
+    const Eigen::MatrixXd& waypoints = attempt.path->waypoints();
+    const Digest digest = Sha256().add(waypoints).finish();
+    path = PreparedPath{digest, content_digest(digest, attempt.T_task_base), length_of(waypoints),
+                        encode_waypoints(waypoints)};
+  }
+  std::optional<PreparedScene> scene;
+  if (attempt.scene)
+    scene = PreparedScene{content_digest(*attempt.scene), encode_scene(*attempt.scene)};
+  const Digest body = body_digest(attempt, path, scene);
+  attempt.path.reset();
+  attempt.scene.reset();
+  return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene), {}, false};
+}
+
+Result<PreparedAttempt> prepare(SharedReport report) {
+  Result<PreparedAttempt> result = prepare(std::move(report.attempt));
+  if (!result)
+    return result;
+  PreparedAttempt prepared = std::move(result).value();
+  prepared.body = report.body;
+  prepared.received_ms = report.received_ms;
+  prepared.is_retired = report.is_retired;
+  return prepared;
+}
+
+}  // namespace kinship::store

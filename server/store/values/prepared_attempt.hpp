@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "proto/types/attempt.hpp"
+#include "proto/types/result.hpp"
+#include "server/store/shared_report.hpp"
+#include "server/store/values/scene_blob.hpp"
+#include "server/store/values/waypoint_blob.hpp"
+
+namespace kinship::store {
+
+/// A path ready to be written.
+struct PreparedPath {
+  Digest waypoints;   ///< of the waypoints alone
+  Digest content;     ///< and of the snapped placement: kept once per robot and task
+  double length = 0;  ///< joint units
+  WaypointBlob blob;
+};
+
+/// A scene ready to be written.
+struct PreparedScene {
+  Digest content;  ///< kept once
+  SceneBlob blob;
+};
+
+/// An attempt with all that can be computed before the writer has it.
+struct PreparedAttempt {
+  Attempt attempt;  ///< without its path and scene
+  Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
+  std::optional<PreparedPath> path;
+  std::optional<PreparedScene> scene;
+  std::optional<std::int64_t> received_ms;  ///< by the store that had it first; missing: now
+  bool is_retired = false;                  ///< its path, elsewhere
+};
+
+/// The body as it would be if another machine said the same.
+Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);
+
+/// \return the reason if it cannot be stored: what find_fault() says, or a counter over 2^63.
+Result<PreparedAttempt> prepare(Attempt attempt);
+/// The same of what another store has: with the body that its robot sent.
+Result<PreparedAttempt> prepare(SharedReport report);
+
+}  // namespace kinship::store

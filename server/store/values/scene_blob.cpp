@@ -1,0 +1,184 @@
+#include "server/store/values/scene_blob.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "server/store/values/byte_stream.hpp"
+#include "server/store/values/compression.hpp"
+#include "server/store/values/crc32c.hpp"
+
+namespace kinship::store {
+namespace {
+
+// Written first. A scene without a constraint is written as ever, so that older servers read it.
+constexpr std::uint64_t kPlainFormat = 1;
+constexpr std::uint64_t kConstraintFormat = 2;
+/// Says whether there is a constraint, and of each thing whether it was fitted around a mesh. A
+/// scene of exact things is written as ever.
+constexpr std::uint64_t kApproximateFormat = 3;
+/// Of the largest scene: a solid takes at most 112 bytes beside its name here, 96 for
+/// kMaxSceneBytes.
+constexpr std::int64_t kMaxPlainBytes = std::int64_t{1} << 20U;
+
+void add(ByteWriter& out, const std::string& name, const Shape& shape, const Eigen::Isometry3d& T) {
+  const ShapeNumbers numbers = to_numbers(shape);
+  out.add(name).add(std::uint64_t{numbers.kind});
+  for (const double size : numbers.sizes)
+    out.add(size);
+  out.add(std::span<const std::uint8_t>(pose_blob(T)));
+}
+
+void add(ByteWriter& out, const TaskSpaceRegion& constraint) {
+  out.add(std::span<const std::uint8_t>(pose_blob(constraint.T_task_region)));
+  out.add(std::span<const std::uint8_t>(pose_blob(constraint.T_region_end)));
+  for (const double bound : constraint.bounds.reshaped())
+    out.add(bound);
+}
+
+std::size_t read_count(ByteReader& in, std::size_t limit) {
+  const std::uint64_t count = in.integer();
+  if (count > limit)
+    throw std::out_of_range("scene: " + std::to_string(count) + " entries");
+  return count;
+}
+
+Eigen::Isometry3d read_pose(ByteReader& in) {
+  std::array<std::uint8_t, 7 * sizeof(double)> pose{};
+  in.bytes(pose);
+  const std::optional<Eigen::Isometry3d> T = pose_from_blob(pose);
+  if (!T)
+    throw std::out_of_range("scene: seven numbers that are no pose");
+  return *T;
+}
+
+/// name, shape and pose, as SceneObject and HeldObject begin.
+template <typename Thing>
+Thing read_thing(ByteReader& in) {
+  std::string name = in.text(kMaxLinkNameBytes);
+  ShapeNumbers numbers;
+  numbers.kind = read_count(in, std::variant_size_v<Shape> - 1);
+  for (double& size : numbers.sizes)
+    size = in.real();
+  const Shape shape = to_shape(numbers);
+  return {std::move(name), shape, read_pose(in)};
+}
+
+TaskSpaceRegion read_constraint(ByteReader& in) {
+  TaskSpaceRegion constraint;
+  constraint.T_task_region = read_pose(in);
+  constraint.T_region_end = read_pose(in);
+  for (double& bound : constraint.bounds.reshaped())
+    bound = in.real();
+  return constraint;
+}
+
+bool is_approximate(const RecordedScene& scene) {
+  return std::ranges::any_of(scene.objects, &SceneObject::approximate) ||
+         std::ranges::any_of(scene.held, &HeldObject::approximate);
+}
+
+std::uint64_t format_of(const RecordedScene& scene) {
+  if (is_approximate(scene))
+    return kApproximateFormat;
+  return scene.constraint ? kConstraintFormat : kPlainFormat;
+}
+
+RecordedScene read_scene(ByteReader& in) {
+  const std::uint64_t format = in.integer();
+  if (format < kPlainFormat || format > kApproximateFormat)
+    throw std::out_of_range("scene: unknown format");
+  RecordedScene scene;
+  for (std::size_t count = read_count(in, kMaxSceneObjects); count > 0; --count)
+    scene.objects.push_back(read_thing<SceneObject>(in));
+  for (std::size_t count = read_count(in, kMaxHeldObjects); count > 0; --count)
+    scene.held.push_back(read_thing<HeldObject>(in));
+  for (std::size_t count = read_count(in, kMaxAllowedPairs); count > 0; --count) {
+    std::string first = in.text(kMaxLinkNameBytes);
+    scene.allowed_collisions.emplace_back(std::move(first), in.text(kMaxLinkNameBytes));
+  }
+  if (format == kConstraintFormat || (format == kApproximateFormat && read_count(in, 1) == 1))
+    scene.constraint = read_constraint(in);
+  if (format == kApproximateFormat) {
+    for (SceneObject& object : scene.objects)
+      object.approximate = read_count(in, 1) == 1;
+    for (HeldObject& held : scene.held)
+      held.approximate = read_count(in, 1) == 1;
+  }
+  if (!in.at_end())
+    throw std::out_of_range("scene: bytes after its end");
+  return scene;
+}
+
+}  // namespace
+
+SceneBlob encode_scene(const RecordedScene& scene) {
+  ByteWriter out;
+  const std::uint64_t format = format_of(scene);
+  out.add(format);
+  out.add(std::uint64_t{scene.objects.size()});
+  for (const SceneObject& object : scene.objects)
+    add(out, object.name, object.shape, object.T_task_object);
+  out.add(std::uint64_t{scene.held.size()});
+  for (const HeldObject& held : scene.held)
+    add(out, held.name, held.shape, held.T_transfer_object);
+  out.add(std::uint64_t{scene.allowed_collisions.size()});
+  for (const auto& [first, second] : scene.allowed_collisions)
+    out.add(first).add(second);
+  if (format == kApproximateFormat)
+    out.add(std::uint64_t{scene.constraint ? 1U : 0U});
+  if (scene.constraint)
+    add(out, *scene.constraint);
+  if (format == kApproximateFormat) {
+    for (const SceneObject& object : scene.objects)
+      out.add(std::uint64_t{object.approximate ? 1U : 0U});
+    for (const HeldObject& held : scene.held)
+      out.add(std::uint64_t{held.approximate ? 1U : 0U});
+  }
+  SceneBlob blob;
+  blob.size = std::ssize(out.bytes());
+  if (std::optional<std::vector<std::uint8_t>> compressed = compress(out.bytes())) {
+    blob.encoding = SceneEncoding::Zstd;
+    blob.bytes = std::move(*compressed);
+  } else {
+    blob.bytes = out.bytes();
+  }
+  return blob;
+}
+
+std::optional<RecordedScene> decode_scene(std::int64_t size, std::int64_t encoding,
+                                          std::span<const std::uint8_t> bytes) {
+  if (size < 1 || size > kMaxPlainBytes)
+    return std::nullopt;
+  std::optional<std::vector<std::uint8_t>> plain;
+  if (encoding == static_cast<std::int64_t>(SceneEncoding::Zstd)) {
+    plain = decompress(bytes, static_cast<std::size_t>(size));
+    if (!plain)
+      return std::nullopt;
+    bytes = *plain;
+  } else if (encoding != static_cast<std::int64_t>(SceneEncoding::Plain) ||
+             std::ssize(bytes) != size) {
+    return std::nullopt;
+  }
+  try {
+    ByteReader in(bytes);
+    RecordedScene scene = read_scene(in);
+    if (check_scene(scene))
+      return std::nullopt;
+    return scene;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+std::uint32_t scene_crc(Bytes content, std::int64_t size, std::int64_t encoding, Bytes scene) {
+  ByteWriter header;
+  header.add(content);
+  for (const std::int64_t number : {size, encoding})
+    header.add(static_cast<std::uint64_t>(number));
+  return crc32c(scene, crc32c(header.bytes()));
+}
+
+}  // namespace kinship::store

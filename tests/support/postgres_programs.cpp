@@ -1,0 +1,63 @@
+#include "tests/support/postgres_programs.hpp"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace kinship::test {
+namespace {
+
+// Where Debian has them; its wrappers in /usr/bin are for clusters of the system.
+constexpr const char* kPostgresFolder = "/usr/lib/postgresql/15/bin";
+constexpr const char* kBouncer = "/usr/sbin/pgbouncer";
+constexpr const char* kSetpriv = "/usr/bin/setpriv";
+constexpr const char* kUser = "postgres";
+
+bool may_run(const std::string& program) { return access(program.c_str(), X_OK) == 0; }
+
+}  // namespace
+
+std::string missing_postgres() {
+  for (const char* const name : {"initdb", "postgres", "pg_basebackup", "pg_rewind"})
+    if (!may_run(postgres_program(name)))
+      return "no " + postgres_program(name) + " here (Debian package postgresql-15)";
+  if (!may_run(kSetpriv))
+    return std::string("no ") + kSetpriv + " here (Debian package util-linux)";
+  if (geteuid() == 0 && getpwnam(kUser) == nullptr)  // NOLINT(concurrency-mt-unsafe)
+    return "PostgreSQL does not run as root, and there is no user postgres";
+  return "";
+}
+
+std::string missing_pgbouncer() {
+  return may_run(kBouncer) ? missing_postgres()
+                           : std::string("no ") + kBouncer + " here (Debian package pgbouncer)";
+}
+
+std::string postgres_program(const std::string& name) {
+  return std::string(kPostgresFolder) + "/" + name;
+}
+
+std::string pgbouncer_program() { return kBouncer; }
+
+std::vector<std::string> as_postgres(std::vector<std::string> command) {
+  std::vector<std::string> words = {kSetpriv};
+  if (geteuid() == 0)
+    for (const char* const option : {"--reuid=postgres", "--regid=postgres", "--init-groups"})
+      words.emplace_back(option);
+  words.emplace_back("--pdeathsig=QUIT");
+  words.emplace_back("--");
+  words.insert(words.end(), command.begin(), command.end());
+  return words;
+}
+
+void give_to_postgres(const std::filesystem::path& folder) {
+  if (geteuid() != 0)
+    return;
+  const passwd* const user = getpwnam(kUser);  // NOLINT(concurrency-mt-unsafe)
+  if (user == nullptr || chown(folder.c_str(), user->pw_uid, user->pw_gid) != 0)
+    throw std::system_error(errno, std::system_category(), "cannot give away " + folder.string());
+}
+
+}  // namespace kinship::test
