@@ -76,7 +76,9 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       ingest_(*store_, robots_, short_task_pool_, ingest_options()),
       jobs_(options_.clock, job_options(options_)),
       administration_(administration_parts()),
-      reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}) {}
+      reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}) {
+  start_forwarder();
+}
 
 Service::~Service() { shutdown(); }
 
@@ -147,12 +149,7 @@ Administration::Parts Service::administration_parts() {
               },
           .rehearsal = [this](const Digest& id) { return rehearsals_.find(id); },
           .forget_distribution = [this](const Digest& id) { catalog_.evict(id); },
-          .forget_task =
-              [this](const std::string& task) {
-                experience_.forget(task);
-                rehearsals_.forget(task);
-                catalog_.forget(task);
-              },
+          .forget_task = [this](const std::string& task) { forget_task(task); },
           .forget_robot =
               [this](const Digest& robot) {
                 catalog_.forget_robot(robot);
@@ -167,7 +164,21 @@ Administration::Parts Service::administration_parts() {
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
                 events_.tell(EventKind::Administration, task, {}, [&] { return what; });
+                if (forwarder_)
+                  forwarder_->wake();
               }};
+}
+
+void Service::new_experience(std::string_view task) {
+  experience_.new_experience(task);
+  rehearsals_.new_experience(task);
+  catalog_.new_experience(task);
+}
+
+void Service::forget_task(const std::string& task) {
+  experience_.forget(task);
+  rehearsals_.forget(task);
+  catalog_.forget(task);
 }
 
 void Service::answered(std::span<const catalog::AttemptCost> costs,
@@ -177,6 +188,8 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
         receipts[i].status == ReceiptStatus::Recorded)
       advice_.add(costs[i]);
   publish_report(events_, robots_, costs, receipts);
+  if (forwarder_)
+    forwarder_->wake();
 }
 
 void Service::register_robot(RobotDescription description,
@@ -283,6 +296,8 @@ catalog::FetchDone Service::of_this_epoch(catalog::FetchDone done) const {
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
+  if (forwarder_ && used_tasks_.note(request.task, options_.clock.unix_ms()))
+    forwarder_->wake_for_task();
   // Shared by those who ask and answer: they may be on two threads, in either order.
   const auto watch = std::make_shared<FetchWatch>(options_.clock);
   done = [this, watch, client = std::string(catalog::client_of(waiter)),
@@ -361,6 +376,8 @@ ServerStatus Service::status() const {
   status.troubles = troubles_.counts();
   status.dropped_paths = store.dropped_paths;
   status.bounds = bounds(store);
+  if (forwarder_)
+    status.upstream = forwarder_->status(store.attempts);
   return status;
 }
 
@@ -440,6 +457,7 @@ void Service::log_fit(const Distribution& distribution) const {
 void Service::shutdown() {
   using runtime::WorkerPool;
   stop_source_.request_stop();  // resets
+  stop_forwarder();
   robots_.stop();
   catalog_.stop();
   experience_.stop();  // a rehearsal waits for it

@@ -31,9 +31,18 @@
 #include "server/service/ingest.hpp"
 #include "server/service/jobs.hpp"
 #include "server/service/measures.hpp"
+#include "server/sites/forwarder.hpp"
+#include "server/sites/used_tasks.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
+
+/// The memory above a site.
+struct UpstreamOptions {
+  std::function<std::unique_ptr<store::Store>()> open;  ///< empty: there is none
+  std::string name;                                     ///< for people, without passwords
+  std::vector<std::string> tasks;  ///< patterns of tasks whose experience always comes down
+};
 
 struct ServiceOptions {
   std::string version;
@@ -52,6 +61,7 @@ struct ServiceOptions {
   catalog::CatalogState::Limits catalog;
   catalog::ExperienceBook::Limits experience;
   BackupPlace backups;
+  UpstreamOptions upstream;
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;
@@ -154,6 +164,15 @@ class Service {
   void log_fit(const Distribution& distribution) const;
   void expose_use(metrics::Exposition& page) const;
   void expose_guidance(metrics::Exposition& page) const;
+  void new_experience(std::string_view task);
+  void forget_task(const std::string& task);
+  void start_forwarder();
+  void stop_forwarder();
+  void tell_line(std::string_view line);
+  void commit_from_above(std::vector<store::SharedReport> reports, store::Store::ReportsDone done);
+  void came_from_above(std::span<const catalog::AttemptCost> costs,
+                       std::span<const Receipt> receipts);
+  void expose_upstream(metrics::Exposition& page, std::uint64_t attempts) const;
 
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
@@ -176,7 +195,9 @@ class Service {
   Ingest ingest_;
   Jobs jobs_;
   Administration administration_;
-  runtime::WorkerPool reset_pool_;  // last: its thread uses the administration
+  runtime::WorkerPool reset_pool_;  // its thread uses the administration
+  sites::UsedTasks used_tasks_;
+  std::unique_ptr<sites::Forwarder> forwarder_;  // last: its thread uses all above; null: no site
 };
 
 }  // namespace kinship::service

@@ -54,11 +54,10 @@ UpstreamStatus Forwarder::status(std::uint64_t attempts) const {
   return status;
 }
 
-/// Waits until then, or until it is woken. \return false: it is to stop.
-bool Forwarder::wait_until(Clock::time_point until, const std::stop_token& stop) {
+/// As long, or until it is woken or to stop.
+void Forwarder::wait(std::chrono::nanoseconds time, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, stop, until, [this] { return is_woken_; });
-  return !stop.stop_requested();
+  changed_.wait_for(lock, stop, time, [this] { return is_woken_; });
 }
 
 void Forwarder::run(const std::stop_token& stop) {
@@ -96,7 +95,7 @@ void Forwarder::exchange(const std::stop_token& stop) {
       note_oldest(positions);
       rest(step.load, stop);
     } else {
-      wait_until(step.next, stop);
+      wait(step.next - options_.exchange.clock.now(), stop);
     }
     const std::lock_guard lock(mutex_);
     if (std::exchange(is_woken_, false))

@@ -68,7 +68,7 @@ class Forwarder {
   void publish(const Positions& positions);
   void note_oldest(const Positions& positions);
   void rest(std::chrono::nanoseconds load, const std::stop_token& stop);
-  bool wait_until(std::chrono::steady_clock::time_point until, const std::stop_token& stop);
+  void wait(std::chrono::nanoseconds time, const std::stop_token& stop);
 
   store::Store& site_;
   const ForwarderOptions options_;

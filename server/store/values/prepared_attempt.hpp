@@ -6,7 +6,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
-#include "server/store/shared_report.hpp"
+#include "server/store/store.hpp"
 #include "server/store/values/scene_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 
