@@ -198,6 +198,7 @@ CREATE TABLE attempt (
   CHECK ((outcome = 1) = (status IN (1, 2)))
 );
 CREATE INDEX attempt_by_task_robot ON attempt (task_id, robot_id, arrived_in, id);
+CREATE INDEX attempt_by_task ON attempt (task_id, arrived_in, id);
 CREATE INDEX attempt_by_arrival ON attempt (arrived_in, id);
 -- The reports that are retired with a path, beside the one that brought it.
 CREATE INDEX attempt_of_same_content ON attempt (path_id) WHERE status = 2;
@@ -249,13 +250,19 @@ CREATE TABLE evicted_distribution (
 );
 CREATE INDEX evicted_distribution_by_change ON evicted_distribution (evicted_in);
 
+-- The servers that have the store open; who is not alive any more holds nothing.
+CREATE TABLE server (
+  run          bytea PRIMARY KEY CHECK (length(run) = 16),
+  alive_until  timestamptz NOT NULL,
+  name         text NOT NULL
+);
+
 -- Which server fits a distribution. The fence grows with each lease: what a server that lost its
 -- lease writes under an older one is not taken.
 CREATE TABLE fit_lease (
   digest  bytea PRIMARY KEY CHECK (length(digest) = 32),
   fence   bigint NOT NULL CHECK (fence >= 1),
-  holder  bytea NOT NULL,
-  until   timestamptz NOT NULL
+  holder  bytea NOT NULL
 );
 
 -- Who had what done to the store, and what was refused.

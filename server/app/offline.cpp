@@ -7,6 +7,7 @@
 #include "proto/json/store_check_json.hpp"
 #include "proto/types/failure.hpp"
 #include "server/store/maintenance.hpp"
+#include "server/store/open_store.hpp"
 
 namespace kinship::app {
 namespace {
@@ -119,7 +120,32 @@ int migrate(const OfflineOptions& options, std::ostream& out) {
   return kDone;
 }
 
+/// Why a verb does not do its work on a PostgreSQL database, and what does it there.
+std::string instead_in_words(OfflineVerb verb) {
+  switch (verb) {
+    case OfflineVerb::Check:
+      return "check: a PostgreSQL database checks its own pages (pg_amcheck; initdb "
+             "--data-checksums)";
+    case OfflineVerb::Backup:
+      return "backup: pg_dump, pg_basebackup or pgBackRest copy a PostgreSQL database";
+    case OfflineVerb::Restore:
+      return "restore: pg_restore, or pgBackRest, puts back a PostgreSQL database; servers notice, "
+             "and "
+             "clients offer again what it lacks";
+    case OfflineVerb::Repair:
+      return "repair: a PostgreSQL database is repaired from its standby or its backup";
+    case OfflineVerb::Migrate:
+      return "migrate: the first server of a new version migrates a PostgreSQL database when it "
+             "starts; copy it before with pg_dump";
+  }
+  return {};
+}
+
 int run(const OfflineOptions& options, const store::Progress& progress, std::ostream& out) {
+  const std::string name = options.store.string();
+  if (store::kind_of_store(name).value_or_throw() == store::StoreKind::PostgresDatabase)
+    throw Failure(ErrorCode::InvalidInput, "store '" + store::displayed_store(name) +
+                                               "': " + instead_in_words(options.verb));
   switch (options.verb) {
     case OfflineVerb::Check:
       return check(options, progress, out);

@@ -33,6 +33,7 @@ server may have the store open. Exit codes: 0 done, 1 failed or damage found, 2 
 Examples:
   kinshipd                                       default store, domain 0, loopback
   kinshipd --store /var/lib/kinship/fleet.db --domain 7 --workers 4
+  kinshipd --store 'postgresql://kinship@db1,db2/fleet' --require-synchronous   one of several servers
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
   kinshipd --interface eth0 --security /etc/kinship/security      other hosts, with certificates
   kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
@@ -180,9 +181,15 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   constexpr std::size_t kMinFitMemory_mb = 16, kMaxFitMemory_mb = std::size_t{1} << 24U;
   app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.add_option("--store", options.store, "SQLite file; made with its folder if there is none")
-      ->type_name("FILE")
+  app.add_option("--store", options.store,
+                 "SQLite file, made with its folder if there is none; or a PostgreSQL database, "
+                 "which several servers may share: postgresql://USER@HOST:PORT/DATABASE")
+      ->type_name("FILE|URL")
       ->capture_default_str();
+  app.add_flag(
+      "--require-synchronous", options.require_synchronous,
+      "Of a PostgreSQL database: while it has no synchronous standby, reports are answered "
+      "'try again'");
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
       ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))

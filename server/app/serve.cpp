@@ -29,7 +29,7 @@
 #include "server/app/service_manager.hpp"
 #include "server/app/signal_watcher.hpp"
 #include "server/service/service.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
+#include "server/store/open_store.hpp"
 
 namespace kinship::app {
 namespace {
@@ -72,18 +72,32 @@ service::ServiceOptions service_options(const ServerOptions& options) {
   return service;
 }
 
-store::SqliteOptions store_options(const ServerOptions& options) {
+store::StoreOptions store_options(const ServerOptions& options) {
   constexpr double kBytesOfMb = 1e6;
   constexpr std::uint64_t kMega = std::uint64_t{1} << 20U;
-  store::SqliteOptions store;
-  store.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
-  store.ballast_bytes = options.ballast_mb * kMega;
-  store.max_wal_bytes = options.max_wal_mb * kMega;
-  store.max_paths_per_pair = options.max_paths_per_pair;
-  store.max_distribution_bytes = options.stored_distributions_mb * kMega;
-  store.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
-  store.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
+  store::StoreOptions store;
+  store.sqlite.free_space_watermark_bytes = options.free_space_watermark_mb * kMega;
+  store.sqlite.ballast_bytes = options.ballast_mb * kMega;
+  store.sqlite.max_wal_bytes = options.max_wal_mb * kMega;
+  store.sqlite.max_paths_per_pair = options.max_paths_per_pair;
+  store.sqlite.max_distribution_bytes = options.stored_distributions_mb * kMega;
+  store.sqlite.scrub_bytes_per_s = static_cast<std::size_t>(kBytesOfMb * options.scrub_mb_per_s);
+  store.sqlite.log = [](std::string_view line) { spdlog::warn("store: {}", line); };
+  store.postgres.max_paths_per_pair = options.max_paths_per_pair;
+  store.postgres.max_distribution_bytes = options.stored_distributions_mb * kMega;
+  store.postgres.require_synchronous = options.require_synchronous;
+  store.postgres.log = store.sqlite.log;
   return store;
+}
+
+void set_upstream(const ServerOptions& options, service::ServiceOptions& service) {
+  if (options.upstream.empty())
+    return;
+  service.upstream.name = store::displayed_store(options.upstream);
+  service.upstream.tasks = options.upstream_tasks;
+  service.upstream.open = [url = options.upstream, settings = store_options(options)] {
+    return store::open_store(url, settings);
+  };
 }
 
 /// Before anything is opened.
@@ -139,9 +153,10 @@ int serve(const ServerOptions& options, std::ostream& out) {
                 {});
   service::ServiceOptions settings = service_options(options);
   settings.log = [&log](std::string_view line) { log.write(line); };
+  set_upstream(options, settings);
   publish_with(settings, events, announcements);
   settings.wake = [&loop] { loop.wake(); };
-  service::Service service(store::open_sqlite_store(options.store, store_options(options)),
+  service::Service service(store::open_store(options.store.string(), store_options(options)),
                            std::move(settings));
   const Endpoints endpoints(participant, loop, service);
   const SignalWatcher signals([&loop](int signal) {
@@ -149,9 +164,10 @@ int serve(const ServerOptions& options, std::ostream& out) {
     loop.stop();
   });
 
+  const std::string store_name = store::displayed_store(options.store.string());
   const ServerStatus status = service.status();
   spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
-               status.version, options.domain, options.store.string(), status.robots, status.paths,
+               status.version, options.domain, store_name, status.robots, status.paths,
                status.distributions);
   warn_of_expiry(participant);
   if (!status.storage_message.empty())
@@ -162,7 +178,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
     metrics.emplace(std::move(*metrics_port),
                     [&service, &endpoints] { return metrics_page(service, endpoints.clients()); });
   }
-  out << "ready domain=" << options.domain << " store=" << options.store.string() << std::endl;
+  out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   Watchdog watchdog;
   loop.run([&service, &watchdog] {

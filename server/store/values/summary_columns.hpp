@@ -115,8 +115,9 @@ AuditEntry read_audit_entry(const Row& row) {
 /// Of a robot, its paths and attempts, and when its geometry was taken over anew; 0: never.
 inline constexpr std::string_view kRobotSummaryColumns =
     "digest, label, base_link, tip_link, dof, registered_ms,"
-    " (SELECT coalesce(sum(paths), 0) FROM experience WHERE robot_id = robot.id),"
-    " (SELECT coalesce(sum(attempts), 0) FROM experience WHERE robot_id = robot.id),"
+    " (SELECT CAST(coalesce(sum(paths), 0) AS bigint) FROM experience WHERE robot_id = robot.id),"
+    " (SELECT CAST(coalesce(sum(attempts), 0) AS bigint) FROM experience WHERE robot_id = "
+    "robot.id),"
     " (SELECT coalesce(max(taken_ms), 0) FROM robot_geometry WHERE robot_id = robot.id) ";
 
 template <Columns Row>

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 
 namespace kinship::store::postgres {
@@ -26,6 +27,14 @@ std::string one_line(const char* text) {
 
 std::string field(const pg_result* result, int code) {
   return one_line(PQresultErrorField(result, code));
+}
+
+/// The name of a prepared statement. Another session that a pooler gave us may have a statement of
+/// that name: then it is the same one.
+std::string name_by(std::string_view sql) {
+  constexpr std::size_t kDigits = 24;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sql.data());
+  return "k" + Sha256().add(Bytes(bytes, sql.size())).finish().hex().substr(0, kDigits);
 }
 
 /// The first words of a statement, to find it in the sources.
@@ -106,7 +115,7 @@ Rows Connection::query_without_limit(std::string_view sql) {
 void Connection::execute(const std::string& script) {
   if (!connection_ || PQsendQuery(connection_.get(), script.c_str()) != 1)
     throw_lost("sending a script");
-  const Deadline until = deadline();
+  const Deadline until;
   flush(until);
   std::optional<PostgresError> failed;
   while (pg_result* const result = next_result(until)) {
@@ -141,8 +150,7 @@ const std::string& Connection::name_of(const Request& request, std::vector<Comma
   const auto known = statements_.find(request.sql);
   if (known != statements_.end())
     return known->second;
-  const auto added =
-      statements_.emplace(std::string(request.sql), "k" + std::to_string(++last_statement_)).first;
+  const auto added = statements_.emplace(std::string(request.sql), name_by(request.sql)).first;
   const Parameters& parameters = request.parameters;
   if (PQsendPrepare(connection_.get(), added->second.c_str(), added->first.c_str(),
                     static_cast<int>(parameters.size()), parameters.types().data()) != 1)
@@ -162,7 +170,7 @@ void Connection::send_one(const Request& request, std::vector<Command>& commands
     lengths[i] = parameters.length(i);
   }
   const int sent =
-      options_.keeps_statements
+      keeps_statements()
           ? PQsendQueryPrepared(connection_.get(), name_of(request, commands).c_str(), count,
                                 values.data(), lengths.data(), formats.data(), kBinary)
           : PQsendQueryParams(connection_.get(), std::string(request.sql).c_str(), count,
@@ -183,6 +191,8 @@ std::vector<Rows> Connection::receive(const std::vector<Command>& commands, Dead
     const bool is_done = status == PGRES_TUPLES_OK || status == PGRES_COMMAND_OK;
     if (status == PGRES_FATAL_ERROR && !failed)
       failed = error_of(answer.get(), command.sql);
+    if (failed && failed->kind() == ErrorKind::Forgotten && options_.is_pooled != nullptr)
+      *options_.is_pooled = true;
     if (failed && failed->kind() == ErrorKind::Lost) {
       abandon();
       throw PostgresError(*failed);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -27,10 +28,11 @@ struct Request {
 
 struct ConnectionOptions {
   /// Of one statement, or of a pipeline of them; then the connection is given up.
-  std::chrono::milliseconds patience{30'000};
+  std::chrono::milliseconds patience{10'000};
   const Interrupt* interrupt = nullptr;  ///< ends every wait; outlives the connection
-  /// Whether statements are prepared once and kept: not behind a pooler that changes sessions.
-  bool keeps_statements = true;
+  /// Set once a pooler turns out to be between, which gives each transaction another session: then
+  /// statements are not kept prepared. Null: they always are.
+  std::atomic<bool>* is_pooled = nullptr;
 };
 
 /// A connection to PostgreSQL: the owner of one PGconn. Used by one thread at a time. Statements
@@ -58,7 +60,7 @@ class Connection {
   /// \return the rows of each.
   std::vector<Rows> query_all(std::span<const Request> requests);
 
-  /// Runs a script of statements without parameters, drops rows.
+  /// Runs a script of statements without parameters, drops rows. Takes as long as it takes.
   void execute(const std::string& script);
 
   /// COMMIT, however long it takes: only the interrupt ends the wait.
@@ -89,6 +91,9 @@ class Connection {
   };
 
   Rows run_one(const Request& request);
+  bool keeps_statements() const noexcept {
+    return options_.is_pooled == nullptr || !*options_.is_pooled;
+  }
   std::vector<Rows> run(std::span<const Request> requests, Deadline deadline);
   std::vector<Command> send(std::span<const Request> requests);
   const std::string& name_of(const Request& request, std::vector<Command>& commands);
@@ -106,7 +111,6 @@ class Connection {
   ConnectionOptions options_;
   std::string warning_;
   std::map<std::string, std::string, std::less<>> statements_;  // text -> name
-  std::uint64_t last_statement_ = 0;
   std::unique_ptr<pg_conn, Finish> connection_;
 };
 

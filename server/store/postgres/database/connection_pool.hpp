@@ -1,6 +1,8 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -17,8 +19,15 @@ class ConnectionPool {
  public:
   static constexpr std::size_t kMaxConnections = 4;
 
-  ConnectionPool(ConnectionString where, const ConnectionOptions& options)
-      : where_(std::move(where)), options_(options) {}
+  using Connect = std::function<std::unique_ptr<Connection>()>;
+  explicit ConnectionPool(Connect connect) : connect_(std::move(connect)) {}
+
+  /// Runs `write(Connection&)` once.
+  template <typename Write>
+  auto use(Write write) {
+    const Lease lease(*this);
+    return write(*lease);
+  }
 
   /// Runs `read(Connection&)`, each statement of which sees what is committed when it begins. Where
   /// the connection turns out to be dead, as after a failover, once more on a new one: it must not
@@ -38,21 +47,23 @@ class ConnectionPool {
     });
   }
 
-  /// Connections that nobody uses are closed: the server behind them is gone.
-  void forget_idle();
+  /// Connections that were made until now are not lent any more: the server behind them is not the
+  /// primary any more.
+  void forget();
 
  private:
   /// A connection on loan.
   class Lease {
    public:
-    explicit Lease(ConnectionPool& pool) : pool_(&pool), connection_(pool.take()) {}
+    explicit Lease(ConnectionPool& pool) : pool_(&pool), connection_(pool.take(version_)) {}
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
-    ~Lease() { pool_->give_back(std::move(connection_)); }
+    ~Lease() { pool_->give_back(std::move(connection_), version_); }
     Connection& operator*() const noexcept { return *connection_; }
 
    private:
     ConnectionPool* pool_;
+    std::uint64_t version_ = 0;
     std::unique_ptr<Connection> connection_;
   };
 
@@ -62,23 +73,24 @@ class ConnectionPool {
       const Lease lease(*this);
       return read(*lease);
     } catch (const PostgresError& error) {
-      if (error.kind() != ErrorKind::Lost)
+      if (error.kind() != ErrorKind::Lost && error.kind() != ErrorKind::Forgotten)
         throw;
     }
-    forget_idle();
+    forget();
     const Lease lease(*this);
     return read(*lease);
   }
 
-  std::unique_ptr<Connection> take();
-  void give_back(std::unique_ptr<Connection> connection) noexcept;
+  /// \param version  is set to that of the connection.
+  std::unique_ptr<Connection> take(std::uint64_t& version);
+  void give_back(std::unique_ptr<Connection> connection, std::uint64_t version) noexcept;
 
-  const ConnectionString where_;
-  const ConnectionOptions options_;
+  const Connect connect_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::unique_ptr<Connection>> idle_;  // guarded by mutex_
   std::size_t lent_ = 0;                           // guarded by mutex_
+  std::uint64_t version_ = 0;                      // guarded by mutex_: grows with forget()
 };
 
 }  // namespace kinship::store::postgres

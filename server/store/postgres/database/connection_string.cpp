@@ -21,6 +21,17 @@ std::string first_of(const std::string& list) {
   return others == 0 ? first : first + " (and " + std::to_string(others) + " more)";
 }
 
+std::vector<std::string> parts_of(const std::string& list) {
+  std::vector<std::string> parts(1);
+  for (const char each : list) {
+    if (each == ',')
+      parts.emplace_back();
+    else
+      parts.back() += each;
+  }
+  return parts;
+}
+
 }  // namespace
 
 bool is_connection_string(std::string_view text) {
@@ -51,13 +62,37 @@ ConnectionString::ConnectionString(const std::string& text) {
   set_default("keepalives_interval", "5");
   set_default("keepalives_count", "3");
   set_default("tcp_user_timeout", "20000");
-  if (value_of("host").find(',') != std::string::npos)
-    set_default("target_session_attrs", "read-write");
+  describe();
+}
+
+void ConnectionString::describe() {
   const std::string user = value_of("user"), port = value_of("port");
   const std::string host = value_of("host").empty() ? value_of("hostaddr") : value_of("host");
   description_ = "postgresql://" + (user.empty() ? "" : user + "@") + first_of(host) +
                  (port.empty() ? "" : ":" + port.substr(0, port.find(','))) + "/" +
                  value_of("dbname");
+}
+
+std::vector<ConnectionString> ConnectionString::each_host() const {
+  const auto count =
+      static_cast<std::size_t>(1 + std::max(std::ranges::count(value_of("host"), ','),
+                                            std::ranges::count(value_of("hostaddr"), ',')));
+  std::vector<ConnectionString> hosts(count, *this);
+  for (std::size_t i = 0; i < count && count > 1; ++i) {
+    for (const std::string_view keyword : {"host", "hostaddr", "port"}) {
+      const std::vector<std::string> values = parts_of(value_of(keyword));
+      if (values.size() > 1)  // one port is that of all
+        hosts[i].set(keyword, values[std::min(i, values.size() - 1)]);
+    }
+    hosts[i].describe();
+  }
+  return hosts;
+}
+
+void ConnectionString::set(std::string_view keyword, const std::string& value) {
+  for (auto& [known, old] : parameters_)
+    if (known == keyword)
+      old = value;
 }
 
 void ConnectionString::set_default(std::string_view keyword, std::string_view value) {

@@ -22,15 +22,20 @@ class ConnectionString {
   const std::string& description() const noexcept { return description_; }
 
   /// libpq's keywords and values, ours where the string says nothing: time limits for a connection
-  /// that is made or has died, the encoding, and with several hosts the one that can be written.
+  /// that is made or has died, and the encoding.
   const std::vector<std::pair<std::string, std::string>>& parameters() const noexcept {
     return parameters_;
   }
+
+  /// The same for each of its hosts alone; itself if it has one.
+  std::vector<ConnectionString> each_host() const;
 
   /// A message without any of the passwords of this string.
   std::string without_secrets(std::string message) const;
 
  private:
+  void describe();
+  void set(std::string_view keyword, const std::string& value);
   void set_default(std::string_view keyword, std::string_view value);
   std::string value_of(std::string_view keyword) const;
 

@@ -10,9 +10,13 @@ namespace {
 
 /// Set with the transaction, not with the connection: a pooler may give each another session.
 constexpr std::string_view kWriteSettings =
-    "SELECT set_config('statement_timeout', '0', true), set_config('lock_timeout', '10s', true),"
+    "SELECT set_config('statement_timeout', '0', true), set_config('lock_timeout', '8s', true),"
     " set_config('synchronous_commit', CASE current_setting('synchronous_commit')"
     " WHEN 'remote_apply' THEN 'remote_apply' ELSE 'on' END, true)";
+
+constexpr std::string_view kLocalSettings =
+    "SELECT set_config('statement_timeout', '0', true), set_config('lock_timeout', '8s', true),"
+    " set_config('synchronous_commit', 'local', true)";
 
 /// Whether an error of a COMMIT says that the transaction was undone.
 bool is_undone(const PostgresError& error) {
@@ -26,8 +30,9 @@ Transaction::Transaction(Connection& connection, Kind kind) : connection_(&conne
     connection.query("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
     return;
   }
-  const std::array<Request, 2> begin = {Request{"BEGIN ISOLATION LEVEL READ COMMITTED"},
-                                        Request{kWriteSettings}};
+  const std::array<Request, 2> begin = {
+      Request{"BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE"},
+      Request{kind == Kind::Write ? kWriteSettings : kLocalSettings}};
   connection.query_all(begin);
 }
 

@@ -24,11 +24,13 @@ class Transaction {
  public:
   enum class Kind {
     Snapshot,  ///< reads one state of the database, writes nothing (REPEATABLE READ)
-    Write      ///< READ COMMITTED: each statement sees what is committed when it begins
+    Write,     ///< READ COMMITTED: each statement sees what is committed when it begins
+    Local      ///< the same, but its COMMIT waits for no standby
   };
-  /// A writing one waits for a lock 10 s at most, and its statements and its COMMIT have no limit
-  /// of time in the server: nothing there ends a COMMIT that waits for a standby. Durable means
-  /// synchronous_commit = on, whatever the server or the role say, or remote_apply if they say so.
+  /// A writing one waits for a lock some seconds at most, and its statements and its COMMIT have no
+  /// limit of time in the server: nothing there ends a COMMIT that waits for a standby. Durable
+  /// means synchronous_commit = on, whatever the server or the role say, or remote_apply if they
+  /// say so.
   Transaction(Connection& connection, Kind kind);
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;

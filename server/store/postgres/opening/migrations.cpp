@@ -56,7 +56,7 @@ void migrate(Connection& connection, std::span<const Migration> migrations) {
   const auto newest = static_cast<std::int64_t>(migrations.size());
   if (checked_version(connection, migrations) == newest)
     return;
-  Transaction transaction(connection, Transaction::Kind::Write);
+  Transaction transaction(connection, Transaction::Kind::Local);
   // Of the transaction, not of the session: a pooler may give each transaction another session.
   connection.query("SELECT pg_advisory_xact_lock($1) IS NULL", kMigrationLock);
   const std::int64_t version = checked_version(connection, migrations);

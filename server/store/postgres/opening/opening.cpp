@@ -9,20 +9,22 @@ namespace kinship::store::postgres {
 
 void require_usable(Connection& connection) {
   constexpr int kOldest = 130000;
+  constexpr std::string_view kNotSupported = "0A000", kReadOnly = "25006";
   if (connection.server_version() < kOldest)
-    throw Failure(ErrorCode::Storage, "PostgreSQL " + connection.parameter("server_version") +
-                                          " is too old, 13 or newer is needed");
+    throw PostgresError(kNotSupported, "PostgreSQL " + connection.parameter("server_version") +
+                                           " is too old, 13 or newer is needed");
   if (const std::string encoding = connection.parameter("server_encoding"); encoding != "UTF8")
-    throw Failure(ErrorCode::Storage, "the database is encoded as " + encoding +
-                                          ", UTF8 is needed (CREATE DATABASE ... ENCODING 'UTF8')");
+    throw PostgresError(kNotSupported,
+                        "the database is encoded as " + encoding +
+                            ", UTF8 is needed (CREATE DATABASE ... ENCODING 'UTF8')");
   const Rows state =
       connection.query("SELECT pg_is_in_recovery(), current_setting('transaction_read_only')");
   if (state.front().column_integer(0) != 0)
-    throw PostgresError("25006",
+    throw PostgresError(kReadOnly,
                         "it is a standby, which takes no writes; name the primary, or all "
                         "hosts (postgresql://A,B/DATABASE), of which the primary is taken");
   if (state.front().column_text(1) == "on")
-    throw PostgresError("25006",
+    throw PostgresError(kReadOnly,
                         "it takes no writes (default_transaction_read_only is on for this role)");
 }
 

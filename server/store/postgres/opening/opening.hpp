@@ -5,7 +5,7 @@
 namespace kinship::store::postgres {
 
 /// That a server can keep a store: PostgreSQL 13 or newer, UTF-8, and not read-only as a standby
-/// is. \throws Failure(Storage) that says in words what is wrong.
+/// is. \throws PostgresError that says in words what is wrong.
 void require_usable(Connection& connection);
 
 /// A connection that may write to a store of the schema of today, which is made or migrated.

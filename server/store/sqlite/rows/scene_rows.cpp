@@ -3,31 +3,16 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/columns.hpp"
-#include "server/store/values/scene_blob.hpp"
+#include "server/store/values/scene_columns.hpp"
 
 namespace kinship::store {
 namespace {
 
-constexpr std::string_view kSceneColumns =
-    "SELECT id, content_sha256, size, encoding, crc32c, scene FROM scene ";
-
-/// \param row  of kSceneColumns.
-bool has_right_crc_of_scene(const Statement& row) {
-  return scene_crc(row.column_blob(1), row.column_integer(2), row.column_integer(3),
-                   row.column_blob(5)) == row.column_integer(4);
-}
-
-/// \param row  of kSceneColumns.
-std::optional<RecordedScene> read_scene(const Statement& row) {
-  if (!has_right_crc_of_scene(row))
-    return std::nullopt;
-  return decode_scene(row.column_integer(2), row.column_integer(3), row.column_blob(5));
-}
-
 bool can_read_scene(Database& database, std::int64_t id) {
   try {
-    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
-    return query->bind(1, id).step() && has_right_crc_of_scene(*query);
+    const auto query =
+        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
+    return query->bind(1, id).step() && has_right_scene_crc(*query);
   } catch (const SqliteError& error) {
     if (!error.is_damage())
       throw;
@@ -108,9 +93,10 @@ SceneRead select_scene(Database& database, std::int64_t id) {
   if (!row)
     return read;
   try {
-    const auto query = database.cached(std::string(kSceneColumns) + "WHERE id = ?");
+    const auto query =
+        database.cached("SELECT " + std::string(kSceneColumns) + "FROM scene WHERE id = ?");
     if (query->bind(1, *row).step()) {
-      read.scene = read_scene(*query);
+      read.scene = read_scene_columns(*query);
       read.damaged = !read.scene;
     }
   } catch (const SqliteError& error) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/support/temporary_directory.hpp"
@@ -84,6 +85,22 @@ TEST_F(Offline, ExitCodesTellWhatWentWrong) {
   EXPECT_EQ(run(OfflineVerb::Backup, store_, store_), kFailed);  // is there already
   EXPECT_EQ(run(OfflineVerb::Restore, store_, store_), kWrongUsage);
   EXPECT_EQ(out_.str(), "");
+}
+
+TEST_F(Offline, OfADatabaseTheVerbsSayWhatDoesTheirWorkThere) {
+  const std::map<OfflineVerb, std::string> instead = {{OfflineVerb::Check, "pg_amcheck"},
+                                                      {OfflineVerb::Backup, "pg_dump"},
+                                                      {OfflineVerb::Restore, "pg_restore"},
+                                                      {OfflineVerb::Repair, "standby"},
+                                                      {OfflineVerb::Migrate, "first server"}};
+  for (const auto& [verb, what] : instead) {
+    EXPECT_EQ(run(verb, "postgresql://kinship:secret@127.0.0.1:1/fleet", copy_), kWrongUsage);
+    EXPECT_NE(err_.str().find(what), std::string::npos) << err_.str();
+    EXPECT_EQ(err_.str().find("secret"), std::string::npos) << err_.str();
+  }
+  EXPECT_EQ(run(OfflineVerb::Check, "mysql://host/fleet"), kWrongUsage);
+  EXPECT_NE(err_.str().find("'mysql://' is not known"), std::string::npos) << err_.str();
+  EXPECT_FALSE(fs::exists("mysql:"));
 }
 
 TEST_F(Offline, ATerminalSeesHowFarItIs) {

@@ -29,6 +29,9 @@ INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(sqlite_engine
                          name_of_engine);
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreRetention, testing::Values(sqlite_engine()), name_of_engine);
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreSharing, testing::Values(sqlite_engine()), name_of_engine);
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreBackup, testing::Values(sqlite_engine()), name_of_engine);
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreRetentionBackup, testing::Values(sqlite_engine()),
+                         name_of_engine);
 
 /// What only a store in an SQLite file can show.
 class SqliteStoreTest : public testing::Test {

@@ -60,6 +60,9 @@ class StoreConformance : public testing::TestWithParam<Engine> {
   RobotRecord iiwa_;
 };
 
+/// The same for an engine that can copy its store into a file.
+class StoreBackup : public StoreConformance {};
+
 /// The same for a store with a cap of paths: what it keeps, and what it says of the others.
 class StoreRetention : public StoreConformance {
  public:
@@ -96,6 +99,8 @@ class StoreRetention : public StoreConformance {
 
   std::uint64_t number_ = kReports + 1;  ///< of the next report
 };
+
+class StoreRetentionBackup : public StoreRetention {};
 
 /// Two stores of one engine, as a site and the memory above it are.
 class StoreSharing : public StoreConformance {

@@ -33,7 +33,7 @@ void report_many(Store& store, const Digest& robot) {
   }
 }
 
-TEST_P(StoreConformance, ABackupIsAStoreWithAllThatWasThere) {
+TEST_P(StoreBackup, ABackupIsAStoreWithAllThatWasThere) {
   test::report(*store_, {solved(1), solved(2), test::make_unsolved(iiwa_.digest, "table", 3)});
   const Distribution distribution = test::make_distribution(iiwa_.digest, "shelf", 3);
   store_->put_distribution(distribution);
@@ -57,7 +57,7 @@ TEST_P(StoreConformance, ABackupIsAStoreWithAllThatWasThere) {
   EXPECT_EQ(test::report(*copy, {solved(1)})[0].status, ReceiptStatus::Duplicate);
 }
 
-TEST_P(StoreConformance, ABackupReplacesNoFile) {
+TEST_P(StoreBackup, ABackupReplacesNoFile) {
   const test::TemporaryDirectory elsewhere;
   std::ofstream(copy_in(elsewhere)) << "mine";
   const Result<bool> refused = store_->backup(copy_in(elsewhere), kGoOn);
@@ -68,7 +68,7 @@ TEST_P(StoreConformance, ABackupReplacesNoFile) {
   EXPECT_EQ(files_in(elsewhere), 1U);
 }
 
-TEST_P(StoreConformance, AFileThatAppearsDuringABackupStays) {
+TEST_P(StoreBackup, AFileThatAppearsDuringABackupStays) {
   const test::TemporaryDirectory elsewhere;
   const Result<bool> refused = store_->backup(copy_in(elsewhere), [&](double progress) {
     if (progress == 1)
@@ -81,7 +81,7 @@ TEST_P(StoreConformance, AFileThatAppearsDuringABackupStays) {
   EXPECT_EQ(files_in(elsewhere), 1U);
 }
 
-TEST_P(StoreConformance, ABackupThatIsEndedLeavesNothing) {
+TEST_P(StoreBackup, ABackupThatIsEndedLeavesNothing) {
   report(solved(1));
   const test::TemporaryDirectory elsewhere;
   const Result<bool> ended = store_->backup(copy_in(elsewhere), [](double) { return false; });
@@ -95,7 +95,7 @@ TEST_P(StoreConformance, ABackupThatIsEndedLeavesNothing) {
   EXPECT_TRUE(*store_->backup(copy_in(elsewhere), kGoOn));
 }
 
-TEST_P(StoreConformance, ABackupThatCannotBeMadeNamesTheFile) {
+TEST_P(StoreBackup, ABackupThatCannotBeMadeNamesTheFile) {
   const std::filesystem::path nowhere = directory_ / "no such directory" / "copy.db";
   try {
     static_cast<void>(store_->backup(nowhere, kGoOn));
@@ -107,7 +107,7 @@ TEST_P(StoreConformance, ABackupThatCannotBeMadeNamesTheFile) {
   EXPECT_EQ(report(solved(1)), ReceiptStatus::Stored);
 }
 
-TEST_P(StoreConformance, OnlyOneBackupIsMadeAtATime) {
+TEST_P(StoreBackup, OnlyOneBackupIsMadeAtATime) {
   report_many(*store_, panda_.digest);
   const test::TemporaryDirectory elsewhere;
   int tried = 0;
@@ -124,7 +124,7 @@ TEST_P(StoreConformance, OnlyOneBackupIsMadeAtATime) {
   EXPECT_EQ(files_in(elsewhere), 1U);
 }
 
-TEST_P(StoreConformance, ReportsGoOnDuringABackupThatIsOfOneInstant) {
+TEST_P(StoreBackup, ReportsGoOnDuringABackupThatIsOfOneInstant) {
   report_many(*store_, panda_.digest);
   constexpr std::uint64_t kFirst = 1'000'000;
   std::uint64_t number = kFirst;

@@ -179,7 +179,7 @@ TEST_P(StoreRetention, ALoweredCapTakesHoldAsReportsComeAndARaisedOneKeepsMore) 
   EXPECT_EQ(kept().size(), 2 * kCap);
 }
 
-TEST_P(StoreRetention, ABackupHasWhatIsKeptAndKnowsTheOthers) {
+TEST_P(StoreRetentionBackup, ABackupHasWhatIsKeptAndKnowsTheOthers) {
   test::report(*store_, reports());
   const test::TemporaryDirectory elsewhere;
   ASSERT_TRUE(store_->backup(elsewhere / "store.db", [](double) { return true; }).value_or_throw());

@@ -1,0 +1,289 @@
+#include "server/store/postgres/opening/history.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/database/transaction.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/history_seal.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+constexpr std::string_view kKey = "history_key";
+constexpr std::string_view kIdentity = "database_identity";
+constexpr std::string_view kForgottenRun = "forgotten_run";
+constexpr std::size_t kUuidBytes = 16;
+
+std::string setting(Connection& connection, std::string_view name) {
+  const Rows rows = connection.query("SELECT value FROM setting WHERE key = $1", name);
+  return rows.empty() ? "" : std::string(rows.front().column_text(0));
+}
+
+void set(Connection& connection, std::string_view name, std::string_view value) {
+  connection.query(
+      "INSERT INTO setting VALUES ($1, $2)"
+      " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
+      name, value);
+}
+
+/// 244 random bits; what another server wrote before counts.
+Digest ensure_key(Connection& connection) {
+  if (const std::optional<Digest> key = Digest::from_hex(setting(connection, kKey)))
+    return *key;
+  Digest key;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Uuid random = Uuid::random();
+    std::ranges::copy(random.bytes, key.bytes.begin() + kUuidBytes * half);
+  }
+  set(connection, kKey, key.hex());
+  return key;
+}
+
+/// Of the cluster and the database: a standby has the same, a copy that was restored has not.
+std::string identity_of(Connection& connection) {
+  const Rows rows = connection.query(
+      "SELECT system_identifier::text || '/' ||"
+      " (SELECT oid::text FROM pg_database WHERE datname = current_database())"
+      " FROM pg_control_system()");
+  return std::string(rows.front().column_text(0));
+}
+
+struct NewestEpoch {
+  std::int64_t number = 0;  // 0: there is none
+  Uuid epoch;
+};
+
+constexpr std::string_view kNewestEpoch =
+    "SELECT number, epoch FROM epoch ORDER BY number DESC LIMIT 1";
+
+NewestEpoch read_epoch(const Rows& rows) {
+  if (rows.empty())
+    return {};
+  return {rows.front().column_integer(0), id_of<Uuid>(rows.front().column_blob(1))};
+}
+
+NewestEpoch newest_epoch(Connection& connection) {
+  return read_epoch(connection.query(kNewestEpoch));
+}
+
+/// With the lock of lock_epochs().
+Uuid begin_epoch(Connection& connection, std::string_view reason) {
+  const NewestEpoch before = newest_epoch(connection);
+  const Uuid epoch = Uuid::random();
+  connection.query("INSERT INTO epoch VALUES ($1, $2, $3, $4)", before.number + 1,
+                   Bytes(epoch.bytes), now_ms(), reason);
+  if (before.number > 0) {
+    // What was lost had generations that come again now, with other paths.
+    constexpr std::int64_t kMoreThanWereLost = 1'000'000;
+    connection.query("SELECT 1 FROM experience ORDER BY task_id, robot_id FOR NO KEY UPDATE");
+    connection.query(
+        "UPDATE experience SET changed_in = pg_current_xact_id(),"
+        " generation = generation + $1 WHERE generation > 0",
+        kMoreThanWereLost);
+  }
+  return epoch;
+}
+
+void lock_epochs(Connection& connection) {
+  connection.query("LOCK TABLE epoch IN SHARE ROW EXCLUSIVE MODE");
+}
+
+std::optional<std::uint64_t> position_of(Connection& connection, const Uuid& run) {
+  const Rows rows = connection.query("SELECT position FROM run WHERE run = $1", Bytes(run.bytes));
+  return rows.empty() ? std::nullopt : std::optional(count_of(rows.front(), 0));
+}
+
+/// A UUID that begins with the time, so that runs order by it (RFC 9562, version 7).
+Uuid timed_uuid() {
+  Uuid uuid = Uuid::random();
+  auto time = static_cast<std::uint64_t>(now_ms());
+  constexpr std::size_t kTimeBytes = 6;
+  for (std::size_t i = kTimeBytes; i-- > 0; time >>= 8U)
+    uuid.bytes[i] = static_cast<std::uint8_t>(time);
+  constexpr std::size_t kVersion = 6;
+  uuid.bytes[kVersion] = static_cast<std::uint8_t>(0x70U | (uuid.bytes[kVersion] & 0x0FU));
+  return uuid;
+}
+
+/// Runs beyond the newest few thousand go; the last of them is remembered: a mark of one that old
+/// is not taken for lost.
+void forget_old_runs(Connection& connection) {
+  constexpr std::int64_t kKeptRuns = 4096;
+  const Rows rows = connection.query(
+      "WITH gone AS (DELETE FROM run WHERE run <= (SELECT run FROM run ORDER BY run DESC"
+      " OFFSET $1 LIMIT 1) RETURNING run) SELECT run FROM gone ORDER BY run DESC LIMIT 1",
+      kKeptRuns);
+  if (!rows.empty())
+    set(connection, kForgottenRun, id_of<Uuid>(rows.front().column_blob(0)).text());
+}
+
+}  // namespace
+
+/// \return why what was committed before cannot be there; empty: it is, or another server began an
+///         epoch because of it.
+std::string History::find_loss(Connection& connection, const State& before,
+                               const Uuid& newest) const {
+  const std::string stored = setting(connection, kIdentity);
+  if (const std::string identity = identity_of(connection); !stored.empty() && stored != identity)
+    return "the database is a copy (cluster and database " + identity + ", was " + stored + ")";
+  if (before.epoch == Uuid{})
+    return "";
+  const bool knows_epoch =
+      !connection.query("SELECT 1 FROM epoch WHERE epoch = $1", Bytes(before.epoch.bytes)).empty();
+  if (!knows_epoch)
+    return "the database does not know epoch " + before.epoch.text() + " any more";
+  if (newest != before.epoch)
+    return "";
+  const std::uint64_t position = position_of(connection, before.run).value_or(0);
+  if (position < before.position)
+    return "the last " + std::to_string(before.position - position) +
+           " commits of this server are gone: another server was promoted without them, or the "
+           "database was put back";
+  return "";
+}
+
+void History::begin_run(Connection& connection) {
+  State next;
+  {
+    const std::lock_guard lock(mutex_);
+    next = state_;
+  }
+  // Waits for no standby: who begins a run has given no receipt yet, and those of the run are given
+  // when what comes after it is replicated.
+  Transaction transaction(connection, Transaction::Kind::Local);
+  lock_epochs(connection);
+  const NewestEpoch newest = newest_epoch(connection);
+  const std::string loss = newest.number == 0 ? "" : find_loss(connection, next, newest.epoch);
+  if (newest.number == 0)
+    next.epoch = begin_epoch(connection, "the store was made");
+  else
+    next.epoch = loss.empty() ? newest.epoch : begin_epoch(connection, loss);
+  set(connection, kIdentity, identity_of(connection));
+  next.key = ensure_key(connection);
+  next.run = timed_uuid();
+  next.position = 1;  // vouches for all that was there before
+  connection.query("INSERT INTO run VALUES ($1, 1)", Bytes(next.run.bytes));
+  forget_old_runs(connection);
+  if (const CommitOutcome outcome = transaction.commit(); outcome.certainty != Certainty::Committed)
+    throw PostgresError("", "no run could be begun: " + outcome.why);
+  if (!loss.empty()) {
+    ++next.rollbacks;
+    next.trouble = loss;
+  }
+  const std::lock_guard lock(mutex_);
+  state_ = std::move(next);
+  seen_runs_.clear();
+}
+
+History::Step History::advance(Connection& connection) const {
+  Uuid run;
+  Step step;
+  {
+    const std::lock_guard lock(mutex_);
+    run = state_.run;
+    step.position = state_.position + 1;
+  }
+  const std::array<Request, 2> requests = {
+      Request{kNewestEpoch},
+      Request{"INSERT INTO run VALUES ($1, $2)"
+              " ON CONFLICT (run) DO UPDATE SET position = excluded.position",
+              Parameters(Bytes(run.bytes), static_cast<std::int64_t>(step.position))}};
+  step.epoch = read_epoch(connection.query_all(requests).front()).epoch;
+  return step;
+}
+
+void History::committed(const Step& step) {
+  const std::lock_guard lock(mutex_);
+  state_.epoch = step.epoch;
+  state_.position = step.position;
+}
+
+void History::refresh(Connection& connection) {
+  const Uuid newest = newest_epoch(connection).epoch;
+  const std::lock_guard lock(mutex_);
+  state_.epoch = newest;
+}
+
+Uuid History::epoch() const {
+  const std::lock_guard lock(mutex_);
+  return state_.epoch;
+}
+
+StorePoint History::point() const {
+  Digest key;
+  Uuid epoch;
+  HistoryPoint point;
+  {
+    const std::lock_guard lock(mutex_);
+    key = state_.key;
+    epoch = state_.epoch;
+    point = {state_.run, state_.position};
+  }
+  return {epoch, seal(key, epoch, point)};
+}
+
+std::optional<HistoryPoint> History::find_doubtful(const HistoryMark& mark) const {
+  if (mark.empty())
+    return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const std::optional<HistoryPoint> point = open_seal(state_.key, state_.epoch, mark);
+  if (!point || (point->run == state_.run && point->position <= state_.position))
+    return std::nullopt;
+  const auto seen = seen_runs_.find(point->run);
+  if (seen != seen_runs_.end() && point->position <= seen->second)
+    return std::nullopt;
+  return point;
+}
+
+bool History::is_gone(Connection& connection, const HistoryPoint& point) const {
+  const std::optional<std::uint64_t> position = position_of(connection, point.run);
+  if (!position) {
+    const std::optional<Uuid> forgotten = Uuid::parse(setting(connection, kForgottenRun));
+    return !forgotten || *forgotten < point.run;
+  }
+  constexpr std::size_t kMostSeen = 65'536;
+  const std::lock_guard lock(mutex_);
+  if (seen_runs_.size() >= kMostSeen)
+    seen_runs_.clear();
+  seen_runs_[point.run] = *position;
+  return *position < point.position;
+}
+
+std::optional<History::Begun> History::begin_epoch_if_lost(Connection& connection,
+                                                           const HistoryMark& mark) const {
+  lock_epochs(connection);
+  Digest key;
+  {
+    const std::lock_guard lock(mutex_);
+    key = state_.key;
+  }
+  const std::optional<HistoryPoint> point = open_seal(key, newest_epoch(connection).epoch, mark);
+  if (!point || !is_gone(connection, *point))
+    return std::nullopt;
+  const std::string why =
+      "a client was given a receipt that the store does not have: it was put back";
+  return Begun{begin_epoch(connection, why), why};
+}
+
+void History::adopt(const Begun& begun) {
+  const std::lock_guard lock(mutex_);
+  state_.epoch = begun.epoch;
+  ++state_.rollbacks;
+  state_.trouble = begun.why;
+}
+
+std::uint64_t History::rollbacks() const {
+  const std::lock_guard lock(mutex_);
+  return state_.rollbacks;
+}
+
+std::string History::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return state_.trouble;
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,98 @@
+#include "server/store/postgres/opening/primary.hpp"
+
+#include <utility>
+
+#include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/opening/opening.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+constexpr std::string_view kReadOnly = "25006";
+
+/// It is in the name of the file that is being written; the control file tells it later.
+std::int64_t timeline_of(Connection& connection) {
+  return connection
+      .query(
+          "SELECT ('x' || substr(pg_walfile_name(pg_current_wal_insert_lsn()), 1, 8))"
+          "::bit(32)::bigint")
+      .front()
+      .column_integer(0);
+}
+
+}  // namespace
+
+Primary::Primary(ConnectionString where, const ConnectionOptions& options)
+    : where_(std::move(where)),
+      hosts_(where_.each_host()),
+      options_{
+          .patience = options.patience, .interrupt = options.interrupt, .is_pooled = &is_pooled_} {}
+
+std::unique_ptr<Connection> Primary::connect_to(const ConnectionString& host) const {
+  return std::make_unique<Connection>(host, options_);
+}
+
+Primary::Found Primary::found(std::unique_ptr<Connection> connection) const {
+  require_usable(*connection);
+  const std::int64_t timeline = timeline_of(*connection);
+  return {std::move(connection), timeline};
+}
+
+/// Asks all hosts: one that answers first may be the old primary.
+Primary::Found Primary::find_newest() {
+  Found newest;
+  std::string why;
+  bool is_read_only = false;
+  for (const ConnectionString& host : hosts_) {
+    try {
+      Found next = found(connect_to(host));
+      if (next.timeline <= newest.timeline)
+        continue;
+      newest = std::move(next);
+      const std::lock_guard lock(mutex_);
+      newest_ = host;
+      newest_until_ = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    } catch (const PostgresError& error) {
+      is_read_only = is_read_only || error.kind() == ErrorKind::ReadOnly;
+      const std::string what = error.what();
+      why += (why.empty() ? "" : "; ") +
+             (what.starts_with(host.description()) ? what : host.description() + ": " + what);
+    }
+  }
+  if (!newest.connection)
+    throw PostgresError(is_read_only ? kReadOnly : "", why);
+  return newest;
+}
+
+void Primary::require_newest(const Found& found) {
+  const std::lock_guard lock(mutex_);
+  if (found.timeline < timeline_)
+    throw PostgresError("", description() + ": an old primary came back (timeline " +
+                                std::to_string(found.timeline) + ", " + std::to_string(timeline_) +
+                                " was met); it has to follow the new "
+                                "one (pg_rewind)");
+  timeline_ = found.timeline;
+}
+
+std::unique_ptr<Connection> Primary::connect() {
+  std::optional<ConnectionString> known;
+  {
+    const std::lock_guard lock(mutex_);
+    if (newest_ && (hosts_.size() == 1 || std::chrono::steady_clock::now() < newest_until_))
+      known = newest_;
+  }
+  Found made;
+  try {
+    if (known)
+      made = found(connect_to(*known));
+  } catch (const PostgresError&) {
+    if (hosts_.size() == 1)
+      throw;
+  }
+  if (!made.connection)
+    made = find_newest();
+  require_newest(made);
+  return std::move(made.connection);
+}
+
+}  // namespace kinship::store::postgres

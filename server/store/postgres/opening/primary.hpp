@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "server/store/postgres/database/connection.hpp"
+
+namespace kinship::store::postgres {
+
+/// Makes connections to the server that takes writes: of several hosts the one whose timeline is
+/// the greatest. An old primary that came back after another one was promoted is not taken, not
+/// even while it is the only one that answers: what it says was overtaken. May be shared between
+/// threads.
+class Primary {
+ public:
+  Primary(ConnectionString where, const ConnectionOptions& options);
+
+  /// \throws PostgresError if no host is of use: gone, a standby, too old, or of an older timeline
+  ///         than one that was met before; the message says what each of them said.
+  std::unique_ptr<Connection> connect();
+
+  const std::string& description() const noexcept { return where_.description(); }
+
+ private:
+  /// A connection to a host that takes writes, and how often a standby was promoted before it.
+  struct Found {
+    std::unique_ptr<Connection> connection;
+    std::int64_t timeline = 0;
+  };
+
+  std::unique_ptr<Connection> connect_to(const ConnectionString& host) const;
+  Found find_newest();
+  Found found(std::unique_ptr<Connection> connection) const;
+  void require_newest(const Found& found);
+
+  const ConnectionString where_;
+  const std::vector<ConnectionString> hosts_;
+  std::atomic<bool> is_pooled_ = false;
+  const ConnectionOptions options_;  // with is_pooled_
+
+  std::mutex mutex_;
+  std::int64_t timeline_ = 0;                                // guarded by mutex_: the greatest met
+  std::optional<ConnectionString> newest_;                   // guarded by mutex_
+  std::chrono::steady_clock::time_point newest_until_ = {};  // guarded by mutex_
+};
+
+}  // namespace kinship::store::postgres

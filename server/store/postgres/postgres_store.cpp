@@ -1,0 +1,504 @@
+#include "server/store/postgres/postgres_store.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "proto/types/names.hpp"
+#include "server/store/postgres/database/connection_pool.hpp"
+#include "server/store/postgres/opening/history.hpp"
+#include "server/store/postgres/opening/migrations.hpp"
+#include "server/store/postgres/opening/primary.hpp"
+#include "server/store/postgres/report_writer.hpp"
+#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/postgres/rows/distribution_rows.hpp"
+#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/postgres/rows/export_rows.hpp"
+#include "server/store/postgres/rows/listings.hpp"
+#include "server/store/postgres/rows/path_rows.hpp"
+#include "server/store/postgres/rows/retirement.hpp"
+#include "server/store/postgres/rows/robot_removal.hpp"
+#include "server/store/postgres/rows/robot_rows.hpp"
+#include "server/store/postgres/rows/scene_rows.hpp"
+#include "server/store/postgres/rows/shared_rows.hpp"
+#include "server/store/postgres/rows/store_totals.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+class PostgresStore : public Store {
+ public:
+  PostgresStore(const std::string& url, const PostgresOptions& options)
+      : options_(options),
+        primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
+        readers_([this] { return primary_.connect(); }),
+        writers_([this] { return primary_.connect(); }) {
+    std::unique_ptr<Connection> connection = primary_.connect();
+    migrate(*connection, embedded_migrations());
+    history_.begin_run(*connection);
+    writer_ = std::make_unique<ReportWriter>(
+        primary_, history_, std::move(connection),
+        ReportWriterOptions{.max_paths_per_pair = options.max_paths_per_pair,
+                            .require_synchronous = options.require_synchronous,
+                            .retry_after = options.retry_after,
+                            .log = options.log},
+        [this] { forget_connections(); });
+    writer_->set_interrupt(interrupt_);
+  }
+
+  Uuid epoch() const override { return history_.epoch(); }
+  StorePoint point() const override { return history_.point(); }
+
+  bool has_lost(const HistoryMark& mark) const override {
+    const std::optional<HistoryPoint> doubtful = history_.find_doubtful(mark);
+    if (!doubtful)
+      return false;
+    try {
+      return readers_.read(
+          [&](Connection& connection) { return history_.is_gone(connection, *doubtful); });
+    } catch (const PostgresError&) {
+      return false;  // what the database says is not known now
+    }
+  }
+
+  bool begin_epoch_if_lost(const HistoryMark& mark) override {
+    const auto begun = write(
+        [&](Connection& connection) { return history_.begin_epoch_if_lost(connection, mark); });
+    if (begun)
+      history_.adopt(*begun);
+    return begun.has_value();
+  }
+
+  StoreStatus status() const override {
+    const std::string trouble = writer_->trouble();
+    StoreStatus status;
+    if (trouble.empty())
+      count(status);
+    else
+      status = last_counts();
+    status.file = primary_.description();
+    status.epoch = history_.epoch();
+    status.rollbacks = history_.rollbacks();
+    status.queued = writer_->queued();
+    status.max_paths_per_pair = options_.max_paths_per_pair;
+    status.max_distribution_bytes = options_.max_distribution_bytes;
+    if (status.rollbacks > 0)
+      status.message = "rolled back, clients offer again what is missing: " + history_.trouble() +
+                       "; " + status.message;
+    if (const std::size_t damaged = damaged_robots_; damaged > 0)
+      status.message += std::to_string(damaged) + " damaged robots left out; ";
+    status.damaged = status.damaged || damaged_robots_ > 0;
+    if (!trouble.empty()) {
+      status.writable = false;
+      status.message = "not writable: " + trouble + "; " + status.message;
+    }
+    if (!status.message.empty())
+      status.message.resize(status.message.size() - 2);
+    return status;
+  }
+
+  Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
+    Result<RegisterStatus> result =
+        write([&](Connection& connection) { return insert_robot(connection, robot); });
+    if (damaged_robots_ > 0)
+      static_cast<void>(robots());  // counts again: this may have been one of them
+    return result;
+  }
+
+  bool replace_geometry(const RobotRecord& robot) override {
+    return write([&](Connection& connection) { return update_robot(connection, robot); });
+  }
+
+  Result<bool> rename_robot(const Digest& robot, const std::string& label,
+                            const AuditEntry* audit) override {
+    if (const auto error = check_label(label))
+      return *error;
+    return write(
+        [&](Connection& connection) { return rename_audited(connection, robot, label, audit); });
+  }
+
+  Result<RemovedRobot> remove_robot(const Digest& robot, const std::stop_token& stop,
+                                    const AuditEntry* audit) override {
+    RemovedRobot removed;
+    while (true) {
+      // What a transaction that is undone has counted is not counted.
+      RemovedRobot next;
+      const Result<bool> is_out = write([&](Connection& connection) {
+        next = removed;
+        return continue_removal(connection, robot, next, audit);
+      });
+      if (!is_out)
+        return is_out.error();
+      removed = std::move(next);
+      if (*is_out)
+        return removed;
+      if (stop.stop_requested())
+        return Error{ErrorCode::Unavailable, "robot " + robot.short_hex() +
+                                                 ": the server is stopping after " +
+                                                 std::to_string(removed.removal.paths) +
+                                                 " paths were retired; ask again for the rest"};
+    }
+  }
+
+  std::map<Digest, std::uint64_t> geometry_revisions() const override {
+    return readers_.read(
+        [](Connection& connection) { return select_geometry_revisions(connection); });
+  }
+
+  std::optional<RobotRecord> find_robot(const Digest& robot) const override {
+    return readers_.read_snapshot(
+        [&](Connection& connection) { return select_robot(connection, robot); });
+  }
+
+  std::vector<RobotRecord> robots() const override {
+    RobotsRead read =
+        readers_.read_snapshot([](Connection& connection) { return select_robots(connection); });
+    damaged_robots_ = read.damaged.size();
+    return std::move(read.robots);
+  }
+
+  void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
+    commit(std::move(attempts), std::move(done),
+           [](const Attempt& attempt) { return attempt.report_uuid; });
+  }
+
+  Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                    std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return feed_of_arrivals(connection, task, cursor, limit); });
+  }
+
+  Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return feed_of_retirements(connection, cursor, limit); });
+  }
+
+  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+    return readers_.read([&](Connection& connection) { return select_known(connection, reports); });
+  }
+
+  SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
+    SharedRead read = readers_.read_snapshot(
+        [&](Connection& connection) { return select_shared(connection, reports, max_bytes); });
+    set_aside_later(
+        {.paths = std::move(read.damaged_paths), .scenes = std::move(read.damaged_scenes)});
+    return std::move(read.found);
+  }
+
+  void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
+    commit(std::move(reports), std::move(done),
+           [](const SharedReport& report) { return report.attempt.report_uuid; });
+  }
+
+  std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    return write(
+        [&](Connection& connection) { return postgres::retire_reports(connection, reports); });
+  }
+
+  std::map<std::string, std::string> notes(std::string_view prefix) const override {
+    return readers_.read([&](Connection& connection) { return select_notes(connection, prefix); });
+  }
+
+  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    write([&](Connection& connection) {
+      write_notes(connection, notes);
+      return true;
+    });
+  }
+
+  std::vector<ExperienceSummary> experience(std::string_view task) const override {
+    return readers_.read([&](Connection& connection) { return experience_of(connection, task); });
+  }
+
+  std::uint64_t generation(const Digest& robot, std::string_view task) const override {
+    return readers_.read(
+        [&](Connection& connection) { return generation_of(connection, robot, task); });
+  }
+
+  std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
+                                     const PathRange& range) const override {
+    PathsRead read = readers_.read_snapshot([&](Connection& connection) {
+      constexpr std::size_t kMaxPaths = 1'000'000;
+      return select_paths(connection, robot, task,
+                          {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms});
+    });
+    set_aside_later({.paths = std::move(read.damaged), .scenes = {}});
+    return std::move(read.paths);
+  }
+
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
+    return readers_.read(
+        [&](Connection& connection) { return select_path_ids(connection, robot, task); });
+  }
+
+  std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
+    SceneRead read =
+        readers_.read([&](Connection& connection) { return select_scene(connection, scene_id); });
+    if (read.damaged)
+      set_aside_later({.paths = {}, .scenes = {scene_id}});
+    return std::move(read.scene);
+  }
+
+  Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
+    return write([&](Connection& connection) {
+      return postgres::retire_path(connection, report_uuid, audit);
+    });
+  }
+
+  Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
+                                const AuditEntry* audit) override {
+    const Result<TaskReset> reset =
+        write([&](Connection& connection) { return begin_reset(connection, task, audit); });
+    if (!reset)
+      return reset.error();
+    Retirement retired;
+    retired.task = task;
+    while (true) {
+      Retirement next;
+      const bool goes_on = write([&](Connection& connection) {
+        next = retired;
+        return continue_reset(connection, *reset, next, audit);
+      });
+      retired = std::move(next);
+      if (!goes_on)
+        return retired;
+      if (stop.stop_requested())
+        return Error{ErrorCode::Unavailable, "task '" + retired.task +
+                                                 "': the server is stopping after " +
+                                                 std::to_string(retired.paths) +
+                                                 " paths were retired; ask again for the others"};
+    }
+  }
+
+  AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
+    return readers_.read_snapshot(
+        [&](Connection& connection) { return totals_of(connection, robot, task); });
+  }
+
+  std::uint64_t put_distribution(const Distribution& distribution) override {
+    return write([&](Connection& connection) {
+      return upsert_distribution(connection, distribution, options_.max_distribution_bytes);
+    });
+  }
+
+  void note_use(const Digest& id) const override {
+    write_later([id](Connection& connection) { postgres::note_use(connection, id); });
+  }
+
+  bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
+    return write([&](Connection& connection) { return evict_audited(connection, id, audit); });
+  }
+
+  void add_audit(const AuditEntry& entry) override {
+    write([&](Connection& connection) {
+      insert_audit(connection, entry);
+      return true;
+    });
+  }
+
+  std::optional<Distribution> find_distribution(const Digest& id) const override {
+    std::optional<Distribution> distribution =
+        readers_.read([&](Connection& connection) { return select_distribution(connection, id); })
+            .distribution;
+    if (distribution)
+      distribution->store_epoch = history_.epoch();
+    return distribution;
+  }
+
+  Page<RobotSummary> list_robots(std::string_view cursor, std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return page_of_robots(connection, cursor, limit); });
+  }
+
+  Page<TaskSummary> list_tasks(std::string_view cursor, std::size_t limit) const override {
+    return readers_.read_snapshot(
+        [&](Connection& connection) { return page_of_tasks(connection, cursor, limit); });
+  }
+
+  std::optional<TaskSummary> find_task(std::string_view task) const override {
+    return readers_.read_snapshot(
+        [&](Connection& connection) { return summary_of_task(connection, task); });
+  }
+
+  Page<PathSummary> list_paths(const std::optional<Digest>& robot, std::string_view task,
+                               std::string_view cursor, std::size_t limit) const override {
+    return readers_.read([&](Connection& connection) {
+      return page_of_paths(connection, {robot, task}, cursor, limit);
+    });
+  }
+
+  Page<AttemptSummary> list_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                     std::string_view cursor, std::size_t limit) const override {
+    return readers_.read_snapshot([&](Connection& connection) {
+      return page_of_attempts(connection, {robot, task}, cursor, limit);
+    });
+  }
+
+  std::optional<Attempt> find_attempt(const Uuid& report_uuid) const override {
+    DamageNoticed noticed;
+    std::optional<Attempt> attempt = readers_.read_snapshot([&](Connection& connection) {
+      noticed = {};
+      return postgres::find_attempt(connection, report_uuid, noticed);
+    });
+    set_aside_later(std::move(noticed));
+    return attempt;
+  }
+
+  Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
+                                std::string_view cursor, std::size_t limit,
+                                std::size_t max_bytes) const override {
+    DamageNoticed noticed;
+    Page<Attempt> page = readers_.read_snapshot([&](Connection& connection) {
+      noticed = {};
+      return export_page(connection, {robot, task}, cursor, limit, max_bytes, noticed);
+    });
+    set_aside_later(std::move(noticed));
+    return page;
+  }
+
+  Page<DistributionSummary> list_distributions(const std::optional<Digest>& robot,
+                                               std::string_view task, std::string_view cursor,
+                                               std::size_t limit) const override {
+    return readers_.read([&](Connection& connection) {
+      return page_of_distributions(connection, {robot, task}, cursor, limit);
+    });
+  }
+
+  Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
+                              std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return page_of_audit(connection, name, cursor, limit); });
+  }
+
+  Result<bool> backup(const std::filesystem::path& file,
+                      const std::function<bool(double)>& /*progress*/) const override {
+    return Error{ErrorCode::Unavailable,
+                 "backup '" + file.string() +
+                     "': the store is a PostgreSQL database; pg_dump, or what its administrators "
+                     "use (pg_basebackup, pgBackRest), copies it while servers go on"};
+  }
+
+ private:
+  /// \param uuid_of  of one of them.
+  template <typename Reported, typename UuidOf>
+  void commit(std::vector<Reported> reported, ReportsDone done, UuidOf uuid_of) {
+    if (writer_->queued_bytes() <= options_.max_queued_bytes)
+      return writer_->submit(prepare_item(std::move(reported), std::move(done)));
+    std::vector<Uuid> reports(reported.size());
+    std::ranges::transform(reported, reports.begin(), uuid_of);
+    writer_->submit(
+        declined_item(reports, std::move(done), "the queue of reports is full, try again"));
+  }
+
+  /// Runs `function(Connection&)` in a transaction, again where it was in conflict with another
+  /// server's or the connection was dead, and returns when it is durable.
+  template <typename Function>
+  std::invoke_result_t<Function, Connection&> write(Function function) {
+    constexpr int kTries = 5;
+    for (int tries = 1;; ++tries) {
+      try {
+        return writers_.use([&](Connection& connection) { return commit(connection, function); });
+      } catch (const PostgresError& error) {
+        if (error.kind() == ErrorKind::Lost || error.kind() == ErrorKind::Forgotten)
+          writers_.forget();
+        const bool may_go_on = error.kind() == ErrorKind::Conflict ||
+                               error.kind() == ErrorKind::Forgotten ||
+                               (error.kind() == ErrorKind::Lost && tries == 1);
+        if (!may_go_on || tries == kTries)
+          throw;
+      }
+    }
+  }
+
+  template <typename Function>
+  std::invoke_result_t<Function, Connection&> commit(Connection& connection, Function& function) {
+    Transaction transaction(connection, Transaction::Kind::Write);
+    if (options_.require_synchronous)
+      require_standby(connection);
+    auto value = function(connection);
+    const CommitOutcome outcome = transaction.commit();
+    if (outcome.certainty == Certainty::NotCommitted)
+      throw PostgresError("40001", outcome.why);
+    if (outcome.certainty == Certainty::InDoubt) {
+      connection.abandon();
+      throw Failure(ErrorCode::Storage, "it is not certain whether it is done: " + outcome.why);
+    }
+    return value;
+  }
+
+  /// On the writer's thread; nobody waits for it.
+  void write_later(std::function<void(Connection&)> function) const {
+    QueuedItem item;
+    item.write = std::move(function);
+    writer_->submit(std::move(item));
+  }
+
+  void set_aside_later(DamageNoticed noticed) const {
+    if (noticed.paths.empty() && noticed.scenes.empty())
+      return;
+    write_later([noticed = std::move(noticed)](Connection& connection) {
+      set_aside_paths(connection, noticed.paths);
+      for (const std::int64_t scene : noticed.scenes)
+        set_aside_scene(connection, scene);
+    });
+  }
+
+  /// What the database says, or said last.
+  void count(StoreStatus& status) const {
+    try {
+      readers_.read([&](Connection& connection) {
+        status = {};
+        count_rows(connection, status);
+        return true;
+      });
+    } catch (const PostgresError& error) {
+      status = last_counts();
+      status.writable = false;
+      status.message = std::string("the database does not answer: ") + error.what() + "; ";
+      return;
+    }
+    const std::lock_guard lock(mutex_);
+    counts_ = status;
+  }
+
+  StoreStatus last_counts() const {
+    const std::lock_guard lock(mutex_);
+    return counts_;
+  }
+
+  /// The writer has found the primary anew: others may still hold on to the old one.
+  void forget_connections() {
+    readers_.forget();
+    writers_.forget();
+  }
+
+  const PostgresOptions options_;
+  Interrupt interrupt_;
+  Primary primary_;
+  History history_;
+  mutable ConnectionPool readers_, writers_;
+  mutable std::atomic<std::size_t> damaged_robots_ = 0;
+  mutable std::mutex mutex_;
+  mutable StoreStatus counts_;            // guarded by mutex_
+  std::unique_ptr<ReportWriter> writer_;  // destroyed before all above, which it uses
+};
+
+}  // namespace
+}  // namespace kinship::store::postgres
+
+namespace kinship::store {
+
+std::unique_ptr<Store> open_postgres_store(const std::string& url, const PostgresOptions& options) {
+  std::string name = "store";
+  try {
+    name += " '" + postgres::ConnectionString(url).description() + "'";
+    return std::make_unique<postgres::PostgresStore>(url, options);
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(), name + ": " + failure.what());
+  }
+}
+
+}  // namespace kinship::store

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/postgres/database/connection.hpp"
+#include "server/store/store.hpp"
+#include "server/store/values/prepared_attempt.hpp"
+
+namespace kinship::store::postgres {
+
+/// What waits to be written: a client's batch of attempts, or something that nobody waits for.
+struct QueuedItem {
+  std::vector<std::optional<PreparedAttempt>> prepared;  ///< empty: answered already
+  std::vector<Receipt> receipts;                         ///< one an attempt
+  Store::ReportsDone done;                               ///< empty: not of reports
+  std::function<void(Connection&)> write;                ///< in a transaction of its own
+  std::size_t bytes = 0;
+
+  std::size_t weight() const { return receipts.empty() ? 1 : receipts.size(); }
+};
+
+/// Encodes and hashes on the caller's thread, which spares the writer's. What cannot be stored is
+/// refused here.
+QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done);
+
+/// The same of what another store has.
+QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done);
+
+/// For reports that there is no room to queue: each is answered TryAgain, in turn.
+QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,
+                         const std::string& why);
+
+/// The queue of the thread that writes. May be shared between threads.
+class ReportQueue {
+ public:
+  void push(QueuedItem item);
+
+  /// Waits for items, but not longer than a second, and takes those that make one transaction.
+  /// \return nothing once it is closed and empty.
+  std::optional<std::vector<QueuedItem>> take();
+  void close();
+
+  std::size_t weight() const;
+  std::size_t bytes() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<QueuedItem> items_;  // guarded by mutex_, like all below
+  std::size_t weight_ = 0;
+  std::size_t bytes_ = 0;
+  bool is_closed_ = false;
+};
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "server/store/postgres/database/interrupt.hpp"
+#include "server/store/postgres/opening/history.hpp"
+#include "server/store/postgres/opening/primary.hpp"
+#include "server/store/postgres/report_queue.hpp"
+
+namespace kinship::store::postgres {
+
+struct ReportWriterOptions {
+  std::uint64_t max_paths_per_pair = 0;
+  bool require_synchronous = false;
+  std::chrono::milliseconds retry_after{1000};  ///< between two tries to connect again
+  std::function<void(std::string_view)> log = {};
+};
+
+/// That what is committed on this connection waits for a standby.
+/// \throws PostgresError that says what is not set.
+void require_standby(Connection& connection);
+
+/// The thread that writes reports, on a connection of its own. It takes whatever is queued as one
+/// transaction and answers when the commit is certain; nobody waits for a timer. While the database
+/// is away, or without a standby that it must have, reports are answered TryAgain, and it is tried
+/// once a second to go on. A commit that waits for a standby is waited for, as long as it takes.
+class ReportWriter {
+ public:
+  /// \param connection  on which a run of the history has begun.
+  /// \param connected   called on the writer's thread when it has connected anew.
+  ReportWriter(Primary& primary, History& history, std::unique_ptr<Connection> connection,
+               ReportWriterOptions options, std::function<void()> connected);
+  ReportWriter(const ReportWriter&) = delete;
+  ReportWriter& operator=(const ReportWriter&) = delete;
+  /// Writes what is queued. What the database does not take within some seconds is answered
+  /// TryAgain.
+  ~ReportWriter();
+
+  void submit(QueuedItem item) { queue_.push(std::move(item)); }
+
+  std::size_t queued() const { return queue_.weight(); }
+  std::size_t queued_bytes() const { return queue_.bytes(); }
+  /// Empty while reports are stored; else why they are not.
+  std::string trouble() const;
+
+  /// Ends what the connection waits for: the interrupt that `primary` was made with.
+  void set_interrupt(Interrupt& interrupt) noexcept { interrupt_ = &interrupt; }
+
+ private:
+  /// An attempt on its way, and where its receipt goes.
+  struct Pending {
+    const PreparedAttempt* prepared = nullptr;
+    Receipt* receipt = nullptr;
+  };
+
+  void run();
+  void write(std::vector<QueuedItem>& items);
+  void write_reports(std::span<Pending> pending);
+  bool try_reports(std::span<Pending> pending);
+  void write_alone(const std::function<void(Connection&)>& write);
+  bool is_connected();
+  void look_around();
+  void give_up(const std::string& why);
+  void note(const std::string& why);
+  static void answer(std::span<Pending> pending, const std::string& why);
+
+  Primary& primary_;
+  History& history_;
+  const ReportWriterOptions options_;
+  const std::function<void()> connected_;
+  Interrupt* interrupt_ = nullptr;
+  ReportQueue queue_;
+  // The writer's thread only:
+  std::unique_ptr<Connection> connection_;  // empty: lost
+  std::chrono::steady_clock::time_point next_try_ = {};
+
+  std::atomic<std::int64_t> waits_since_ms_ = 0;  // for a COMMIT; 0: it does not
+  mutable std::mutex mutex_;
+  std::condition_variable ended_;
+  std::string trouble_;     // guarded by mutex_
+  bool has_ended_ = false;  // guarded by mutex_
+  std::thread thread_;
+};
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,188 @@
+#include "server/store/postgres/rows/export_rows.hpp"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "server/store/postgres/rows/arrivals.hpp"
+#include "server/store/values/pages.hpp"
+#include "server/store/values/path_content.hpp"
+#include "server/store/values/scene_columns.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+/// Paths and scenes by their ids, each read once.
+class Contents {
+ public:
+  Contents(Connection& connection, DamageNoticed& noticed)
+      : connection_(&connection), noticed_(&noticed) {}
+
+  /// Reads what these attempts name, in place of the paths that were read before.
+  void read(std::span<const ArrivedAttempt> attempts) {
+    std::vector<std::int64_t> path_ids, scene_ids;
+    for (const ArrivedAttempt& arrived : attempts) {
+      if (arrived.path_id)
+        path_ids.push_back(*arrived.path_id);
+      if (arrived.scene_id && !scenes_.contains(*arrived.scene_id))
+        scene_ids.push_back(*arrived.scene_id);
+    }
+    read_paths(path_ids);
+    read_scenes(scene_ids);
+  }
+  /// An attempt with what it names and can be read.
+  Attempt whole(ArrivedAttempt arrived) const {
+    if (arrived.path_id)
+      if (const auto found = paths_.find(*arrived.path_id); found != paths_.end())
+        arrived.attempt.path = found->second;
+    if (arrived.scene_id)
+      if (const auto found = scenes_.find(*arrived.scene_id); found != scenes_.end())
+        arrived.attempt.scene = found->second;
+    return std::move(arrived.attempt);
+  }
+
+ private:
+  void read_paths(const std::vector<std::int64_t>& ids) {
+    paths_.clear();
+    if (ids.empty())
+      return;
+    for (const Row row : connection_->query("SELECT " + std::string(kPathColumns) +
+                                                "FROM path WHERE id = ANY ($1) AND"
+                                                " damaged_ms IS NULL AND length(waypoints) > 1",
+                                            ids))
+      if (std::optional<StoredPath> stored = store::read_path(row))
+        paths_.emplace(stored->id, std::move(stored->path));
+      else
+        noticed_->paths.push_back(row.column_integer(PathColumn::kId));
+  }
+  void read_scenes(const std::vector<std::int64_t>& ids) {
+    if (ids.empty())
+      return;
+    for (const Row row : connection_->query("SELECT " + std::string(kSceneColumns) +
+                                                "FROM scene WHERE id = ANY ($1) AND"
+                                                " damaged_ms IS NULL",
+                                            ids))
+      if (std::optional<RecordedScene> scene = read_scene_columns(row))
+        scenes_.emplace(row.column_integer(0), std::move(*scene));
+      else
+        noticed_->scenes.push_back(row.column_integer(0));
+  }
+
+  Connection* connection_;
+  DamageNoticed* noticed_;
+  std::map<std::int64_t, Path> paths_;
+  std::map<std::int64_t, RecordedScene> scenes_;
+};
+
+bool is_exported(const ArrivedAttempt& arrived) {
+  const bool is_solved = arrived.attempt.record.outcome == Outcome::Solved;
+  return !arrived.is_robot_removed && (arrived.path_id ? arrived.is_path_in_use : !is_solved);
+}
+
+/// How many of these are read together: what their waypoints take stays within `max_bytes`.
+std::size_t size_of_portion(std::span<const ArrivedAttempt> attempts, std::size_t max_bytes) {
+  std::size_t size = 0, bytes = 0;
+  while (size < attempts.size() &&
+         (size == 0 || bytes + attempts[size].waypoint_bytes <= max_bytes))
+    bytes += attempts[size++].waypoint_bytes;
+  return size;
+}
+
+/// An export as it grows.
+class Export {
+ public:
+  Export(Connection& connection, std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed)
+      : contents_(connection, noticed),
+        page_(static_cast<std::int64_t>(std::max<std::size_t>(limit, 1))),
+        max_bytes_(max_bytes) {}
+
+  /// \return false once there is no room for one of them.
+  bool add(std::span<ArrivedAttempt> attempts) {
+    while (!attempts.empty()) {
+      const auto portion = attempts.first(size_of_portion(attempts, max_bytes_));
+      contents_.read(portion);
+      for (ArrivedAttempt& arrived : portion)
+        if (!add(std::move(arrived)))
+          return false;
+      attempts = attempts.subspan(portion.size());
+    }
+    return true;
+  }
+  ArrivalPage<Attempt>& page() { return page_; }
+
+ private:
+  bool add(ArrivedAttempt arrived) {
+    const Arrival arrival = arrived.arrival;
+    const bool is_solved = arrived.attempt.record.outcome == Outcome::Solved;
+    Attempt attempt = contents_.whole(std::move(arrived));
+    if (attempt.path.has_value() != is_solved)
+      return true;
+    const BatchBytes more = batch_bytes(attempt);
+    bytes_ += more.waypoints + more.scenes;
+    if (page_.is_full() || (!page_.is_empty() && bytes_ > max_bytes_))
+      return false;
+    page_.add(std::move(attempt), arrival);
+    return true;
+  }
+
+  Contents contents_;
+  ArrivalPage<Attempt> page_;
+  std::size_t max_bytes_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
+
+Page<AttemptSummary> page_of_attempts(Connection& connection, const PairFilter& filter,
+                                      std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  Arrival last = parse_arrival_cursor(cursor);
+  ArrivalPage<AttemptSummary> page(rows);
+  while (true) {
+    std::vector<ArrivedAttempt> next = select_arrived(connection, filter, last, rows + 1);
+    if (next.empty())
+      return page.last();
+    for (ArrivedAttempt& arrived : next) {
+      last = arrived.arrival;
+      if (arrived.is_robot_removed)
+        continue;
+      if (page.is_full())
+        return page.full();
+      Attempt& attempt = arrived.attempt;
+      page.add(
+          {attempt.report_uuid, attempt.robot, std::move(arrived.label), std::move(attempt.task),
+           std::move(attempt.machine), std::move(attempt.record), arrived.received_ms},
+          last);
+    }
+  }
+}
+
+std::optional<Attempt> find_attempt(Connection& connection, const Uuid& report_uuid,
+                                    DamageNoticed& noticed) {
+  std::optional<ArrivedAttempt> arrived = select_arrived(connection, report_uuid);
+  if (!arrived)
+    return std::nullopt;
+  Contents contents(connection, noticed);
+  contents.read(std::span(&*arrived, 1));
+  return contents.whole(std::move(*arrived));
+}
+
+Page<Attempt> export_page(Connection& connection, const PairFilter& filter, std::string_view cursor,
+                          std::size_t limit, std::size_t max_bytes, DamageNoticed& noticed) {
+  constexpr std::int64_t kCandidates = 256;
+  Arrival last = parse_arrival_cursor(cursor);
+  Export exported(connection, limit, max_bytes, noticed);
+  while (true) {
+    std::vector<ArrivedAttempt> next = select_arrived(connection, filter, last, kCandidates);
+    if (next.empty())
+      return exported.page().last();
+    last = next.back().arrival;
+    std::erase_if(next, [](const ArrivedAttempt& arrived) { return !is_exported(arrived); });
+    if (!exported.add(next))
+      return exported.page().full();
+  }
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,154 @@
+#include "server/store/postgres/rows/listings.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/values/pages.hpp"
+#include "server/store/values/robot_columns.hpp"
+#include "server/store/values/summary_columns.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+/// A page of the first rows of a statement that gives one more.
+/// \param read       makes an entry of a row.
+/// \param cursor_of  the cursor that continues after it.
+template <typename Entry, typename Read, typename CursorOf>
+Page<Entry> page_of(const Rows& rows, std::int64_t limit, Read read, CursorOf cursor_of) {
+  PageFiller<Entry> page(limit);
+  for (const Row row : rows)
+    if (!page.add(read(row), cursor_of(row)))
+      break;
+  return page.take();
+}
+
+/// The robots of these tasks, by task.
+std::map<std::int64_t, std::vector<TaskRobotSummary>> robots_of_tasks(
+    Connection& connection, const std::vector<std::int64_t>& task_ids) {
+  constexpr int kDigest = 11, kLabel = 12, kTask = 13;
+  const Rows rows = connection.query(
+      "SELECT " + std::string(kTaskRobotColumns) +
+          ", digest, label, task_id FROM experience JOIN robot ON robot.id = robot_id "
+          "WHERE task_id = ANY ($1)",
+      task_ids);
+  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots;
+  for (const Row row : rows)
+    if (const std::string_view label = row.column_text(kLabel); !is_removed_label(label))
+      robots[row.column_integer(kTask)].push_back(
+          read_task_robot(row, id_of<Digest>(row.column_blob(kDigest)), label));
+  return robots;
+}
+
+/// \param tasks  ids and names.
+Page<TaskSummary> read_tasks(Connection& connection, const Rows& tasks, std::int64_t limit) {
+  std::vector<std::int64_t> ids;
+  for (const Row task : tasks)
+    ids.push_back(task.column_integer(0));
+  std::map<std::int64_t, std::vector<TaskRobotSummary>> robots = robots_of_tasks(connection, ids);
+  return page_of<TaskSummary>(
+      tasks, limit,
+      [&](const Row& task) {
+        return summary_of(task.column_text(1), std::move(robots[task.column_integer(0)]));
+      },
+      [](const Row& task) { return std::string(task.column_text(1)); });
+}
+
+/// The ids of the newest paths before $1, at most $2: of all along the table; of some robots and
+/// tasks each brings its own, read from its indexes.
+std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
+  if (filter.is_empty())
+    return "SELECT id FROM path WHERE id < $1 AND damaged_ms IS NULL ORDER BY id DESC LIMIT $2";
+  const std::string of_pair =
+      "SELECT id FROM path WHERE task_id = experience.task_id AND"
+      " robot_id = experience.robot_id AND id < $1 AND damaged_ms IS NULL AND ";
+  const std::string newest = " ORDER BY id DESC LIMIT $2";
+  return "SELECT newest.id FROM experience CROSS JOIN LATERAL ((" + of_pair + "retired_ms IS NULL" +
+         newest + ") UNION ALL (" + of_pair + "retired_ms IS NOT NULL" + newest +
+         ")) AS newest WHERE TRUE" + filter.condition("experience", parameters) +
+         " ORDER BY newest.id DESC LIMIT $2";
+}
+
+}  // namespace
+
+Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
+                                  std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  return page_of<RobotSummary>(
+      connection.query("SELECT " + std::string(kRobotSummaryColumns) +
+                           "FROM robot WHERE label > $1 AND label NOT LIKE 'removed %' "
+                           "ORDER BY label LIMIT $2",
+                       cursor, rows + 1),
+      rows, read_robot_summary<Row>,
+      [](const Row& row) { return std::string(row.column_text(1)); });
+}
+
+Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor,
+                                std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  return read_tasks(
+      connection,
+      connection.query("SELECT id, name FROM task WHERE name > $1 ORDER BY name LIMIT $2", cursor,
+                       rows + 1),
+      rows);
+}
+
+std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task) {
+  Page<TaskSummary> page = read_tasks(
+      connection, connection.query("SELECT id, name FROM task WHERE name = $1", task), 1);
+  if (page.rows.empty())
+    return std::nullopt;
+  return std::move(page.rows.front());
+}
+
+Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
+                                std::string_view cursor, std::size_t limit) {
+  constexpr int kId = 22;  // behind the record
+  const std::int64_t rows = rows_of_page(limit);
+  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  const std::string page = newest_paths(filter, parameters);
+  return page_of<PathSummary>(
+      connection.query("SELECT " + std::string(kPathSummaryColumns) + std::string(kIsDropped) +
+                           ", " + std::string(kRecordColumns) + ", path.id FROM (" + page +
+                           ") AS page JOIN path ON path.id = page.id "
+                           "JOIN robot ON robot.id = path.robot_id "
+                           "JOIN task ON task.id = path.task_id "
+                           "JOIN attempt ON attempt.report_uuid = path.report_uuid "
+                           "ORDER BY path.id DESC",
+                       parameters),
+      rows, read_path_summary<Row>,
+      [](const Row& row) { return std::to_string(row.column_integer(kId)); });
+}
+
+Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
+                                                std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  const std::string condition = filter.condition("distribution", parameters);
+  return page_of<DistributionSummary>(
+      connection.query("SELECT " + std::string(kDistributionSummaryColumns) +
+                           "FROM distribution JOIN robot ON robot.id = distribution.robot_id "
+                           "JOIN task ON task.id = distribution.task_id "
+                           "WHERE distribution.id < $1" +
+                           condition + " ORDER BY distribution.id DESC LIMIT $2",
+                       parameters),
+      rows, read_distribution_summary<Row>,
+      [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });
+}
+
+Page<AuditEntry> page_of_audit(Connection& connection, std::string_view name,
+                               std::string_view cursor, std::size_t limit) {
+  const std::int64_t rows = rows_of_page(limit);
+  Parameters parameters(parse_falling_cursor(cursor), rows + 1);
+  if (!name.empty())
+    parameters.add(name);
+  return page_of<AuditEntry>(
+      connection.query("SELECT " + std::string(kAuditColumns) + "FROM audit WHERE id < $1 " +
+                           (name.empty() ? "" : "AND name = $3 ") + "ORDER BY id DESC LIMIT $2",
+                       parameters),
+      rows, read_audit_entry<Row>,
+      [](const Row& row) { return std::to_string(row.column_integer(0)); });
+}
+
+}  // namespace kinship::store::postgres

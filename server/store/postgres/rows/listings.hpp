@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "server/store/postgres/database/connection.hpp"
+#include "server/store/postgres/rows/pair_filter.hpp"
+#include "server/store/store.hpp"
+
+/// The pages of admin listings. A cursor is the sort key of the last row shown, so a page costs
+/// the same wherever it is, and rows that come or go meanwhile neither repeat nor hide others.
+/// Where ids fall, what other servers are committing while a listing is read may be missing in it,
+/// as is what comes later; nothing that was there when its first page was read.
+/// \throws Failure(InvalidInput) for a cursor of another listing.
+namespace kinship::store::postgres {
+
+Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
+                                  std::size_t limit);
+
+/// In a snapshot.
+Page<TaskSummary> page_of_tasks(Connection& connection, std::string_view cursor, std::size_t limit);
+
+/// In a snapshot.
+std::optional<TaskSummary> summary_of_task(Connection& connection, std::string_view task);
+
+/// Newest first; retired paths too.
+Page<PathSummary> page_of_paths(Connection& connection, const PairFilter& filter,
+                                std::string_view cursor, std::size_t limit);
+
+/// The newest fit first. One that is fitted again meanwhile moves to the front.
+Page<DistributionSummary> page_of_distributions(Connection& connection, const PairFilter& filter,
+                                                std::string_view cursor, std::size_t limit);
+
+/// The newest first. \param name  of this name alone; empty: all.
+Page<AuditEntry> page_of_audit(Connection& connection, std::string_view name,
+                               std::string_view cursor, std::size_t limit);
+
+}  // namespace kinship::store::postgres

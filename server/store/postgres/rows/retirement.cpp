@@ -1,0 +1,165 @@
+#include "server/store/postgres/rows/retirement.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/values/audit_texts.hpp"
+#include "server/store/values/clock.hpp"
+#include "server/store/values/columns.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+/// The attempt of a report, as far as a retirement goes.
+struct ReportedPath {
+  ExperienceKey key;
+  std::optional<std::int64_t> path_id;
+  bool is_solved = false;
+  std::string task;
+  Digest robot;
+};
+
+std::optional<ReportedPath> find_reported(Connection& connection, const Uuid& report_uuid) {
+  const Rows rows = connection.query(
+      "SELECT task_id, robot_id, path_id, outcome, task.name, robot.digest FROM attempt"
+      " JOIN task ON task.id = task_id JOIN robot ON robot.id = robot_id WHERE report_uuid = $1",
+      Bytes(report_uuid.bytes));
+  if (rows.empty())
+    return std::nullopt;
+  const Row row = rows.front();
+  return ReportedPath{.key = {row.column_integer(0), row.column_integer(1)},
+                      .path_id = optional_integer_of(row, 2),
+                      .is_solved = outcome_of(row.column_integer(3)) == Outcome::Solved,
+                      .task = std::string(row.column_text(4)),
+                      .robot = id_of<Digest>(row.column_blob(5))};
+}
+
+/// Of a pair that is locked. A damaged path was in fits before it was found damaged: it is retired
+/// as any other, but was taken out of the count already.
+/// \return how many were not retired before.
+std::int64_t retire(Connection& connection, const ExperienceKey& key,
+                    const std::vector<std::int64_t>& paths) {
+  const Rows rows = connection.query(
+      "WITH gone AS (UPDATE path SET retired_ms = $2 WHERE id = ANY($1) AND retired_ms IS NULL"
+      "  RETURNING id, report_uuid, damaged_ms),"
+      " remembered AS (INSERT INTO retired_report (report_uuid, retired_ms)"
+      "  SELECT report_uuid, $2 FROM gone UNION"
+      "  SELECT attempt.report_uuid, $2 FROM attempt JOIN gone ON attempt.path_id = gone.id"
+      "  WHERE attempt.status = 2 ON CONFLICT (report_uuid) DO NOTHING)"
+      " SELECT count(*), count(*) FILTER (WHERE damaged_ms IS NULL) FROM gone",
+      paths, now_ms());
+  const std::int64_t retired = rows.front().column_integer(0);
+  if (retired > 0)
+    note_retirement(connection, key, rows.front().column_integer(1));
+  return retired;
+}
+
+Digest digest_of_robot(Connection& connection, std::int64_t robot_id) {
+  const Rows rows = connection.query("SELECT digest FROM robot WHERE id = $1", robot_id);
+  return rows.empty() ? Digest() : id_of<Digest>(rows.front().column_blob(0));
+}
+
+std::int64_t count_paths_of(Connection& connection, std::string_view task) {
+  return connection
+      .query(
+          "SELECT coalesce(sum(paths), 0)::bigint FROM experience"
+          " WHERE task_id = (SELECT id FROM task WHERE name = $1)",
+          task)
+      .front()
+      .column_integer(0);
+}
+
+void add_robot(Retirement& retired, const Digest& robot) {
+  const auto place = std::ranges::lower_bound(retired.robots, robot);
+  if (place == retired.robots.end() || *place != robot)
+    retired.robots.insert(place, robot);
+}
+
+}  // namespace
+
+void note_act(Connection& connection, const AuditEntry* audit, AuditOutcome outcome,
+              std::string before, std::string after) {
+  if (audit == nullptr)
+    return;
+  AuditEntry entry = *audit;
+  entry.outcome = outcome;
+  entry.before = std::move(before);
+  entry.after = std::move(after);
+  insert_audit(connection, entry);
+}
+
+Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,
+                               const AuditEntry* audit) {
+  std::optional<ReportedPath> reported = find_reported(connection, report_uuid);
+  if (!reported)
+    return Error{ErrorCode::NotFound, "path " + report_uuid.text() + ": no such report"};
+  lock_pair(connection, reported->key);
+  reported = find_reported(connection, report_uuid);  // as it is under the lock
+  if (!reported->path_id)
+    return Error{ErrorCode::InvalidInput,
+                 "path " + report_uuid.text() +
+                     (reported->is_solved ? ": it was not kept, there were as many as may be"
+                                          : ": this report brought no path")};
+  Retirement retired;
+  retired.task = reported->task;
+  const std::int64_t before = count_paths_of(connection, retired.task);
+  if (retire(connection, reported->key, {*reported->path_id}) > 0) {
+    retired.paths = 1;
+    add_robot(retired, reported->robot);
+  }
+  note_act(connection, audit, AuditOutcome::Done, describe_paths(retired.task, before),
+           in_number(count_paths_of(connection, retired.task), "path"));
+  return retired;
+}
+
+Result<TaskReset> begin_reset(Connection& connection, std::string_view task,
+                              const AuditEntry* audit) {
+  const Rows rows = connection.query(
+      "SELECT id, (SELECT coalesce(max(id), 0) FROM path) FROM task WHERE name = $1", task);
+  if (rows.empty())
+    return Error{ErrorCode::NotFound, "task '" + std::string(task) + "': no such task"};
+  note_act(connection, audit, AuditOutcome::Begun,
+           describe_paths(task, count_paths_of(connection, task)));
+  return TaskReset{rows.front().column_integer(0), rows.front().column_integer(1)};
+}
+
+bool continue_reset(Connection& connection, const TaskReset& reset, Retirement& retired,
+                    const AuditEntry* audit) {
+  std::int64_t left = kPathsOfAStep;
+  for (const ExperienceKey& key : lock_pairs_of_task(connection, reset.task_id)) {
+    const std::int64_t gone = retire_some(connection, key, reset.last_path_id, left);
+    if (gone > 0)
+      add_robot(retired, digest_of_robot(connection, key.robot_id));
+    left -= gone;
+    if (left <= 0)
+      break;
+  }
+  const std::int64_t gone = kPathsOfAStep - left;
+  retired.paths += static_cast<std::uint64_t>(gone);
+  if (gone > 0)
+    return true;
+  note_act(connection, audit, AuditOutcome::Done, {},
+           describe_paths(retired.task, count_paths_of(connection, retired.task)) + ", " +
+               std::to_string(retired.paths) + " retired");
+  return false;
+}
+
+std::int64_t retire_some(Connection& connection, const ExperienceKey& key, std::int64_t last_id,
+                         std::int64_t limit) {
+  std::vector<std::int64_t> paths;
+  for (const Row row : connection.query(
+           "(SELECT id FROM path WHERE task_id = $1 AND robot_id = $2 AND id <= $3"
+           "  AND retired_ms IS NULL AND damaged_ms IS NULL LIMIT $4)"
+           " UNION ALL (SELECT id FROM path WHERE damaged_ms IS NOT NULL AND retired_ms IS NULL"
+           "  AND replaced_by IS NULL AND task_id = $1 AND robot_id = $2 AND id <= $3) LIMIT $4",
+           key.task_id, key.robot_id, last_id, limit))
+    paths.push_back(row.column_integer(0));
+  return paths.empty() ? 0 : retire(connection, key, paths);
+}
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,119 @@
+#include "server/store/postgres/rows/robot_removal.hpp"
+
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "server/store/postgres/rows/distribution_rows.hpp"
+#include "server/store/postgres/rows/experience_rows.hpp"
+#include "server/store/postgres/rows/retirement.hpp"
+#include "server/store/postgres/rows/robot_rows.hpp"
+#include "server/store/values/audit_texts.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/robot_columns.hpp"
+
+namespace kinship::store::postgres {
+namespace {
+
+/// What is left of a robot whose paths are retired.
+struct RobotRest {
+  std::uint64_t attempts = 0;
+  std::set<std::string> tasks;
+  std::vector<Digest> distributions;
+};
+
+RobotRest select_rest(Connection& connection, std::int64_t robot_id) {
+  RobotRest rest;
+  for (const Row row : connection.query("SELECT task.name, attempts FROM experience"
+                                        " JOIN task ON task.id = task_id WHERE robot_id = $1",
+                                        robot_id)) {
+    rest.tasks.emplace(row.column_text(0));
+    rest.attempts += count_of(row, 1);
+  }
+  for (const Row row : connection.query("SELECT digest, task.name FROM distribution"
+                                        " JOIN task ON task.id = task_id WHERE robot_id = $1",
+                                        robot_id)) {
+    rest.distributions.push_back(id_of<Digest>(row.column_blob(0)));
+    rest.tasks.emplace(row.column_text(1));
+  }
+  return rest;
+}
+
+std::string describe(Connection& connection, std::int64_t robot_id, const RobotRecord& robot) {
+  const Rows sums = connection.query(
+      "SELECT coalesce(sum(paths), 0)::bigint,"
+      " coalesce(sum(attempts), 0)::bigint FROM experience"
+      " WHERE robot_id = $1",
+      robot_id);
+  return describe_robot(robot.description.label, robot.digest, sums.front().column_integer(0),
+                        sums.front().column_integer(1));
+}
+
+/// \return whether none is left.
+bool retire_step(Connection& connection, std::int64_t robot_id, RemovedRobot& removed) {
+  std::int64_t left = kPathsOfAStep;
+  for (const ExperienceKey& key : lock_pairs_of_robot(connection, robot_id)) {
+    const std::int64_t gone =
+        retire_some(connection, key, std::numeric_limits<std::int64_t>::max(), left);
+    removed.removal.paths += static_cast<std::uint64_t>(gone);
+    left -= gone;
+    if (left <= 0)
+      return false;
+  }
+  return true;
+}
+
+bool has_pairs(Connection& connection, std::int64_t robot_id) {
+  return !connection.query("SELECT 1 FROM experience WHERE robot_id = $1 LIMIT 1", robot_id)
+              .empty();
+}
+
+}  // namespace
+
+Result<bool> continue_removal(Connection& connection, const Digest& robot, RemovedRobot& removed,
+                              const AuditEntry* audit) {
+  const std::optional<std::int64_t> id = lock_robot(connection, robot);
+  const std::optional<RobotRecord> record = id ? select_robot(connection, robot) : std::nullopt;
+  if (!record)
+    return Error{ErrorCode::NotFound, "robot " + robot.short_hex() + " is not registered"};
+  const bool is_first = removed.removal.paths == 0;
+  const std::string before = audit == nullptr ? "" : describe(connection, *id, *record);
+  if (!retire_step(connection, *id, removed)) {
+    if (is_first)
+      note_act(connection, audit, AuditOutcome::Begun, before);
+    return false;
+  }
+  lock_distributions(connection);
+  const RobotRest rest = select_rest(connection, *id);
+  for (const Digest& distribution : rest.distributions)
+    static_cast<void>(delete_distribution(connection, distribution));
+  const bool is_deleted = !has_pairs(connection, *id);
+  if (is_deleted)
+    delete_robot(connection, *id);
+  else if (const auto relabelled = relabel_robot(connection, robot, removed_label(robot));
+           !relabelled)
+    return relabelled.error();
+  removed.removal.robot = robot;
+  removed.removal.label = record->description.label;
+  removed.removal.attempts = rest.attempts;
+  removed.removal.distributions = rest.distributions.size();
+  removed.removal.is_deleted = is_deleted;
+  removed.tasks.assign(rest.tasks.begin(), rest.tasks.end());
+  removed.distributions = rest.distributions;
+  note_act(connection, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
+  return true;
+}
+
+Result<bool> rename_audited(Connection& connection, const Digest& robot, const std::string& label,
+                            const AuditEntry* audit) {
+  static_cast<void>(lock_robot(connection, robot));
+  const std::optional<RobotRecord> before = select_robot(connection, robot);
+  Result<bool> renamed = relabel_robot(connection, robot, label);
+  if (renamed && before)
+    note_act(connection, audit, AuditOutcome::Done, "'" + before->description.label + "'",
+             "'" + label + "' (" + robot.short_hex() + ")");
+  return renamed;
+}
+
+}  // namespace kinship::store::postgres
