@@ -33,7 +33,6 @@ Exchange::Exchange(store::Store& site, store::Store& memory, Positions& position
       hooks_(std::move(hooks)),
       options_(std::move(options)) {
   begin();
-  try_refused_again({});
 }
 
 /// A memory that lost what it acknowledged is told so, as a server is by its clients.
@@ -171,6 +170,8 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
   begin();
   const TimePoint now = options_.clock.now();
   *commits_ns_ = 0;
+  if (!std::exchange(has_tried_refused_, true))
+    try_refused_again(stop);
   if (tasks_due_ <= now) {
     want_tasks();
     // Also where no task is wanted: what this site sent may be retired above.

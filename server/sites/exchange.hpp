@@ -99,6 +99,7 @@ class Exchange {
   std::map<std::string, TimePoint> down_due_;  // by task
   std::string last_;                           // task that had its turn
   bool is_ups_turn_ = true;
+  bool has_tried_refused_ = false;
   /// How long commits here took. Shared with their callbacks, which may come after the exchange.
   std::shared_ptr<std::atomic<std::int64_t>> commits_ns_ =
       std::make_shared<std::atomic<std::int64_t>>(0);

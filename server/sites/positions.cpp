@@ -35,7 +35,7 @@ HistoryMark mark_of(std::string_view text) {
 template <typename Number>
 std::pair<Number, std::string> numbered(const std::string& text) {
   Number number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  std::from_chars(text.data(), text.data() + text.size(), number);
   const std::size_t blank = text.find(' ');
   return {number, blank == std::string::npos ? std::string() : text.substr(blank + 1)};
 }

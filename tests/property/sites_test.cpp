@@ -46,7 +46,7 @@ class World {
  public:
   explicit World(std::uint64_t seed) : generator_(seed) {
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      places_[i].file = directory_ / ("store" + std::to_string(i) + ".db");
+      places_[i].file = directory_.path() / ("store" + std::to_string(i) + ".db");
       open(i);
       // Equal labels of different robots, as sites have them.
       robots_[i] = test::make_robot("arm", i + 1);

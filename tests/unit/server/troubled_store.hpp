@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "server/store/sqlite/database/database.hpp"
@@ -202,7 +203,7 @@ class TroubledStore final : public store::Store {
 
  private:
   template <typename Call>
-  auto exchange(Call call) const {
+  std::invoke_result_t<Call> exchange(Call call) const {
     on_exchange();
     auto result = call();
     on_exchange();

@@ -147,9 +147,11 @@ TEST_F(ExchangeTest, WhatIsRefusedIsSetAsideAndTriedWithTheNextConnection) {
   EXPECT_EQ(positions_->refused().begin()->second.why, "no path of this robot");
   EXPECT_NE(lines_.back().find(solved(11).report_uuid.text()), std::string::npos);
   connect();
+  exchange();
   EXPECT_EQ(positions_->refused().size(), 1U) << "refused again";
   is_refusing = false;
   connect();
+  exchange();
   EXPECT_TRUE(positions_->refused().empty());
   EXPECT_EQ(site_->status().attempts, 2U);
 }
