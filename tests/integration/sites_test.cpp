@@ -10,6 +10,7 @@
 #include "proto/json/summaries_json.hpp"
 #include "tests/support/panda_experience.hpp"
 #include "tests/support/postgres_cluster.hpp"
+#include "tests/support/postgres_programs.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
