@@ -118,6 +118,27 @@ void print_attempt(const Attempt& attempt, std::ostream& out) {
   }
 }
 
+void print_upstream(const UpstreamStatus& upstream, std::ostream& out) {
+  const auto line = [&out]() -> std::ostream& { return out << "upstream       "; };
+  line() << upstream.name << (upstream.connected ? ", connected since " : ", away since ")
+         << time_text(upstream.since_ms);
+  if (!upstream.connected)
+    out << ", tried " << upstream.tries << " times: " << upstream.message;
+  out << '\n';
+  line() << count_text(upstream.waiting, "report") << " to be sent";
+  if (upstream.oldest_waiting_ms > 0)
+    out << ", the first of " << time_text(upstream.oldest_waiting_ms);
+  out << "; since start " << upstream.sent << " sent, " << upstream.received << " received for "
+      << count_text(upstream.tasks, "task") << '\n';
+  if (upstream.retired_above + upstream.retired_here + upstream.left_out > 0)
+    line() << "since start " << count_text(upstream.retired_above, "path") << " retired above, "
+           << upstream.retired_here << " here; " << count_text(upstream.left_out, "report")
+           << " without a path that can be read\n";
+  if (upstream.refused > 0)
+    line() << count_text(upstream.refused, "report") << " refused and set aside, e.g. "
+           << upstream.first_refused << '\n';
+}
+
 void print_status(const ServerStatus& status, std::ostream& out) {
   out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
       << "store          " << status.store_file << ", " << size_text(status.store_bytes)
@@ -146,6 +167,8 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "
                                  : std::string())
       << number_text(100 * status.scrub_part, 0) << " % read\n";
+  if (status.upstream)
+    print_upstream(*status.upstream, out);
   for (const TroubleCount& trouble : status.troubles)
     out << "trouble        " << trouble.count << " x " << trouble.what << ", last at "
         << time_text(trouble.last_ms) << ": " << trouble.last << '\n';

@@ -277,6 +277,43 @@ inline constexpr std::tuple kFieldsOf<BoundUse>{
     Field{"what", &BoundUse::what, {.limit = kMaxWordBytes}}, Field{"used", &BoundUse::used},
     Field{"limit", &BoundUse::limit}};
 
+/// How a site stands with the memory above it (kinshipd --upstream).
+struct UpstreamStatus {
+  std::string name;
+  bool connected = false;
+  std::int64_t since_ms = 0;           ///< Unix time: connected, or away
+  std::string message;                 ///< why away
+  std::uint64_t tries = 0;             ///< to connect, in vain, since it went away
+  std::uint64_t waiting = 0;           ///< reports that the memory was not yet asked about
+  std::int64_t oldest_waiting_ms = 0;  ///< when the first of them came here; 0: none waits
+  std::uint64_t sent = 0;              ///< since start: reports that were new to the memory
+  std::uint64_t received = 0;          ///< since start: that were new here
+  std::uint64_t refused = 0;           ///< set aside: they are tried again with each connection
+  std::string first_refused;           ///< one of them, and why
+  std::uint64_t left_out = 0;          ///< since start: their paths are dropped or damaged
+  std::uint64_t retired_above = 0;     ///< since start: paths, because they were retired here
+  std::uint64_t retired_here = 0;      ///< since start: paths, because they were retired above
+  std::uint64_t tasks = 0;             ///< whose experience comes down
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<UpstreamStatus>{
+    Field{"name", &UpstreamStatus::name, {.limit = kMaxMessageBytes}},
+    Field{"connected", &UpstreamStatus::connected},
+    Field{"since_ms", &UpstreamStatus::since_ms},
+    Field{"message", &UpstreamStatus::message, {.limit = kMaxPageBytes}},
+    Field{"tries", &UpstreamStatus::tries},
+    Field{"waiting", &UpstreamStatus::waiting},
+    Field{"oldest_waiting_ms", &UpstreamStatus::oldest_waiting_ms},
+    Field{"sent", &UpstreamStatus::sent},
+    Field{"received", &UpstreamStatus::received},
+    Field{"refused", &UpstreamStatus::refused},
+    Field{"first_refused", &UpstreamStatus::first_refused, {.limit = kMaxPageBytes}},
+    Field{"left_out", &UpstreamStatus::left_out},
+    Field{"retired_above", &UpstreamStatus::retired_above},
+    Field{"retired_here", &UpstreamStatus::retired_here},
+    Field{"tasks", &UpstreamStatus::tasks}};
+
 struct ServerStatus {
   std::string version;
   std::string store_file;
@@ -301,6 +338,7 @@ struct ServerStatus {
   std::vector<TroubleCount> troubles = {};
   std::vector<BoundUse> bounds = {};
   std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
+  std::optional<UpstreamStatus> upstream = {};  ///< of a site
 };
 
 template <>
@@ -335,6 +373,7 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"scrub_part", &ServerStatus::scrub_part, {.min = 0, .may_be_missing = true}},
     Field{"troubles", &ServerStatus::troubles, {.limit = kMaxStatusRows, .may_be_missing = true}},
     Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}},
-    Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}}};
+    Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}},
+    Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}}};
 
 }  // namespace kinship

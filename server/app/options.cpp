@@ -15,6 +15,7 @@
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/metrics_address.hpp"
+#include "server/app/upstream_url.hpp"
 
 namespace kinship::app {
 namespace {
@@ -36,6 +37,7 @@ Examples:
   kinshipd --config /etc/kinship/kinshipd.toml   lines like: store = "/var/lib/kinship/fleet.db"
   kinshipd --interface eth0 --security /etc/kinship/security      other hosts, with certificates
   kinshipd --metrics 127.0.0.1:9464              what Prometheus reads, at http://127.0.0.1:9464/metrics
+  kinshipd --upstream 'postgresql://memory.example/kinship?sslmode=verify-full'    one of several sites
   kinshipd --print-config > kinshipd.toml        all options, their values and where these are from
   kinshipd check --store fleet.db                reads all of it; --json for programs
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
@@ -73,6 +75,29 @@ CLI::Validator is_metrics_address() {
             return address ? std::string() : address.error().message;
           },
           "ADDRESS:PORT"};
+}
+
+CLI::Validator is_upstream() {
+  return {[](std::string& text) {
+            return is_upstream_url(text) ? std::string()
+                                         : "a memory above is a PostgreSQL database: "
+                                           "postgresql://HOST/DATABASE";
+          },
+          ""};
+}
+
+/// The memory above a site.
+void add_upstream_options(CLI::App& app, ServerOptions& options) {
+  app.add_option("--upstream", options.upstream,
+                 "Memory above this site: reports go up to it, and the experience of other sites "
+                 "comes down, whenever it can be reached; default: none")
+      ->check(is_upstream())
+      ->type_name("URL");
+  app.add_option("--upstream-tasks", options.upstream_tasks,
+                 "Tasks whose experience always comes down, e.g. 'pick_*'; those that robots here "
+                 "fetch for do so anyway")
+      ->type_name("PATTERN")
+      ->needs("--upstream");
 }
 
 /// What the store may take of its disk.
@@ -201,6 +226,7 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   add_disk_options(app, options);
   add_retention_options(app, options);
   add_client_options(app, options.client);
+  add_upstream_options(app, options);
   app.add_option("--scrub-mb-per-s", options.scrub_mb_per_s,
                  "How fast the store is read through, again and again, in search of damage, MB a "
                  "second; 0: not at all")

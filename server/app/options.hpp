@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "proto/types/exit_code.hpp"
 #include "server/app/secure_options.hpp"
@@ -51,7 +52,9 @@ struct ServerOptions {
   /// How fast the store's file is read through in search of damage, MB a second; 0: not at all.
   double scrub_mb_per_s = 4;
   ClientQuotaOptions client;
-  std::string metrics;  ///< address and port to serve metrics at; empty: none
+  std::string upstream;                     ///< URL of the memory above this site; empty: none
+  std::vector<std::string> upstream_tasks;  ///< patterns of tasks that always come down from it
+  std::string metrics;                      ///< address and port to serve metrics at; empty: none
   std::string log_level = "info";
 };
 

@@ -90,6 +90,16 @@ store::StoreOptions store_options(const ServerOptions& options) {
   return store;
 }
 
+void set_upstream(const ServerOptions& options, service::ServiceOptions& service) {
+  if (options.upstream.empty())
+    return;
+  service.upstream.name = store::displayed_store(options.upstream);
+  service.upstream.tasks = options.upstream_tasks;
+  service.upstream.open = [url = options.upstream, settings = store_options(options)] {
+    return store::open_store(url, settings);
+  };
+}
+
 /// Before anything is opened.
 void tell_insecurity(const ServerOptions& options) {
   // Whatever the log leaves out.
@@ -143,6 +153,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
                 {});
   service::ServiceOptions settings = service_options(options);
   settings.log = [&log](std::string_view line) { log.write(line); };
+  set_upstream(options, settings);
   publish_with(settings, events, announcements);
   settings.wake = [&loop] { loop.wake(); };
   service::Service service(store::open_store(options.store.string(), store_options(options)),

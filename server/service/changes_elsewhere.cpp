@@ -26,7 +26,7 @@ void Service::take_changes(const store::StoreChanges& changes) {
     forget_task(task);
   for (const std::string& task : grown)
     if (!retired.contains(task))
-      notice_experience(task);
+      new_experience(task);
   for (const Digest& id : changes.evicted)
     catalog_.evict(id);
 }
@@ -37,7 +37,7 @@ void Service::forget_task(const std::string& task) {
   catalog_.forget(task);
 }
 
-void Service::notice_experience(std::string_view task) {
+void Service::new_experience(std::string_view task) {
   experience_.new_experience(task);
   rehearsals_.new_experience(task);
   catalog_.new_experience(task);

@@ -77,7 +77,9 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
       jobs_(options_.clock, job_options(options_)),
       administration_(administration_parts()),
       reset_pool_({.threads = 1, .queue_limit = kMaxResets, .niceness = options_.fit_niceness}),
-      watch_(*store_, [this](const store::StoreChanges& changes) { take_changes(changes); }) {}
+      watch_(*store_, [this](const store::StoreChanges& changes) { take_changes(changes); }) {
+  start_forwarder();
+}
 
 Service::~Service() { shutdown(); }
 
@@ -163,6 +165,8 @@ Administration::Parts Service::administration_parts() {
               [this](const std::string& task, const std::string& what) {
                 options_.log((task.empty() ? "" : "task '" + task + "': ") + what);
                 events_.tell(EventKind::Administration, task, {}, [&] { return what; });
+                if (forwarder_)
+                  forwarder_->wake();
               }};
 }
 
@@ -173,6 +177,8 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
         receipts[i].status == ReceiptStatus::Recorded)
       advice_.add(costs[i]);
   publish_report(events_, robots_, costs, receipts);
+  if (forwarder_)
+    forwarder_->wake();
 }
 
 void Service::register_robot(RobotDescription description,
@@ -279,6 +285,8 @@ catalog::FetchDone Service::of_this_epoch(catalog::FetchDone done) const {
 
 void Service::fetch(const FetchRequest& request, const std::string& waiter,
                     catalog::FetchDone done) {
+  if (forwarder_ && used_tasks_.note(request.task, options_.clock.unix_ms()))
+    forwarder_->wake_for_task();
   // Shared by those who ask and answer: they may be on two threads, in either order.
   const auto watch = std::make_shared<FetchWatch>(options_.clock);
   done = [this, watch, client = std::string(catalog::client_of(waiter)),
@@ -357,6 +365,8 @@ ServerStatus Service::status() const {
   status.troubles = troubles_.counts();
   status.dropped_paths = store.dropped_paths;
   status.bounds = bounds(store);
+  if (forwarder_)
+    status.upstream = forwarder_->status(store.attempts);
   return status;
 }
 
@@ -437,6 +447,7 @@ void Service::shutdown() {
   using runtime::WorkerPool;
   watch_.stop();
   stop_source_.request_stop();  // resets
+  stop_forwarder();
   robots_.stop();
   catalog_.stop();
   experience_.stop();  // a rehearsal waits for it

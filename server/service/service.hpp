@@ -33,9 +33,18 @@
 #include "server/service/jobs.hpp"
 #include "server/service/measures.hpp"
 #include "server/service/store_watch.hpp"
+#include "server/sites/forwarder.hpp"
+#include "server/sites/used_tasks.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
+
+/// The memory above a site.
+struct UpstreamOptions {
+  std::function<std::unique_ptr<store::Store>()> open;  ///< empty: there is none
+  std::string name;                                     ///< for people, without passwords
+  std::vector<std::string> tasks;  ///< patterns of tasks whose experience always comes down
+};
 
 struct ServiceOptions {
   std::string version;
@@ -54,6 +63,7 @@ struct ServiceOptions {
   catalog::CatalogState::Limits catalog;
   catalog::ExperienceBook::Limits experience;
   BackupPlace backups;
+  UpstreamOptions upstream;
   runtime::Clock clock;
   catalog::Catalog::Fit fit;  ///< empty: fit_distribution
   Jobs::Limits jobs;
@@ -144,8 +154,6 @@ class Service {
   void take_in(ReportRequest request, std::function<void(const ReportReply&)> done,
                const std::string& client);
   void begin_epoch(const HistoryMark& lost);
-  void notice_experience(std::string_view task);
-  void forget_task(const std::string& task);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
   RegisterReply registered(const RobotDescription& description, const std::string& client);
@@ -162,6 +170,15 @@ class Service {
   void log_fit(const Distribution& distribution) const;
   void expose_use(metrics::Exposition& page) const;
   void expose_guidance(metrics::Exposition& page) const;
+  void new_experience(std::string_view task);
+  void forget_task(const std::string& task);
+  void start_forwarder();
+  void stop_forwarder();
+  void tell_line(std::string_view line);
+  void commit_from_above(std::vector<store::SharedReport> reports, store::Store::ReportsDone done);
+  void came_from_above(std::span<const catalog::AttemptCost> costs,
+                       std::span<const Receipt> receipts);
+  void expose_upstream(metrics::Exposition& page, std::uint64_t attempts) const;
 
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
@@ -185,8 +202,10 @@ class Service {
   Jobs jobs_;
   Administration administration_;
   runtime::WorkerPool reset_pool_;  // its thread uses the administration
+  sites::UsedTasks used_tasks_;
   std::map<std::pair<std::string, Digest>, std::uint64_t> retired_generations_;  // of the watch
-  StoreWatch watch_;  // last: its thread uses all of the above
+  StoreWatch watch_;                             // its thread uses all of the above
+  std::unique_ptr<sites::Forwarder> forwarder_;  // last: its thread does, too; null: no site
 };
 
 }  // namespace kinship::service

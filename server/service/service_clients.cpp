@@ -96,7 +96,7 @@ Ingest::Options Service::ingest_options() {
       clients_.count_task(client);
     clients_.count_stored(client, bytes);
   };
-  ingest.on_new_experience = [this](std::string_view task) { notice_experience(task); };
+  ingest.on_new_experience = [this](std::string_view task) { new_experience(task); };
   ingest.on_answer = [this](std::span<const catalog::AttemptCost> costs,
                             std::span<const Receipt> receipts) { answered(costs, receipts); };
   return ingest;

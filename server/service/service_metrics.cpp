@@ -153,6 +153,7 @@ void Service::expose(Exposition& page) const {
              std::uint64_t{store.has_value()});
   if (store)
     expose_store(page, *store);
+  expose_upstream(page, store ? store->attempts : 0);
 }
 
 /// What is bounded, and how much of it there is.

@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -17,6 +19,7 @@
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "proto/types/summaries.hpp"
+#include "server/store/shared_report.hpp"
 
 namespace kinship::store {
 
@@ -331,6 +334,43 @@ class Store {
   /// The audit log, the newest first. Empty name: of all.
   virtual Page<AuditEntry> list_audit(std::string_view name, std::string_view cursor,
                                       std::size_t limit) const = 0;
+
+  /// What another store is to be told (shared_report.hpp). A feed is in the order of arrival; its
+  /// cursor is opaque text, empty for the beginning, and holds for one epoch. However many write at
+  /// once: what is committed before a reading begins and behind its cursor is in it, or in one from
+  /// the cursor that it returns; nothing is skipped because somebody else committed sooner.
+  /// \throws Failure(InvalidInput) for a cursor of something else.
+  ///
+  /// The reports of a task, or of all if it is empty: unsolved ones too, and those of retired and
+  /// dropped paths.
+  virtual Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                            std::size_t limit) const = 0;
+  /// Every report whose path somebody retired here, or which another store said was retired; each
+  /// once. Paths that were dropped are not among them. Of a store from before there was this list
+  /// those retired until then are missing: list_arrivals() says of them.
+  virtual Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const = 0;
+  /// Those of the reports that are here.
+  virtual std::set<Uuid> known_reports(std::span<const Uuid> reports) const = 0;
+  /// Reports with their paths and scenes, also of retired paths, in the order asked for. Left out:
+  /// what is not here or cannot be read, what is solved and has lost its path (dropped, damaged),
+  /// what is of a removed robot. Ends early once waypoints and scenes exceed `max_bytes`, but looks
+  /// at one at least.
+  virtual SharedReports read_reports(std::span<const Uuid> reports,
+                                     std::size_t max_bytes) const = 0;
+  /// commit_reports() of what came from another store: body and time are kept as they are, and a
+  /// path that is retired, or whose report is among the retired ones, is stored as such and
+  /// answered Recorded. So is, from then on, one that a robot brings. A report that is here already
+  /// and is retired there is retired here.
+  virtual void commit_shared(std::vector<SharedReport> reports, ReportsDone done) = 0;
+  /// Retires the paths of reports as another store did, durable on return, in one transaction. Of
+  /// what is not here (yet) the UUID is remembered, so that its path will be retired when it comes.
+  /// \return by task, what was not retired before.
+  virtual std::vector<Retirement> retire_reports(std::span<const Uuid> reports) = 0;
+
+  /// Short texts that a part of the server keeps by name, by the beginning of their names.
+  virtual std::map<std::string, std::string> notes(std::string_view prefix) const = 0;
+  /// Durable on return, all of them or none; one without text is removed.
+  virtual void put_notes(const std::map<std::string, std::optional<std::string>>& notes) = 0;
 
   /// Copies the store as of one instant into a new file, while reports go on. A file that is not
   /// complete never has that name.

@@ -65,6 +65,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string fitting = "server/fitting";
   const std::string catalog = "server/catalog";
   const std::string rehearsal = "server/rehearsal";
+  const std::string sites = "server/sites";
   const std::string service = "server/service";
   const std::string files = "client/files";
   const std::string arguments = "client/arguments";
@@ -108,8 +109,9 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {rehearsal,
        {{catalog, fitting, runtime, store, transfer, planning, collision, kinematics, types},
         {"Eigen"}}},
+      {sites, {{runtime, store, types}, {}}},
       {service,
-       {{access, quotas, rehearsal, catalog, fitting, runtime, store, metrics, density, inverse,
+       {{access, quotas, rehearsal, sites, catalog, fitting, runtime, store, metrics, density, inverse,
          evidence, types},
         {"Eigen"}}},
       {"server/app",

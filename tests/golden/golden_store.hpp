@@ -36,6 +36,15 @@ inline Attempt golden_retired_attempt() {
   return make_attempt(golden_robots()[0].digest, "drawer", 8);
 }
 
+/// In stores of schema 7 and later: the content of the retired one, and the number of a report that
+/// another store retired before it came.
+inline Attempt golden_same_content() {
+  Attempt attempt = golden_retired_attempt();
+  attempt.report_uuid = id_from<Uuid>(40);
+  return attempt;
+}
+inline constexpr std::uint64_t kGoldenRetiredBefore = 41;
+
 /// In stores of schema 3 and later; the only ones of their task. Their scene is one.
 inline std::vector<Attempt> golden_attempts_with_scene() {
   std::vector<Attempt> attempts = {make_attempt(golden_robots()[1].digest, "table", 20),

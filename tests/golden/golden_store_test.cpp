@@ -12,8 +12,8 @@ namespace kinship::golden_store_test {
 namespace {
 
 // Of schema 1, 2 ...
-constexpr std::array<std::uint64_t, 6> kAttempts = {8, 9, 11, 11, 16, 16};
-constexpr std::array<std::uint64_t, 6> kPaths = {7, 7, 9, 9, 11, 11};
+constexpr std::array<std::uint64_t, 7> kAttempts = {8, 9, 11, 11, 16, 16, 17};
+constexpr std::array<std::uint64_t, 7> kPaths = {7, 7, 9, 9, 11, 11, 11};
 
 /// A copy of tests/golden/store-N.db, opened by today's code.
 class GoldenStore : public testing::TestWithParam<int> {
@@ -177,6 +177,20 @@ TEST_P(GoldenStore, StillHasItsAuditLogAndTakesEntries) {
   EXPECT_EQ(store_->list_audit("", "", 10).rows.at(0).message, wanted.message);
 }
 
+TEST_P(GoldenStore, StillKnowsWhatIsToBeRetiredWhenItComes) {
+  const std::vector<Uuid> listed = store_->list_retirements("", 10).rows;
+  ASSERT_EQ(listed.size(), GetParam() < 7 ? 0U : 3U);
+  const Attempt later =
+      test::make_attempt(test::golden_robots()[0].digest, "drawer", test::kGoldenRetiredBefore);
+  const std::vector<store::ArrivedReport> drawer = store_->list_arrivals("drawer", "", 10).rows;
+  for (const store::ArrivedReport& report : drawer)
+    EXPECT_TRUE(report.is_retired) << "also of a store from before there was a list";
+  EXPECT_EQ(drawer.size(), GetParam() < 2 ? 0U : GetParam() < 7 ? 1U : 2U);
+  EXPECT_EQ(test::report(*store_, {later})[0].status,
+            GetParam() < 7 ? ReceiptStatus::Stored : ReceiptStatus::Recorded);
+  EXPECT_EQ(store_->notes("golden").size(), GetParam() < 7 ? 0U : 1U);
+}
+
 TEST_P(GoldenStore, TakesASceneWithItsReport) {
   Attempt fresh = test::make_attempt(test::golden_robots()[0].digest, "bin", 1001);
   fresh.scene = test::golden_attempts_with_scene()[0].scene;
@@ -191,7 +205,7 @@ TEST_P(GoldenStore, TakesRetriesAndNewReports) {
   EXPECT_EQ(test::report(*store_, {fresh})[0].status, ReceiptStatus::Stored);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5, 6));
+INSTANTIATE_TEST_SUITE_P(Schema, GoldenStore, testing::Values(1, 2, 3, 4, 5, 6, 7));
 
 }  // namespace
 }  // namespace kinship::golden_store_test

@@ -26,9 +26,12 @@ int make(const std::filesystem::path& file) {
     test::report(*store, test::golden_attempts_with_scene());
     store->put_distribution(test::golden_distribution());
     store->put_distribution(test::golden_distribution());
-    test::report(*store, {test::golden_retired_attempt()});
+    test::report(*store, {test::golden_retired_attempt(), test::golden_same_content()});
     static_cast<void>(
         store->retire_path(test::golden_retired_attempt().report_uuid, &audit).value_or_throw());
+    const Uuid retired_before = test::id_from<Uuid>(test::kGoldenRetiredBefore);
+    static_cast<void>(store->retire_reports(std::span(&retired_before, 1)));
+    store->put_notes({{"golden", "note"}});
     store->put_distribution(test::golden_evicted_distribution());
     store->evict_distribution(test::golden_evicted_distribution().id, &audit);
     store->add_audit(audit);

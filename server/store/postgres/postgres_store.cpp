@@ -26,6 +26,7 @@
 #include "server/store/postgres/rows/robot_removal.hpp"
 #include "server/store/postgres/rows/robot_rows.hpp"
 #include "server/store/postgres/rows/scene_rows.hpp"
+#include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/postgres/rows/store_totals.hpp"
 
 namespace kinship::store::postgres {
@@ -163,10 +164,52 @@ class PostgresStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    if (writer_->queued_bytes() > options_.max_queued_bytes)
-      return writer_->submit(
-          declined_item(attempts, std::move(done), "the queue of reports is full, try again"));
-    writer_->submit(prepare_item(std::move(attempts), std::move(done)));
+    commit(std::move(attempts), std::move(done),
+           [](const Attempt& attempt) { return attempt.report_uuid; });
+  }
+
+  Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                    std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return feed_of_arrivals(connection, task, cursor, limit); });
+  }
+
+  Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
+    return readers_.read(
+        [&](Connection& connection) { return feed_of_retirements(connection, cursor, limit); });
+  }
+
+  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+    return readers_.read([&](Connection& connection) { return select_known(connection, reports); });
+  }
+
+  SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
+    SharedRead read = readers_.read_snapshot(
+        [&](Connection& connection) { return select_shared(connection, reports, max_bytes); });
+    set_aside_later(
+        {.paths = std::move(read.damaged_paths), .scenes = std::move(read.damaged_scenes)});
+    return std::move(read.found);
+  }
+
+  void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
+    commit(std::move(reports), std::move(done),
+           [](const SharedReport& report) { return report.attempt.report_uuid; });
+  }
+
+  std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    return write(
+        [&](Connection& connection) { return postgres::retire_reports(connection, reports); });
+  }
+
+  std::map<std::string, std::string> notes(std::string_view prefix) const override {
+    return readers_.read([&](Connection& connection) { return select_notes(connection, prefix); });
+  }
+
+  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    write([&](Connection& connection) {
+      write_notes(connection, notes);
+      return true;
+    });
   }
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override {
@@ -359,6 +402,17 @@ class PostgresStore : public Store {
   }
 
  private:
+  /// \param uuid_of  of one of them.
+  template <typename Reported, typename UuidOf>
+  void commit(std::vector<Reported> reported, ReportsDone done, UuidOf uuid_of) {
+    if (writer_->queued_bytes() <= options_.max_queued_bytes)
+      return writer_->submit(prepare_item(std::move(reported), std::move(done)));
+    std::vector<Uuid> reports(reported.size());
+    std::ranges::transform(reported, reports.begin(), uuid_of);
+    writer_->submit(
+        declined_item(reports, std::move(done), "the queue of reports is full, try again"));
+  }
+
   /// Runs `function(Connection&)` in a transaction, again where it was in conflict with another
   /// server's or the connection was dead, and returns when it is durable.
   template <typename Function>

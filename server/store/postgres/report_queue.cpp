@@ -5,33 +5,49 @@
 
 namespace kinship::store::postgres {
 
+namespace {
+
+void add_prepared(const Uuid& uuid, Result<PreparedAttempt> prepared, QueuedItem& item) {
+  if (!prepared) {
+    item.prepared.emplace_back(std::nullopt);
+    item.receipts.push_back({uuid, ReceiptStatus::Refused, prepared.error().message});
+    return;
+  }
+  item.bytes += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
+                (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
+  item.prepared.emplace_back(std::move(prepared).value());
+  item.receipts.push_back({uuid, ReceiptStatus::TryAgain, ""});
+}
+
+}  // namespace
+
 QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done) {
   QueuedItem item;
   item.done = std::move(done);
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
-    Result<PreparedAttempt> prepared = prepare(std::move(attempt));
-    if (!prepared) {
-      item.prepared.emplace_back(std::nullopt);
-      item.receipts.push_back({uuid, ReceiptStatus::Refused, prepared.error().message});
-      continue;
-    }
-    item.bytes += sizeof(PreparedAttempt) +
-                  (prepared->path ? prepared->path->blob.bytes.size() : 0) +
-                  (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
-    item.prepared.emplace_back(std::move(prepared).value());
-    item.receipts.push_back({uuid, ReceiptStatus::TryAgain, ""});
+    add_prepared(uuid, prepare(std::move(attempt)), item);
   }
   return item;
 }
 
-QueuedItem declined_item(const std::vector<Attempt>& attempts, Store::ReportsDone done,
+QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done) {
+  QueuedItem item;
+  item.done = std::move(done);
+  for (SharedReport& report : reports) {
+    const Uuid uuid = report.attempt.report_uuid;
+    add_prepared(uuid, prepare(std::move(report)), item);
+  }
+  return item;
+}
+
+QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,
                          const std::string& why) {
   QueuedItem item;
   item.done = std::move(done);
-  for (const Attempt& attempt : attempts) {
+  for (const Uuid& report : reports) {
     item.prepared.emplace_back(std::nullopt);
-    item.receipts.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, why});
+    item.receipts.push_back({report, ReceiptStatus::TryAgain, why});
   }
   return item;
 }

@@ -31,8 +31,11 @@ struct QueuedItem {
 /// refused here.
 QueuedItem prepare_item(std::vector<Attempt> attempts, Store::ReportsDone done);
 
-/// For attempts that there is no room to queue: each is answered TryAgain, in turn.
-QueuedItem declined_item(const std::vector<Attempt>& attempts, Store::ReportsDone done,
+/// The same of what another store has.
+QueuedItem prepare_item(std::vector<SharedReport> reports, Store::ReportsDone done);
+
+/// For reports that there is no room to queue: each is answered TryAgain, in turn.
+QueuedItem declined_item(const std::vector<Uuid>& reports, Store::ReportsDone done,
                          const std::string& why);
 
 /// The queue of the thread that writes. May be shared between threads.

@@ -8,6 +8,7 @@
 #include "server/store/postgres/rows/batch_knowledge.hpp"
 #include "server/store/postgres/rows/batch_plan.hpp"
 #include "server/store/postgres/rows/batch_writing.hpp"
+#include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {
@@ -17,6 +18,18 @@ constexpr int kTries = 5;  // of a transaction that is in conflict with another 
 
 std::string in_doubt(const std::string& why) {
   return "whether it is stored is not certain (" + why + "); a report that comes again tells";
+}
+
+/// What is retired in another store is so here before it is looked at. \return whether there is
+/// any.
+bool retire_first(Connection& connection, const std::vector<const PreparedAttempt*>& attempts) {
+  std::vector<Uuid> retired;
+  for (const PreparedAttempt* const prepared : attempts)
+    if (prepared->is_retired)
+      retired.push_back(prepared->attempt.report_uuid);
+  if (!retired.empty())
+    retire_reports(connection, retired);
+  return !retired.empty();
 }
 
 }  // namespace
@@ -121,10 +134,11 @@ bool ReportWriter::try_reports(std::span<Pending> pending) {
       if (options_.require_synchronous)
         require_standby(*connection_);
       const std::int64_t now = now_ms();
+      const bool has_retired = retire_first(*connection_, attempts);
       const BatchPlan plan =
           make_plan(attempts, learn(*connection_, attempts, options_.max_paths_per_pair),
                     options_.max_paths_per_pair, now);
-      if (!plan.writes_nothing()) {
+      if (has_retired || !plan.writes_nothing()) {
         const History::Step step = history_.advance(*connection_);
         write_plan(*connection_, plan, now);
         waits_since_ms_ = now_ms();

@@ -47,32 +47,46 @@ ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<At
     : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
   for (Attempt& attempt : attempts) {
     const Uuid uuid = attempt.report_uuid;
-    if (const std::optional<std::string> why = damaged.find(uuid)) {
-      prepared_.emplace_back(std::nullopt);
-      receipts_.push_back({uuid, ReceiptStatus::TryAgain, *why});
-      continue;
-    }
-    Result<PreparedAttempt> prepared = prepare(std::move(attempt));
-    if (prepared) {
-      bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
-                (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
-      prepared_.emplace_back(std::move(prepared).value());
-      receipts_.push_back({uuid, ReceiptStatus::TryAgain, ""});
-    } else {
-      prepared_.emplace_back(std::nullopt);
-      receipts_.push_back({uuid, ReceiptStatus::Refused, prepared.error().message});
-    }
+    take(uuid, std::move(attempt));
   }
 }
 
+ReportItem::ReportItem(History& history, DamagedReports& damaged, std::vector<SharedReport> reports,
+                       Store::ReportsDone done, std::uint64_t max_paths)
+    : history_(history), damaged_(damaged), max_paths_(max_paths), done_(std::move(done)) {
+  for (SharedReport& report : reports) {
+    const Uuid uuid = report.attempt.report_uuid;
+    take(uuid, std::move(report));
+  }
+}
+
+template <typename Reported>
+void ReportItem::take(const Uuid& report_uuid, Reported reported) {
+  if (const std::optional<std::string> why = damaged_.find(report_uuid)) {
+    prepared_.emplace_back(std::nullopt);
+    receipts_.push_back({report_uuid, ReceiptStatus::TryAgain, *why});
+    return;
+  }
+  Result<PreparedAttempt> prepared = prepare(std::move(reported));
+  if (!prepared) {
+    prepared_.emplace_back(std::nullopt);
+    receipts_.push_back({report_uuid, ReceiptStatus::Refused, prepared.error().message});
+    return;
+  }
+  bytes_ += sizeof(PreparedAttempt) + (prepared->path ? prepared->path->blob.bytes.size() : 0) +
+            (prepared->scene ? prepared->scene->blob.bytes.size() : 0);
+  prepared_.emplace_back(std::move(prepared).value());
+  receipts_.push_back({report_uuid, ReceiptStatus::TryAgain, ""});
+}
+
 std::unique_ptr<ReportItem> ReportItem::declined(History& history, DamagedReports& damaged,
-                                                 const std::vector<Attempt>& attempts,
+                                                 const std::vector<Uuid>& reports,
                                                  Store::ReportsDone done, const std::string& why) {
   auto item =
       std::make_unique<ReportItem>(history, damaged, std::vector<Attempt>(), std::move(done));
-  for (const Attempt& attempt : attempts) {
+  for (const Uuid& report : reports) {
     item->prepared_.emplace_back(std::nullopt);
-    item->receipts_.push_back({attempt.report_uuid, ReceiptStatus::TryAgain, why});
+    item->receipts_.push_back({report, ReceiptStatus::TryAgain, why});
   }
   return item;
 }

@@ -24,9 +24,13 @@ class ReportItem : public WriteItem {
   ReportItem(History& history, DamagedReports& damaged, std::vector<Attempt> attempts,
              Store::ReportsDone done, std::uint64_t max_paths = 0);
 
+  /// Of what another store has.
+  ReportItem(History& history, DamagedReports& damaged, std::vector<SharedReport> reports,
+             Store::ReportsDone done, std::uint64_t max_paths);
+
   /// For attempts that there is no room to queue: each is answered TryAgain, in turn.
   static std::unique_ptr<ReportItem> declined(History& history, DamagedReports& damaged,
-                                              const std::vector<Attempt>& attempts,
+                                              const std::vector<Uuid>& reports,
                                               Store::ReportsDone done, const std::string& why);
 
   std::size_t weight() const override { return receipts_.size(); }
@@ -35,6 +39,9 @@ class ReportItem : public WriteItem {
   void finish(const Error* error) override;
 
  private:
+  template <typename Reported>
+  void take(const Uuid& report_uuid, Reported reported);
+
   History& history_;
   DamagedReports& damaged_;
   std::uint64_t position_ = 0;

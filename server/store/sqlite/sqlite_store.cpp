@@ -17,7 +17,6 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/database/writer.hpp"
 #include "server/store/sqlite/files/disk_space.hpp"
-#include "server/store/sqlite/files/file_system.hpp"
 #include "server/store/sqlite/files/library_version.hpp"
 #include "server/store/sqlite/files/lock_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
@@ -25,31 +24,32 @@
 #include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/reader_pool.hpp"
 #include "server/store/sqlite/report_item.hpp"
+#include "server/store/sqlite/report_room.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/rows/distribution_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/export_rows.hpp"
 #include "server/store/sqlite/rows/listings.hpp"
+#include "server/store/sqlite/rows/note_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/robot_removal.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
+#include "server/store/sqlite/rows/shared_rows.hpp"
 #include "server/store/sqlite/upkeep/scrub.hpp"
 #include "server/store/sqlite/upkeep/store_backup.hpp"
 
 namespace kinship::store {
 namespace {
 
-/// Where the store is that a server is to open.
-std::filesystem::path locate_servable(const std::filesystem::path& file) {
-  require_library(sqlite3_libversion_number());
-  std::filesystem::path located = locate_store(file);
-  require_writable(file, located);
-  require_local_filesystem(file, located.parent_path());
-  return located;
+/// For what is made of many transactions.
+Error stopped_after(std::uint64_t paths, const std::string& what) {
+  return {ErrorCode::Unavailable, what + ": the server is stopping after " + std::to_string(paths) +
+                                      " paths were retired; ask again for the others"};
 }
 
 class SqliteStore : public Store {
@@ -98,19 +98,13 @@ class SqliteStore : public Store {
     status.wal_bytes = writer_->wal_bytes();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
-    describe_disk(status);
+    describe_disk(status, space_, *writer_, lack_of_room());
     if (status.rollbacks > 0)
       status.message +=
           "rolled back, clients offer again what is missing: " + history_.trouble() + "; ";
     const ReaderPool::Lease reader = readers_.lease();
     count_rows(*reader, status);
-    status.damaged = damaged_robots_ > 0 || !scrub_->findings().empty();
-    if (const std::size_t damaged = damaged_robots_; damaged > 0)
-      status.message += std::to_string(damaged) + " damaged robots left out; ";
-    if (const std::string damaged = scrub_->findings(); !damaged.empty())
-      status.message += "damaged: " + damaged +
-                        "; clients that report again mend paths, attempts and scenes, "
-                        "'kinshipd repair' of the stopped server the rest; ";
+    describe_damage(status, damaged_robots_, scrub_->findings());
     status.scrubbed_ms = scrub_->progress().ended_ms;
     status.scrub_part = scrub_->progress().part;
     if (const std::string advice = library_advice(sqlite3_libversion_number()); !advice.empty())
@@ -156,10 +150,7 @@ class SqliteStore : public Store {
       if (*is_out)
         return removed;
       if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "robot " + robot.short_hex() +
-                                                 ": the server is stopping after " +
-                                                 std::to_string(removed.removal.paths) +
-                                                 " paths were retired; ask again for the rest"};
+        return stopped_after(removed.removal.paths, "robot " + robot.short_hex());
     }
   }
 
@@ -181,18 +172,52 @@ class SqliteStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    std::string why = lack_of_room();
-    if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
-      why = "the queue of reports is full, try again";
-    if (!why.empty()) {
-      writer_->submit(
-          ReportItem::declined(history_, damaged_reports_, attempts, std::move(done), why));
-      return;
-    }
-    writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(attempts),
-                                                 std::move(done), options_.max_paths_per_pair));
-    if (space_.may_take_ballast())
-      take_ballast_later();
+    commit(std::move(attempts), std::move(done),
+           [](const Attempt& attempt) { return attempt.report_uuid; });
+  }
+
+  Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                    std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_arrivals(*reader, task, cursor, limit);
+  }
+
+  Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return page_of_retirements(*reader, cursor, limit);
+  }
+
+  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return select_known(*reader, reports);
+  }
+
+  SharedReports read_reports(std::span<const Uuid> reports, std::size_t max_bytes) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    SharedRead read = select_shared(*reader, reports, max_bytes);
+    set_aside_later(std::move(read.damaged));
+    return std::move(read.found);
+  }
+
+  void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
+    commit(std::move(reports), std::move(done),
+           [](const SharedReport& report) { return report.attempt.report_uuid; });
+  }
+
+  std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    return write([&](Batch& batch) { return store::retire_reports(batch, reports); });
+  }
+
+  std::map<std::string, std::string> notes(std::string_view prefix) const override {
+    const ReaderPool::Lease reader = readers_.lease();
+    return select_notes(*reader, prefix);
+  }
+
+  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    write([&](Batch& batch) {
+      write_notes(batch.database(), notes);
+      return true;
+    });
   }
 
   std::vector<ExperienceSummary> experience(std::string_view task) const override {
@@ -242,10 +267,7 @@ class SqliteStore : public Store {
     while (
         write([&](Batch& batch) { return continue_reset_audited(batch, *reset, retired, audit); }))
       if (stop.stop_requested())
-        return Error{ErrorCode::Unavailable, "task '" + retired.task +
-                                                 "': the server is stopping after " +
-                                                 std::to_string(retired.paths) +
-                                                 " paths were retired; ask again for the others"};
+        return stopped_after(retired.paths, "task '" + retired.task + "'");
     return retired;
   }
 
@@ -319,13 +341,19 @@ class SqliteStore : public Store {
     const ReportRows report = find_report(*reader, report_uuid);
     if (!report.row && report.damaged.empty())
       return std::nullopt;
-    AttemptRow row = readable_attempt(*reader, report, report_uuid);
-    if (row.path_id)
-      for (StoredPath& stored : undamaged(select_path(*reader, *row.path_id)))
-        row.attempt.path = std::move(stored.path);
-    if (row.scene_id)
-      row.attempt.scene = undamaged(select_scene(*reader, *row.scene_id), *row.scene_id);
-    return std::move(row.attempt);
+    std::optional<AttemptRow> row = select_named(*reader, report.row);
+    if (!row) {
+      if (report.row)
+        set_aside_later(AsideKind::Attempt, {*report.row});
+      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
+                                            ": its row is damaged; report it again to mend it");
+    }
+    if (row->path_id)
+      for (StoredPath& stored : undamaged(select_path(*reader, *row->path_id)))
+        row->attempt.path = std::move(stored.path);
+    if (row->scene_id)
+      row->attempt.scene = undamaged(select_scene(*reader, *row->scene_id), *row->scene_id);
+    return std::move(row->attempt);
   }
 
   Page<Attempt> export_attempts(const std::optional<Digest>& robot, std::string_view task,
@@ -333,9 +361,7 @@ class SqliteStore : public Store {
                                 std::size_t max_bytes) const override {
     const ReaderPool::Lease reader = readers_.lease();
     ExportRead read = export_page(*reader, robot, task, cursor, limit, max_bytes);
-    set_aside_later(AsideKind::Path, std::move(read.damaged));
-    set_aside_later(AsideKind::Scene, std::move(read.damaged_scenes));
-    set_aside_later(AsideKind::Attempt, std::move(read.damaged_attempts));
+    set_aside_later(std::move(read.damaged));
     return std::move(read.page);
   }
 
@@ -358,6 +384,24 @@ class SqliteStore : public Store {
   }
 
  private:
+  /// \param uuid_of  of one of them.
+  template <typename Reported, typename UuidOf>
+  void commit(std::vector<Reported> reported, ReportsDone done, UuidOf uuid_of) {
+    std::string why = lack_of_room();
+    if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
+      why = "the queue of reports is full, try again";
+    if (!why.empty()) {
+      std::vector<Uuid> reports(reported.size());
+      std::ranges::transform(reported, reports.begin(), uuid_of);
+      writer_->submit(
+          ReportItem::declined(history_, damaged_reports_, reports, std::move(done), why));
+      return;
+    }
+    writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(reported),
+                                                 std::move(done), options_.max_paths_per_pair));
+    take_ballast_later();
+  }
+
   /// Through the writer's queue; returns when it is durable.
   template <typename Function>
   std::invoke_result_t<Function, Batch&> write(Function function) {
@@ -369,35 +413,12 @@ class SqliteStore : public Store {
 
   /// Empty if reports are taken; else why not.
   std::string lack_of_room() const {
-    std::string why = space_.shortage();
-    if (!why.empty() || !writer_->wal_full())
-      return why;
-    constexpr std::uint64_t kMega = std::uint64_t{1} << 20U;
-    why = "the WAL holds " + std::to_string(writer_->wal_bytes() / kMega) + " MB, of " +
-          std::to_string(options_.max_wal_bytes / kMega) + " MB at most, because ";
-    const auto reading = readers_.longest_reading();
-    if (!reading)
-      return why + "another program reads the store";
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(*reading).count();
-    return why + "a reading has been going on for " + std::to_string(seconds) + " s";
-  }
-
-  /// Whether reports are taken, and what the disk did.
-  void describe_disk(StoreStatus& status) const {
-    std::string trouble = writer_->trouble();
-    if (trouble.empty())
-      trouble = lack_of_room();
-    status.writable = trouble.empty();
-    if (!trouble.empty())
-      status.message = "not writable: " + trouble + "; ";
-    if (const WriterFailures failures = writer_->failures(); failures.count > 0)
-      status.message += std::to_string(failures.count) +
-                        " failures of the disk since the start, the last: " + failures.last + "; ";
-    if (const std::string lack = space_.lack_of_ballast(); !lack.empty())
-      status.message += lack + "; ";
+    return store::lack_of_room(space_, *writer_, readers_, options_.max_wal_bytes);
   }
 
   void take_ballast_later() const {
+    if (!space_.may_take_ballast())
+      return;
     const auto take = [this](Batch& /*batch*/) {
       if (space_.may_take_ballast())
         space_.take_ballast();
@@ -415,27 +436,14 @@ class SqliteStore : public Store {
       set_aside_later(AsideKind::Scene, {scene_id});
     return std::move(read.scene);
   }
-  /// \throws Failure(Storage) if it is damaged.
-  AttemptRow readable_attempt(Database& reader, const ReportRows& report,
-                              const Uuid& report_uuid) const {
-    std::optional<AttemptRow> row;
-    try {
-      if (report.row)
-        row = select_attempt(reader, *report.row);
-    } catch (const SqliteError& error) {
-      if (!error.is_damage())
-        throw;
-      set_aside_later(AsideKind::Attempt, {*report.row});
-    }
-    if (!row)
-      throw Failure(ErrorCode::Storage, "report " + report_uuid.text() +
-                                            ": its row is damaged; report it again to mend it");
-    name_robot_and_task(reader, *row);
-    return std::move(*row);
-  }
   void set_aside_later(AsideKind kind, std::vector<std::int64_t> damaged) const {
     if (!damaged.empty())
       writer_->submit(std::make_unique<DamageItem>(kind, std::move(damaged)));
+  }
+  void set_aside_later(DamagedRows damaged) const {
+    set_aside_later(AsideKind::Path, std::move(damaged.paths));
+    set_aside_later(AsideKind::Scene, std::move(damaged.scenes));
+    set_aside_later(AsideKind::Attempt, std::move(damaged.attempts));
   }
 
   /// After a write failure nobody keeps the file open, so that the WAL is read anew from the disk.

@@ -82,7 +82,18 @@ Result<PreparedAttempt> prepare(Attempt attempt) {
   const Digest body = body_digest(attempt, path, scene);
   attempt.path.reset();
   attempt.scene.reset();
-  return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene)};
+  return PreparedAttempt{std::move(attempt), body, std::move(path), std::move(scene), {}, false};
+}
+
+Result<PreparedAttempt> prepare(SharedReport report) {
+  Result<PreparedAttempt> result = prepare(std::move(report.attempt));
+  if (!result)
+    return result;
+  PreparedAttempt prepared = std::move(result).value();
+  prepared.body = report.body;
+  prepared.received_ms = report.received_ms;
+  prepared.is_retired = report.is_retired;
+  return prepared;
 }
 
 }  // namespace kinship::store

@@ -6,6 +6,7 @@
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
+#include "server/store/store.hpp"
 #include "server/store/values/scene_blob.hpp"
 #include "server/store/values/waypoint_blob.hpp"
 
@@ -31,6 +32,8 @@ struct PreparedAttempt {
   Digest body;      ///< of everything but the UUID: tells a retry from a second use of the UUID
   std::optional<PreparedPath> path;
   std::optional<PreparedScene> scene;
+  std::optional<std::int64_t> received_ms;  ///< by the store that had it first; missing: now
+  bool is_retired = false;                  ///< its path, elsewhere
 };
 
 /// The body as it would be if another machine said the same.
@@ -38,5 +41,7 @@ Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine)
 
 /// \return the reason if it cannot be stored: what find_fault() says, or a counter over 2^63.
 Result<PreparedAttempt> prepare(Attempt attempt);
+/// The same of what another store has: with the body that its robot sent.
+Result<PreparedAttempt> prepare(SharedReport report);
 
 }  // namespace kinship::store

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "server/store/sqlite/database/database.hpp"
@@ -29,6 +30,47 @@ class TroubledStore final : public store::Store {
     if (!takes_reports)
       throw std::bad_alloc();
     store_.commit_reports(std::move(attempts), std::move(done));
+  }
+
+  /// Called before and after each call of the exchange of stores; may throw, as when a line is cut
+  /// before it carried a question, or an answer.
+  mutable std::function<void()> on_exchange = [] {};
+  store::Feed<store::ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
+                                                  std::size_t limit) const override {
+    return exchange([&] { return store_.list_arrivals(task, cursor, limit); });
+  }
+  store::Feed<Uuid> list_retirements(std::string_view cursor, std::size_t limit) const override {
+    return exchange([&] { return store_.list_retirements(cursor, limit); });
+  }
+  std::set<Uuid> known_reports(std::span<const Uuid> reports) const override {
+    return exchange([&] { return store_.known_reports(reports); });
+  }
+  store::SharedReports read_reports(std::span<const Uuid> reports,
+                                    std::size_t max_bytes) const override {
+    return exchange([&] { return store_.read_reports(reports, max_bytes); });
+  }
+  /// What commits what comes from another store; may never answer.
+  std::function<void(std::vector<store::SharedReport>, ReportsDone)> on_commit =
+      [this](std::vector<store::SharedReport> reports, ReportsDone done) {
+        store_.commit_shared(std::move(reports), std::move(done));
+      };
+  void commit_shared(std::vector<store::SharedReport> reports, ReportsDone done) override {
+    exchange([&] {
+      on_commit(std::move(reports), std::move(done));
+      return true;
+    });
+  }
+  std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    return exchange([&] { return store_.retire_reports(reports); });
+  }
+  std::map<std::string, std::string> notes(std::string_view prefix) const override {
+    return store_.notes(prefix);
+  }
+  void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    exchange([&] {
+      store_.put_notes(notes);
+      return true;
+    });
   }
 
   Uuid epoch() const override { return store_.epoch(); }
@@ -161,6 +203,14 @@ class TroubledStore final : public store::Store {
   }
 
  private:
+  template <typename Call>
+  std::invoke_result_t<Call> exchange(Call call) const {
+    on_exchange();
+    auto result = call();
+    on_exchange();
+    return result;
+  }
+
   Store& store_;
   const std::function<void()> on_paths_read_;
 };

@@ -86,7 +86,8 @@ Receipt Planner::decide(const PreparedAttempt& prepared) {
 Receipt Planner::decide_new(const PreparedAttempt& prepared, Pair& pair) {
   const Attempt& attempt = prepared.attempt;
   need_scene(prepared);
-  const AttemptPath path = keep_path(prepared, pair, now_ms_);
+  const std::int64_t received_ms = prepared.received_ms.value_or(now_ms_);
+  const AttemptPath path = keep_path(prepared, pair, received_ms);
   plan_.attempts.push_back({&prepared, pair.key, path.status, path.id});
   PairChange& change = change_of(pair);
   ++change.attempts;
@@ -95,7 +96,7 @@ Receipt Planner::decide_new(const PreparedAttempt& prepared, Pair& pair) {
     drop_excess(pair);
   known_.reports[attempt.report_uuid] = {.body = prepared.body,
                                          .machine = attempt.machine,
-                                         .received_ms = now_ms_,
+                                         .received_ms = received_ms,
                                          .path_id = path.id};
   return receipt_of(prepared, path);
 }

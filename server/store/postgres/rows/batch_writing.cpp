@@ -66,12 +66,13 @@ constexpr std::string_view kWriteAttempts =
     " SELECT new.report_uuid, new.body, new.task_id, new.robot_id, new.path_id, new.status,"
     " new.machine, new.T_task_base, new.outcome, new.planner, new.planner_options,"
     " new.planning_time_s, new.collision_checks, new.projections, new.time_limit_s, new.arm,"
-    " new.share, new.distribution_digest, new.distribution_revision, $1, scene.id"
+    " new.share, new.distribution_digest, new.distribution_revision,"
+    " coalesce(new.received_ms, $1), scene.id"
     " FROM unnest($2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18,"
-    " $19, $20, $21) WITH ORDINALITY AS new (report_uuid, body, task_id, robot_id, path_id,"
+    " $19, $20, $21, $22) WITH ORDINALITY AS new (report_uuid, body, task_id, robot_id, path_id,"
     " status, machine, T_task_base, outcome, planner, planner_options, planning_time_s,"
     " collision_checks, projections, time_limit_s, arm, share, distribution_digest,"
-    " distribution_revision, scene, place)"
+    " distribution_revision, scene, received_ms, place)"
     " LEFT JOIN scene ON scene.content_sha256 = new.scene"
     " ORDER BY new.place ON CONFLICT (report_uuid) DO NOTHING";
 
@@ -218,13 +219,14 @@ class AttemptColumns {
     machines_.push_back(attempt.machine);
     placements_.push_back(poses_.add(attempt.T_task_base));
     scenes_.push_back(scene_of(*planned.from));
+    received_.push_back(planned.from->received_ms);
     add(attempt.record);
   }
 
   Parameters parameters(std::int64_t received_ms) const {
     return Parameters(received_ms, uuids_, bodies_, tasks_, robots_, paths_, statuses_, machines_,
                       placements_, outcomes_, planners_, options_, times_, checks_, projections_,
-                      limits_, arms_, shares_, distributions_, revisions_, scenes_);
+                      limits_, arms_, shares_, distributions_, revisions_, scenes_, received_);
   }
 
  private:
@@ -246,7 +248,7 @@ class AttemptColumns {
 
   PoseBlobs poses_;
   Integers tasks_, robots_, statuses_, outcomes_, checks_, projections_, arms_, revisions_;
-  OptionalIntegers paths_;
+  OptionalIntegers paths_, received_;
   std::vector<double> times_, limits_, shares_;
   std::vector<std::string> machines_, planners_, options_;
   Blobs uuids_, bodies_;

@@ -1,6 +1,7 @@
 #include "server/store/sqlite/files/store_file.hpp"
 
 #include <fcntl.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/files/file_system.hpp"
+#include "server/store/sqlite/files/library_version.hpp"
 
 namespace kinship::store {
 namespace {
@@ -114,6 +116,14 @@ void make_for_owner(const fs::path& file) {
 void require_writable(const fs::path& file, const fs::path& located) {
   if (access(located.c_str(), W_OK) != 0 && errno != ENOENT)
     refuse_store(file, explain_file_error(errno, located));
+}
+
+std::filesystem::path locate_servable(const std::filesystem::path& file) {
+  require_library(sqlite3_libversion_number());
+  std::filesystem::path located = locate_store(file);
+  require_writable(file, located);
+  require_local_filesystem(file, located.parent_path());
+  return located;
 }
 
 }  // namespace kinship::store

@@ -23,4 +23,8 @@ void require_writable(const std::filesystem::path& file, const std::filesystem::
 /// \throws Failure(Storage) if it cannot be made.
 void make_for_owner(const std::filesystem::path& file);
 
+/// The same of a store that a server is to open: with this library, on this file system.
+/// \throws Failure(Storage)
+std::filesystem::path locate_servable(const std::filesystem::path& file);
+
 }  // namespace kinship::store

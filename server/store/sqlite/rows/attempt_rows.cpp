@@ -5,6 +5,8 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/sqlite/rows/retention.hpp"
+#include "server/store/sqlite/rows/retired_reports.hpp"
+#include "server/store/sqlite/rows/retirement.hpp"
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/sqlite/rows/scene_rows.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
@@ -76,8 +78,9 @@ std::optional<RobotRow> find_robot_row(Database& database, const Digest& robot) 
 struct AttemptPath {
   AttemptStatus status = AttemptStatus::Unsolved;
   std::optional<std::int64_t> id;
+  bool is_retired = false;  ///< from the start: its report was retired elsewhere
 
-  bool is_new() const { return status == AttemptStatus::Stored && id; }
+  bool is_new() const { return status == AttemptStatus::Stored && id && !is_retired; }
   bool is_beyond_cap() const { return status == AttemptStatus::Stored && !id; }
 };
 
@@ -99,6 +102,11 @@ AttemptPath keep_path(Batch& batch, const PreparedAttempt& prepared, const Attem
   if (came_before)
     if (const auto retired = find_retired(database, key, prepared.attempt.report_uuid))
       return {AttemptStatus::DuplicateContent, retired};
+  if (is_report_retired(database, prepared.attempt.report_uuid)) {
+    PathArrival arrival = place.arrival;
+    arrival.retired_ms = now_ms();
+    return {AttemptStatus::Stored, insert_path(database, key, prepared, arrival), true};
+  }
   const SameContent same = find_same(database, key, prepared.path->content);
   if (same.readable)
     return {AttemptStatus::DuplicateContent, same.readable};
@@ -112,6 +120,22 @@ AttemptPath keep_path(Batch& batch, const PreparedAttempt& prepared, const Attem
   for (const std::int64_t damaged : same.damaged)
     replace_path(batch, key, damaged, id);
   return {AttemptStatus::Stored, id};
+}
+
+/// What the receipt of a report says that is new here.
+Receipt receipt_of_new(const PreparedAttempt& prepared, const AttemptPath& path,
+                       std::uint64_t max_paths, bool came_before) {
+  const Uuid& uuid = prepared.attempt.report_uuid;
+  if (path.is_new())
+    return {uuid, ReceiptStatus::Stored, ""};
+  if (path.is_retired)
+    return {uuid, ReceiptStatus::Recorded, "recorded, but its path was retired before it came"};
+  if (path.is_beyond_cap())
+    return {uuid, ReceiptStatus::Recorded, beyond_cap_in_words(max_paths)};
+  if (!prepared.path)
+    return {uuid, ReceiptStatus::Recorded, ""};
+  // A report whose row was damaged is kept anew, although its path is there.
+  return {uuid, came_before ? ReceiptStatus::Stored : ReceiptStatus::Duplicate, ""};
 }
 
 /// Answers a report that came before. What it vouches for and cannot be read is written anew.
@@ -207,13 +231,18 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint6
                                             " has " + std::to_string(robot->dof));
 
   const ExperienceKey key{ensure_task(database, attempt.task), robot->id};
-  if (earlier)
+  if (earlier) {
+    if (prepared.is_retired)
+      retire_reports(batch, std::span(&attempt.report_uuid, 1));
     return answer_again(
         batch, prepared,
         {key, {.received_ms = earlier->received_ms, .scene_id = earlier->scene_id}, max_paths},
         *earlier);
+  }
+  if (prepared.is_retired)
+    note_retired_report(database, attempt.report_uuid);
   ensure_experience(database, key);
-  PathArrival arrival{.received_ms = now_ms(), .scene_id = {}};
+  PathArrival arrival{.received_ms = prepared.received_ms.value_or(now_ms()), .scene_id = {}};
   if (prepared.scene)
     arrival.scene_id = ensure_scene(database, *prepared.scene, arrival.received_ms);
   const AttemptPath path = keep_path(batch, prepared, {key, arrival, max_paths},
@@ -221,6 +250,8 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint6
   const std::int64_t id = insert_row(database, prepared, key, path, arrival);
   for (const std::int64_t damaged : rows.damaged)
     put_aside(database, AsideKind::Attempt, damaged, id);
+  if (path.status == AttemptStatus::DuplicateContent)
+    note_same_content(database, *path.id, attempt.report_uuid);
   const bool stored = path.is_new();
   if (rows.damaged.empty())
     count_attempt(database, key, attempt.record, stored);
@@ -230,17 +261,7 @@ Receipt insert_attempt(Batch& batch, const PreparedAttempt& prepared, std::uint6
     batch.paths_changed(key.task_id, key.robot_id);
   if (path.status == AttemptStatus::Stored)
     drop_excess(batch, key, max_paths);
-  if (stored)
-    return {attempt.report_uuid, ReceiptStatus::Stored, ""};
-  if (path.is_beyond_cap())
-    return {attempt.report_uuid, ReceiptStatus::Recorded, beyond_cap_in_words(max_paths)};
-  // A report whose row was damaged is kept anew, although its path is there.
-  const bool duplicate = prepared.path && rows.damaged.empty();
-  return {attempt.report_uuid,
-          duplicate       ? ReceiptStatus::Duplicate
-          : prepared.path ? ReceiptStatus::Stored
-                          : ReceiptStatus::Recorded,
-          ""};
+  return receipt_of_new(prepared, path, max_paths, !rows.damaged.empty());
 }
 
 ReportRows find_report(Database& database, const Uuid& report_uuid) {
@@ -278,6 +299,20 @@ AttemptRow select_attempt(Database& database, std::int64_t id) {
   row.received_ms = query->column_integer(7);
   row.attempt.record = read_record(*query, kFirstOfRecord);
   return row;
+}
+
+std::optional<AttemptRow> select_named(Database& database, std::optional<std::int64_t> id) {
+  if (!id)
+    return std::nullopt;
+  try {
+    AttemptRow row = select_attempt(database, *id);
+    name_robot_and_task(database, row);
+    return row;
+  } catch (const SqliteError& error) {
+    if (!error.is_damage())
+      throw;
+    return std::nullopt;
+  }
 }
 
 void name_robot_and_task(Database& database, AttemptRow& row) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/rows/arrival_order.hpp"
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
@@ -15,59 +16,6 @@
 
 namespace kinship::store {
 namespace {
-
-constexpr std::string_view kNotAsideAttempt =
-    "AND NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id) ";
-
-void append_ids(Statement& query, std::vector<std::int64_t>& ids) {
-  while (query.step())
-    ids.push_back(query.column_integer(0));
-}
-
-/// The next attempts of some robots and tasks by id. Each brings its own next ones, read from an
-/// index; the oldest of them all are the next of all.
-std::vector<std::int64_t> next_of(Database& database, const std::vector<ExperienceKey>& keys,
-                                  std::int64_t after_id, std::int64_t count) {
-  std::vector<std::int64_t> ids;
-  for (const ExperienceKey& key : keys) {
-    const auto query = database.cached(
-        "SELECT id FROM attempt INDEXED BY attempt_by_task_robot "
-        "WHERE task_id = ? AND robot_id = ? AND id > ? " +
-        std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
-    query->bind_all(key.task_id, key.robot_id, after_id, count);
-    append_ids(*query, ids);
-  }
-  std::ranges::sort(ids);
-  if (std::ssize(ids) > count)
-    ids.resize(static_cast<std::size_t>(count));
-  return ids;
-}
-
-/// The next attempts of all by id; where their rows cannot be read, from the index.
-std::vector<std::int64_t> next_of_all(Database& database, std::int64_t after_id,
-                                      std::int64_t count) {
-  try {
-    std::vector<std::int64_t> ids;
-    const auto query = database.cached("SELECT id FROM attempt WHERE id > ? " +
-                                       std::string(kNotAsideAttempt) + "ORDER BY id LIMIT ?");
-    query->bind_all(after_id, count);
-    append_ids(*query, ids);
-    return ids;
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    return next_of(database, select_experience(database, {}, ""), after_id, count);
-  }
-}
-
-/// Those of a robot, a task, both, or all of them.
-std::vector<std::int64_t> next_ids(Database& database, const std::optional<Digest>& robot,
-                                   std::string_view task, std::int64_t after_id,
-                                   std::int64_t count) {
-  return robot || !task.empty()
-             ? next_of(database, select_experience(database, robot, task), after_id, count)
-             : next_of_all(database, after_id, count);
-}
 
 /// Nothing if its robot is removed, or it lies on a damaged page.
 std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names, std::int64_t id) {
@@ -93,17 +41,10 @@ std::optional<AttemptSummary> read_summary(Database& database, RobotNames& names
 
 /// Nothing if its robot is removed, or it lies on a damaged page, which is noted.
 std::optional<AttemptRow> read_row(Database& database, std::int64_t id, ExportRead& noted) {
-  std::optional<AttemptRow> row;
-  try {
-    row = select_attempt(database, id);
-  } catch (const SqliteError& error) {
-    if (!error.is_damage())
-      throw;
-    noted.damaged_attempts.push_back(id);
-    return std::nullopt;
-  }
-  name_robot_and_task(database, *row);
-  if (row->is_robot_removed)
+  std::optional<AttemptRow> row = select_named(database, id);
+  if (!row)
+    noted.damaged.attempts.push_back(id);
+  if (row && row->is_robot_removed)
     return std::nullopt;
   return row;
 }
@@ -119,7 +60,7 @@ std::optional<Attempt> read_candidate(Database& database, std::int64_t id, Expor
     if (!path_id || is_retired(database, {row->task_id, row->robot_id}, *path_id))
       return std::nullopt;
     PathsRead read = select_path(database, *path_id);
-    noted.damaged.insert(noted.damaged.end(), read.damaged.begin(), read.damaged.end());
+    noted.damaged.paths.insert(noted.damaged.paths.end(), read.damaged.begin(), read.damaged.end());
     if (!read.paths.empty())
       row->attempt.path = std::move(read.paths.front().path);
   }
@@ -128,7 +69,7 @@ std::optional<Attempt> read_candidate(Database& database, std::int64_t id, Expor
   if (row->scene_id) {
     SceneRead read = select_scene(database, *row->scene_id);
     if (read.damaged)
-      noted.damaged_scenes.push_back(*row->scene_id);
+      noted.damaged.scenes.push_back(*row->scene_id);
     row->attempt.scene = std::move(read.scene);
   }
   return std::move(row->attempt);
@@ -146,7 +87,7 @@ ExportRead export_page(Database& database, const std::optional<Digest>& robot,
   std::size_t bytes = 0;
   while (true) {
     const std::vector<std::int64_t> candidates =
-        next_ids(database, robot, task, last_id, kCandidates);
+        next_attempts(database, robot, task, last_id, kCandidates);
     if (candidates.empty())
       return read;
     for (const std::int64_t id : candidates) {
@@ -173,7 +114,7 @@ Page<AttemptSummary> page_of_attempts(Database& database, const std::optional<Di
   std::int64_t last_id = parse_rising_cursor(cursor);
   while (true) {
     const std::int64_t more = rows - std::ssize(page.rows) + 1;  // one says whether a page follows
-    const std::vector<std::int64_t> ids = next_ids(database, robot, task, last_id, more);
+    const std::vector<std::int64_t> ids = next_attempts(database, robot, task, last_id, more);
     if (ids.empty())
       return page;
     for (const std::int64_t id : ids) {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
+#include "server/store/sqlite/rows/arrival_order.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::store {
@@ -13,9 +12,7 @@ namespace kinship::store {
 /// Attempts with their paths and scenes, and those of them that turned out damaged on the way.
 struct ExportRead {
   Page<Attempt> page;
-  std::vector<std::int64_t> damaged;  ///< paths
-  std::vector<std::int64_t> damaged_scenes;
-  std::vector<std::int64_t> damaged_attempts;
+  DamagedRows damaged;
 };
 
 /// A page of Store::export_attempts(). The cursor is the id of the last attempt looked at.

@@ -242,12 +242,12 @@ std::int64_t insert_path(Database& database, const ExperienceKey& key,
   database
       .cached(
           "INSERT INTO path (task_id, robot_id, report_uuid, content_sha256, length, T_task_base,"
-          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+          " dof, waypoint_count, encoding, crc32c, waypoints, received_ms, scene_id, retired_ms) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       ->bind_all(key.task_id, key.robot_id, content.report_uuid, Bytes(path.content.bytes),
                  path.length, blob_or_null(T_task_base), content.dof, content.waypoint_count,
                  content.encoding, std::int64_t{content.crc()}, content.waypoints,
-                 arrival.received_ms, arrival.scene_id)
+                 arrival.received_ms, arrival.scene_id, arrival.retired_ms)
       .run();
   return database.last_insert_id();
 }

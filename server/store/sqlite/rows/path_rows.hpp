@@ -28,6 +28,7 @@ bool is_vouched_for(Database& database, const ExperienceKey& key, std::int64_t i
 struct PathArrival {
   std::int64_t received_ms = 0;
   std::optional<std::int64_t> scene_id;
+  std::optional<std::int64_t> retired_ms = {};  ///< missing: it is in use
 };
 
 /// \return the id of the new path.

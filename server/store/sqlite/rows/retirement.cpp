@@ -10,6 +10,7 @@
 #include "server/store/sqlite/rows/attempt_rows.hpp"
 #include "server/store/sqlite/rows/experience_rows.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
+#include "server/store/sqlite/rows/retired_reports.hpp"
 #include "server/store/sqlite/rows/set_aside_rows.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
@@ -46,6 +47,7 @@ bool mark_retired(Database& database, std::int64_t id) {
 /// taken out of the count already.
 void retire(Batch& batch, const PathRow& path, Retirement& retired) {
   Database& database = batch.database();
+  note_retired_path(database, path.key, path.id);
   const bool aside = find_aside(database, AsideKind::Path, path.id).has_value();
   if (aside)
     retire_aside(database, path.id);
@@ -113,7 +115,30 @@ Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid) {
   const std::optional<Aside> aside = find_aside(database, AsideKind::Path, id);
   if (!(aside && aside->retired) && !is_retired(database, key, id))
     retire(batch, {id, key, attempt.attempt.robot}, retired);
+  note_retired_report(database, report_uuid);
   return retired;
+}
+
+std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> reports) {
+  std::map<std::string, Retirement> retired;  // by task
+  for (const Uuid& report : reports) {
+    if (!note_retired_report(batch.database(), report))
+      continue;
+    // What is not here, has no path or cannot be read is remembered by its UUID alone.
+    const Result<Retirement> one = retire_path(batch, report);
+    if (!one || one->paths == 0)
+      continue;
+    Retirement& of_task = retired[one->task];
+    of_task.task = one->task;
+    of_task.paths += one->paths;
+    for (const Digest& robot : one->robots)
+      if (!std::ranges::binary_search(of_task.robots, robot))
+        of_task.robots.insert(std::ranges::lower_bound(of_task.robots, robot), robot);
+  }
+  std::vector<Retirement> by_task;
+  for (auto& [task, retirement] : retired)
+    by_task.push_back(std::move(retirement));
+  return by_task;
 }
 
 Result<TaskReset> begin_reset(Database& database, std::string_view task) {

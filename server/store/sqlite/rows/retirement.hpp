@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "proto/types/result.hpp"
 #include "server/store/sqlite/database/writer.hpp"
@@ -13,6 +15,10 @@ namespace kinship::store {
 /// Retires the path of a report: the one it brought, or the earlier one of the same content.
 /// \return NotFound for an unknown report; InvalidInput for one that brought no path.
 Result<Retirement> retire_path(Batch& batch, const Uuid& report_uuid);
+
+/// Retires the paths of reports that another store retired. Those that are not here are
+/// remembered, and retired when they come. \return by task, what was not retired before.
+std::vector<Retirement> retire_reports(Batch& batch, std::span<const Uuid> reports);
 
 /// Which paths of a task are to be retired.
 struct TaskReset {

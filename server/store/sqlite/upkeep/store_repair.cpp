@@ -383,6 +383,8 @@ Salvaged Salvager::run(PageReader& reader, const Progress& progress) {
   copy_table("robot_held_joint", 3);
   copy_table("robot_never_colliding", 4);
   copy_table("robot_geometry", 4);
+  copy_table("retired_report", 3);
+  copy_table("same_content", 2);
   stand_in_for_lost_paths();
   stand_in_for_lost_scenes();
   count_lost("path", "path_by_task_robot");

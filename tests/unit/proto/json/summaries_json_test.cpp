@@ -96,8 +96,17 @@ TEST(SummariesJson, StatusIsReadBack) {
   status.rehearsal_time_s = 74.25;
   status.writable = false;
   status.storage_message = "disk full";
+  UpstreamStatus upstream;
+  upstream.name = "postgresql://memory/kinship";
+  upstream.connected = true;
+  upstream.since_ms = 1;
+  for (std::uint64_t* counter :
+       {&upstream.tries, &upstream.waiting, &upstream.sent, &upstream.received, &upstream.refused,
+        &upstream.left_out, &upstream.retired_above, &upstream.retired_here, &upstream.tasks})
+    *counter = ++value;
+  status.upstream = upstream;
   expect_same_text_again(status, server_status_from_json);
-  EXPECT_EQ(server_status_from_json(to_json(status))->store_bytes, value);
+  EXPECT_EQ(server_status_from_json(to_json(status))->upstream->tasks, value);
 }
 
 TEST(SummariesJson, StatusOfAServerThatRehearsesNothingIsRead) {

@@ -321,5 +321,15 @@ TEST_F(Options, AnEmptyStoreIsSaidToBeEmpty) {
   EXPECT_NE(err_.str().find("--store is empty"), std::string::npos) << err_.str();
 }
 
+TEST_F(Options, ASiteNamesTheMemoryAboveIt) {
+  const ServerOptions options =
+      good({"--upstream", "postgresql://memory/kinship", "--upstream-tasks", "pick_*", "bin"});
+  EXPECT_EQ(options.upstream, "postgresql://memory/kinship");
+  EXPECT_EQ(options.upstream_tasks, (std::vector<std::string>{"pick_*", "bin"}));
+  EXPECT_EQ(code({"--upstream", "fleet.db"}), kWrongUsage);
+  EXPECT_NE(err_.str().find("postgresql://HOST/DATABASE"), std::string::npos) << err_.str();
+  EXPECT_EQ(code({"--upstream-tasks", "pick_*"}), kWrongUsage) << "of what memory?";
+}
+
 }  // namespace
 }  // namespace kinship::app::options_test

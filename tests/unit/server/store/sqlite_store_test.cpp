@@ -28,6 +28,7 @@ std::string name_of_engine(const testing::TestParamInfo<Engine>& engine) {
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(sqlite_engine()),
                          name_of_engine);
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreRetention, testing::Values(sqlite_engine()), name_of_engine);
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreSharing, testing::Values(sqlite_engine()), name_of_engine);
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreBackup, testing::Values(sqlite_engine()), name_of_engine);
 INSTANTIATE_TEST_SUITE_P(Sqlite, StoreRetentionBackup, testing::Values(sqlite_engine()),
                          name_of_engine);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -100,5 +101,30 @@ class StoreRetention : public StoreConformance {
 };
 
 class StoreRetentionBackup : public StoreRetention {};
+
+/// Two stores of one engine, as a site and the memory above it are.
+class StoreSharing : public StoreConformance {
+ protected:
+  static constexpr std::size_t kManyBytes = std::size_t{1} << 24U;
+
+  StoreSharing() : other_(GetParam().open(other_directory_.path(), {})) {
+    EXPECT_TRUE(other_->register_robot(panda_));
+    EXPECT_TRUE(other_->register_robot(iiwa_));
+  }
+  SharedReport shared(const Uuid& report) const {
+    const std::vector<SharedReport> read =
+        store_->read_reports(std::vector{report}, kManyBytes).reports;
+    if (read.size() != 1)
+      throw std::runtime_error("no such report");
+    return read[0];
+  }
+  bool is_listed_as_retired(const Store& store, const Uuid& report) const {
+    const std::vector<Uuid> retired = store.list_retirements("", 1000).rows;
+    return std::ranges::count(retired, report) == 1;
+  }
+
+  const test::TemporaryDirectory other_directory_;
+  std::unique_ptr<Store> other_;
+};
 
 }  // namespace kinship::store

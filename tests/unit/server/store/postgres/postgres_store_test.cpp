@@ -35,6 +35,8 @@ INSTANTIATE_TEST_SUITE_P(Postgres, StoreConformance, testing::ValuesIn(postgres_
                          name_of_postgres);
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreRetention, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreSharing, testing::ValuesIn(postgres_engines()),
+                         name_of_postgres);
 
 /// What several servers on one database can show, and what becomes of one without its database.
 class PostgresStoreTest : public testing::Test {

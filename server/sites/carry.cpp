@@ -1,0 +1,139 @@
+#include "server/sites/carry.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <map>
+#include <memory>
+
+#include "server/sites/carry_robot.hpp"
+
+namespace kinship::sites {
+namespace {
+
+using store::SharedReport;
+
+void throw_if_stopped(const Way& way) {
+  if (way.stop.stop_requested())
+    throw Failure(ErrorCode::Unavailable, "the server is stopping");
+}
+
+/// The receipts of a commit. A store may take as long as it likes: whoever stops does not wait.
+std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
+  if (reports.empty())
+    return {};
+  // Shared with the callback, which may come after nobody waits for it any more.
+  const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
+  std::future<std::vector<Receipt>> receipts = promise->get_future();
+  const auto done = [promise](const std::vector<Receipt>& answered) {
+    promise->set_value(answered);
+  };
+  if (way.commit)
+    way.commit(std::move(reports), done);
+  else
+    way.to.commit_shared(std::move(reports), done);
+  constexpr std::chrono::milliseconds kLook{50};
+  while (receipts.wait_for(kLook) != std::future_status::ready)
+    throw_if_stopped(way);
+  return receipts.get();
+}
+
+/// Those whose robots are at the other store by now; the others are refused.
+std::vector<SharedReport> with_robots(const Way& way, std::vector<SharedReport> reports,
+                                      CarriedReports& carried) {
+  std::map<Digest, std::optional<Error>> robots;
+  std::vector<SharedReport> good;
+  for (SharedReport& report : reports) {
+    const auto [robot, is_new] = robots.try_emplace(report.attempt.robot);
+    if (is_new)
+      robot->second = carry_robot(way.from, way.to, report.attempt.robot);
+    std::optional<Error> fault = robot->second;
+    if (!fault && way.check)
+      fault = way.check(report.attempt);
+    if (fault && fault->code == ErrorCode::Storage)
+      throw Failure(*fault);  // it may pass
+    if (fault)
+      carried.refused.push_back({report.attempt.report_uuid, fault->message});
+    else
+      good.push_back(std::move(report));
+  }
+  return good;
+}
+
+void count(const std::vector<Receipt>& receipts, CarriedReports& carried) {
+  for (const Receipt& receipt : receipts)
+    switch (receipt.status) {
+      case ReceiptStatus::TryAgain:
+      case ReceiptStatus::UnknownRobot:  // removed since it was registered
+        throw Failure(ErrorCode::Unavailable,
+                      "report " + receipt.report_uuid.text() + ": " + receipt.message);
+      case ReceiptStatus::Refused:
+        carried.refused.push_back({receipt.report_uuid, receipt.message});
+        break;
+      default:
+        ++carried.new_there;
+    }
+}
+
+void retire(const Way& way, std::span<const Uuid> reports) {
+  if (reports.empty())
+    return;
+  for (const Retirement& retirement : way.to.retire_reports(reports))
+    way.on_retired(retirement);
+}
+
+}  // namespace
+
+std::uint64_t carry_retirements(const Way& way, std::string& cursor, const Piece& piece) {
+  std::uint64_t carried = 0;
+  bool has_more = true;
+  while (has_more) {
+    throw_if_stopped(way);
+    const store::Feed<Uuid> feed = way.from.list_retirements(cursor, piece.retirements);
+    retire(way, feed.rows);
+    carried += feed.rows.size();
+    cursor = feed.cursor;
+    has_more = feed.has_more;
+  }
+  return carried;
+}
+
+CarriedReports carry_reports(const Way& way, std::span<const Uuid> reports, std::string& retired,
+                             const Piece& piece) {
+  CarriedReports carried;
+  while (!reports.empty()) {
+    throw_if_stopped(way);
+    store::SharedReports read =
+        way.from.read_reports(reports.first(std::min(reports.size(), piece.commit)), piece.bytes);
+    // Only now: what is retired by then includes what was retired before any of these came.
+    carry_retirements(way, retired, piece);
+    carried.left_out += read.looked_at - read.reports.size();
+    count(commit(way, with_robots(way, std::move(read.reports), carried)), carried);
+    reports = reports.subspan(read.looked_at);
+  }
+  return carried;
+}
+
+CarriedPage carry_page(const Way& way, std::string_view task, const std::string& cursor,
+                       std::string& retired, const Piece& piece) {
+  const store::Feed<store::ArrivedReport> feed =
+      way.from.list_arrivals(task, cursor, piece.reports);
+  std::vector<Uuid> arrived, missing, retired_before;
+  for (const store::ArrivedReport& report : feed.rows)
+    arrived.push_back(report.report_uuid);
+  const std::set<Uuid> known = arrived.empty() ? std::set<Uuid>() : way.to.known_reports(arrived);
+  for (const store::ArrivedReport& report : feed.rows) {
+    if (!known.contains(report.report_uuid))
+      missing.push_back(report.report_uuid);
+    else if (report.is_retired)  // perhaps before there was a list of retirements
+      retired_before.push_back(report.report_uuid);
+  }
+  retire(way, retired_before);
+  CarriedPage page{carry_reports(way, missing, retired, piece), arrived.size(), feed.cursor,
+                   feed.has_more};
+  if (missing.empty())
+    carry_retirements(way, retired, piece);
+  return page;
+}
+
+}  // namespace kinship::sites

@@ -1,0 +1,203 @@
+#include "server/sites/exchange.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "proto/types/limits.hpp"
+#include "server/sites/wanted_tasks.hpp"
+
+namespace kinship::sites {
+namespace {
+
+/// Of this thread: what it waits for the memory does not count.
+std::chrono::nanoseconds processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+std::string text_of(const RefusedReport& report, bool is_up) {
+  return "report " + report.report_uuid.text() + (is_up ? " is refused above: " : " from above: ") +
+         report.why;
+}
+
+}  // namespace
+
+Exchange::Exchange(store::Store& site, store::Store& memory, Positions& positions,
+                   ExchangeCounts& counts, SiteHooks hooks, ExchangeOptions options)
+    : site_(site),
+      memory_(memory),
+      positions_(positions),
+      counts_(counts),
+      hooks_(std::move(hooks)),
+      options_(std::move(options)) {
+  begin();
+}
+
+/// A memory that lost what it acknowledged is told so, as a server is by its clients.
+void Exchange::begin() {
+  if (memory_.has_lost(positions_.mark) && memory_.begin_epoch_if_lost(positions_.mark))
+    options_.log("the memory above was rolled back behind what it acknowledged");
+  if (!positions_.begin(site_.epoch(), memory_.epoch()))
+    return;
+  options_.log("everything is compared with the memory above, from the beginning");
+  up_due_ = tasks_due_ = {};
+  down_due_.clear();
+}
+
+Way Exchange::way_up(const std::stop_token& stop) {
+  return {.from = site_,
+          .to = memory_,
+          .on_retired =
+              [this](const Retirement& retirement) { counts_.retired_above += retirement.paths; },
+          .stop = stop};
+}
+
+Way Exchange::way_down(const std::stop_token& stop) {
+  return {.from = memory_,
+          .to = site_,
+          .commit =
+              [this](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+                commit_here(std::move(reports), std::move(done));
+              },
+          .check = hooks_.check,
+          .on_retired =
+              [this](const Retirement& retirement) {
+                counts_.retired_here += retirement.paths;
+                hooks_.on_retired(retirement);
+              },
+          .stop = stop};
+}
+
+void Exchange::commit_here(std::vector<store::SharedReport> reports,
+                           store::Store::ReportsDone done) {
+  const auto timed = [total = commits_ns_, began = std::chrono::steady_clock::now(),
+                      done = std::move(done)](const std::vector<Receipt>& receipts) {
+    *total += std::chrono::nanoseconds(std::chrono::steady_clock::now() - began).count();
+    done(receipts);
+  };
+  if (hooks_.commit)
+    hooks_.commit(std::move(reports), timed);
+  else
+    site_.commit_shared(std::move(reports), timed);
+}
+
+std::uint64_t Exchange::take(const CarriedReports& carried, bool is_up) {
+  counts_.left_out += carried.left_out;
+  for (const RefusedReport& report : carried.refused) {
+    options_.log(text_of(report, is_up));
+    positions_.refuse(report, is_up);
+  }
+  return carried.new_there;
+}
+
+/// Once a connection: whatever was in the way may be gone since.
+void Exchange::try_refused_again(const std::stop_token& stop) {
+  for (const bool is_up : {true, false}) {
+    std::vector<Uuid> reports;
+    for (const auto& [report, refused] : positions_.refused())
+      if (refused.is_up == is_up)
+        reports.push_back(report);
+    if (reports.empty())
+      continue;
+    for (const Uuid& report : reports)
+      positions_.accept(report);
+    if (is_up)
+      counts_.sent +=
+          take(carry_reports(way_up(stop), reports, positions_.up_retired, options_.up), is_up);
+    else
+      counts_.received += take(
+          carry_reports(way_down(stop), reports, positions_.down_retired, options_.down), is_up);
+  }
+  positions_.save();
+}
+
+void Exchange::want_tasks() {
+  constexpr std::int64_t kHour_ms = 3'600'000;
+  const std::int64_t now_ms = options_.clock.unix_ms();
+  std::set<std::string> wanted = hooks_.tasks_in_use();
+  if (!options_.task_patterns.empty()) {
+    store::Page<TaskSummary> page;
+    do {
+      page = memory_.list_tasks(page.next_cursor, kMaxPageRows);
+      for (const TaskSummary& task : page.rows)
+        if (matches_any(options_.task_patterns, task.task))
+          wanted.insert(task.task);
+    } while (!page.next_cursor.empty());
+  }
+  for (const std::string& task : wanted) {
+    Positions::Task& position = positions_.tasks[task];
+    if (now_ms - position.used_ms > kHour_ms)  // not a write each time
+      position.used_ms = now_ms;
+  }
+  const std::int64_t use_ms = std::chrono::milliseconds(options_.task_use).count();
+  std::map<std::string, TimePoint> due;
+  for (const auto& [task, position] : positions_.tasks)
+    if (now_ms - position.used_ms <= use_ms) {
+      const auto known = down_due_.find(task);
+      due[task] = known == down_due_.end() ? TimePoint() : known->second;
+    }
+  down_due_ = std::move(due);
+}
+
+bool Exchange::carry_up(const std::stop_token& stop) {
+  const CarriedPage page =
+      carry_page(way_up(stop), "", positions_.up, positions_.up_retired, options_.up);
+  counts_.sent += take(page.reports, true);
+  positions_.up = page.cursor;
+  positions_.passed += page.looked_at;
+  if (page.reports.new_there > 0)
+    positions_.mark = memory_.point().mark;
+  positions_.save();
+  up_due_ = page.has_more ? TimePoint() : look_again();
+  return page.looked_at > 0;
+}
+
+bool Exchange::carry_down(const std::string& task, const std::stop_token& stop) {
+  Positions::Task& position = positions_.tasks[task];
+  const CarriedPage page =
+      carry_page(way_down(stop), task, position.cursor, positions_.down_retired, options_.down);
+  counts_.received += take(page.reports, false);
+  position.cursor = page.cursor;
+  positions_.save();
+  down_due_[task] = page.has_more ? TimePoint() : look_again();
+  return page.looked_at > 0;
+}
+
+Exchange::Step Exchange::step(const std::stop_token& stop) {
+  const std::chrono::nanoseconds began = processor_time();
+  begin();
+  const TimePoint now = options_.clock.now();
+  *commits_ns_ = 0;
+  if (!std::exchange(has_tried_refused_, true))
+    try_refused_again(stop);
+  if (tasks_due_ <= now) {
+    want_tasks();
+    // Also where no task is wanted: what this site sent may be retired above.
+    carry_retirements(way_down(stop), positions_.down_retired, options_.down);
+    positions_.save();
+    tasks_due_ = look_again();
+  }
+  Step step;
+  const auto is_due = [now](const auto& entry) { return entry.second <= now; };
+  // In turns: up, one task, up, the next task.
+  auto down = std::find_if(down_due_.upper_bound(last_), down_due_.end(), is_due);
+  if (down == down_due_.end())
+    down = std::ranges::find_if(down_due_, is_due);
+  const bool is_up = up_due_ <= now && (is_ups_turn_ || down == down_due_.end());
+  if (is_up) {
+    step.has_worked = carry_up(stop);
+  } else if (down != down_due_.end()) {
+    last_ = down->first;
+    step.has_worked = carry_down(std::string(last_), stop);
+  }
+  is_ups_turn_ = !is_up;
+  step.next = std::min(up_due_, tasks_due_);
+  for (const auto& [task, due] : down_due_)
+    step.next = std::min(step.next, due);
+  step.load = processor_time() - began + std::chrono::nanoseconds(*commits_ns_);
+  return step;
+}
+
+}  // namespace kinship::sites

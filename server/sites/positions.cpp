@@ -1,0 +1,131 @@
+#include "server/sites/positions.hpp"
+
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+namespace kinship::sites {
+namespace {
+
+constexpr std::string_view kPrefix = "sites.";
+constexpr std::string_view kTask = "sites.down.task.";
+constexpr std::string_view kRefused = "sites.refused.";
+
+std::string hex(const HistoryMark& mark) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : mark) {
+    text += kDigits[byte >> 4U];
+    text += kDigits[byte & 15U];
+  }
+  return text;
+}
+
+HistoryMark mark_of(std::string_view text) {
+  HistoryMark mark;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    std::uint8_t byte = 0;
+    std::from_chars(text.data() + i, text.data() + i + 2, byte, 16);
+    mark.push_back(byte);
+  }
+  return mark;
+}
+
+/// "number text": the two of them; 0 if there is no number.
+template <typename Number>
+std::pair<Number, std::string> numbered(const std::string& text) {
+  Number number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::size_t blank = text.find(' ');
+  return {number, blank == std::string::npos ? std::string() : text.substr(blank + 1)};
+}
+
+std::string text_of(const std::map<std::string, std::string>& texts, std::string_view name) {
+  const auto found = texts.find(std::string(kPrefix) + std::string(name));
+  return found == texts.end() ? std::string() : found->second;
+}
+
+}  // namespace
+
+Positions::Positions(store::Store& site) : site_(&site), saved_(site.notes(kPrefix)) {
+  epochs_ = text_of(saved_, "epochs");
+  mark = mark_of(text_of(saved_, "mark"));
+  up_retired = text_of(saved_, "up.retired");
+  down_retired = text_of(saved_, "down.retired");
+  std::tie(passed, up) = numbered<std::uint64_t>(text_of(saved_, "up"));
+  for (const auto& [name, text] : saved_) {
+    if (name.starts_with(kTask)) {
+      const auto [used_ms, cursor] = numbered<std::int64_t>(text);
+      tasks[name.substr(kTask.size())] = {cursor, used_ms};
+    } else if (name.starts_with(kRefused)) {
+      const auto [direction, why] = numbered<int>(text);
+      if (const std::optional<Uuid> report = Uuid::parse(name.substr(kRefused.size())))
+        refused_[*report] = {direction == 0, why};
+    }
+  }
+  std::erase_if(saved_, [](const auto& note) { return note.first.starts_with(kRefused); });
+}
+
+bool Positions::begin(const Uuid& site_epoch, const Uuid& memory_epoch) {
+  std::string epochs = site_epoch.text() + " " + memory_epoch.text();
+  if (epochs == epochs_)
+    return false;
+  epochs_ = std::move(epochs);
+  up.clear();
+  up_retired.clear();
+  down_retired.clear();
+  passed = 0;
+  mark.clear();
+  while (!refused_.empty())
+    accept(Uuid(refused_.begin()->first));
+  for (auto& [name, task] : tasks)
+    task.cursor.clear();
+  save();
+  return true;
+}
+
+void Positions::refuse(const RefusedReport& report, bool is_up) {
+  if (refused_.size() >= kMaxRefused)
+    return;
+  refused_[report.report_uuid] = {is_up, report.why};
+  refusals_[std::string(kRefused) + report.report_uuid.text()] =
+      std::string(is_up ? "0 " : "1 ") + report.why;
+}
+
+void Positions::accept(const Uuid& report) {
+  if (refused_.erase(report) > 0)
+    refusals_[std::string(kRefused) + report.text()] = std::nullopt;
+}
+
+std::map<std::string, std::string> Positions::texts() const {
+  std::map<std::string, std::string> texts;
+  const auto put = [&texts](std::string_view name, std::string text) {
+    texts.emplace(std::string(kPrefix) + std::string(name), std::move(text));
+  };
+  put("epochs", epochs_);
+  put("mark", hex(mark));
+  put("up", std::to_string(passed) + " " + up);
+  put("up.retired", up_retired);
+  put("down.retired", down_retired);
+  for (const auto& [name, task] : tasks)
+    texts.emplace(std::string(kTask) + name, std::to_string(task.used_ms) + " " + task.cursor);
+  return texts;
+}
+
+void Positions::save() {
+  std::map<std::string, std::string> now = texts();
+  std::map<std::string, std::optional<std::string>> changes = refusals_;
+  for (const auto& [name, text] : now)
+    if (const auto before = saved_.find(name); before == saved_.end() || before->second != text)
+      changes[name] = text;
+  for (const auto& [name, text] : saved_)
+    if (!now.contains(name))
+      changes[name] = std::nullopt;
+  if (changes.empty())
+    return;
+  site_->put_notes(changes);
+  saved_ = std::move(now);
+  refusals_.clear();
+}
+
+}  // namespace kinship::sites

@@ -1,0 +1,187 @@
+#include "server/sites/carry.hpp"
+
+#include "proto/types/limits.hpp"
+#include "tests/unit/server/sites/site_and_memory.hpp"
+
+namespace kinship::sites {
+namespace {
+
+class Carry : public SiteAndMemory {
+ protected:
+  CarriedPage carry(const Piece& piece = {}) {
+    const CarriedPage page =
+        carry_page({.from = *site_, .to = *memory_}, "", cursor_, retired_, piece);
+    cursor_ = page.cursor;
+    return page;
+  }
+
+  std::string cursor_, retired_;
+};
+
+TEST_F(Carry, ReportsGoWithTheirRobotInTheOrderTheyCame) {
+  test::report(*site_, {solved(3), test::make_unsolved(panda_.digest, "shelf", 1), solved(2)});
+  const CarriedPage page = carry();
+  EXPECT_EQ(page.looked_at, 3U);
+  EXPECT_EQ(page.reports.new_there, 3U);
+  EXPECT_FALSE(page.has_more);
+  EXPECT_EQ(reports_of(*memory_), reports_of(*site_));
+  EXPECT_EQ(memory_->find_robot(panda_.digest)->description.label, "panda");
+  EXPECT_EQ(carry().looked_at, 0U);
+}
+
+TEST_F(Carry, WhatIsThereIsNotSentAgain) {
+  ASSERT_TRUE(memory_->register_robot(panda_));
+  test::report(*site_, {solved(1), solved(2)});
+  test::report(*memory_, {solved(1)});
+  const CarriedPage page = carry();
+  EXPECT_EQ(page.looked_at, 2U);
+  EXPECT_EQ(page.reports.new_there, 1U);
+}
+
+TEST_F(Carry, APieceIsNoMoreThanItMayBe) {
+  for (std::uint64_t number = 1; number <= 7; ++number)
+    test::report(*site_, {solved(number)});
+  const CarriedPage first = carry({.reports = 5, .commit = 2, .bytes = 1, .retirements = 1});
+  EXPECT_EQ(first.looked_at, 5U);
+  EXPECT_TRUE(first.has_more);
+  EXPECT_EQ(reports_of(*memory_).size(), 5U);
+  EXPECT_FALSE(carry({.reports = 5}).has_more);
+  EXPECT_EQ(reports_of(*memory_), reports_of(*site_));
+}
+
+TEST_F(Carry, ALabelThatAnotherRobotHasIsKeptByThatOne) {
+  store::RobotRecord other = test::make_robot("panda", 7);
+  ASSERT_TRUE(memory_->register_robot(other));
+  test::report(*site_, {solved(1)});
+  EXPECT_EQ(carry().reports.new_there, 1U);
+  EXPECT_EQ(memory_->find_robot(other.digest)->description.label, "panda");
+  EXPECT_EQ(memory_->find_robot(panda_.digest)->description.label,
+            "panda-" + panda_.digest.short_hex());
+}
+
+TEST_F(Carry, AlsoALongLabelLeavesRoomForTheDigest) {
+  const std::string longest(kMaxLabelBytes, 'x');
+  store::RobotRecord here = test::make_robot(longest, 8), there = test::make_robot(longest, 9);
+  ASSERT_TRUE(site_->register_robot(here));
+  ASSERT_TRUE(memory_->register_robot(there));
+  test::report(*site_, {test::make_attempt(here.digest, "shelf", 1)});
+  EXPECT_EQ(carry().reports.new_there, 1U);
+  EXPECT_TRUE(
+      memory_->find_robot(here.digest)->description.label.ends_with(here.digest.short_hex()));
+}
+
+TEST_F(Carry, WhatIsRefusedIsNamedAndHoldsNothingUp) {
+  ASSERT_TRUE(memory_->register_robot(panda_));
+  Attempt other = solved(9);
+  other.report_uuid = solved(1).report_uuid;
+  test::report(*memory_, {other});
+  test::report(*site_, {solved(1), solved(2)});
+  // Whoever was there first is known by its UUID; only a second look compares the bodies.
+  const std::vector<Uuid> both = reports_of(*site_);
+  const CarriedReports carried =
+      carry_reports({.from = *site_, .to = *memory_}, both, retired_, {});
+  ASSERT_EQ(carried.refused.size(), 1U);
+  EXPECT_EQ(carried.refused[0].report_uuid, solved(1).report_uuid);
+  EXPECT_NE(carried.refused[0].why.find("another report"), std::string::npos);
+  EXPECT_EQ(carried.new_there, 1U);
+}
+
+TEST_F(Carry, WhatIsFoundWrongOnTheWayIsNotCommitted) {
+  test::report(*site_, {solved(1), solved(2)});
+  const auto check = [this](const Attempt& attempt) -> std::optional<Error> {
+    if (attempt.report_uuid == solved(1).report_uuid)
+      return Error{ErrorCode::InvalidInput, "joint 2 beyond its limit"};
+    return std::nullopt;
+  };
+  const CarriedPage page =
+      carry_page({.from = *site_, .to = *memory_, .check = check}, "", cursor_, retired_, {});
+  ASSERT_EQ(page.reports.refused.size(), 1U);
+  EXPECT_EQ(page.reports.refused[0].why, "joint 2 beyond its limit");
+  EXPECT_EQ(reports_of(*memory_), std::vector<Uuid>{solved(2).report_uuid});
+}
+
+TEST_F(Carry, AStoreThatWantsItAgainIsAskedAgain) {
+  test::report(*site_, {solved(1)});
+  store::TroubledStore busy(*memory_);
+  busy.on_commit = [](const std::vector<store::SharedReport>& reports,
+                      const store::Store::ReportsDone& done) {
+    std::vector<Receipt> receipts;
+    for (const store::SharedReport& report : reports)
+      receipts.push_back(
+          {report.attempt.report_uuid, ReceiptStatus::TryAgain, "the queue is full"});
+    done(receipts);
+  };
+  try {
+    carry_page({.from = *site_, .to = busy}, "", cursor_, retired_, {});
+    FAIL() << "carried";
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("the queue is full"), std::string::npos);
+  }
+  EXPECT_EQ(carry().reports.new_there, 1U);
+}
+
+TEST_F(Carry, ADroppedPathIsCounted) {
+  site_.reset();
+  site_ = store::open_sqlite_store(directory_ / "site.db", {.max_paths_per_pair = 1});
+  test::report(*site_, {solved(1), solved(2)});
+  const CarriedPage page = carry();
+  EXPECT_EQ(page.reports.new_there, 1U);
+  EXPECT_EQ(page.reports.left_out, 1U);
+}
+
+TEST_F(Carry, ARetirementIsCarriedAlsoForReportsOfBeforeTheList) {
+  test::report(*site_, {solved(1), solved(2)});
+  carry();
+  ASSERT_TRUE(site_->retire_path(solved(1).report_uuid));
+  std::uint64_t paths = 0;
+  carry_page({.from = *site_,
+              .to = *memory_,
+              .on_retired = [&](const Retirement& retirement) { paths += retirement.paths; }},
+             "", cursor_, retired_, {});
+  EXPECT_EQ(paths, 1U);
+  EXPECT_EQ(paths_of(*memory_), 1U);
+  EXPECT_EQ(carry_retirements({.from = *site_, .to = *memory_}, retired_, {}), 0U);
+  // As of a store whose list began after the retirement.
+  std::string from_now = site_->list_retirements("", 10).cursor;
+  const auto other = store::open_sqlite_store(directory_ / "other.db");
+  ASSERT_TRUE(other->register_robot(panda_));
+  test::report(*other, {solved(1)});
+  carry_page({.from = *site_, .to = *other}, "", "", from_now, {});
+  EXPECT_EQ(paths_of(*other), 1U) << "of report 2 alone";
+}
+
+TEST_F(Carry, ContentThatWasReportedAnewAfterARetirementStays) {
+  test::report(*site_, {solved(1)});
+  carry();
+  Attempt anew = solved(1);
+  anew.report_uuid = test::id_from<Uuid>(50);
+  store::TroubledStore site(*site_);
+  // Both happen while the page is under way.
+  int calls = 0;
+  site.on_exchange = [&] {
+    if (++calls != 1)
+      return;
+    ASSERT_TRUE(site_->retire_path(solved(1).report_uuid));
+    test::report(*site_, {anew});
+  };
+  for (int i = 0; i < 2; ++i)
+    cursor_ = carry_page({.from = site, .to = *memory_}, "", cursor_, retired_, {}).cursor;
+  EXPECT_EQ(paths_of(*site_), 1U);
+  const auto paths = memory_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 9});
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].report_uuid, anew.report_uuid);
+}
+
+TEST_F(Carry, WhoStopsDoesNotWaitForAStoreThatNeverAnswers) {
+  test::report(*site_, {solved(1)});
+  store::TroubledStore silent(*memory_);
+  std::stop_source stop;
+  silent.on_commit = [&](const std::vector<store::SharedReport>&,
+                         const store::Store::ReportsDone&) { stop.request_stop(); };
+  EXPECT_THROW(carry_page({.from = *site_, .to = silent, .stop = stop.get_token()}, "", cursor_,
+                          retired_, {}),
+               Failure);
+}
+
+}  // namespace
+}  // namespace kinship::sites

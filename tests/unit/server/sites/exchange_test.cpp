@@ -1,0 +1,191 @@
+#include "server/sites/exchange.hpp"
+
+#include "tests/unit/server/sites/site_and_memory.hpp"
+
+namespace kinship::sites {
+namespace {
+
+class ExchangeTest : public SiteAndMemory {
+ protected:
+  ExchangeTest() {
+    options_.look_every = std::chrono::milliseconds(0);
+    options_.log = [this](std::string_view line) { lines_.emplace_back(line); };
+    hooks_.tasks_in_use = [this] { return in_use_; };
+    EXPECT_TRUE(memory_->register_robot(panda_));
+  }
+
+  void connect() {
+    exchange_.reset();
+    positions_.emplace(*site_);
+    exchange_.emplace(*site_, *memory_, *positions_, counts_, hooks_, options_);
+  }
+  /// Until a round of all streams finds nothing.
+  void exchange() {
+    if (!exchange_)
+      connect();
+    constexpr int kIdle = 8;
+    for (int idle = 0; idle < kIdle;)
+      idle = exchange_->step().has_worked ? 0 : idle + 1;
+  }
+  Attempt other_task(std::uint64_t number) const {
+    return test::make_attempt(panda_.digest, "table", number);
+  }
+
+  std::set<std::string> in_use_;
+  SiteHooks hooks_;
+  ExchangeOptions options_;
+  ExchangeCounts counts_;
+  std::vector<std::string> lines_;
+  std::optional<Positions> positions_;
+  std::optional<Exchange> exchange_;
+};
+
+TEST_F(ExchangeTest, UpGoesAllDownComesWhatIsUsedHere) {
+  test::report(*site_, {solved(1), other_task(2)});
+  test::report(*memory_, {solved(11), other_task(12)});
+  in_use_ = {"shelf"};
+  exchange();
+  EXPECT_EQ(memory_->status().attempts, 4U);
+  EXPECT_EQ(site_->status().attempts, 3U);
+  EXPECT_TRUE(site_->find_attempt(solved(11).report_uuid));
+  EXPECT_EQ(counts_.sent, 2U);
+  EXPECT_EQ(counts_.received, 1U);
+  in_use_ = {"table"};
+  exchange();
+  EXPECT_EQ(site_->status().attempts, 4U);
+  EXPECT_EQ(counts_.sent, 2U) << "what came down does not go up again";
+  EXPECT_EQ(positions_->passed, 4U) << "and does not wait to be sent";
+}
+
+TEST_F(ExchangeTest, TasksOfAPatternAlwaysComeDown) {
+  options_.task_patterns = {"ta*"};
+  test::report(*memory_, {solved(11), other_task(12)});
+  exchange();
+  EXPECT_EQ(reports_of(*site_), std::vector<Uuid>{other_task(12).report_uuid});
+}
+
+TEST_F(ExchangeTest, ATaskThatNobodyUsesForLongDoesNotComeDownAnyMore) {
+  std::int64_t now_ms = 1'700'000'000'000;
+  options_.clock.unix_ms = [&] { return now_ms; };
+  in_use_ = {"shelf"};
+  exchange();
+  in_use_.clear();
+  now_ms += std::chrono::milliseconds(options_.task_use).count() - 1;
+  test::report(*memory_, {solved(11)});
+  connect();
+  exchange();
+  EXPECT_EQ(site_->status().attempts, 1U) << "also after a restart";
+  now_ms += 2;
+  test::report(*memory_, {solved(12)});
+  exchange();
+  EXPECT_EQ(site_->status().attempts, 1U);
+  in_use_ = {"shelf"};
+  exchange();
+  EXPECT_EQ(site_->status().attempts, 2U);
+}
+
+TEST_F(ExchangeTest, RetirementsGoBothWaysAlsoWhereNoTaskIsUsed) {
+  test::report(*site_, {solved(1), solved(2)});
+  std::vector<Retirement> told;
+  hooks_.on_retired = [&](const Retirement& retirement) { told.push_back(retirement); };
+  exchange();
+  ASSERT_TRUE(memory_->retire_path(solved(1).report_uuid));
+  ASSERT_TRUE(site_->retire_path(solved(2).report_uuid));
+  exchange();
+  EXPECT_EQ(paths_of(*site_), 0U);
+  EXPECT_EQ(paths_of(*memory_), 0U);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].task, "shelf");
+  EXPECT_EQ(counts_.retired_here, 1U);
+  EXPECT_EQ(counts_.retired_above, 1U);
+}
+
+TEST_F(ExchangeTest, AMemoryThatLostWhatItAcknowledgedGetsItAgain) {
+  test::report(*site_, {solved(1)});
+  exchange();
+  ASSERT_TRUE(memory_->backup(directory_ / "copy.db", [](double) { return true; }).value());
+  test::report(*site_, {solved(2)});
+  exchange();
+  EXPECT_EQ(memory_->status().attempts, 2U);
+  // Under its own name and epoch, as if its machine had gone back in time.
+  exchange_.reset();
+  memory_.reset();
+  for (const char* const suffix : {"", "-wal", "-shm", ".witness", ".lock"})
+    std::filesystem::remove((directory_ / "memory.db").string() + suffix);
+  std::filesystem::rename(directory_ / "copy.db", directory_ / "memory.db");
+  memory_ = store::open_sqlite_store(directory_ / "memory.db");
+  EXPECT_EQ(memory_->status().attempts, 1U);
+  connect();
+  exchange();
+  EXPECT_EQ(memory_->status().attempts, 2U);
+}
+
+TEST_F(ExchangeTest, AnEpochThatChangesWhileConnectedBeginsAgain) {
+  test::report(*site_, {solved(1)});
+  exchange();
+  ASSERT_EQ(lines_.size(), 1U) << "the first time is a beginning, too";
+  const auto other = store::open_sqlite_store(directory_ / "other.db");
+  ASSERT_TRUE(other->register_robot(panda_));
+  exchange_.emplace(*site_, *other, *positions_, counts_, hooks_, options_);
+  exchange();
+  EXPECT_EQ(lines_.size(), 2U);
+  EXPECT_EQ(reports_of(*other), reports_of(*site_));
+}
+
+TEST_F(ExchangeTest, WhatIsRefusedIsSetAsideAndTriedWithTheNextConnection) {
+  bool is_refusing = true;
+  hooks_.check = [&](const Attempt& attempt) -> std::optional<Error> {
+    if (is_refusing && attempt.report_uuid == solved(11).report_uuid)
+      return Error{ErrorCode::InvalidInput, "no path of this robot"};
+    return std::nullopt;
+  };
+  in_use_ = {"shelf"};
+  test::report(*memory_, {solved(11), solved(12)});
+  exchange();
+  EXPECT_EQ(reports_of(*site_), std::vector<Uuid>{solved(12).report_uuid});
+  ASSERT_EQ(positions_->refused().size(), 1U);
+  EXPECT_EQ(positions_->refused().begin()->second.why, "no path of this robot");
+  EXPECT_NE(lines_.back().find(solved(11).report_uuid.text()), std::string::npos);
+  connect();
+  exchange();
+  EXPECT_EQ(positions_->refused().size(), 1U) << "refused again";
+  is_refusing = false;
+  connect();
+  exchange();
+  EXPECT_TRUE(positions_->refused().empty());
+  EXPECT_EQ(site_->status().attempts, 2U);
+}
+
+TEST_F(ExchangeTest, WhatCameDownIsHandedToTheServerOfTheSite) {
+  std::size_t most = 0, all = 0;
+  hooks_.commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+    most = std::max(most, reports.size());
+    all += reports.size();
+    site_->commit_shared(std::move(reports), std::move(done));
+  };
+  options_.down = {.reports = 8, .commit = 3};
+  in_use_ = {"shelf"};
+  for (std::uint64_t number = 1; number <= 20; ++number)
+    test::report(*memory_, {solved(number)});
+  exchange();
+  EXPECT_EQ(all, 20U);
+  EXPECT_EQ(most, 3U);
+}
+
+TEST_F(ExchangeTest, SendingTakesTurnsWithWhatComesDown) {
+  options_.up = {.reports = 1};
+  options_.down = {.reports = 1};
+  in_use_ = {"shelf"};
+  for (std::uint64_t number = 1; number <= 6; ++number) {
+    test::report(*site_, {other_task(number)});
+    test::report(*memory_, {solved(10 + number)});
+  }
+  connect();
+  for (int i = 0; i < 6; ++i)
+    exchange_->step();
+  EXPECT_EQ(counts_.sent, 3U);
+  EXPECT_EQ(counts_.received, 3U);
+}
+
+}  // namespace
+}  // namespace kinship::sites

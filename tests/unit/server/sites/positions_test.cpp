@@ -1,0 +1,70 @@
+#include "server/sites/positions.hpp"
+
+#include "tests/unit/server/sites/site_and_memory.hpp"
+
+namespace kinship::sites {
+namespace {
+
+using PositionsTest = SiteAndMemory;
+
+TEST_F(PositionsTest, AreThereAgainAfterARestart) {
+  {
+    Positions positions(*site_);
+    EXPECT_TRUE(positions.begin(site_->epoch(), memory_->epoch()));
+    positions.up = "12:34 x";
+    positions.passed = 12;
+    positions.up_retired = "5";
+    positions.down_retired = "6";
+    positions.mark = {0, 255, 17};
+    positions.tasks["shelf 2"] = {"opaque cursor", 1'700'000'000'000};
+    positions.refuse({test::id_from<Uuid>(1), "it has no joints"}, false);
+    positions.save();
+  }
+  site_.reset();
+  site_ = store::open_sqlite_store(directory_ / "site.db");
+  Positions positions(*site_);
+  EXPECT_EQ(positions.up, "12:34 x");
+  EXPECT_EQ(positions.passed, 12U);
+  EXPECT_EQ(positions.up_retired, "5");
+  EXPECT_EQ(positions.down_retired, "6");
+  EXPECT_EQ(positions.mark, (HistoryMark{0, 255, 17}));
+  ASSERT_EQ(positions.tasks.size(), 1U);
+  EXPECT_EQ(positions.tasks["shelf 2"].cursor, "opaque cursor");
+  EXPECT_EQ(positions.tasks["shelf 2"].used_ms, 1'700'000'000'000);
+  ASSERT_EQ(positions.refused().size(), 1U);
+  EXPECT_EQ(positions.refused().begin()->second.why, "it has no joints");
+  EXPECT_FALSE(positions.refused().begin()->second.is_up);
+  EXPECT_FALSE(positions.begin(site_->epoch(), memory_->epoch())) << "the epochs are the same";
+}
+
+TEST_F(PositionsTest, BeginAgainWithAnotherEpochOfEitherSide) {
+  Positions positions(*site_);
+  positions.begin(site_->epoch(), memory_->epoch());
+  for (const auto& [site, memory] : {std::pair(test::id_from<Uuid>(1), memory_->epoch()),
+                                     std::pair(test::id_from<Uuid>(1), test::id_from<Uuid>(2))}) {
+    positions.up = "7";
+    positions.passed = 7;
+    positions.mark = {1};
+    positions.tasks["shelf"] = {"9", 5};
+    positions.refuse({test::id_from<Uuid>(3), "why"}, true);
+    positions.save();
+    EXPECT_TRUE(positions.begin(site, memory));
+    EXPECT_EQ(positions.up + positions.tasks["shelf"].cursor, "");
+    EXPECT_EQ(positions.passed, 0U);
+    EXPECT_TRUE(positions.mark.empty());
+    EXPECT_EQ(positions.tasks["shelf"].used_ms, 5) << "it is wanted as before";
+    EXPECT_TRUE(Positions(*site_).refused().empty());
+  }
+}
+
+TEST_F(PositionsTest, WhatIsTakenIsNotRefusedAnyMore) {
+  Positions positions(*site_);
+  positions.refuse({test::id_from<Uuid>(3), "why"}, true);
+  positions.save();
+  positions.accept(test::id_from<Uuid>(3));
+  positions.save();
+  EXPECT_TRUE(Positions(*site_).refused().empty());
+}
+
+}  // namespace
+}  // namespace kinship::sites
