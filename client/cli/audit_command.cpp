@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 constexpr const char* kAudit = "audit";
 

@@ -2,19 +2,24 @@
 #include <ostream>
 #include <vector>
 
+#include "client/cli/cell_text.hpp"
 #include "client/cli/distribution_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/scene_text.hpp"
-#include "client/cli/table.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 struct Question {
   AdminVerb verb = AdminVerb::Status;

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {

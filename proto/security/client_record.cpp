@@ -6,8 +6,8 @@
 
 #include "proto/security/access_role.hpp"
 #include "proto/security/credentials.hpp"
-#include "proto/security/time_text.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "proto/security/governance.hpp"
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {

@@ -1,15 +1,16 @@
 #include "server/app/secure.hpp"
 
 #include <algorithm>
-#include <iomanip>
-#include <ostream>
+#include <iostream>
 #include <string>
 
 #include "proto/json/credential_list_json.hpp"
 #include "proto/security/access_role.hpp"
 #include "proto/security/security_folder.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/tables/table.hpp"
+#include "proto/tables/table_layout.hpp"
 #include "proto/types/exit_code.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::app {
 namespace {
@@ -23,11 +24,6 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string date_text(std::int64_t unix_ms) {
-  const std::chrono::sys_time<std::chrono::milliseconds> time{std::chrono::milliseconds(unix_ms)};
-  return security::time_text(std::chrono::floor<std::chrono::seconds>(time));
-}
-
 /// What a client is narrowed to, in one cell.
 std::string narrowing(const CredentialList::Row& row) {
   std::string text;
@@ -38,39 +34,28 @@ std::string narrowing(const CredentialList::Row& row) {
   return text.empty() ? "-" : text;
 }
 
-void print_rows(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i + 1 < row.size(); ++i)
-      out << std::left << std::setw(static_cast<int>(widths[i]) + 2) << row[i];
-    out << row.back() << '\n';
-  }
-}
-
 void print(const CredentialList& list, std::ostream& out) {
-  std::vector<std::vector<std::string>> rows = {
-      {"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"}};
+  tables::Table table({"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"});
   for (const CredentialList::Row& row : list.credentials) {
     const bool is_readable = row.state != "unreadable";
-    rows.push_back({row.name, is_readable ? row.role : "-",
-                    row.state + (row.is_of_previous_authority ? ", previous authority" : ""),
-                    is_readable ? date_text(row.expires_ms) : "-",
-                    is_readable ? std::to_string(row.days_left) : "-",
-                    is_readable ? narrowing(row) : row.message});
+    table.add_row({row.name, is_readable ? row.role : "-",
+                   row.state + (row.is_of_previous_authority ? ", previous authority" : ""),
+                   is_readable ? time_text(row.expires_ms) : "-",
+                   is_readable ? std::to_string(row.days_left) : "-",
+                   is_readable ? narrowing(row) : row.message});
   }
-  print_rows(rows, out);
+  tables::set_table_layout(out, {.width = &out == &std::cout ? tables::width_of_terminal()
+                                                             : tables::TableLayout().width});
+  table.print(out);
   for (const CredentialList::Authority& authority : list.authorities)
     out << authority.name << " (" << authority.fingerprint << "), expires "
-        << date_text(authority.expires_ms) << '\n';
+        << time_text(authority.expires_ms) << '\n';
 }
 
 void print_new_client(const security::ClientRecord& record, const SecureOptions& options,
                       std::ostream& out) {
   out << "client '" << record.name << "', role " << security::role_name(record.role)
-      << ", valid until " << security::time_text(record.expires) << ": credentials in "
+      << ", valid until " << time_text(record.expires) << ": credentials in "
       << options.out.string() << "\nbring them to its machine, and start it with --security "
       << options.out.filename().string() << " or KINSHIP_SECURITY\n";
 }
@@ -101,8 +86,8 @@ int add(const SecurityFolder& folder, const SecureOptions& options, std::chrono:
 int revoke(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
            std::ostream& out) {
   const security::ClientRecord record = folder.revoke(options.name, now);
-  out << "client '" << record.name << "': revoked at "
-      << security::time_text(record.revoked.value_or(now)) << '\n';
+  out << "client '" << record.name << "': revoked at " << time_text(record.revoked.value_or(now))
+      << '\n';
   return kDone;
 }
 
