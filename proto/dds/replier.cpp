@@ -127,18 +127,17 @@ class Replier<Conversation>::Implementation {
       unknown.client = head.client_id.text();
       sender = &unknown;
     }
-    // A flood is mostly this, before each request that is served.
-    if (!waiting_.has_room(sender->client))
+    const auto opening = waiting_.opening_for(sender->client, head);
+    if (!opening)
       return;
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
     // may not ask at all is told so in its turn.
     const ReplyLine::Place place{sender->name, head};
-    if (line_->is_being_answered(place) || waiting_.has(sender->client, head))
+    if (line_->is_being_answered(place))
       return;
     if (const auto caller = caller_of(*sender); caller && is_refused(place, *caller, wire))
       return;
-    if (waiting_.admit(sender->client, head))
-      waiting_.push(sender->client, head, {*sender, decoded(wire)});
+    waiting_.push(*opening, {*sender, decoded(wire)});
   }
 
   /// \return why the sender is refused if it is.
