@@ -5,15 +5,11 @@
 //   secured_bench
 
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "client/link/client.hpp"
@@ -21,6 +17,7 @@
 #include "tests/bench/figure.hpp"
 #include "tests/bench/load_clients.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/restarted_clients.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -102,72 +99,6 @@ void compare(const Side& secured, const Side& open) {
                 .reference = bench::Reference{"without", open.reports_per_s()}});
 }
 
-/// Asks with every client until each has an answer.
-void ask_with_all(const std::vector<std::unique_ptr<link::Client>>& clients) {
-  std::vector<std::jthread> threads;
-  for (const auto& client : clients)
-    threads.emplace_back([&client] { client->admin({}).value_or_throw(); });
-}
-
-sigset_t start_signal() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGUSR1);
-  return signals;
-}
-
-/// Asks, says so, waits for a signal, asks again and says so. All with the same credentials: a
-/// process has one name in a domain, and each participant shakes hands for itself.
-int run_clients(std::uint32_t domain, const fs::path& credentials) {
-  const sigset_t signals = start_signal();
-  sigprocmask(SIG_BLOCK, &signals, nullptr);  // threads inherit it
-  std::vector<std::unique_ptr<link::Client>> clients;
-  for (int i = 0; i < kClientsOfProcess; ++i) {
-    link::ClientOptions options = bench::without_outbox(domain);
-    options.security = credentials;
-    clients.push_back(std::make_unique<link::Client>(options));
-  }
-  ask_with_all(clients);
-  std::cout << "connected" << std::endl;
-  int received = 0;
-  sigwait(&signals, &received);
-  std::cout << "asking" << std::endl;
-  ask_with_all(clients);
-  std::cout << "answered" << std::endl;
-  return 0;
-}
-
-using Processes = std::vector<std::unique_ptr<test::ChildProcess>>;
-
-void expect(const Processes& processes, const std::string& line) {
-  for (const auto& process : processes)
-    if (process->read_line() != line)
-      throw std::runtime_error("a process of clients has ended before '" + line + "'");
-}
-
-void restart(Side& secured, const std::vector<fs::path>& credentials) {
-  double start_s = bench::wall_s();
-  Processes processes;
-  for (const fs::path& folder : credentials)
-    processes.push_back(std::make_unique<test::ChildProcess>(std::vector<std::string>{
-        "/proc/self/exe", "clients", std::to_string(secured.domain.number()), folder.string()}));
-  expect(processes, "connected");
-  bench::print({.name = "100 clients with security start and are answered",
-                .value = bench::wall_s() - start_s,
-                .unit = "s"});
-  secured.server->kill();
-  for (const auto& process : processes)
-    process->signal(SIGUSR1);
-  expect(processes, "asking");
-  start_s = bench::wall_s();
-  secured.server = std::make_unique<test::ServerProcess>(secured.options);
-  expect(processes, "answered");
-  bench::print({.name = "100 clients with security answered after the server's start",
-                .value = bench::wall_s() - start_s,
-                .unit = "s",
-                .budget = 10});
-}
-
 void run() {
   const test::TemporaryDirectory directory{test::disk_root()};
   const security::SecurityFolder fleet =
@@ -181,16 +112,26 @@ void run() {
   Side secured(directory / "secured", directory / "security", add("bench", directory / "bench"));
   const Side open(directory / "open", {}, {});
   compare(secured, open);
-  std::vector<fs::path> credentials;
+  std::vector<std::string> credentials;
   for (int i = 0; i < kProcesses; ++i) {
     const std::string name = "client_" + std::to_string(i);
-    credentials.push_back(add(name, directory / name.c_str()));
+    credentials.push_back(add(name, directory / name.c_str()).string());
   }
-  restart(secured, credentials);
+  bench::measure_restart("100 clients with security", secured.domain.number(), credentials, 10,
+                         secured.server, secured.options);
 }
 
 std::uint32_t domain_of(const std::vector<std::string>& arguments) {
   return static_cast<std::uint32_t>(std::stoul(arguments[1]));
+}
+
+/// All with the same credentials: a process has one name in a domain, and each participant shakes
+/// hands for itself.
+int run_clients(std::uint32_t domain, const fs::path& credentials) {
+  link::ClientOptions options = bench::without_outbox(domain);
+  options.security = credentials;
+  return bench::run_clients(kClientsOfProcess, options,
+                            [](link::Client& client) { client.admin({}).value_or_throw(); });
 }
 
 }  // namespace
