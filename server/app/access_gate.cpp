@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/access/access.hpp"
+#include "server/access/withheld_sources.hpp"
 
 namespace kinship::app {
 namespace {
@@ -96,17 +97,21 @@ void fetch(service::Service& service, const Caller& caller, const FetchRequest& 
            const std::string& waiter, const std::function<void(const FetchReply&)>& done) {
   if (const auto refusal = access::refusal_of_fetch(caller, request.task, ""))
     return service.refuse_fetch(refusal->message, done);
-  if (caller.robots.empty())
+  if (!access::withholds_sources(caller))
     return service.fetch(request, waiter, done);
+  const auto for_its_robots = [caller, robot = request.robot, done](FetchReply reply) {
+    access::withhold_sources(caller, robot, reply);
+    done(reply);
+  };
   service.name_robots(
       {request.robot},
-      [&service, caller, request, waiter, done](const RobotLabels& labels) {
+      [&service, caller, request, waiter, done, for_its_robots](const RobotLabels& labels) {
         const auto robot = labels.find(request.robot);
         if (robot != labels.end() && robot->second)
           if (const auto refusal =
                   access::refusal_of_fetch(caller, request.task, robot->second.value()))
             return service.refuse_fetch(refusal->message, done);
-        service.fetch(request, waiter, done);  // which says what is not registered
+        service.fetch(request, waiter, for_its_robots);  // which says what is not registered
       },
       caller.client);
 }

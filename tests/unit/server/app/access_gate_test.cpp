@@ -1,5 +1,6 @@
 #include "server/app/access_gate.hpp"
 
+#include "server/access/withheld_sources.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::app::access_gate_test {
@@ -32,6 +33,7 @@ class AccessGate : public service::ServiceFixture {
   FetchReply fetch(const runtime::Robot& robot, const std::string& task) {
     FetchRequest request = request_for(robot);
     request.task = task;
+    request.experience_bytes = experience_bytes_;
     std::promise<FetchReply> reply;
     app::fetch(*service_, caller_, request, "one",
                [&](const FetchReply& r) { reply.set_value(r); });
@@ -46,6 +48,7 @@ class AccessGate : public service::ServiceFixture {
 
   runtime::RobotRegistry::RobotPointer teacher_, pupil_, dwarf_;
   Caller caller_;
+  std::uint32_t experience_bytes_ = 0;  // that fetches ask for
 };
 
 TEST_F(AccessGate, TheNameInTheCertificateIsTheMachine) {
@@ -131,6 +134,36 @@ TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
             "robot_7 (role robot) may not fetch for task 'bin': its certificate is "
             "for tasks shelf, robots teacher");
   EXPECT_EQ(fetch(*pupil_, "shelf").status, FetchStatus::Refused);
+}
+
+TEST_F(AccessGate, AFetchForSomeRobotsDoesNotSayWhichOthersItIsMadeOf) {
+  report({fleet::solved(*teacher_, "shelf", 1), fleet::solved(*pupil_, "shelf", 2)});
+  experience_bytes_ = kDefaultExperienceBytes;
+  const FetchReply open = fetch(*pupil_, "shelf");
+  ASSERT_EQ(open.status, FetchStatus::Ready) << open.message;
+  ASSERT_EQ(open.distribution->sources.size(), 2U);
+  ASSERT_TRUE(open.experience);
+  caller_.robots = {"pup*"};
+  const FetchReply reply = fetch(*pupil_, "shelf");
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->id, open.distribution->id);
+  ASSERT_EQ(reply.distribution->sources.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Source& told = reply.distribution->sources[i];
+    const Source& known = open.distribution->sources[i];
+    const bool is_own = known.label == "pupil";
+    EXPECT_EQ(told.label, is_own ? "pupil" : access::kOtherRobot);
+    EXPECT_EQ(told.robot, is_own ? pupil_->digest : Digest());
+    EXPECT_EQ(told.paths_used, known.paths_used);
+  }
+  ASSERT_TRUE(reply.experience);
+  ASSERT_EQ(reply.experience->paths.size(), open.experience->paths.size());
+  for (const PosePath& path : reply.experience->paths)
+    EXPECT_TRUE(path.source == pupil_->digest || path.source == Digest());
+  // Who asks next, without being narrowed, is told again: replies are shared.
+  caller_.robots = {};
+  EXPECT_EQ(fetch(*pupil_, "shelf").distribution->sources[0].label,
+            open.distribution->sources[0].label);
 }
 
 }  // namespace

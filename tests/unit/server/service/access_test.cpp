@@ -1,5 +1,6 @@
 #include "server/access/access.hpp"
 
+#include "server/access/withheld_sources.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::service::access_test {
@@ -277,6 +278,31 @@ TEST_F(Access, AStatusForANarrowedCertificateTellsNoNames) {
   };
   EXPECT_NE(words(named("otto", AccessRole::Reader)).find("secret_profile"), std::string::npos);
   EXPECT_EQ(words(named("r", AccessRole::Robot, {"bin"})), "");
+}
+
+TEST_F(Access, ADistributionShownToSomeRobotsDoesNotNameTheOthersItIsMadeOf) {
+  report_some();
+  FetchRequest request = request_for(*pupil_);
+  request.task = "shelf";
+  const FetchReply fetched = fetch(request);
+  ASSERT_TRUE(fetched.distribution) << fetched.message;
+  const Caller anna = named("anna", AccessRole::Reader, {}, {"pupil"});
+  const std::string id = fetched.distribution->id.hex();
+  const auto shown = rows<Distribution>(ask(anna, AdminVerb::ShowDistribution, id));
+  const auto explained = rows<Explanation>(ask(anna, AdminVerb::ExplainDistribution, id));
+  ASSERT_EQ(shown.size() + explained.size(), 2U);
+  for (const Distribution& each : {shown[0], explained[0].distribution}) {
+    ASSERT_EQ(each.sources.size(), 2U);
+    for (const Source& source : each.sources) {
+      const bool is_own = source.robot == pupil_->digest;
+      EXPECT_EQ(source.label, is_own ? "pupil" : access::kOtherRobot);
+      EXPECT_TRUE(is_own || source.robot == Digest());
+    }
+  }
+  const Caller ben = named("ben", AccessRole::Reader);
+  for (const Source& source :
+       rows<Distribution>(ask(ben, AdminVerb::ShowDistribution, id)).at(0).sources)
+    EXPECT_NE(source.label, access::kOtherRobot);
 }
 
 }  // namespace
