@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/types/time_text.hpp"
 
@@ -73,8 +74,12 @@ Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
       .first->second->record;
 }
 
-Result<Caller> ClientDirectory::caller(const std::string& name,
+Result<Caller> ClientDirectory::caller(const std::string& common_name,
                                        std::chrono::sys_seconds now) const {
+  const Result<CertificateName> certificate = read_certificate_name(common_name);
+  if (!certificate)
+    return certificate.error();
+  const std::string& name = certificate->client;
   const Result<ClientRecord> record = find(name);
   if (!record)
     return record.error();
@@ -84,6 +89,11 @@ Result<Caller> ClientDirectory::caller(const std::string& name,
   if (record->expires <= now)
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': expired at " + time_text(record->expires)};
+  if (certificate->generation < record->oldest_accepted)
+    return Error{ErrorCode::Unavailable,
+                 "client '" + name + "': these credentials were replaced (" +
+                     std::to_string(certificate->generation) + " of " +
+                     std::to_string(record->generation) + "), the newest ones are accepted only"};
   return caller_of(*record);
 }
 

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "proto/security/access_role.hpp"
 #include "proto/security/credentials.hpp"
@@ -12,7 +13,7 @@
 namespace kinship::security {
 namespace {
 
-constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxNameBytes = 56;
 constexpr std::size_t kMaxPatternBytes = 128;
 
 bool is_letter_or_digit(char letter) {
@@ -86,6 +87,13 @@ class RecordFields {
     return *value;
   }
 
+  std::uint32_t generation(std::string_view field) const {
+    const auto value = table_[field].value<std::int64_t>();
+    if (!value || *value < 1 || *value > std::numeric_limits<std::uint32_t>::max())
+      refuse(field, "must be there, as a number from 1 on");
+    return static_cast<std::uint32_t>(*value);
+  }
+
   bool has(std::string_view field) const { return table_.get(field) != nullptr; }
 
   [[noreturn]] void refuse(std::string_view field, const std::string& reason) const {
@@ -103,7 +111,7 @@ class RecordFields {
 std::optional<Error> check_client_name(std::string_view name) {
   if (!consists_of(name, kMaxNameBytes, "_-"))
     return invalid_input("name '" + cut_text(name, kMaxNameBytes) +
-                         "' is not 1 to 64 of letters, digits, _ and -");
+                         "' is not 1 to 56 of letters, digits, _ and -");
   if (name == kServerName)
     return invalid_input("name 'server' is the server's own");
   return std::nullopt;
@@ -123,6 +131,8 @@ std::string record_text(const ClientRecord& record) {
   text += "tasks = " + list_text(record.tasks) + "\n";
   text += "robots = " + list_text(record.robots) + "\n";
   text += "serial = \"" + record.serial + "\"\n";
+  text += "generation = " + std::to_string(record.generation) + "\n";
+  text += "oldest_accepted = " + std::to_string(record.oldest_accepted) + "\n";
   text += "authority = \"" + record.authority + "\"\n";
   text += "expires = " + time_text(record.expires) + "\n";
   if (record.revoked)
@@ -144,6 +154,8 @@ Result<ClientRecord> read_record(std::string_view text, const std::string& what)
     record.tasks = fields.texts("tasks", check_task_pattern);
     record.robots = fields.texts("robots", check_label);
     record.serial = fields.text("serial");
+    record.generation = fields.generation("generation");
+    record.oldest_accepted = fields.generation("oldest_accepted");
     record.authority = fields.text("authority");
     record.expires = fields.time("expires");
     if (fields.has("revoked"))

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <toml++/toml.h>
 
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/governance.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/types/time_text.hpp"
@@ -75,10 +76,11 @@ Credentials read_checked(const CredentialFiles& files, std::chrono::sys_seconds 
                           .expires = expiry(certificate),
                           .authorities = authorities.size()};
   if (credentials.expires <= now)
-    refuse(files.certificate,
-           "expired at " + time_text(credentials.expires) + "; new ones: kinshipd secure renew" +
-               (credentials.name == kServerName ? std::string("-server")
-                                                : " " + credentials.name + " --out FOLDER"));
+    refuse(files.certificate, "expired at " + time_text(credentials.expires) +
+                                  "; new ones: kinshipd secure renew" +
+                                  (credentials.name == kServerName
+                                       ? std::string("-server")
+                                       : " " + client_of(credentials.name) + " --out FOLDER"));
   if (const auto error = check_issued(certificate, authorities, now))
     refuse(files.certificate, error->message);
   check_document(files.governance, *authorities.front());
@@ -117,9 +119,9 @@ std::optional<std::string> expiry_warning(const Credentials& credentials,
                            : days == 1                ? "expire in 1 day"
                                        : "expire in " + std::to_string(days) + " days";
   const bool is_server = credentials.name == kServerName;
-  return "the credentials of '" + credentials.name + "' " + left + ", at " +
+  return "the credentials of '" + client_of(credentials.name) + "' " + left + ", at " +
          time_text(credentials.expires) + "; new ones: kinshipd secure renew" +
-         (is_server ? "-server" : " " + credentials.name + " --out FOLDER");
+         (is_server ? "-server" : " " + client_of(credentials.name) + " --out FOLDER");
 }
 
 Certificate write_credentials(const std::filesystem::path& folder, const CredentialWish& wish,

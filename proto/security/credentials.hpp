@@ -40,7 +40,7 @@ struct CredentialFiles {
 
 /// What a credentials folder says, without its key.
 struct Credentials {
-  std::string name;  ///< in the certificate
+  std::string name;  ///< common name of the certificate: CertificateName, or "server"
   std::string role;  ///< of a client, or "server"
   std::chrono::sys_seconds expires;
   std::size_t authorities = 0;  ///< trusted: one, or two while authorities change

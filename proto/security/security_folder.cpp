@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "proto/security/access_role.hpp"
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/security/private_files.hpp"
 #include "proto/types/names.hpp"
@@ -165,12 +167,13 @@ ClientRecord SecurityFolder::issue_to(ClientRecord record, std::chrono::days day
                                       std::chrono::sys_seconds now) const {
   const Authority issuer = authority_.for_clients();
   const Validity validity = within(issuer, days, now);
+  const std::string name = common_name({.client = record.name, .generation = record.generation});
   const Certificate certificate =
       write_credentials(out,
-                        {.name = record.name,
+                        {.name = name,
                          .role = role_name(record.role),
                          .validity = validity,
-                         .permissions = client_permissions(record.name, record.role, validity)},
+                         .permissions = client_permissions(name, record.role, validity)},
                         issuer, authority_.trusted_by(issuer));
   record.serial = serial_text(*certificate);
   record.authority = fingerprint(*issuer.certificate);
@@ -206,12 +209,13 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
 ClientRecord SecurityFolder::renew(const std::string& name, std::chrono::days days,
                                    const std::filesystem::path& out,
                                    std::chrono::sys_seconds now) const {
-  const ClientRecord before = record_of(name);
-  if (before.revoked)
+  ClientRecord record = record_of(name);
+  if (record.revoked)
     throw Failure(ErrorCode::Conflict, "client '" + name + "': revoked at " +
-                                           time_text(*before.revoked) +
+                                           time_text(*record.revoked) +
                                            "; give what is to come back another name");
-  const ClientRecord record = issue_to(before, days, out, now);
+  ++record.generation;
+  record = issue_to(std::move(record), days, out, now);
   replace_file(record_file(name), record_text(record), Readers::Everybody);
   return record;
 }
@@ -222,6 +226,16 @@ ClientRecord SecurityFolder::revoke(const std::string& name, std::chrono::sys_se
     record.revoked = now;
     replace_file(record_file(name), record_text(record), Readers::Everybody);
   }
+  return record;
+}
+
+ClientRecord SecurityFolder::revoke_former(const std::string& name) const {
+  ClientRecord record = record_of(name);
+  if (record.generation == 1)
+    throw Failure(ErrorCode::Conflict,
+                  "client '" + name + "': has its first credentials, there are no former ones");
+  record.oldest_accepted = record.generation;
+  replace_file(record_file(name), record_text(record), Readers::Everybody);
   return record;
 }
 

@@ -46,7 +46,8 @@ class SecurityFolder {
   ClientRecord add(const NewClient& client, const std::filesystem::path& out,
                    std::chrono::sys_seconds now) const;
 
-  /// New credentials, with a new key, for a client that there is; those it has stay valid.
+  /// New credentials, with a new key, for a client that there is; those it has stay valid until
+  /// revoke_former().
   /// \throws Failure(Conflict) if it is revoked.
   ClientRecord renew(const std::string& name, std::chrono::days days,
                      const std::filesystem::path& out, std::chrono::sys_seconds now) const;
@@ -54,6 +55,11 @@ class SecurityFolder {
   /// From now on the server refuses the client. Its name stays taken.
   /// \throws Failure(NotFound) if there is no such client.
   ClientRecord revoke(const std::string& name, std::chrono::sys_seconds now) const;
+
+  /// From now on the server takes the client's newest credentials only.
+  /// \throws Failure(NotFound) if there is no such client, Failure(Conflict) if it was never
+  /// renewed.
+  ClientRecord revoke_former(const std::string& name) const;
 
   /// The server and all clients, also those whose record cannot be read.
   CredentialList list(std::chrono::sys_seconds now) const;

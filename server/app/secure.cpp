@@ -85,6 +85,12 @@ int add(const SecurityFolder& folder, const SecureOptions& options, std::chrono:
 
 int revoke(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
            std::ostream& out) {
+  if (options.former) {
+    const security::ClientRecord record = folder.revoke_former(options.name);
+    out << "client '" << record.name << "': its newest credentials (" << record.generation
+        << ") are the only ones from now on\n";
+    return kDone;
+  }
   const security::ClientRecord record = folder.revoke(options.name, now);
   out << "client '" << record.name << "': revoked at " << time_text(record.revoked.value_or(now))
       << '\n';
@@ -143,6 +149,9 @@ int run(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream
       return add(folder, options, now, out);
     case SecureVerb::Renew:
       print_new_client(folder.renew(options.name, days, options.out, now), options, out);
+      out << "those it has stay valid too, so that it need not stop; once its machine has the new "
+             "ones: kinshipd secure revoke "
+          << options.name << " --former\n";
       return kDone;
     case SecureVerb::RenewServer:
       out << "new credentials for the server, from its next start on; what it had is in "

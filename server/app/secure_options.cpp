@@ -134,8 +134,9 @@ void add_client_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen) {
       .example(
           "kinshipd secure add arm_7 --security DIR --role robot --task 'shelf_*' --robot arm_7 "
           "--out arm_7");
-  SecureCommand(secure, chosen, "renew", SecureVerb::Renew,
-                "New credentials for a client that there is; those it has stay valid")
+  SecureCommand(
+      secure, chosen, "renew", SecureVerb::Renew,
+      "New credentials for a client that there is; those it has stay valid (revoke --former)")
       .name()
       .folder()
       .days(kClientDays)
@@ -146,6 +147,8 @@ void add_client_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen) {
                 "Have the server refuse a client, a second later at most")
       .name()
       .folder()
+      .flag("--former", &SecureOptions::former,
+            "Only what it had before secure renew: its newest credentials stay good")
       .example("kinshipd secure revoke arm_7 --security DIR");
   SecureCommand(secure, chosen, "list", SecureVerb::List, "Who has credentials, and until when")
       .folder()

@@ -95,7 +95,7 @@ TEST_F(SecurityFolderTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
     EXPECT_FALSE(std::filesystem::exists(out_)) << message;
     return message;
   };
-  EXPECT_EQ(refusal({.name = "a b"}), "name 'a b' is not 1 to 64 of letters, digits, _ and -");
+  EXPECT_EQ(refusal({.name = "a b"}), "name 'a b' is not 1 to 56 of letters, digits, _ and -");
   EXPECT_EQ(refusal({.name = "server"}), "name 'server' is the server's own");
   EXPECT_NE(refusal({.name = "r1", .tasks = {"a\"b"}}).find("task pattern"), std::string::npos);
   EXPECT_NE(refusal({.name = "r1", .robots = {"a\nb"}}).find("label"), std::string::npos);
@@ -272,6 +272,34 @@ TEST_F(SecurityFolderTest, TheServersFormerCredentialsAreKept) {
   EXPECT_EQ(read_file(kept / "key.pem"), key);
   EXPECT_NE(read_file(folder_ / "server/key.pem"), key);
   EXPECT_NE(folder.renew_server(kDefaultDays, now_s()), kept) << "in the same second";
+}
+
+TEST_F(SecurityFolderTest, EachRenewalHasANameOfItsOwnAndTheFormerOnesCanBeRevoked) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "r1"}, out_, now_s());
+  EXPECT_NE(failure_of([&] { folder.revoke_former("r1"); }).find("no former ones"),
+            std::string::npos);
+  const ClientRecord renewed = folder.renew("r1", days(20), scratch_ / "r1-2", now_s());
+  EXPECT_EQ(renewed.generation, 2U);
+  EXPECT_EQ(renewed.oldest_accepted, 1U) << "the client need not stop";
+  const Credentials credentials = read_credentials(scratch_ / "r1-2", now_s()).value_or_throw();
+  EXPECT_EQ(credentials.name, "r1.2");
+  EXPECT_NE(expiry_warning(credentials, now_s()).value_or("").find("renew r1 --out"),
+            std::string::npos);
+  EXPECT_EQ(why_not_together(folder.server_credentials(), scratch_ / "r1-2"), "");
+  EXPECT_EQ(folder.revoke_former("r1").oldest_accepted, 2U);
+  const ClientRecord again = folder.renew("r1", days(20), scratch_ / "r1-3", now_s());
+  EXPECT_EQ(again.generation, 3U);
+  EXPECT_EQ(again.oldest_accepted, 2U);
+  EXPECT_EQ(folder.list(now_s()).credentials.size(), 2U) << "one client";
+}
+
+TEST_F(SecurityFolderTest, ANameLeavesRoomForItsGeneration) {
+  const SecurityFolder folder = init();
+  const std::string name(56, 'n');
+  folder.add({.name = name}, out_, now_s());
+  folder.renew(name, days(20), scratch_ / "renewed", now_s());
+  EXPECT_EQ(read_credentials(scratch_ / "renewed", now_s())->name, name + ".2");
 }
 
 }  // namespace
