@@ -107,7 +107,11 @@ std::optional<security::Credentials> credentials_of(const ParticipantOptions& op
   return credentials;
 }
 
+/// One at a time: of two that are the first of their domain Cyclone DDS 0.10.2 loads the plugins of
+/// security twice, and the one's identity is unknown to the other's.
 Entity create_participant(const ParticipantOptions& options) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   const Qos qos = options.security.empty() ? Qos() : security_qos(options.security);
   const Handle handle = dds_create_participant(options.domain, qos.get(), nullptr);
   if (handle < 0)

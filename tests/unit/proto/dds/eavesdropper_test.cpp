@@ -114,8 +114,9 @@ TEST_F(Eavesdropper, DisturbsNobodyWithPacketsThatHeChanged) {
       changed.bytes[20 + generator() % (changed.bytes.size() - 20)] =
           static_cast<char>(generator());
     test::send_again(changed);
-    if (i % 2000 == 0)
+    if (i % 2000 == 0) {
       EXPECT_EQ(ask(requester, "meanwhile"), "meanwhile");
+    }
   }
   EXPECT_EQ(ask(requester, "after"), "after");
 }

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <barrier>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "proto/dds/endpoint_guard.hpp"
 #include "proto/dds/senders.hpp"
@@ -85,6 +90,29 @@ TEST_F(Security, AProcessHasOneNameInADomain) {
   const fs::path bob = add(fleet_, {.name = "bob"}, "bob");
   EXPECT_THROW(join(bob), Failure);  // Cyclone DDS would take alice's permissions for bob's
   EXPECT_NO_THROW(join(alice_));
+}
+
+TEST_F(Security, ClientsOfOneProcessMayJoinAtTheSameTime) {
+  constexpr int kClients = 4;
+  for (int round = 0; round < 5; ++round) {  // the plugins are loaded anew in each
+    std::atomic<int> joined = 0;
+    std::barrier begin(kClients), end(kClients);
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < kClients; ++i)
+      threads.emplace_back([&] {
+        std::optional<Participant> participant;
+        begin.arrive_and_wait();
+        try {
+          participant.emplace(join(alice_));
+          ++joined;
+        } catch (const Failure& failure) {
+          ADD_FAILURE() << failure.what();
+        }
+        end.arrive_and_wait();
+      });
+    threads.clear();
+    EXPECT_EQ(joined, kClients);
+  }
 }
 
 TEST(Loopback, AServerWithoutInterfaceIsNotHeardFromTheNetwork) {
