@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/proto/dds/loopback_capture.hpp"
+#include "tests/support/loopback_capture.hpp"
 #include "tests/unit/proto/dds/secured_fleet.hpp"
 
 namespace kinship::dds::eavesdropper_test {
@@ -95,8 +95,33 @@ TEST_F(Eavesdropper, HasNothingDoneAgain) {
   EXPECT_EQ(times_done(domain_.number(), alice_), 1U);
 }
 
+/// Sends the requests of a session again under further numbers, with another text of that length.
+void forge(const Messages& session, std::uint16_t port, const std::string& was,
+           const std::string& text) {
+  for (const test::CapturedMessage& message : session) {
+    const auto at = message.bytes.find(was);
+    if (message.port != port || at == std::string::npos)
+      continue;
+    test::CapturedMessage forged = message;
+    forged.bytes.replace(at, text.size(), text);
+    if (const auto next = test::renumbered(std::move(forged), 1))
+      test::send_again(*next);
+  }
+}
+
 TEST_F(Eavesdropper, DisturbsNobodyWithPacketsThatHeChanged) {
   constexpr int kPackets = 20'000;
+  {  // without security he puts words into anybody's mouth
+    ASSERT_EQ(open_server_.read_line(), "ready");
+    const Participant participant({.domain = open_.number()});
+    AdminRequester requester(participant, Uuid::random());
+    capture_->take();
+    ASSERT_EQ(ask(requester, "before"), "before");
+    forge(capture_->take(), server_ports(open_.number())[1], "before", "forged");
+    const Participant second({.domain = open_.number()});
+    AdminRequester other(second, Uuid::random());
+    EXPECT_EQ(count(ask(other, "log"), "forged"), 1U);
+  }
   capture_->take();
   const Participant participant = join(alice_);
   AdminRequester requester(participant, Uuid::random());
@@ -119,6 +144,13 @@ TEST_F(Eavesdropper, DisturbsNobodyWithPacketsThatHeChanged) {
     }
   }
   EXPECT_EQ(ask(requester, "after"), "after");
+  // Nothing was done but what was asked for.
+  EXPECT_EQ(ask(requester, "log"), [] {
+    std::string asked = "alice:before ";
+    for (int i = 0; i < kPackets; i += 2000)
+      asked += "alice:meanwhile ";
+    return asked + "alice:after ";
+  }());
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ TEST_F(Security, TheServerKnowsAClientByItsCertificate) {
   EXPECT_EQ(ask(one, "first"), "first");
 }
 
+// Without security there is nothing to revoke: what stops her is seen by her being served before.
 TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
   ASSERT_EQ(server_.read_line(), "ready");
   const Participant participant = join(alice_);
@@ -53,10 +54,26 @@ TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
 }
 
 TEST_F(Security, NobodyElseIsHeard) {
-  ASSERT_EQ(server_.read_line(), "ready");
-  ASSERT_EQ(ask_as(alice_, "hello"), "hello");  // the server is heard by whom it may hear
+  // Without security who has no certificate is, and with another authority's he is its own
+  // server's.
+  const test::ReservedDomain open, of_another;
   const fs::path namesake =
       add(init("another"), {.name = "alice", .role = AccessRole::Admin}, "namesake");
+  test::ChildProcess open_server({KINSHIP_ECHO_SERVER, std::to_string(open.number())});
+  test::ChildProcess another_server(
+      {KINSHIP_ECHO_SERVER, std::to_string(of_another.number()), directory_ / "another"});
+  ASSERT_EQ(open_server.read_line(), "ready");
+  ASSERT_EQ(another_server.read_line(), "ready");
+  const auto ask_in = [](const test::ReservedDomain& domain, const fs::path& credentials) {
+    const Participant participant({.domain = domain.number(), .security = credentials});
+    AdminRequester requester(participant, Uuid::random());
+    return ask(requester, "hello");
+  };
+  ASSERT_EQ(ask_in(open, {}), "hello");
+  ASSERT_EQ(ask_in(of_another, namesake), "hello");
+
+  ASSERT_EQ(server_.read_line(), "ready");
+  ASSERT_EQ(ask_as(alice_, "hello"), "hello");  // the server is heard by whom it may hear
   EXPECT_NE(ask_as(namesake, "other authority", 1500ms).find("no server answered"),
             std::string::npos);
   EXPECT_NE(ask_as({}, "no certificate", 1000ms).find("no server answered"), std::string::npos);
