@@ -255,6 +255,10 @@ timeout     of register, deliver and listings, s
 security    folder of credentials; by default what KINSHIP_SECURITY says, or none
 
 Warns (CredentialsExpire) of credentials that are valid for less than 30 days.)")
+      .def_property_readonly(
+          "expiry_warning",
+          [](const ClientHandle& self) { return self.line()->expiry_warning().value_or(""); },
+          "What it would be warned of if it were opened now; empty: nothing.")
       .def("close", &ClientHandle::close,
            "Ends every wait. What is in the outbox is sent by the next client.")
       .def(

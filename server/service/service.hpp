@@ -82,8 +82,8 @@ class Service {
 
   /// Whether a client may ask for something now, before it is even read; not: when it may. Counts
   /// what may come in.
-  /// \param client           who asks, here and below; empty: nobody in particular, without a
-  /// quota. \param bytes, attempts  that the request has.
+  /// \param client  who asks, here and below; empty: nobody in particular, without a quota.
+  /// \param bytes, attempts  that the request has.
   std::optional<quotas::Refusal> admit(const std::string& client, std::size_t bytes,
                                        std::size_t attempts = 0);
   /// The same of a registration.

@@ -57,6 +57,7 @@ class WhoHasCredentials(SecuredServer):
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # a year is left
             client = self.open_client(security=self.add("arm_1"))
+        self.assertEqual(client.expiry_warning, "")
         self.register_report_fetch(client, "named")
         with self.assertRaisesRegex(kinship.InvalidInput, "admin: not for the role 'robot'"):
             client.tasks()
@@ -71,7 +72,8 @@ class WhoHasCredentials(SecuredServer):
     def test_is_warned_thirty_days_ahead(self):
         credentials = self.add("arm_3", "--days", "20")
         with self.assertWarnsRegex(kinship.CredentialsExpire, "'arm_3' expire in (19|20) days.*kinshipd secure renew arm_3"):
-            self.open_client(security=credentials)
+            client = self.open_client(security=credentials)
+        self.assertIn("'arm_3' expire in", client.expiry_warning)
         with warnings.catch_warnings():
             warnings.simplefilter("error", kinship.CredentialsExpire)
             with self.assertRaises(kinship.CredentialsExpire):
