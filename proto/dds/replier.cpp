@@ -7,6 +7,7 @@
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
+#include "proto/dds/refusal_allowance.hpp"
 #include "proto/dds/reply_line.hpp"
 
 namespace kinship::dds {
@@ -131,13 +132,15 @@ class Replier<Conversation>::Implementation {
     if (!opening)
       return;
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
-    // may not ask at all is told so in its turn.
+    // may not ask at all is told so in its turn, and what he sends is not decoded.
     const ReplyLine::Place place{sender->name, head};
     if (line_->is_being_answered(place))
       return;
-    if (const auto caller = caller_of(*sender); caller && is_refused(place, *caller, wire))
+    const Result<Caller> caller = caller_of(*sender);
+    if (caller ? is_refused(place, *caller, wire)
+               : !refusals_.take(sender->client, RefusalAllowance::Clock::now()))
       return;
-    waiting_.push(*opening, {*sender, decoded(wire)});
+    waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())});
   }
 
   /// \return why the sender is refused if it is.
@@ -203,6 +206,7 @@ class Replier<Conversation>::Implementation {
   Handler handler_;
   Gate gate_;
   FairQueue<Waiting> waiting_{kWaitingRequests};
+  RefusalAllowance refusals_;
 };
 
 template <typename Conversation>

@@ -12,7 +12,7 @@ namespace kinship::security {
 namespace {
 
 constexpr std::chrono::seconds kFreshFor{1};
-constexpr std::size_t kMaxEntries = 100'000;  // names come from certificates; a bound all the same
+constexpr std::size_t kMaxEntries = 100'000;  // of clients that were removed, too
 
 /// What tells one content of a file from another; all zeros: there is none.
 using FileMark = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
@@ -63,6 +63,11 @@ Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
     return found->second->record;
   const std::filesystem::path file = folder_ / (name + ".toml");
   const FileMark mark = mark_of(file);  // before it is read: what changes meanwhile is read again
+  if (mark == FileMark()) {             // not kept: whoever has a certificate can ask for any name
+    if (found != entries_.end())
+      entries_.erase(found);
+    return read(file, name);
+  }
   if (found != entries_.end() && found->second->mark == mark) {
     found->second->checked = now;
     return found->second->record;

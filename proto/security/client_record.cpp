@@ -106,6 +106,12 @@ class RecordFields {
   toml::table table_;
 };
 
+std::optional<Error> check_fingerprint(std::string_view text) {
+  if (consists_of(text, kMaxNameBytes, ""))
+    return std::nullopt;
+  return invalid_input("'" + cut_text(text, kMaxNameBytes) + "' is no fingerprint");
+}
+
 }  // namespace
 
 std::optional<Error> check_client_name(std::string_view name) {
@@ -134,6 +140,7 @@ std::string record_text(const ClientRecord& record) {
   text += "generation = " + std::to_string(record.generation) + "\n";
   text += "oldest_accepted = " + std::to_string(record.oldest_accepted) + "\n";
   text += "authority = \"" + record.authority + "\"\n";
+  text += "trusted = " + list_text(record.trusted) + "\n";
   text += "expires = " + time_text(record.expires) + "\n";
   if (record.revoked)
     text += "revoked = " + time_text(*record.revoked) + "\n";
@@ -157,6 +164,7 @@ Result<ClientRecord> read_record(std::string_view text, const std::string& what)
     record.generation = fields.generation("generation");
     record.oldest_accepted = fields.generation("oldest_accepted");
     record.authority = fields.text("authority");
+    record.trusted = fields.texts("trusted", check_fingerprint);
     record.expires = fields.time("expires");
     if (fields.has("revoked"))
       record.revoked = fields.time("revoked");

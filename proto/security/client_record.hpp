@@ -17,12 +17,13 @@ namespace kinship::security {
 struct ClientRecord {
   std::string name;
   AccessRole role = AccessRole::Robot;
-  std::vector<std::string> tasks = {};   ///< patterns (`*`, `?`) it is narrowed to; empty: all
-  std::vector<std::string> robots = {};  ///< labels it is narrowed to; empty: all
-  std::string serial = {};               ///< of its newest certificate, hexadecimal
-  std::uint32_t generation = 1;          ///< of that: each renewal has the next (CertificateName)
-  std::uint32_t oldest_accepted = 1;     ///< generation: those before are refused
-  std::string authority = {};            ///< fingerprint of the authority that issued it
+  std::vector<std::string> tasks = {};    ///< patterns (`*`, `?`) it is narrowed to; empty: all
+  std::vector<std::string> robots = {};   ///< labels it is narrowed to; empty: all
+  std::string serial = {};                ///< of its newest certificate, hexadecimal
+  std::uint32_t generation = 1;           ///< of that: each renewal has the next (CertificateName)
+  std::uint32_t oldest_accepted = 1;      ///< generation: those before are refused
+  std::string authority = {};             ///< fingerprint of the authority that issued it
+  std::vector<std::string> trusted = {};  ///< fingerprints of those that it takes for authorities
   std::chrono::sys_seconds expires = {};
   std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
 };

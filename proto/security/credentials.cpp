@@ -11,21 +11,20 @@
 namespace kinship::security {
 namespace {
 
-void write_files(const CredentialFiles& files, const CredentialWish& wish,
-                 const Authority& authority, const std::vector<Certificate>& trusted,
+void write_files(const CredentialFiles& files, const CredentialWish& wish, const Vouchers& vouchers,
                  const Key& key, x509_st& certificate) {
   write_new_file(files.key, to_pem(*key), Readers::Owner);
   write_new_file(files.certificate, to_pem(certificate), Readers::Everybody);
   std::string all;
   make_private_folder(files.trusted);
-  for (const Certificate& one : trusted) {
+  for (const Certificate& one : vouchers.trusted) {
     all += to_pem(*one);
     write_new_file(files.trusted / (fingerprint(*one) + ".pem"), to_pem(*one), Readers::Everybody);
   }
   write_new_file(files.authorities, all, Readers::Everybody);
-  write_new_file(files.governance, sign_document(governance_text(), authority, wish.validity),
+  write_new_file(files.governance, sign_document(governance_text(), vouchers.signer, wish.validity),
                  Readers::Everybody);
-  write_new_file(files.permissions, sign_document(wish.permissions, authority, wish.validity),
+  write_new_file(files.permissions, sign_document(wish.permissions, vouchers.signer, wish.validity),
                  Readers::Everybody);
   write_new_file(files.identity, "name = \"" + wish.name + "\"\nrole = \"" + wish.role + "\"\n",
                  Readers::Everybody);
@@ -125,14 +124,14 @@ std::optional<std::string> expiry_warning(const Credentials& credentials,
 }
 
 Certificate write_credentials(const std::filesystem::path& folder, const CredentialWish& wish,
-                              const Authority& authority, const std::vector<Certificate>& trusted) {
+                              const Vouchers& vouchers) {
   const Key key = make_key();
   Certificate certificate =
       issue({.name = wish.name, .use = Use::Identity, .validity = wish.validity}, *key,
-            *authority.certificate, *authority.key);
+            *vouchers.issuer.certificate, *vouchers.issuer.key);
   make_private_folder(folder);
   try {
-    write_files(CredentialFiles(folder), wish, authority, trusted, key, *certificate);
+    write_files(CredentialFiles(folder), wish, vouchers, key, *certificate);
   } catch (...) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))

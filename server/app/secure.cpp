@@ -34,12 +34,17 @@ std::string narrowing(const CredentialList::Row& row) {
   return text.empty() ? "-" : text;
 }
 
+std::string state_text(const CredentialList::Row& row) {
+  if (row.is_of_previous_authority)
+    return row.state + ", previous authority";
+  return row.state + (row.trusts_a_retired_authority ? ", trusts a retired authority" : "");
+}
+
 void print(const CredentialList& list, std::ostream& out) {
   tables::Table table({"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"});
   for (const CredentialList::Row& row : list.credentials) {
     const bool is_readable = row.state != "unreadable";
-    table.add_row({row.name, is_readable ? row.role : "-",
-                   row.state + (row.is_of_previous_authority ? ", previous authority" : ""),
+    table.add_row({row.name, is_readable ? row.role : "-", state_text(row),
                    is_readable ? time_text(row.expires_ms) : "-",
                    is_readable ? std::to_string(row.days_left) : "-",
                    is_readable ? narrowing(row) : row.message});
@@ -114,12 +119,24 @@ int list(const SecurityFolder& folder, const SecureOptions& options, std::chrono
 
 int renew_authority(SecurityFolder& folder, const SecureOptions& options,
                     std::chrono::sys_seconds now, std::ostream& out) {
-  const auto before = folder.renew_authority(std::chrono::days(options.days), now);
+  const std::chrono::days days(options.days);
+  if (options.leaked) {
+    const auto before = folder.replace_authority(days, now);
+    out << "the new authority is the only one; what the server had is in " << before.string()
+        << "\n1. kinshipd secure renew NAME for each client whose state says 'previous authority' "
+           "in "
+           "kinshipd secure list, and bring the credentials to its machine"
+           "\n2. start the server anew, and each client: what they have now is refused from then "
+           "on\n";
+    return kDone;
+  }
+  const auto before = folder.renew_authority(days, now);
   out << "a second authority issues from now on; what the server had is in " << before.string()
       << "\n1. start the server anew: it trusts both then"
          "\n2. kinshipd secure renew NAME for each client whose state says 'previous authority' in "
          "kinshipd secure list"
-         "\n3. kinshipd secure retire-authority, and start the server anew\n";
+         "\n3. kinshipd secure retire-authority, and start the server anew"
+         "\n4. the same clients once more: until then they still trust the previous authority\n";
   return kDone;
 }
 
@@ -134,7 +151,11 @@ int retire_authority(SecurityFolder& folder, const SecureOptions& options,
   const auto key = folder.retire_authority(std::chrono::days(options.days), now);
   out << "the newer authority is the only one; start the server anew\n";
   if (!key.empty())
-    out << "the key of the previous one is " << key.string() << ", of no use any more\n";
+    out << "the key of the previous one is " << key.string()
+        << ": the server refuses what it signs from then on\n";
+  if (const auto names = folder.clients_that_trust_retired(now); !names.empty())
+    out << "kinshipd secure renew once more for " << joined(names)
+        << ": until they have those credentials, they take who has that key for the server\n";
   return kDone;
 }
 

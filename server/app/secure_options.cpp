@@ -169,9 +169,12 @@ void add_authority_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen)
       .folder()
       .days(kServerDays)
       .authority_key()
+      .flag("--leaked", &SecureOptions::leaked,
+            "Others know the key, or it is lost: the new authority alone is trusted; clients are "
+            "shut out until they have new credentials")
       .example(
           "kinshipd secure renew-authority --security DIR     then: start the server anew,\n"
-          "  renew each client, retire-authority, start the server anew");
+          "  renew each client, retire-authority, start the server anew, renew each client again");
   SecureCommand(secure, chosen, "retire-authority", SecureVerb::RetireAuthority,
                 "Trust the newer authority only, once every client has its credentials")
       .folder()

@@ -325,6 +325,8 @@ CredentialList every_credential_list() {
   row.authority = next.name("fingerprint");
   row.is_of_previous_authority = true;
   row.message = next.text("message");
+  row.trusted = {next.name("fingerprint"), next.name("fingerprint")};
+  row.trusts_a_retired_authority = true;
   list.credentials.push_back(row);
   return list;
 }

@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import time
 import unittest
 import warnings
@@ -102,6 +103,22 @@ class WhoHasNone(SecuredServer):
         self.with_environment(mixed)
         with self.assertRaisesRegex(kinship.InvalidInput, "key.pem: is not the key of certificate.pem"):
             self.open_client()
+
+
+class WhoLoadedCycloneFirst(SecuredServer):
+    def open_in_process(self, *before):
+        """What a program says that opens a client after it did `before`."""
+        credentials = self.add("arm_" + str(8 + len(before)))
+        lines = [*before, "import kinship", "try:",
+                 f"    kinship.Client(domain={self.server.domain}, has_outbox=False, security={str(credentials)!r})",
+                 "    print('opened')", "except kinship.InvalidInput as error:", "    print(error)"]
+        return subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, text=True,
+                              stdout=subprocess.PIPE).stdout
+
+    def test_is_refused_as_nobody_would_check_what_others_say_of_their_writers(self):
+        self.assertEqual(self.open_in_process(), "opened\n")
+        self.assertIn("cannot join with security: this process loaded Cyclone DDS",
+                      self.open_in_process("import ctypes", "ctypes.CDLL('libddsc.so.0debian')"))
 
 
 class WhoMayNot(SecuredServer):

@@ -53,6 +53,30 @@ TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
   EXPECT_NE(answer.find("revoked"), std::string::npos) << answer;
 }
 
+TEST_F(Security, AFloodOfWhoIsRevokedIsNotAllAnswered) {
+  constexpr int kAtOnce = 40;  // ten a second are answered
+  ASSERT_EQ(server_.read_line(), "ready");
+  const Participant participant = join(alice_);
+  AdminRequester requester(participant, Uuid::random());
+  ASSERT_EQ(ask(requester, "before"), "before");
+  fleet_.revoke("alice", now());
+  const auto deadline = AdminRequester::Clock::now() + 10s;
+  while (ask(requester, "again").find("revoked") == std::string::npos &&
+         AdminRequester::Clock::now() < deadline) {
+  }
+  std::atomic<int> answered = 0;
+  {
+    std::vector<std::jthread> callers;
+    for (int i = 0; i < kAtOnce; ++i)
+      callers.emplace_back([&] {
+        if (ask(requester, "flood", 1200ms).find("revoked") != std::string::npos)
+          ++answered;
+      });
+  }
+  EXPECT_GT(answered, 0);
+  EXPECT_LT(answered, kAtOnce);
+}
+
 TEST_F(Security, NobodyElseIsHeard) {
   // Without security who has no certificate is, and with another authority's he is its own
   // server's.

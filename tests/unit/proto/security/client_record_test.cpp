@@ -22,6 +22,7 @@ ClientRecord sample() {
           .generation = 3,
           .oldest_accepted = 2,
           .authority = "0123456789abcdef",
+          .trusted = {"0123456789abcdef", "fedcba9876543210"},
           .expires = sys_days(2027y / 11 / 25) + 3h,
           .revoked = sys_days(2026y / 12 / 1)};
 }
@@ -37,6 +38,7 @@ TEST(ClientRecord, IsReadAsItWasWritten) {
   EXPECT_EQ(read->generation, 3U);
   EXPECT_EQ(read->oldest_accepted, 2U);
   EXPECT_EQ(read->authority, "0123456789abcdef");
+  EXPECT_EQ(read->trusted, sample().trusted);
   EXPECT_EQ(read->expires, sample().expires);
   EXPECT_EQ(read->revoked, sample().revoked);
 }

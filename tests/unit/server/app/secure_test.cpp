@@ -136,7 +136,30 @@ TEST_F(SecureTest, AnAuthorityIsNotRetiredOverClientsThatNeedIt) {
   EXPECT_TRUE(says("would shut out 1 clients: arm")) << err();
   ASSERT_EQ(run({"renew", "arm", "--security", folder_, "--out", scratch_ / "arm2"}), kDone);
   EXPECT_EQ(run({"retire-authority", "--security", folder_}), kDone) << err();
+  EXPECT_TRUE(says("renew once more for arm:")) << out();
   EXPECT_EQ(run({"renew-server", "--security", folder_}), kDone) << err();
+}
+
+TEST_F(SecureTest, TheListTellsWhoTrustsARetiredAuthority) {
+  ASSERT_EQ(run({"init", folder_}), kDone);
+  ASSERT_EQ(run({"renew-authority", "--security", folder_}), kDone) << err();
+  ASSERT_EQ(add("arm", "robot", "arm"), kDone);
+  ASSERT_EQ(run({"retire-authority", "--security", folder_}), kDone) << err();
+  ASSERT_EQ(run({"list", "--security", folder_}), kDone);
+  EXPECT_TRUE(says("valid, trusts a retired authority")) << out();
+  ASSERT_EQ(run({"renew", "arm", "--security", folder_, "--out", scratch_ / "arm2"}), kDone);
+  ASSERT_EQ(run({"list", "--security", folder_}), kDone);
+  EXPECT_FALSE(says("retired")) << out();
+}
+
+TEST_F(SecureTest, AnAuthorityWhoseKeyLeakedIsReplacedAtOnce) {
+  ASSERT_EQ(run({"init", folder_}), kDone);
+  ASSERT_EQ(add("arm", "robot", "arm"), kDone);
+  ASSERT_EQ(run({"renew-authority", "--leaked", "--security", folder_}), kDone) << err();
+  EXPECT_TRUE(says("the new authority is the only one")) << out();
+  ASSERT_EQ(run({"list", "--security", folder_}), kDone);
+  EXPECT_TRUE(says("valid, previous authority")) << out();
+  EXPECT_EQ(run({"retire-authority", "--security", folder_}), kFailed) << "it is";
 }
 
 }  // namespace
