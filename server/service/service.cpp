@@ -361,6 +361,7 @@ ServerStatus Service::status() const {
   status.troubles = troubles_.counts();
   status.dropped_paths = store.dropped_paths;
   status.bounds = bounds(store);
+  status.credentials_expire_ms = options_.credentials_expire_ms;
   return status;
 }
 

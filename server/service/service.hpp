@@ -37,6 +37,8 @@ namespace kinship::service {
 
 struct ServiceOptions {
   std::string version;
+  /// When the server's certificate ends, Unix time; 0: it has none.
+  std::int64_t credentials_expire_ms = 0;
   std::size_t fit_threads = 1;
   std::size_t fit_memory_bytes = std::size_t{2048} << 20U;  ///< of all fits together, at most
   std::size_t fit_queue = 256;           ///< fits that wait; more are answered Busy
