@@ -131,6 +131,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
   if (!status.storage_message.empty())
     out << (status.writable ? "note           " : "because        ") << status.storage_message
         << '\n';
+  if (status.credentials_expire_ms > 0)
+    out << "credentials    of the server end at " << time_text(status.credentials_expire_ms)
+        << '\n';
   out << "holds          " << count_text(status.robots, "robot") << ", "
       << count_text(status.tasks, "task") << ", " << count_text(status.paths, "path")
       << (status.dropped_paths > 0

@@ -146,7 +146,8 @@ class Replier<Conversation>::Implementation {
   /// \return why the sender is refused if it is.
   Result<Caller> caller_of(const Sender& sender) const {
     if (!has_security_)
-      return Caller{.client = sender.client, .is_local = sender.is_local};
+      return Caller{
+          .client = sender.client, .role = AccessRole::Admin, .is_local = sender.is_local};
     if (!directory_)
       return Error{ErrorCode::Internal, "the server knows no clients"};
     Result<Caller> caller = directory_(sender.name);

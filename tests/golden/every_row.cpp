@@ -285,6 +285,7 @@ ServerStatus every_status() {
     status.bounds.push_back(bound);
   }
   status.dropped_paths = next.count();
+  status.credentials_expire_ms = next.time_ms();
   return status;
 }
 

@@ -1,5 +1,7 @@
 #include "server/app/access_gate.hpp"
 
+#include <latch>
+
 #include "server/access/withheld_sources.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
@@ -120,6 +122,85 @@ TEST_F(AccessGate, ARobotRegistersUnderTheLabelsOfItsCertificate) {
             "cell_*");
   EXPECT_EQ(register_robot(fleet::planar("cell_1", {0.4, 0.3, 0.2, 0.15})).status,
             RegisterStatus::Registered);
+}
+
+/// Collision geometry that a robot of `planar` may have, without being another robot.
+RobotDescription with_exact_shapes(RobotDescription description) {
+  const std::string plain = "<link name='link1'/>";
+  description.urdf.replace(
+      description.urdf.find(plain), plain.size(),
+      "<link name='link1'><collision><geometry><sphere radius='0.05'/></geometry></collision>"
+      "</link>");
+  return description;
+}
+
+TEST_F(AccessGate, ARobotThatIsKnownUnderAnothersLabelIsNotTaken) {
+  caller_.robots = {"cell_*"};
+  RobotDescription same = with_exact_shapes(fleet::teacher());
+  same.label = "cell_1";
+  const RegisterReply reply = register_robot(same);
+  EXPECT_EQ(reply.status, RegisterStatus::Refused);
+  EXPECT_EQ(reply.message,
+            "robot_7 (role robot) may not register this robot: it is known here under another "
+            "label, and its certificate is for robots cell_*");
+  EXPECT_FALSE(reply.took_geometry);
+  EXPECT_TRUE(reply.same_arms.empty());
+  EXPECT_EQ(real_store_->find_robot(teacher_->digest)->geometry_revision, 0U);
+  // Nor if its row cannot be read: it would be written anew.
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();  // another robot is in memory
+  store::damage_robot(directory_ / "fleet.db", "teacher");
+  EXPECT_EQ(register_robot(same).status, RegisterStatus::Refused);
+  // By its own label it is taken.
+  caller_.robots = {"pup*"};
+  same = with_exact_shapes(fleet::pupil());
+  EXPECT_TRUE(register_robot(same).took_geometry);
+  EXPECT_EQ(real_store_->find_robot(pupil_->digest)->geometry_revision, 1U);
+}
+
+TEST_F(AccessGate, AFetchForARobotThatCannotBeReadNowIsPutOff) {
+  report({fleet::solved(*teacher_, "shelf", 1)});
+  ASSERT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready);
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();  // another robot is in memory
+  store::damage_robot(directory_ / "fleet.db", "teacher");
+  caller_.robots = {"pupil"};
+  const FetchReply reply = fetch(*teacher_, "shelf");
+  EXPECT_EQ(reply.status, FetchStatus::Busy);
+  EXPECT_GT(reply.retry_after.count(), 0);
+  EXPECT_FALSE(reply.distribution);
+  EXPECT_EQ(reply.message.find("teacher"), std::string::npos) << reply.message;
+}
+
+TEST_F(AccessGate, WhoFindsNoRoomForItsRobotsNamesIsToldWhenToComeAgain) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  adjust_ = [](service::ServiceOptions& options) {
+    options.max_robots = 1;  // names are looked up in the store
+    options.client_short_tasks = 1;
+  };
+  start();
+  caller_.robots = {"teacher"};
+  std::latch may_go_on(1);
+  std::promise<void> begun;
+  service_->administer(
+      fleet::question(AdminVerb::ListTasks), "other 1",
+      [&](const service::AdminPage&) {
+        begun.set_value();
+        may_go_on.wait();
+      },
+      fleet::caller_here());
+  begun.get_future().wait();
+  std::promise<FetchReply> first;
+  app::fetch(*service_, caller_, request_for(*teacher_), "one",
+             [&](const FetchReply& reply) { first.set_value(reply); });
+  const ReportReply reply = report({attempt});
+  EXPECT_EQ(of(reply, attempt).status, ReceiptStatus::TryAgain);
+  EXPECT_GT(reply.retry_after.count(), 0);
+  const FetchReply fetched = fetch(*teacher_, "shelf");
+  EXPECT_EQ(fetched.status, FetchStatus::Busy);
+  EXPECT_GT(fetched.retry_after.count(), 0);
+  may_go_on.count_down();
+  first.get_future().wait();
 }
 
 TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
