@@ -159,11 +159,13 @@ TEST_F(AccessGate, ARobotThatIsKnownUnderAnothersLabelIsNotTaken) {
 }
 
 TEST_F(AccessGate, AFetchForARobotThatCannotBeReadNowIsPutOff) {
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();
   report({fleet::solved(*teacher_, "shelf", 1)});
   ASSERT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready);
-  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
-  start();  // another robot is in memory
+  ServiceFixture::register_robot(fleet::pupil());  // now this one is in memory
   store::damage_robot(directory_ / "fleet.db", "teacher");
+  ASSERT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready) << "the distribution is there";
   caller_.robots = {"pupil"};
   const FetchReply reply = fetch(*teacher_, "shelf");
   EXPECT_EQ(reply.status, FetchStatus::Busy);
