@@ -177,6 +177,17 @@ kinship_code kinship_client_open(const kinship_client_options* options, kinship_
 
 void kinship_client_close(kinship_client* client) { delete client; }
 
+const char* kinship_client_warning(const kinship_client* client) {
+  thread_local std::string warning;
+  warning.clear();
+  guarded([&] {
+    require(client, "client");
+    warning = client->line.expiry_warning().value_or("");
+    return KINSHIP_OK;
+  });
+  return warning.c_str();
+}
+
 kinship_code kinship_report(kinship_client* client, const kinship_attempt* attempt) {
   return guarded([&] {
     require(client, "client");

@@ -83,6 +83,11 @@ KINSHIP_API kinship_code kinship_client_open(const kinship_client_options* optio
 /** Reports that have no receipt yet stay on disk and are sent by the next client of the outbox. */
 KINSHIP_API void kinship_client_close(kinship_client* client);
 
+/** What to tell people after kinship_client_open(), and now and then later: that the credentials
+ * are valid for less than 30 days, for how long, and how to get new ones; "" before that, without
+ * security, and of NULL. Valid until the next such call of this thread. Waits for nobody. */
+KINSHIP_API const char* kinship_client_warning(const kinship_client* client);
+
 /** A joint beside the chain that stands still. Without a member `size`: it stays as it is, whatever
  * comes in later versions. */
 typedef struct kinship_held_joint {

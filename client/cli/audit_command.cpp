@@ -5,13 +5,19 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/audit_selection.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 constexpr const char* kAudit = "audit";
 
@@ -40,6 +46,7 @@ int for_each_entry(link::Client& server, const AuditOptions& options, std::ostre
   AdminRequest request;
   request.verb = AdminVerb::ListAudit;
   request.argument = options.who;
+  AuditSelection selection(options.since_ms, options.limit);
   std::string unreadable;
   const auto error = link::for_each_row(
       server, request,
@@ -47,13 +54,11 @@ int for_each_entry(link::Client& server, const AuditOptions& options, std::ostre
         const Result<AuditEntry> entry = json::audit_entry_from_json(row);
         if (!entry)
           unreadable = entry.error().message;
-        // The newest come first: none of those that follow is wanted either.
-        if (!entry || entry->time_ms < options.since_ms)
-          return false;
-        use(*entry, row);
-        return true;
+        if (entry && selection.takes(*entry))
+          use(*entry, row);
+        return entry && !selection.is_full();
       },
-      options.limit);
+      options.since_ms > 0 ? 0 : options.limit);
   if (error)
     return refuse(kAudit, *error, err);
   if (!unreadable.empty())

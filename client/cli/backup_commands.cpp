@@ -4,13 +4,18 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
 #include "client/link/backup_download.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/tables/table.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
+
+using tables::Fit;
+using tables::Table;
 
 int back_up(link::Client& server, const BackupOptions& options, std::ostream& out,
             std::ostream& err) {

@@ -3,11 +3,15 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "proto/json/admin_rows_json.hpp"
+#include "proto/tables/table.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 constexpr const char* kStatusClients = "status --clients";
 

@@ -8,9 +8,9 @@
 #include "client/arguments/command_options.hpp"
 #include "client/arguments/number_range.hpp"
 #include "client/cli/groups.hpp"
-#include "client/cli/table_layout.hpp"
 #include "proto/manual/manual.hpp"
 #include "proto/manual/suggestion.hpp"
+#include "proto/tables/table_layout.hpp"
 #include "proto/types/exit_code.hpp"
 
 namespace kinship::cli {
@@ -40,8 +40,9 @@ int run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   add_completion(app, session);
   try {
     app.parse(argc, argv);
-    set_table_layout(
-        out, {&out == &std::cout ? width_of_terminal() : TableLayout().width, session.is_wide});
+    tables::set_table_layout(
+        out, {&out == &std::cout ? tables::width_of_terminal() : tables::TableLayout().width,
+              session.is_wide});
     const int code = session.command();
     if (!out.flush()) {
       err << "kinship: cannot write to standard output\n";

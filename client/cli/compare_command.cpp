@@ -6,18 +6,23 @@
 #include <utility>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/page_file.hpp"
-#include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "client/plots/plot_pages.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/task_experience.hpp"
 #include "robots/models/robot_arguments.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Column;
+using tables::Fit;
+using tables::Table;
 
 constexpr std::string_view kCompare = "robots compare";
 

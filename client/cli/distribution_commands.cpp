@@ -10,15 +10,20 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/rehearsal_text.hpp"
-#include "client/cli/table.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 int print_samples(const Distribution& distribution, const FetchOptions& options, std::ostream& out,
                   std::ostream& err) {

@@ -4,12 +4,16 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/task_experience_json.hpp"
+#include "proto/tables/table.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 constexpr const char* kExperienceCommand = "tasks experience";
 

@@ -3,7 +3,7 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/files/output_file.hpp"
 #include "client/link/admin_rows.hpp"

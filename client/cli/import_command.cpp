@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/files/lines.hpp"
 #include "client/link/robot_names.hpp"

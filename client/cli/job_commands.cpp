@@ -4,7 +4,7 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"

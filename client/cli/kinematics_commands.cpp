@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
-#include "client/cli/table.hpp"
 #include "client/files/lines.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/json/robot_answers_json.hpp"

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/robot_text.hpp"
-#include "client/cli/table.hpp"
 #include "proto/json/robot_answers_json.hpp"
+#include "proto/tables/table.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -18,6 +19,8 @@
 
 namespace kinship::cli {
 namespace {
+
+using tables::Table;
 
 constexpr const char* kLinks = "robots links";
 constexpr const char* kFrames = "robots frames";

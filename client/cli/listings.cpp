@@ -7,14 +7,19 @@
 #include <ostream>
 #include <vector>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/link/admin_rows.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 /// What a list verb answers, and how it is shown.
 template <typename Parse, typename Cells>

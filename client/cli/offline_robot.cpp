@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
 

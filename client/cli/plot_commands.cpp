@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/page_file.hpp"
-#include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/plots/plot_pages.hpp"
 #include "proto/json/distribution_json.hpp"

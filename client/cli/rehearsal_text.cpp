@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Table;
 
 std::string sentence(const Rehearsal& rehearsal) {
   if (rehearsal.queries == 0)

@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "proto/json/admin_rows_json.hpp"
 #include "proto/json/summaries_json.hpp"
 

@@ -8,10 +8,11 @@
 #include <system_error>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
 #include "client/cli/robot_text.hpp"
-#include "client/cli/table.hpp"
 #include "proto/json/robot_answers_json.hpp"
+#include "proto/tables/table.hpp"
 #include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/collision/robot_solids.hpp"
@@ -23,6 +24,8 @@
 
 namespace kinship::cli {
 namespace {
+
+using tables::Table;
 
 constexpr int kJointDigits = 4;
 

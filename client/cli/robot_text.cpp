@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 
 namespace kinship::cli {
 

@@ -3,7 +3,7 @@
 #include <ostream>
 
 #include "client/cli/admin_rows.hpp"
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/link/robot_names.hpp"
 #include "client/link/robot_upkeep.hpp"
 #include "proto/json/admin_rows_json.hpp"

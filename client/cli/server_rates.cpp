@@ -1,6 +1,6 @@
 #include "client/cli/server_rates.hpp"
 
-#include "client/cli/table.hpp"
+#include "client/cli/cell_text.hpp"
 
 namespace kinship::cli {
 

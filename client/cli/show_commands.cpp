@@ -2,19 +2,24 @@
 #include <ostream>
 #include <vector>
 
+#include "client/cli/cell_text.hpp"
 #include "client/cli/distribution_commands.hpp"
 #include "client/cli/listings.hpp"
 #include "client/cli/robot_text.hpp"
 #include "client/cli/scene_text.hpp"
-#include "client/cli/table.hpp"
 #include "proto/json/attempt_json.hpp"
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/robot_description_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "proto/tables/table.hpp"
 #include "proto/types/enum_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {
+
+using tables::Fit;
+using tables::Table;
 
 struct Question {
   AdminVerb verb = AdminVerb::Status;
@@ -146,6 +151,9 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << "writable       " << (status.writable ? "yes" : "no") << '\n';
   if (!status.storage_message.empty())
     out << (status.writable ? "note           " : "because        ") << status.storage_message
+        << '\n';
+  if (status.credentials_expire_ms > 0)
+    out << "credentials    of the server end at " << time_text(status.credentials_expire_ms)
         << '\n';
   out << "holds          " << count_text(status.robots, "robot") << ", "
       << count_text(status.tasks, "task") << ", " << count_text(status.paths, "path")

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/offline_robot.hpp"
-#include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/files/output_file.hpp"
 #include "proto/json/robot_answers_json.hpp"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "client/cli/table_layout.hpp"
+#include "proto/tables/table_layout.hpp"
 
 namespace kinship::cli {
 namespace {
@@ -31,7 +31,7 @@ void StatusLine::show(std::string_view text) {
     stream_ << text << std::endl;
     return;
   }
-  stream_ << kBeginAgain << text.substr(0, width_of_terminal() - 1) << std::flush;
+  stream_ << kBeginAgain << text.substr(0, tables::width_of_terminal() - 1) << std::flush;
   is_there_ = true;
 }
 

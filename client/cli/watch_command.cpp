@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "client/cli/admin_rows.hpp"
+#include "client/cli/cell_text.hpp"
 #include "client/cli/server_rates.hpp"
-#include "client/cli/table.hpp"
 #include "client/cli/terminal.hpp"
 #include "client/link/robot_names.hpp"
 #include "proto/json/event_json.hpp"
 #include "proto/json/summaries_json.hpp"
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::cli {
 namespace {

@@ -4,12 +4,12 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "client/link/delivery.hpp"
 #include "client/link/environment.hpp"
 #include "client/link/outbox.hpp"
+#include "client/link/pauses.hpp"
 #include "client/link/report_sender.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/security/credentials.hpp"
@@ -32,7 +32,7 @@ milliseconds server_share(milliseconds left) {
 
 /// Asks until the reply is final or the time is over: a server that is busy says when to ask again.
 template <typename Reply>
-Result<Reply> ask_until_final(Clock::time_point deadline,
+Result<Reply> ask_until_final(Clock::time_point deadline, Pauses& pauses,
                               const std::function<Result<Reply>()>& ask) {
   while (true) {
     Result<Reply> reply = ask();
@@ -41,7 +41,7 @@ Result<Reply> ask_until_final(Clock::time_point deadline,
     const auto pause = std::max<milliseconds>(reply->retry_after, kShortestPause);
     if (Clock::now() + pause >= deadline)
       return reply;
-    std::this_thread::sleep_for(pause);
+    pauses.sleep(pause);
   }
 }
 
@@ -96,6 +96,7 @@ struct Client::Line {
   dds::Requester<codec::ReportConversation> reporting;
   dds::Requester<codec::FetchConversation> fetching;
   dds::Requester<codec::AdminConversation> administering;
+  Pauses pauses;
   std::optional<ReportSender> sender;  // last: uses the outbox and requesters
 };
 
@@ -121,7 +122,7 @@ Result<RegisterReply> Client::register_robot(const RobotDescription& description
       line_->outbox->keep_robot(chain->digest(), description);
   const Clock::time_point deadline = Clock::now() + line_->timeout;
   Result<RegisterReply> reply = ask_until_final<RegisterReply>(
-      deadline, [&] { return line_->registering.call(description, deadline); });
+      deadline, line_->pauses, [&] { return line_->registering.call(description, deadline); });
   if (line_->sender && reply && reply->status != RegisterStatus::Refused)
     line_->sender->retry();
   return reply;
@@ -180,7 +181,7 @@ Result<FetchReply> Client::fetch(FetchRequest request) {
     const std::optional<milliseconds> pause = is_worse ? std::nullopt : pause_after(*last);
     if (!pause || Clock::now() + *pause >= deadline)
       return answer();
-    std::this_thread::sleep_for(*pause);
+    line_->pauses.sleep(*pause);
   }
 }
 
@@ -194,7 +195,7 @@ std::unique_ptr<Watcher> Client::watch(Watcher::Handlers handlers) const {
 }
 
 Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
-  return link::deliver(std::move(attempts), line_->timeout,
+  return link::deliver(std::move(attempts), line_->timeout, line_->pauses,
                        [this](const ReportRequest& batch, Clock::time_point deadline) {
                          return line_->reporting.call(batch, deadline);
                        });
@@ -202,7 +203,7 @@ Result<std::vector<Receipt>> Client::deliver(std::vector<Attempt> attempts) {
 
 Result<AdminReply> Client::admin(const AdminRequest& request) {
   const Clock::time_point deadline = Clock::now() + line_->timeout + request.deadline;
-  return ask_until_final<AdminReply>(deadline,
+  return ask_until_final<AdminReply>(deadline, line_->pauses,
                                      [&] { return line_->administering.call(request, deadline); });
 }
 
@@ -210,6 +211,7 @@ void Client::cancel() {
   line_->registering.cancel();
   line_->fetching.cancel();
   line_->administering.cancel();
+  line_->pauses.end();
 }
 
 }  // namespace kinship::link

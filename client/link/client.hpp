@@ -23,9 +23,10 @@ struct ClientOptions {
   std::string server = "127.0.0.1";  ///< host of kinshipd
   /// Folder of credentials (kinshipd secure add); empty: what KINSHIP_SECURITY says, or none.
   std::filesystem::path security = {};
-  std::filesystem::path outbox;             ///< folder; empty: default_outbox_folder()
-  bool has_outbox = true;                   ///< false: delivers nothing, report() is not allowed
-  std::chrono::milliseconds timeout{5000};  ///< of register, deliver (a batch) and admin
+  std::filesystem::path outbox;  ///< folder; empty: default_outbox_folder()
+  bool has_outbox = true;        ///< false: delivers nothing, report() is not allowed
+  /// Of register, deliver (a batch, beside pauses that the server asks for) and admin.
+  std::chrono::milliseconds timeout{5000};
 };
 
 /// A fleet member's line to kinshipd: registers a robot, reports attempts, fetches distributions.
@@ -36,8 +37,8 @@ struct ClientOptions {
 class Client {
  public:
   /// \throws Failure(InvalidInput) for options that cannot be, also credentials, Failure(Storage)
-  /// if the outbox
-  ///         cannot be made, Failure(Unavailable) if DDS cannot start. Needs no server.
+  ///         if the outbox cannot be made, Failure(Unavailable) if DDS cannot start. Needs no
+  ///         server.
   explicit Client(const ClientOptions& options);
   ~Client();
   Client(const Client&) = delete;
@@ -86,15 +87,16 @@ class Client {
   /// Hands attempts over at once, past the outbox, batch after batch: who still has them can hand
   /// them over again.
   /// \return one receipt per attempt, in order: Refused also for what the server would not even be
-  ///         sent, TryAgain for what it could not store within the timeout. Unavailable if no
-  ///         server answered; some may have arrived then.
+  ///         sent, TryAgain for what it could not store within the timeout (a server that is
+  ///         busy with others may make that 10 minutes more a batch). Unavailable if no server
+  ///         answered; some may have arrived then.
   Result<std::vector<Receipt>> deliver(std::vector<Attempt> attempts);
 
   /// Waits up to the timeout, and for ShowJob up to the request's deadline more.
   Result<AdminReply> admin(const AdminRequest& request);
 
   /// Ends every wait for a reply, from another thread; it and later ones bring Unavailable.
-  /// Reports are sent as before.
+  /// Reports are sent as before, and deliver() sends what it has left once.
   void cancel();
 
  private:

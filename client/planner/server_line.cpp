@@ -46,6 +46,8 @@ ServerLine::ServerLine(const PlanOptions& options, RobotDescription description,
     messages_ << "--server '" << options_.server << "': " << why << '\n';  // it may be, later
   try {
     client_ = std::make_unique<link::Client>(client);
+    if (const auto warning = client_->expiry_warning())
+      messages_ << "warning: " << *warning << '\n';
     register_robot();
   } catch (const std::exception& exception) {
     trouble_ = Error{ErrorCode::Internal, exception.what()};

@@ -231,13 +231,16 @@ void bind_life(ClientClass& client) {
       .def(py::init([](std::uint32_t domain, const std::string& server,
                        const std::optional<std::filesystem::path>& outbox, bool has_outbox,
                        double timeout, const std::optional<std::filesystem::path>& security) {
-             return std::make_unique<ClientHandle>(
+             auto handle = std::make_unique<ClientHandle>(
                  link::ClientOptions{.domain = domain,
                                      .server = server,
                                      .security = security.value_or(std::filesystem::path()),
                                      .outbox = outbox.value_or(std::filesystem::path()),
                                      .has_outbox = has_outbox,
                                      .timeout = to_milliseconds(timeout, "timeout")});
+             if (const auto warning = handle->line()->expiry_warning())
+               warn("CredentialsExpire", *warning);
+             return handle;
            }),
            py::kw_only(), py::arg("domain") = 0, py::arg("server") = "127.0.0.1",
            py::arg("outbox") = py::none(), py::arg("has_outbox") = true, py::arg("timeout") = 5.0,
@@ -249,7 +252,13 @@ server      its host
 outbox      folder where reports wait for their receipts; by default one for this server
 has_outbox  False: delivers nothing that waits there, and report() is not allowed
 timeout     of register, deliver and listings, s
-security    folder of credentials; by default what KINSHIP_SECURITY says, or none)")
+security    folder of credentials; by default what KINSHIP_SECURITY says, or none
+
+Warns (CredentialsExpire) of credentials that are valid for less than 30 days.)")
+      .def_property_readonly(
+          "expiry_warning",
+          [](const ClientHandle& self) { return self.line()->expiry_warning().value_or(""); },
+          "What it would be warned of if it were opened now; empty: nothing.")
       .def("close", &ClientHandle::close,
            "Ends every wait. What is in the outbox is sent by the next client.")
       .def(

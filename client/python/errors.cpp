@@ -57,4 +57,9 @@ void raise_error(const char* name, const std::string& text) {
   throw py::error_already_set();
 }
 
+void warn(const char* name, const std::string& text) {
+  if (PyErr_WarnEx(py::module_::import("kinship.errors").attr(name).ptr(), text.c_str(), 1) != 0)
+    throw py::error_already_set();
+}
+
 }  // namespace kinship::python

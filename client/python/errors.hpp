@@ -14,4 +14,9 @@ void translate_failures();
 /// \param name  of its class.
 [[noreturn]] void raise_error(const char* name, const std::string& text);
 
+/// Tells Python's `warnings`. Needs the interpreter's lock.
+/// \param name  of a class of kinship.errors.
+/// \throws the exception that the program has made of such warnings.
+void warn(const char* name, const std::string& text);
+
 }  // namespace kinship::python

@@ -37,12 +37,15 @@ RequestSize size_of(const kinship_wire_ReportRequest& wire) {
 }
 
 RequestSize size_of(const kinship_wire_FetchRequest& wire) {
-  std::size_t bytes = kFixedBytes;
+  std::size_t bytes = kFixedBytes + text_bytes(wire.task) + text_bytes(wire.profile);
   for (const kinship_wire_Selection& selection : elements(wire.selection))
     bytes += elements(selection.sources).size();
   return {.bytes = bytes};
 }
 
-RequestSize size_of(const kinship_wire_AdminRequest& /*wire*/) { return {.bytes = kFixedBytes}; }
+RequestSize size_of(const kinship_wire_AdminRequest& wire) {
+  return {.bytes = kFixedBytes + text_bytes(wire.argument) + text_bytes(wire.robot) +
+                   text_bytes(wire.task) + text_bytes(wire.cursor)};
+}
 
 }  // namespace kinship::codec

@@ -17,6 +17,13 @@ namespace {
 /// A reader that was discovered matches soon after; one that has gone may come again.
 constexpr std::chrono::seconds kKept{30};
 constexpr std::chrono::seconds kBetweenSweeps{10};
+constexpr std::chrono::seconds kBetweenLooks{1};  // as often as the directory reads a record
+/// Readers are noticed before their permissions are checked, so names may be made up.
+constexpr std::size_t kMaxUnknown = 1024;
+
+bool has_same_rights(const Caller& one, const Caller& other) {
+  return one.role == other.role && one.tasks == other.tasks && one.robots == other.robots;
+}
 
 }  // namespace
 
@@ -31,12 +38,13 @@ ClientWriters::ClientWriters(const Participant& participant, WaitLoop& loop, con
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
           "reader of readers") {
   loop.attach(readers_, [this] { return notice_readers(); });
+  loop.every(kBetweenLooks, [this] { look_again(); });
 }
 
 std::shared_ptr<const Entity> ClientWriters::of(const std::string& name) {
   if (auto known = find(name))
     return known;
-  if (auto made = make(name))
+  if (auto made = make(name, {}))
     return made;
   return find(name);  // another thread was faster
 }
@@ -50,7 +58,7 @@ std::shared_ptr<const Entity> ClientWriters::find(const std::string& name) {
   return known->second.writer;
 }
 
-std::shared_ptr<const Entity> ClientWriters::make(const std::string& name) {
+std::shared_ptr<const Entity> ClientWriters::make(const std::string& name, const Caller& rights) {
   if (find(name))
     return nullptr;
   const std::string partition = security::client_partition(name);
@@ -63,7 +71,7 @@ std::shared_ptr<const Entity> ClientWriters::make(const std::string& name) {
       [publisher](const Entity* each) { delete each; });  // before its publisher
   free_unread(Clock::now());
   const std::lock_guard lock(mutex_);
-  return writers_.try_emplace(name, Writer{writer, Clock::now()}).second ? writer : nullptr;
+  return writers_.try_emplace(name, Writer{writer, Clock::now(), rights}).second ? writer : nullptr;
 }
 
 void ClientWriters::for_each(
@@ -90,14 +98,52 @@ bool ClientWriters::notice_readers() {
     if (const auto name = client_of_partitions(reader.qos))
       clients.insert(*name);
   }
-  for (const std::string& name : clients) {
-    if (!directory_ || !directory_(name))
-      continue;  // whom nobody knows hears nothing
-    if (const auto made = make(name); made && on_new_)
-      on_new_(name, *made);
-  }
+  for (const std::string& name : clients)
+    let_in(name);
   free_unread(Clock::now());
   return discovered.size() == Loan::kMaxSamples;
+}
+
+void ClientWriters::let_in(const std::string& name) {
+  const auto caller = directory_ ? directory_(name) : Result<Caller>(Error{});
+  if (!caller) {  // whom nobody knows hears nothing; its record may come, or be readable again
+    if (unknown_.size() < kMaxUnknown)
+      unknown_.insert(name);
+    return;
+  }
+  unknown_.erase(name);
+  if (const auto made = make(name, *caller); made && on_new_)
+    on_new_(name, *made);
+}
+
+void ClientWriters::look_again() {
+  const std::set<std::string> unknown = unknown_;
+  for (const std::string& name : unknown)
+    let_in(name);
+  if (on_new_)
+    replace_changed();
+  free_unread(Clock::now());
+}
+
+/// What a writer keeps for readers that come late is for the rights that its client had.
+void ClientWriters::replace_changed() {
+  std::map<std::string, Caller> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, each] : writers_)
+      all.emplace(name, each.rights);
+  }
+  for (const auto& [name, rights] : all) {
+    const auto caller = directory_ ? directory_(name) : Result<Caller>(Error{});
+    if (caller && has_same_rights(*caller, rights))
+      continue;
+    {
+      std::unique_lock lock(mutex_);
+      const auto outdated = writers_.extract(name);
+      lock.unlock();  // freed without it
+    }
+    let_in(name);
+  }
 }
 
 void ClientWriters::free_unread(Clock::time_point now) {

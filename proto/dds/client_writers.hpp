@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "proto/dds/entity.hpp"
@@ -19,7 +20,10 @@ namespace kinship::dds {
 /// threads.
 ///
 /// A client's is made when a reader of the client is discovered, or a reply to it is sent; it is
-/// freed some time after the last reader has gone. So there are as many as clients are there.
+/// freed some time after the last reader has gone. So there are as many as clients are there. One
+/// whom the directory does not know when it is discovered gets its writer once it does. Of a
+/// publication (on_new) a writer goes with what it keeps for late readers, a second or two after
+/// its client was revoked or its rights changed, to which another one is made then.
 class ClientWriters {
  public:
   /// Called with a new writer that a reader of its client was discovered for.
@@ -50,11 +54,16 @@ class ClientWriters {
   struct Writer {
     std::shared_ptr<const Entity> writer;  // owns its publisher too
     Clock::time_point used;                // last time that it was asked for or had a reader
+    Caller rights = {};                    // for which it was made, if for a reader
   };
 
   std::shared_ptr<const Entity> find(const std::string& name);
-  std::shared_ptr<const Entity> make(const std::string& name);  ///< null if there is one
+  /// Null if there is one.
+  std::shared_ptr<const Entity> make(const std::string& name, const Caller& rights);
   bool notice_readers();
+  void let_in(const std::string& name);
+  void look_again();
+  void replace_changed();
   void free_unread(Clock::time_point now);
 
   Handle participant_;
@@ -63,8 +72,9 @@ class ClientWriters {
   std::string name_;
   Qos qos_;
   OnNew on_new_;
-  Entity readers_;            // reader of what DDS knows of readers
-  mutable std::mutex mutex_;  // guards what follows
+  Entity readers_;                 // reader of what DDS knows of readers
+  std::set<std::string> unknown_;  // who has a reader and is not let in; of the loop's thread
+  mutable std::mutex mutex_;       // guards what follows
   std::map<std::string, Writer> writers_;
   Clock::time_point swept_;
 };

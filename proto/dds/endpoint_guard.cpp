@@ -7,6 +7,8 @@
 
 #include <atomic>
 
+#include "proto/dds/binding.hpp"
+
 // Of dds/ddsi/ddsi_proxy_endpoint.h, which is no C++.
 struct addrset;
 struct nn_dqueue;
@@ -68,7 +70,7 @@ extern "C" __attribute__((visibility("default"))) int ddsi_new_proxy_reader(
 
 bool kinship::dds::is_endpoint_guard_in_place() {
   const auto is_in_front = [](const char* name, auto* function) {
-    return dlsym(RTLD_DEFAULT, name) == reinterpret_cast<void*>(function);  // NOLINT: as above
+    return is_in_front_of_cyclone(name, reinterpret_cast<void*>(function));  // NOLINT: as above
   };
   return is_in_front("ddsi_new_proxy_writer", &ddsi_new_proxy_writer) &&
          is_in_front("ddsi_new_proxy_reader", &ddsi_new_proxy_reader);

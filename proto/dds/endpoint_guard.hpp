@@ -16,7 +16,8 @@ class EndpointGuard {
   ~EndpointGuard();
 };
 
-/// Whether Cyclone DDS asks this library before it hears of a reader or writer.
+/// Whether Cyclone DDS asks this library before it hears of a reader or writer: not if a program
+/// loaded it before this library, or has another copy of this one.
 bool is_endpoint_guard_in_place();
 
 }  // namespace kinship::dds

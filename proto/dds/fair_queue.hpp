@@ -21,51 +21,39 @@ class FairQueue {
 
   std::size_t size() const noexcept { return size_; }
 
-  bool has(const std::string& client, const codec::Head& head) const {
-    const auto mine = waiting_.find(client);
-    return mine != waiting_.end() && std::ranges::any_of(mine->second, [&](const auto& waits) {
-             return waits.first == head;
-           });
-  }
+  /// Room for one request: as long as nothing else is done to the queue.
+  class Opening;
 
-  /// Whether admit() would take a request that does not wait yet: the queue is not full, or of
-  /// somebody else more wait.
-  bool has_room(const std::string& client) const {
-    if (size_ < capacity_)
-      return true;
-    const auto mine = waiting_.find(client);
-    const std::size_t count = mine == waiting_.end() ? 0 : mine->second.size();
-    return std::ranges::any_of(waiting_,
-                               [&](const auto& each) { return each.second.size() > count + 1; });
-  }
-
-  /// Makes room for a request if the queue is full: the newest of the client of whom most wait has
-  /// to go, and is sent again.
   /// \param client  whose turn it is (Caller::client).
-  /// \return false if this one has to go itself, or is waiting already.
-  bool admit(const std::string& client, const codec::Head& head) {
+  /// \return room for the request: there is some, or of somebody else more wait, of whom the newest
+  ///         has to go then, and is sent again. None if it would have to go itself, or waits
+  ///         already.
+  std::optional<Opening> opening_for(const std::string& client, const codec::Head& head) {
     const auto mine = waiting_.find(client);
     const std::size_t count = mine == waiting_.end() ? 0 : mine->second.size();
+    auto longest = waiting_.end();
+    if (size_ >= capacity_) {  // a flood is mostly this: asked first
+      longest = std::ranges::max_element(waiting_, {},
+                                         [](const auto& each) { return each.second.size(); });
+      if (longest == waiting_.end() || longest->second.size() <= count + 1)
+        return std::nullopt;
+    }
     if (count > 0 &&
         std::ranges::any_of(mine->second, [&](const auto& waits) { return waits.first == head; }))
-      return false;
-    if (size_ < capacity_)
-      return true;
-    const auto longest =
-        std::ranges::max_element(waiting_, {}, [](const auto& each) { return each.second.size(); });
-    if (longest == waiting_.end() || longest->second.size() <= count + 1)
-      return false;
-    longest->second.pop_back();
-    --size_;
-    return true;
+      return std::nullopt;
+    return Opening(client, head, longest);
   }
 
-  /// \pre admit() said so.
-  void push(const std::string& client, const codec::Head& head, Request request) {
-    auto& mine = waiting_[client];
+  /// \param opening  of this queue, to which nothing was done since.
+  void push(const Opening& opening, Request request) {
+    if (opening.gives_way_ != waiting_.end()) {
+      opening.gives_way_->second.pop_back();
+      --size_;
+    }
+    auto& mine = waiting_[opening.client_];
     if (mine.empty())
-      turns_.push_back(client);
-    mine.emplace_back(head, std::move(request));
+      turns_.push_back(opening.client_);
+    mine.emplace_back(opening.head_, std::move(request));
     ++size_;
   }
 
@@ -85,10 +73,24 @@ class FairQueue {
   }
 
  private:
+  using Waiting = std::map<std::string, std::deque<std::pair<codec::Head, Request>>>;
+
   std::size_t capacity_;
   std::size_t size_ = 0;
-  std::map<std::string, std::deque<std::pair<codec::Head, Request>>> waiting_;  // none is empty
+  Waiting waiting_;                // none is empty
   std::deque<std::string> turns_;  // each of these once
+};
+
+template <typename Request>
+class FairQueue<Request>::Opening {
+ private:
+  friend class FairQueue;
+  Opening(std::string client, const codec::Head& head, typename Waiting::iterator gives_way)
+      : client_(std::move(client)), head_(head), gives_way_(gives_way) {}
+
+  std::string client_;
+  codec::Head head_;
+  typename Waiting::iterator gives_way_;  // the end: nobody has to
 };
 
 }  // namespace kinship::dds

@@ -107,7 +107,24 @@ std::optional<security::Credentials> credentials_of(const ParticipantOptions& op
   return credentials;
 }
 
+/// \throws Failure(InvalidInput) if nobody would ask it.
+std::unique_ptr<EndpointGuard> guard_of(const ParticipantOptions& options) {
+  if (options.security.empty())
+    return nullptr;
+  if (!is_endpoint_guard_in_place())
+    throw Failure(ErrorCode::InvalidInput,
+                  "domain " + std::to_string(options.domain) +
+                      ": cannot join with security: this process loaded Cyclone DDS (libddsc), or "
+                      "another copy of Kinship, first, so that what Kinship checks about others' "
+                      "readers and writers would not be asked; load Kinship before it");
+  return std::make_unique<EndpointGuard>();
+}
+
+/// One at a time: of two that are the first of their domain Cyclone DDS 0.10.2 loads the plugins of
+/// security twice, and the one's identity is unknown to the other's.
 Entity create_participant(const ParticipantOptions& options) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   const Qos qos = options.security.empty() ? Qos() : security_qos(options.security);
   const Handle handle = dds_create_participant(options.domain, qos.get(), nullptr);
   if (handle < 0)
@@ -120,7 +137,7 @@ Entity create_participant(const ParticipantOptions& options) {
 Participant::Participant(const ParticipantOptions& options)
     : options_(options),
       credentials_(credentials_of(options)),
-      guard_(credentials_ ? std::make_unique<EndpointGuard>() : nullptr),
+      guard_(guard_of(options)),
       domain_(Domain::join(options)),
       entity_(create_participant(options)) {}
 

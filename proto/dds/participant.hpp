@@ -64,8 +64,8 @@ std::string cyclone_configuration(const ParticipantOptions& options);
 class Participant {
  public:
   /// \throws Failure(InvalidInput) if the options cannot be, also for credentials with which nobody
-  ///         can join; Failure(Unavailable) if the domain
-  ///         cannot be joined, e.g. because its discovery port is taken by another server.
+  ///         can join; Failure(Unavailable) if the domain cannot be joined, e.g. because its
+  ///         discovery port is taken by another server.
   explicit Participant(const ParticipantOptions& options);
   ~Participant();
   Participant(Participant&&) noexcept;

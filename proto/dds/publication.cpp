@@ -22,44 +22,68 @@ Entity make_topic(const Participant& participant, const PublicationTopic& topic)
           "topic " + topic.name};
 }
 
-/// What a client that comes late is told of, beside what its writer keeps: nothing.
-template <typename Value>
-class Newest {
+/// The newest announcement of each distribution. May be shared between threads.
+class NewestAnnouncements {
  public:
-  void keep(const Value&) {}
-  void forget(const Digest&) {}
-  std::vector<Value> all() const { return {}; }
-};
+  struct Kept {
+    Announcement announcement;
+    std::uint64_t number = 0;  ///< another one each time, from 1 on
+  };
 
-/// The newest announcement of each distribution.
-template <>
-class Newest<Announcement> {
- public:
   void keep(const Announcement& announcement) {
     const std::lock_guard lock(mutex_);
-    newest_.insert_or_assign(announcement.distribution_id, announcement);
+    newest_.insert_or_assign(announcement.distribution_id, Kept{announcement, ++last_number_});
   }
-  void forget(const Digest& distribution_id) {
+  /// \return what was announced last.
+  std::optional<Announcement> forget(const Digest& distribution_id) {
     const std::lock_guard lock(mutex_);
-    newest_.erase(distribution_id);
+    const auto forgotten = newest_.extract(distribution_id);
+    return forgotten ? std::optional(forgotten.mapped().announcement) : std::nullopt;
+  }
+  std::optional<Kept> find(const Digest& distribution_id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = newest_.find(distribution_id);
+    return found == newest_.end() ? std::nullopt : std::optional(found->second);
+  }
+  std::uint64_t number(const Digest& distribution_id) const {  ///< 0: not announced
+    const std::lock_guard lock(mutex_);
+    const auto found = newest_.find(distribution_id);
+    return found == newest_.end() ? 0 : found->second.number;
   }
   std::vector<Announcement> all() const {
     const std::lock_guard lock(mutex_);
     std::vector<Announcement> all;
-    for (const auto& [id, announcement] : newest_)
-      all.push_back(announcement);
+    for (const auto& [id, kept] : newest_)
+      all.push_back(kept.announcement);
     return all;
   }
 
  private:
-  mutable std::mutex mutex_;  // guards newest_
-  std::map<Digest, Announcement> newest_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::map<Digest, Kept> newest_;
+  std::uint64_t last_number_ = 0;
 };
+
+kinship_wire_Announcement key_of(const Digest& distribution_id) {
+  kinship_wire_Announcement key{};
+  std::copy(distribution_id.bytes.begin(), distribution_id.bytes.end(),
+            std::begin(key.distribution_id));
+  return key;
+}
+
+/// Sends that an announcement is withdrawn, and forgets it.
+void dispose(const Entity& writer, const Digest& distribution_id) {
+  const kinship_wire_Announcement key = key_of(distribution_id);
+  dds_dispose(writer.get(), &key);
+  dds_unregister_instance(writer.get(), &key);
+}
 
 }  // namespace
 
 template <typename Publication>
 class Publisher<Publication>::Implementation {
+  static constexpr bool kIsKept = std::same_as<Value, Announcement>;
+
  public:
   Implementation(const Participant& participant, WaitLoop& loop, MayHear may_hear)
       : directory_(participant.options().directory), may_hear_(std::move(may_hear)) {
@@ -72,38 +96,62 @@ class Publisher<Publication>::Implementation {
     }
     clients_.emplace(participant, loop, *topic_, topic.name, std::move(topic.qos));
     clients_->on_new([this](const std::string& name, const Entity& writer) {
-      for (const Value& value : newest_.all())
-        tell(name, writer, value);
+      if constexpr (kIsKept)
+        for (const Announcement& announcement : newest_.all())
+          bring_up_to_date(name, writer, announcement);
     });
   }
 
   void publish(const Value& value) {
     if (writer_)
       return write(*writer_, value);
-    newest_.keep(value);
-    clients_->for_each(
-        [&](const std::string& name, const Entity& writer) { tell(name, writer, value); });
+    if constexpr (kIsKept)
+      newest_.keep(value);
+    clients_->for_each([&](const std::string& name, const Entity& writer) {
+      if constexpr (kIsKept)
+        bring_up_to_date(name, writer, value);
+      else if (hears(name, value))
+        write(writer, value);
+    });
   }
 
-  /// Sends and forgets an instance, in every client's writer.
-  void dispose(const void* key) {
-    const auto forget = [key](const Entity& writer) {
-      dds_dispose(writer.get(), key);
-      dds_unregister_instance(writer.get(), key);
-    };
+  /// Of announcements only.
+  void withdraw(const Digest& distribution_id) {
     if (writer_)
-      forget(*writer_);
-    else
-      clients_->for_each([&](const std::string&, const Entity& writer) { forget(writer); });
+      return dispose(*writer_, distribution_id);
+    if constexpr (kIsKept)
+      if (const auto gone = newest_.forget(distribution_id))
+        clients_->for_each([&](const std::string& name, const Entity& writer) {
+          bring_up_to_date(name, writer, *gone);
+        });
   }
-
-  Newest<Value>& newest() noexcept { return newest_; }
 
  private:
-  void tell(const std::string& name, const Entity& writer, const Value& value) const {
+  bool hears(const std::string& name, const Value& value) const {
     const auto caller = directory_ ? directory_(name) : Result<Caller>(Error{});
-    if (caller && (!may_hear_ || may_hear_(*caller, value)))
-      write(writer, value);
+    return caller && (!may_hear_ || may_hear_(*caller, value));
+  }
+
+  /// Tells a client what is newest of a distribution. Others may do so at the same time: who has
+  /// written looks whether that is still so, and writes again if not. So what is out of date is
+  /// never written last, and no lock is held across a call of Cyclone DDS. \param announcement  of
+  /// the distribution; what is withdrawn, if it is.
+  template <typename Kept>
+  void bring_up_to_date(const std::string& name, const Entity& writer, Kept announcement) const {
+    const Digest id = announcement.distribution_id;
+    std::uint64_t told = 0;
+    do {
+      const auto newest = newest_.find(id);
+      told = newest ? newest->number : 0;
+      if (newest)
+        announcement = newest->announcement;
+      if (!hears(name, announcement))
+        continue;
+      if (newest)
+        write(writer, announcement);
+      else
+        dispose(writer, id);
+    } while (newest_.number(id) != told);
   }
 
   static void write(const Entity& writer, const Value& value) {
@@ -116,7 +164,7 @@ class Publisher<Publication>::Implementation {
   std::optional<Entity> topic_;
   std::optional<Entity> writer_;          // without security
   std::optional<ClientWriters> clients_;  // with security
-  Newest<Value> newest_;
+  NewestAnnouncements newest_;            // what a client that comes late is told; with security
 };
 
 template <typename Publication>
@@ -137,12 +185,8 @@ void Publisher<Publication>::publish(const Value& value) const noexcept {
 template <typename Publication>
 void Publisher<Publication>::withdraw(const Digest& distribution_id)
     const noexcept requires std::same_as<Publication, codec::AnnouncementPublication> {
-  kinship_wire_Announcement key{};
-  std::copy(distribution_id.bytes.begin(), distribution_id.bytes.end(),
-            std::begin(key.distribution_id));
   try {
-    implementation_->newest().forget(distribution_id);
-    implementation_->dispose(&key);
+    implementation_->withdraw(distribution_id);
   } catch (const std::exception&) {  // out of memory: who comes late hears of it once more
   }
 }

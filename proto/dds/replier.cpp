@@ -7,6 +7,7 @@
 
 #include "proto/dds/fair_queue.hpp"
 #include "proto/dds/loan.hpp"
+#include "proto/dds/refusal_allowance.hpp"
 #include "proto/dds/reply_line.hpp"
 
 namespace kinship::dds {
@@ -127,24 +128,26 @@ class Replier<Conversation>::Implementation {
       unknown.client = head.client_id.text();
       sender = &unknown;
     }
-    // A flood is mostly this, before each request that is served.
-    if (!waiting_.has_room(sender->client))
+    const auto opening = waiting_.opening_for(sender->client, head);
+    if (!opening)
       return;
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
-    // may not ask at all is told so in its turn.
+    // may not ask at all is told so in its turn, and what he sends is not decoded.
     const ReplyLine::Place place{sender->name, head};
-    if (line_->is_being_answered(place) || waiting_.has(sender->client, head))
+    if (line_->is_being_answered(place))
       return;
-    if (const auto caller = caller_of(*sender); caller && is_refused(place, *caller, wire))
+    const Result<Caller> caller = caller_of(*sender);
+    if (caller ? is_refused(place, *caller, wire)
+               : !refusals_.take(sender->client, RefusalAllowance::Clock::now()))
       return;
-    if (waiting_.admit(sender->client, head))
-      waiting_.push(sender->client, head, {*sender, decoded(wire)});
+    waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())});
   }
 
   /// \return why the sender is refused if it is.
   Result<Caller> caller_of(const Sender& sender) const {
     if (!has_security_)
-      return Caller{.client = sender.client, .is_local = sender.is_local};
+      return Caller{
+          .client = sender.client, .role = AccessRole::Admin, .is_local = sender.is_local};
     if (!directory_)
       return Error{ErrorCode::Internal, "the server knows no clients"};
     Result<Caller> caller = directory_(sender.name);
@@ -204,6 +207,7 @@ class Replier<Conversation>::Implementation {
   Handler handler_;
   Gate gate_;
   FairQueue<Waiting> waiting_{kWaitingRequests};
+  RefusalAllowance refusals_;
 };
 
 template <typename Conversation>

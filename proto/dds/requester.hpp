@@ -25,8 +25,7 @@ class Requester {
   /// Sends the request and waits for its reply. Sends it again after 100 ms, 300 ms, then every
   /// second, and whenever a server appears: requests are idempotent.
   /// \return the reply; InvalidInput or TooLarge if the request breaks a rule, or if the role in
-  /// the
-  ///         participant's credentials has no part in the conversation (nothing is sent);
+  ///         the participant's credentials has no part in the conversation (nothing is sent);
   ///         Unavailable if nobody answered until the deadline or cancel() was called; Internal
   ///         if the reply breaks a rule.
   Result<typename Conversation::Reply> call(const typename Conversation::Request& request,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "proto/dds/network_interface.hpp"
-#include "proto/security/client_record.hpp"
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/types/uuid.hpp"
 
@@ -64,7 +64,7 @@ std::optional<std::string> client_of_partitions(const dds_qos* qos) {
   for (std::uint32_t i = 0; i < count; ++i)
     dds_free(partitions[i]);
   dds_free(partitions);
-  if (!name || security::check_client_name(*name))
+  if (!name || !security::read_certificate_name(*name))
     return std::nullopt;
   return name;
 }
@@ -96,7 +96,7 @@ std::optional<Sender> Senders::look_up(const Entity& reader, std::uint64_t write
   const std::optional<std::string> name = client_of_partitions(endpoint->qos);
   if (!name)
     return std::nullopt;
-  return Sender{.client = *name, .name = *name, .is_local = is_here};
+  return Sender{.client = security::client_of(*name), .name = *name, .is_local = is_here};
 }
 
 bool Senders::is_local(std::uint64_t participant) const {

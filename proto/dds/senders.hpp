@@ -14,10 +14,10 @@ namespace kinship::dds {
 
 /// Who writes requests, as far as DDS knows it and not the request.
 struct Sender {
-  /// Name in its certificate; without security the identifier of its participant, which is another
+  /// The client's name; without security the identifier of its participant, which is another
   /// one in each process.
   std::string client;
-  std::string name = {};  ///< in its certificate; empty without security
+  std::string name = {};  ///< common name of its certificate; empty without security
   /// All of its participant's addresses are of this machine. Without security it says them itself.
   bool is_local = false;
 };
@@ -43,7 +43,8 @@ class Senders {
   std::unordered_map<std::uint64_t, Sender> known_;  // by writer
 };
 
-/// The client whose partition, and no other, is in the QoS of a reader or writer.
+/// The common name of the client's certificate whose partition, and no other, is in the QoS of a
+/// reader or writer.
 std::optional<std::string> client_of_partitions(const dds_qos* qos);
 
 /// Whether all addresses are of this machine: the form of Cyclone DDS, "udp/10.0.0.5:7411,...", or

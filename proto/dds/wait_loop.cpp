@@ -39,9 +39,13 @@ class WaitLoop::Implementation {
     sources_.push_back({std::move(condition), std::move(on_data), false});
   }
 
+  void every(Clock::duration period, std::function<void()> on_time) {
+    timers_.push_back({period, std::move(on_time), Clock::now() + period});
+  }
+
   void run(const std::function<Clock::time_point()>& on_wake) {
     while (!stopped_) {
-      const Clock::time_point next = on_wake();
+      const Clock::time_point next = std::min(on_wake(), call_timers());
       if (stopped_)
         return;
       const bool has_more =
@@ -74,6 +78,25 @@ class WaitLoop::Implementation {
         sources_[static_cast<std::size_t>(ready[i])].has_more = true;
   }
 
+  /// \return when the next one is due.
+  Clock::time_point call_timers() {
+    Clock::time_point next = Clock::time_point::max();
+    for (Timer& timer : timers_) {
+      if (timer.due <= Clock::now()) {
+        timer.on_time();
+        timer.due = Clock::now() + timer.period;
+      }
+      next = std::min(next, timer.due);
+    }
+    return next;
+  }
+
+  struct Timer {
+    Clock::duration period;
+    std::function<void()> on_time;
+    Clock::time_point due;
+  };
+
   struct Source {
     Entity condition;
     std::function<bool()> on_data;
@@ -83,6 +106,7 @@ class WaitLoop::Implementation {
   Entity waitset_;
   Entity wake_up_;
   std::vector<Source> sources_;
+  std::vector<Timer> timers_;
   std::atomic<bool> stopped_ = false;
 };
 
@@ -98,6 +122,10 @@ void WaitLoop::run(const std::function<Clock::time_point()>& on_wake) {
 void WaitLoop::wake() { implementation_->wake(); }
 
 void WaitLoop::stop() { implementation_->stop(); }
+
+void WaitLoop::every(Clock::duration period, std::function<void()> on_time) {
+  implementation_->every(period, std::move(on_time));
+}
 
 void WaitLoop::attach(const Entity& reader, std::function<bool()> on_data) {
   implementation_->attach(reader, std::move(on_data));

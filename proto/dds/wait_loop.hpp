@@ -34,6 +34,10 @@ class WaitLoop {
   /// long as the loop runs.
   void attach(const Entity& reader, std::function<bool()> on_data);
 
+  /// For repliers and publishers: `on_time` is called on the loop's thread about every `period`.
+  /// Call before run().
+  void every(Clock::duration period, std::function<void()> on_time);
+
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;

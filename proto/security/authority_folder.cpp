@@ -4,7 +4,7 @@
 #include <array>
 
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {
@@ -26,6 +26,10 @@ Authority make_new_authority(std::chrono::sys_seconds now) {
                                             .validity = valid_for(kAuthorityDays, now)},
                                            *key);
   return {std::move(key), std::move(certificate)};
+}
+
+bool is_key_of(const std::filesystem::path& file, x509_st& certificate) {
+  return belongs_to(*key_from_pem(read_file(file), file.string()), certificate);
 }
 
 /// The key of `one`, vouched for by `other`, as long as both are valid.
@@ -63,7 +67,7 @@ std::vector<Certificate> AuthorityFolder::trusted() const {
 
 Key AuthorityFolder::key_of(x509_st& certificate) const {
   // By what they are for, not by their names: so a change that was interrupted is no trouble.
-  const std::array<std::filesystem::path, 4> files = {key_, folder_ / "ca.key", previous_key_file(),
+  const std::array<std::filesystem::path, 4> files = {key_, key_file(), previous_key_file(),
                                                       next_key_file()};
   for (const std::filesystem::path& file : files) {
     if (file.empty() || !std::filesystem::exists(file))
@@ -71,36 +75,30 @@ Key AuthorityFolder::key_of(x509_st& certificate) const {
     if (Key key = key_from_pem(read_file(file), file.string()); belongs_to(*key, certificate))
       return key;
   }
-  throw Failure(ErrorCode::NotFound,
-                (key_.empty() ? (folder_ / "ca.key").string() : key_.string()) +
-                    ": is not there, or not the key of '" + common_name(certificate) +
-                    "'; say where that is kept with --authority-key FILE");
+  throw Failure(ErrorCode::NotFound, (key_.empty() ? key_file().string() : key_.string()) +
+                                         ": is not there, or not the key of '" +
+                                         common_name(certificate) +
+                                         "'; say where that is kept with --authority-key FILE");
 }
 
 Authority AuthorityFolder::authority(std::size_t number) const {
   auto certificates = trusted();
   Key key = key_of(*certificates.at(number));
   Authority authority{std::move(key), std::move(certificates.at(number))};
-  if (certificates.size() > 1) {
-    auto crossed = certificates_from_pem(read_file(crossed_file()), crossed_file().string());
-    if (crossed.size() != certificates.size())
+  if (certificates.size() > 1 && number == 0) {
+    authority.crossed = certificates_from_pem(read_file(crossed_file()), crossed_file().string());
+    if (authority.crossed.size() != 1)
       throw Failure(ErrorCode::InvalidInput,
-                    crossed_file().string() + ": must have two certificates");
-    authority.crossed.push_back(std::move(crossed.at(number)));
+                    crossed_file().string() + ": must have one certificate");
   }
   return authority;
 }
 
-Authority AuthorityFolder::for_clients() const { return authority(0); }
-
-Authority AuthorityFolder::for_server() const { return authority(trusted().size() - 1); }
-
-std::vector<Certificate> AuthorityFolder::trusted_by(const Authority& authority) const {
-  auto certificates = trusted();
-  const std::string first = fingerprint(*authority.certificate);
-  std::stable_partition(certificates.begin(), certificates.end(),
-                        [&](const Certificate& one) { return fingerprint(*one) == first; });
-  return certificates;
+Vouchers AuthorityFolder::vouchers(std::size_t issuer) const {
+  Vouchers vouchers{authority(issuer), authority(0), trusted()};
+  const auto first = vouchers.trusted.begin();
+  std::rotate(first, first + static_cast<std::ptrdiff_t>(issuer), vouchers.trusted.end());
+  return vouchers;
 }
 
 void AuthorityFolder::add_second(std::chrono::sys_seconds now) {
@@ -109,18 +107,44 @@ void AuthorityFolder::add_second(std::chrono::sys_seconds now) {
                   list_file().string() +
                       ": has two authorities already; the previous one is retired by: kinshipd "
                       "secure retire-authority");
-  const Authority previous = for_clients();
+  name_keys();
+  const Authority previous = authority(0);
   const Authority next = make_new_authority(now);
-  std::filesystem::remove(next_key_file());  // of a change that was interrupted: no one's yet
   write_new_file(next_key_file(), to_pem(*next.key), Readers::Owner);
-  replace_file(crossed_file(),
-               to_pem(*cross(next, previous, now)) + to_pem(*cross(previous, next, now)),
-               Readers::Everybody);
+  // Never the other way round: with the previous key vouched for, who has it could sign anybody any
+  // permissions long after it was retired.
+  replace_file(crossed_file(), to_pem(*cross(next, previous, now)), Readers::Everybody);
   replace_file(list_file(), to_pem(*next.certificate) + to_pem(*previous.certificate),
                Readers::Everybody);
-  if (std::filesystem::exists(folder_ / "ca.key"))
-    std::filesystem::rename(folder_ / "ca.key", previous_key_file());
-  std::filesystem::rename(next_key_file(), folder_ / "ca.key");
+  name_keys();
+}
+
+/// Gives keys the names of what they are for, also after a change that was interrupted.
+void AuthorityFolder::name_keys() const {
+  if (!std::filesystem::exists(next_key_file()))
+    return;
+  const auto certificates = trusted();
+  if (!is_key_of(next_key_file(), *certificates.front())) {
+    std::filesystem::remove(next_key_file());  // nobody's: it never came into the list
+    return;
+  }
+  if (std::filesystem::exists(key_file())) {
+    if (std::filesystem::exists(previous_key_file()))
+      throw Failure(ErrorCode::Conflict, previous_key_file().string() +
+                                             ": is where ca.key has to go; keep it elsewhere");
+    std::filesystem::rename(key_file(), previous_key_file());
+  }
+  std::filesystem::rename(next_key_file(), key_file());
+}
+
+/// Keeps the key of an authority that is to be retired under a name of its own.
+/// \return that; empty if the key is kept elsewhere.
+std::filesystem::path AuthorityFolder::set_aside(x509_st& certificate) const {
+  const std::filesystem::path kept = folder_ / ("retired-" + fingerprint(certificate) + ".key");
+  for (const auto& file : {key_file(), previous_key_file(), next_key_file()})
+    if (std::filesystem::exists(file) && is_key_of(file, certificate))
+      std::filesystem::rename(file, kept);
+  return std::filesystem::exists(kept) ? kept : std::filesystem::path();
 }
 
 std::filesystem::path AuthorityFolder::retire_previous() {
@@ -130,15 +154,23 @@ std::filesystem::path AuthorityFolder::retire_previous() {
                   list_file().string() +
                       ": has one authority only; another one is made by: kinshipd secure "
                       "renew-authority");
-  const std::string retired = fingerprint(*certificates.back());
+  const std::filesystem::path kept = set_aside(*certificates.back());
+  name_keys();
   certificates.pop_back();
   replace_file(list_file(), list_pem(certificates), Readers::Everybody);
   std::filesystem::remove(crossed_file());
-  if (!std::filesystem::exists(previous_key_file()))
-    return {};
-  const std::filesystem::path kept = folder_ / ("retired-" + retired + ".key");
-  std::filesystem::rename(previous_key_file(), kept);
   return kept;
+}
+
+void AuthorityFolder::replace(std::chrono::sys_seconds now) {
+  for (const Certificate& certificate : trusted())
+    set_aside(*certificate);
+  name_keys();
+  const Authority next = make_new_authority(now);
+  write_new_file(next_key_file(), to_pem(*next.key), Readers::Owner);
+  replace_file(list_file(), to_pem(*next.certificate), Readers::Everybody);
+  std::filesystem::remove(crossed_file());
+  name_keys();
 }
 
 }  // namespace kinship::security

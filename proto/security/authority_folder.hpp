@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "proto/security/signed_document.hpp"
+#include "proto/security/credentials.hpp"
 
 namespace kinship::security {
 
@@ -13,9 +13,14 @@ namespace kinship::security {
 ///
 ///     ca.pem       authorities that are trusted, first the one that issues
 ///     ca.key       its key; may be kept elsewhere
-///     crossed.pem  while there are two: each of them, issued by the other
+///     crossed.pem  while there are two: the first one's key, vouched for by the second; nothing
+///                  vouches for the second one's key, so that it counts for nothing once retired
 ///     previous.key while there are two: the key of the second, which still issues the server's
 ///                  certificate
+///     retired-F.key that of the authority with fingerprint F
+///
+/// A change that was interrupted may be made again, and no key of a trusted authority is lost by
+/// it.
 ///
 /// Each function throws Failure that names the file and what to do.
 class AuthorityFolder {
@@ -31,13 +36,12 @@ class AuthorityFolder {
   std::vector<Certificate> trusted() const;
   bool has_two() const { return trusted().size() > 1; }
 
-  /// Who issues the certificates of clients.
-  Authority for_clients() const;
-  /// Who issues that of the server, which clients with files by either authority have to trust:
-  /// while there are two, the previous one.
-  Authority for_server() const;
-  /// trusted(), as a participant wants it that the authority vouches for: that one first.
-  std::vector<Certificate> trusted_by(const Authority& authority) const;
+  /// Who vouches for clients: the one that issues. It signs everybody's documents: while there are
+  /// two, who trusts one of them only can verify these.
+  Vouchers for_clients() const { return vouchers(0); }
+  /// For the server, whose certificate clients with files by either authority have to trust: while
+  /// there are two, the previous one issues it.
+  Vouchers for_server() const { return vouchers(trusted().size() - 1); }
 
   /// A second authority, which issues from now on.
   /// \throws Failure(Conflict) if there are two.
@@ -48,14 +52,21 @@ class AuthorityFolder {
   /// \throws Failure(Conflict) if there is one only.
   std::filesystem::path retire_previous();
 
+  /// A new authority in the place of all that there are, whose keys are not asked for.
+  void replace(std::chrono::sys_seconds now);
+
  private:
   std::filesystem::path list_file() const { return folder_ / "ca.pem"; }
+  std::filesystem::path key_file() const { return folder_ / "ca.key"; }
   std::filesystem::path crossed_file() const { return folder_ / "crossed.pem"; }
   std::filesystem::path previous_key_file() const { return folder_ / "previous.key"; }
   std::filesystem::path next_key_file() const { return folder_ / "next.key"; }
 
   Key key_of(x509_st& certificate) const;
+  void name_keys() const;
+  std::filesystem::path set_aside(x509_st& certificate) const;
   Authority authority(std::size_t number) const;
+  Vouchers vouchers(std::size_t issuer) const;
 
   std::filesystem::path folder_;
   std::filesystem::path key_;

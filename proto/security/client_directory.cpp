@@ -4,14 +4,15 @@
 
 #include <tuple>
 
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {
 
 constexpr std::chrono::seconds kFreshFor{1};
-constexpr std::size_t kMaxEntries = 100'000;  // names come from certificates; a bound all the same
+constexpr std::size_t kMaxEntries = 100'000;  // of clients that were removed, too
 
 /// What tells one content of a file from another; all zeros: there is none.
 using FileMark = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
@@ -62,6 +63,11 @@ Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
     return found->second->record;
   const std::filesystem::path file = folder_ / (name + ".toml");
   const FileMark mark = mark_of(file);  // before it is read: what changes meanwhile is read again
+  if (mark == FileMark()) {             // not kept: whoever has a certificate can ask for any name
+    if (found != entries_.end())
+      entries_.erase(found);
+    return read(file, name);
+  }
   if (found != entries_.end() && found->second->mark == mark) {
     found->second->checked = now;
     return found->second->record;
@@ -73,8 +79,12 @@ Result<ClientRecord> ClientDirectory::find(const std::string& name) const {
       .first->second->record;
 }
 
-Result<Caller> ClientDirectory::caller(const std::string& name,
+Result<Caller> ClientDirectory::caller(const std::string& common_name,
                                        std::chrono::sys_seconds now) const {
+  const Result<CertificateName> certificate = read_certificate_name(common_name);
+  if (!certificate)
+    return certificate.error();
+  const std::string& name = certificate->client;
   const Result<ClientRecord> record = find(name);
   if (!record)
     return record.error();
@@ -84,6 +94,11 @@ Result<Caller> ClientDirectory::caller(const std::string& name,
   if (record->expires <= now)
     return Error{ErrorCode::Unavailable,
                  "client '" + name + "': expired at " + time_text(record->expires)};
+  if (certificate->generation < record->oldest_accepted)
+    return Error{ErrorCode::Unavailable,
+                 "client '" + name + "': these credentials were replaced (" +
+                     std::to_string(certificate->generation) + " of " +
+                     std::to_string(record->generation) + "), the newest ones are accepted only"};
   return caller_of(*record);
 }
 

@@ -30,8 +30,9 @@ class ClientDirectory {
   ///         cannot be: who has no valid record has no rights.
   Result<ClientRecord> find(const std::string& name) const;
 
-  /// What a request of the client may do: its record's rights, or why none at `now`.
-  Result<Caller> caller(const std::string& name, std::chrono::sys_seconds now) const;
+  /// What a request with a certificate may do: its client's rights, or why none at `now`.
+  /// \param common_name  see CertificateName.
+  Result<Caller> caller(const std::string& common_name, std::chrono::sys_seconds now) const;
 
  private:
   struct Entry;

@@ -3,16 +3,17 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "proto/security/access_role.hpp"
 #include "proto/security/credentials.hpp"
-#include "proto/security/time_text.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {
 
-constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxNameBytes = 56;
 constexpr std::size_t kMaxPatternBytes = 128;
 
 bool is_letter_or_digit(char letter) {
@@ -86,6 +87,13 @@ class RecordFields {
     return *value;
   }
 
+  std::uint32_t generation(std::string_view field) const {
+    const auto value = table_[field].value<std::int64_t>();
+    if (!value || *value < 1 || *value > std::numeric_limits<std::uint32_t>::max())
+      refuse(field, "must be there, as a number from 1 on");
+    return static_cast<std::uint32_t>(*value);
+  }
+
   bool has(std::string_view field) const { return table_.get(field) != nullptr; }
 
   [[noreturn]] void refuse(std::string_view field, const std::string& reason) const {
@@ -98,12 +106,18 @@ class RecordFields {
   toml::table table_;
 };
 
+std::optional<Error> check_fingerprint(std::string_view text) {
+  if (consists_of(text, kMaxNameBytes, ""))
+    return std::nullopt;
+  return invalid_input("'" + cut_text(text, kMaxNameBytes) + "' is no fingerprint");
+}
+
 }  // namespace
 
 std::optional<Error> check_client_name(std::string_view name) {
   if (!consists_of(name, kMaxNameBytes, "_-"))
     return invalid_input("name '" + cut_text(name, kMaxNameBytes) +
-                         "' is not 1 to 64 of letters, digits, _ and -");
+                         "' is not 1 to 56 of letters, digits, _ and -");
   if (name == kServerName)
     return invalid_input("name 'server' is the server's own");
   return std::nullopt;
@@ -123,7 +137,10 @@ std::string record_text(const ClientRecord& record) {
   text += "tasks = " + list_text(record.tasks) + "\n";
   text += "robots = " + list_text(record.robots) + "\n";
   text += "serial = \"" + record.serial + "\"\n";
+  text += "generation = " + std::to_string(record.generation) + "\n";
+  text += "oldest_accepted = " + std::to_string(record.oldest_accepted) + "\n";
   text += "authority = \"" + record.authority + "\"\n";
+  text += "trusted = " + list_text(record.trusted) + "\n";
   text += "expires = " + time_text(record.expires) + "\n";
   if (record.revoked)
     text += "revoked = " + time_text(*record.revoked) + "\n";
@@ -144,7 +161,10 @@ Result<ClientRecord> read_record(std::string_view text, const std::string& what)
     record.tasks = fields.texts("tasks", check_task_pattern);
     record.robots = fields.texts("robots", check_label);
     record.serial = fields.text("serial");
+    record.generation = fields.generation("generation");
+    record.oldest_accepted = fields.generation("oldest_accepted");
     record.authority = fields.text("authority");
+    record.trusted = fields.texts("trusted", check_fingerprint);
     record.expires = fields.time("expires");
     if (fields.has("revoked"))
       record.revoked = fields.time("revoked");

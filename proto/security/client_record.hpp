@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,16 +17,19 @@ namespace kinship::security {
 struct ClientRecord {
   std::string name;
   AccessRole role = AccessRole::Robot;
-  std::vector<std::string> tasks = {};   ///< patterns (`*`, `?`) it is narrowed to; empty: all
-  std::vector<std::string> robots = {};  ///< labels it is narrowed to; empty: all
-  std::string serial = {};               ///< of its newest certificate, hexadecimal
-  std::string authority = {};            ///< fingerprint of the authority that issued it
+  std::vector<std::string> tasks = {};    ///< patterns (`*`, `?`) it is narrowed to; empty: all
+  std::vector<std::string> robots = {};   ///< labels it is narrowed to; empty: all
+  std::string serial = {};                ///< of its newest certificate, hexadecimal
+  std::uint32_t generation = 1;           ///< of that: each renewal has the next (CertificateName)
+  std::uint32_t oldest_accepted = 1;      ///< generation: those before are refused
+  std::string authority = {};             ///< fingerprint of the authority that issued it
+  std::vector<std::string> trusted = {};  ///< fingerprints of those that it takes for authorities
   std::chrono::sys_seconds expires = {};
   std::optional<std::chrono::sys_seconds> revoked = {};  ///< when
 };
 
-/// What is wrong with the name of a client; nothing if it is 1 to 64 of [A-Za-z0-9_-] and not that
-/// of the server.
+/// What is wrong with the name of a client; nothing if it is 1 to 56 of [A-Za-z0-9_-] and not that
+/// of the server. A certificate has 64 for it and its generation.
 std::optional<Error> check_client_name(std::string_view name);
 
 /// What is wrong with a pattern of tasks: 1 to 128 of what tasks are made of, and * and ?.

@@ -3,28 +3,28 @@
 #include <sys/stat.h>
 #include <toml++/toml.h>
 
+#include "proto/security/certificate_name.hpp"
 #include "proto/security/governance.hpp"
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {
 
-void write_files(const CredentialFiles& files, const CredentialWish& wish,
-                 const Authority& authority, const std::vector<Certificate>& trusted,
+void write_files(const CredentialFiles& files, const CredentialWish& wish, const Vouchers& vouchers,
                  const Key& key, x509_st& certificate) {
   write_new_file(files.key, to_pem(*key), Readers::Owner);
   write_new_file(files.certificate, to_pem(certificate), Readers::Everybody);
   std::string all;
   make_private_folder(files.trusted);
-  for (const Certificate& one : trusted) {
+  for (const Certificate& one : vouchers.trusted) {
     all += to_pem(*one);
     write_new_file(files.trusted / (fingerprint(*one) + ".pem"), to_pem(*one), Readers::Everybody);
   }
   write_new_file(files.authorities, all, Readers::Everybody);
-  write_new_file(files.governance, sign_document(governance_text(), authority, wish.validity),
+  write_new_file(files.governance, sign_document(governance_text(), vouchers.signer, wish.validity),
                  Readers::Everybody);
-  write_new_file(files.permissions, sign_document(wish.permissions, authority, wish.validity),
+  write_new_file(files.permissions, sign_document(wish.permissions, vouchers.signer, wish.validity),
                  Readers::Everybody);
   write_new_file(files.identity, "name = \"" + wish.name + "\"\nrole = \"" + wish.role + "\"\n",
                  Readers::Everybody);
@@ -75,10 +75,11 @@ Credentials read_checked(const CredentialFiles& files, std::chrono::sys_seconds 
                           .expires = expiry(certificate),
                           .authorities = authorities.size()};
   if (credentials.expires <= now)
-    refuse(files.certificate,
-           "expired at " + time_text(credentials.expires) + "; new ones: kinshipd secure renew" +
-               (credentials.name == kServerName ? std::string("-server")
-                                                : " " + credentials.name + " --out FOLDER"));
+    refuse(files.certificate, "expired at " + time_text(credentials.expires) +
+                                  "; new ones: kinshipd secure renew" +
+                                  (credentials.name == kServerName
+                                       ? std::string("-server")
+                                       : " " + client_of(credentials.name) + " --out FOLDER"));
   if (const auto error = check_issued(certificate, authorities, now))
     refuse(files.certificate, error->message);
   check_document(files.governance, *authorities.front());
@@ -117,20 +118,20 @@ std::optional<std::string> expiry_warning(const Credentials& credentials,
                            : days == 1                ? "expire in 1 day"
                                        : "expire in " + std::to_string(days) + " days";
   const bool is_server = credentials.name == kServerName;
-  return "the credentials of '" + credentials.name + "' " + left + ", at " +
+  return "the credentials of '" + client_of(credentials.name) + "' " + left + ", at " +
          time_text(credentials.expires) + "; new ones: kinshipd secure renew" +
-         (is_server ? "-server" : " " + credentials.name + " --out FOLDER");
+         (is_server ? "-server" : " " + client_of(credentials.name) + " --out FOLDER");
 }
 
 Certificate write_credentials(const std::filesystem::path& folder, const CredentialWish& wish,
-                              const Authority& authority, const std::vector<Certificate>& trusted) {
+                              const Vouchers& vouchers) {
   const Key key = make_key();
   Certificate certificate =
       issue({.name = wish.name, .use = Use::Identity, .validity = wish.validity}, *key,
-            *authority.certificate, *authority.key);
+            *vouchers.issuer.certificate, *vouchers.issuer.key);
   make_private_folder(folder);
   try {
-    write_files(CredentialFiles(folder), wish, authority, trusted, key, *certificate);
+    write_files(CredentialFiles(folder), wish, vouchers, key, *certificate);
   } catch (...) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))

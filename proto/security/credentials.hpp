@@ -40,7 +40,7 @@ struct CredentialFiles {
 
 /// What a credentials folder says, without its key.
 struct Credentials {
-  std::string name;  ///< in the certificate
+  std::string name;  ///< common name of the certificate: CertificateName, or "server"
   std::string role;  ///< of a client, or "server"
   std::chrono::sys_seconds expires;
   std::size_t authorities = 0;  ///< trusted: one, or two while authorities change
@@ -65,13 +65,18 @@ struct CredentialWish {
   std::string permissions;  ///< text, unsigned
 };
 
+/// Who vouches for credentials.
+struct Vouchers {
+  Authority issuer;                  ///< of the certificate
+  Authority signer;                  ///< of the documents
+  std::vector<Certificate> trusted;  ///< by whoever has the folder; first the issuer
+};
+
 /// Writes a credentials folder, which must be empty or not be there yet, with a new key that nobody
 /// else has.
-/// \param trusted  authorities that whoever has the folder trusts; first the one that issues.
-///
 /// \return its certificate.
 /// \throws Failure that names the file; what was written is removed then.
 Certificate write_credentials(const std::filesystem::path& folder, const CredentialWish& wish,
-                              const Authority& authority, const std::vector<Certificate>& trusted);
+                              const Vouchers& vouchers);
 
 }  // namespace kinship::security

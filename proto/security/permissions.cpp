@@ -1,6 +1,6 @@
 #include "proto/security/permissions.hpp"
 
-#include "proto/security/time_text.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {

@@ -85,8 +85,13 @@ void write_new_file(const std::filesystem::path& file, std::string_view text, Re
                                    readers == Readers::Owner ? kOwner : kAll));
   if (descriptor.get() < 0)
     fail(file, "cannot be made", errno);
-  write_all(descriptor, text, file);
-  sync_folder(file.parent_path());
+  try {
+    write_all(descriptor, text, file);
+    sync_folder(file.parent_path());
+  } catch (...) {  // half of it would take the name from what is to come
+    unlink(file.c_str());
+    throw;
+  }
 }
 
 void replace_file(const std::filesystem::path& file, std::string_view text, Readers readers) {

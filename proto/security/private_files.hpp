@@ -17,7 +17,8 @@ enum class Readers {
   Everybody  ///< 0644, as far as the folder lets them
 };
 
-/// A file that was not there before; what it holds is on the disk then.
+/// A file that was not there before; what it holds is on the disk then. If it cannot be written,
+/// e.g. as the disk is full, nothing is left of it.
 /// \throws Failure(Conflict) if it is there.
 void write_new_file(const std::filesystem::path& file, std::string_view text, Readers readers);
 

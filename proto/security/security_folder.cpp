@@ -8,12 +8,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "proto/security/access_role.hpp"
+#include "proto/security/certificate_name.hpp"
+#include "proto/security/folder_lock.hpp"
 #include "proto/security/permissions.hpp"
 #include "proto/security/private_files.hpp"
-#include "proto/security/time_text.hpp"
 #include "proto/types/names.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::security {
 namespace {
@@ -34,14 +37,14 @@ Validity within(const Authority& authority, std::chrono::days days, std::chrono:
   return validity;
 }
 
-void write_server_credentials(const std::filesystem::path& folder, const Authority& authority,
-                              const std::vector<Certificate>& trusted, const Validity& validity) {
+void write_server_credentials(const std::filesystem::path& folder, const Vouchers& vouchers,
+                              const Validity& validity) {
   write_credentials(folder,
                     {.name = kServerName,
                      .role = kServerName,
                      .validity = validity,
                      .permissions = server_permissions(kServerName, validity)},
-                    authority, trusted);
+                    vouchers);
 }
 
 /// Puts the folder `next` in the place of `folder`, which is never missing meanwhile.
@@ -79,6 +82,7 @@ CredentialList::Row client_row(const std::filesystem::path& file, std::chrono::s
     row.tasks = record.tasks;
     row.robots = record.robots;
     row.authority = record.authority;
+    row.trusted = record.trusted;
     set_expiry(row, record.expires, now);
     if (record.revoked) {
       row.state = "revoked";
@@ -101,11 +105,23 @@ CredentialList::Row server_row(const std::filesystem::path& folder, std::chrono:
     if (certificates.empty() || trusted.empty())
       throw Failure(ErrorCode::InvalidInput, folder.string() + ": a certificate is missing");
     row.authority = fingerprint(*trusted.front());
+    for (const Certificate& one : trusted)
+      row.trusted.push_back(fingerprint(*one));
     set_expiry(row, expiry(*certificates.front()), now);
   } catch (const Failure& failure) {
     row.message = failure.what();
   }
   return row;
+}
+
+/// Names of clients, neither revoked nor expired, of whom `property` holds.
+std::vector<std::string> names_of(const CredentialList& list, bool CredentialList::Row::*property) {
+  std::vector<std::string> names;
+  for (const CredentialList::Row& row : list.credentials)
+    if (row.*property && row.role != kServerName && row.state != "revoked" &&
+        row.state != "expired")
+      names.push_back(row.name);
+  return names;
 }
 
 /// Files that root writes for somebody else's server could not be read by it.
@@ -136,9 +152,8 @@ SecurityFolder SecurityFolder::init(const std::filesystem::path& folder,
   make_private_folder(folder);
   make_private_folder(folder / "clients");
   const AuthorityFolder authority = AuthorityFolder::init(folder / "authority", now);
-  const Authority issuer = authority.for_server();
-  write_server_credentials(folder / "server", issuer, authority.trusted(),
-                           within(issuer, server_days, now));
+  const Vouchers vouchers = authority.for_server();
+  write_server_credentials(folder / "server", vouchers, within(vouchers.issuer, server_days, now));
   return SecurityFolder(folder);
 }
 
@@ -163,17 +178,21 @@ ClientRecord SecurityFolder::record_of(const std::string& name) const {
 ClientRecord SecurityFolder::issue_to(ClientRecord record, std::chrono::days days,
                                       const std::filesystem::path& out,
                                       std::chrono::sys_seconds now) const {
-  const Authority issuer = authority_.for_clients();
-  const Validity validity = within(issuer, days, now);
+  const Vouchers vouchers = authority_.for_clients();
+  const Validity validity = within(vouchers.issuer, days, now);
+  const std::string name = common_name({.client = record.name, .generation = record.generation});
   const Certificate certificate =
       write_credentials(out,
-                        {.name = record.name,
+                        {.name = name,
                          .role = role_name(record.role),
                          .validity = validity,
-                         .permissions = client_permissions(record.name, record.role, validity)},
-                        issuer, authority_.trusted_by(issuer));
+                         .permissions = client_permissions(name, record.role, validity)},
+                        vouchers);
   record.serial = serial_text(*certificate);
-  record.authority = fingerprint(*issuer.certificate);
+  record.authority = fingerprint(*vouchers.issuer.certificate);
+  record.trusted.clear();
+  for (const Certificate& one : vouchers.trusted)
+    record.trusted.push_back(fingerprint(*one));
   record.expires = validity.end;
   return record;
 }
@@ -185,6 +204,7 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
     throw_if(check_task_pattern(pattern));
   for (const std::string& label : client.robots)
     throw_if(check_label(label));
+  const FolderLock lock(folder_);
   if (std::filesystem::exists(record_file(client.name)))
     throw Failure(ErrorCode::Conflict, "client '" + client.name + "': exists already (" +
                                            record_file(client.name).string() +
@@ -206,22 +226,36 @@ ClientRecord SecurityFolder::add(const NewClient& client, const std::filesystem:
 ClientRecord SecurityFolder::renew(const std::string& name, std::chrono::days days,
                                    const std::filesystem::path& out,
                                    std::chrono::sys_seconds now) const {
-  const ClientRecord before = record_of(name);
-  if (before.revoked)
+  const FolderLock lock(folder_);
+  ClientRecord record = record_of(name);
+  if (record.revoked)
     throw Failure(ErrorCode::Conflict, "client '" + name + "': revoked at " +
-                                           time_text(*before.revoked) +
+                                           time_text(*record.revoked) +
                                            "; give what is to come back another name");
-  const ClientRecord record = issue_to(before, days, out, now);
+  ++record.generation;
+  record = issue_to(std::move(record), days, out, now);
   replace_file(record_file(name), record_text(record), Readers::Everybody);
   return record;
 }
 
 ClientRecord SecurityFolder::revoke(const std::string& name, std::chrono::sys_seconds now) const {
+  const FolderLock lock(folder_);
   ClientRecord record = record_of(name);
   if (!record.revoked) {
     record.revoked = now;
     replace_file(record_file(name), record_text(record), Readers::Everybody);
   }
+  return record;
+}
+
+ClientRecord SecurityFolder::revoke_former(const std::string& name) const {
+  const FolderLock lock(folder_);
+  ClientRecord record = record_of(name);
+  if (record.generation == 1)
+    throw Failure(ErrorCode::Conflict,
+                  "client '" + name + "': has its first credentials, there are no former ones");
+  record.oldest_accepted = record.generation;
+  replace_file(record_file(name), record_text(record), Readers::Everybody);
   return record;
 }
 
@@ -235,41 +269,64 @@ CredentialList SecurityFolder::list(std::chrono::sys_seconds now) const {
       list.credentials.push_back(client_row(entry.path(), now));
   std::sort(list.credentials.begin() + 1, list.credentials.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
-  for (CredentialList::Row& row : list.credentials)
+  for (CredentialList::Row& row : list.credentials) {
     row.is_of_previous_authority =
         !row.authority.empty() && row.authority != list.authorities.front().fingerprint;
+    row.trusts_a_retired_authority =
+        std::ranges::any_of(row.trusted, [&](const std::string& trusted) {
+          return std::ranges::find(list.authorities, trusted,
+                                   &CredentialList::Authority::fingerprint) ==
+                 list.authorities.end();
+        });
+  }
   return list;
+}
+
+std::filesystem::path SecurityFolder::replace_server(std::chrono::days days,
+                                                     std::chrono::sys_seconds now) const {
+  const Vouchers vouchers = authority_.for_server();
+  const std::filesystem::path next = folder_ / "server.next";
+  std::filesystem::remove_all(next);  // of a change that was interrupted
+  write_server_credentials(next, vouchers, within(vouchers.issuer, days, now));
+  return replace_folder(server_credentials(), next, now);
 }
 
 std::filesystem::path SecurityFolder::renew_server(std::chrono::days days,
                                                    std::chrono::sys_seconds now) const {
-  const Authority issuer = authority_.for_server();
-  const std::filesystem::path next = folder_ / "server.next";
-  std::filesystem::remove_all(next);  // of a change that was interrupted
-  write_server_credentials(next, issuer, authority_.trusted_by(issuer), within(issuer, days, now));
-  return replace_folder(server_credentials(), next, now);
+  const FolderLock lock(folder_);
+  return replace_server(days, now);
 }
 
 std::filesystem::path SecurityFolder::renew_authority(std::chrono::days server_days,
                                                       std::chrono::sys_seconds now) {
+  const FolderLock lock(folder_);
   authority_.add_second(now);
-  return renew_server(server_days, now);
+  return replace_server(server_days, now);
+}
+
+std::filesystem::path SecurityFolder::replace_authority(std::chrono::days server_days,
+                                                        std::chrono::sys_seconds now) {
+  const FolderLock lock(folder_);
+  authority_.replace(now);
+  return replace_server(server_days, now);
 }
 
 std::vector<std::string> SecurityFolder::clients_of_previous_authority(
     std::chrono::sys_seconds now) const {
-  std::vector<std::string> names;
-  for (const CredentialList::Row& row : list(now).credentials)
-    if (row.is_of_previous_authority && row.role != kServerName && row.state != "revoked" &&
-        row.state != "expired")
-      names.push_back(row.name);
-  return names;
+  return names_of(list(now), &CredentialList::Row::is_of_previous_authority);
+}
+
+std::vector<std::string> SecurityFolder::clients_that_trust_retired(
+    std::chrono::sys_seconds now) const {
+  return names_of(list(now), &CredentialList::Row::trusts_a_retired_authority);
 }
 
 std::filesystem::path SecurityFolder::retire_authority(std::chrono::days server_days,
                                                        std::chrono::sys_seconds now) {
+  const FolderLock lock(folder_);
+  static_cast<void>(authority_.for_clients());  // its key has to be there, before anything changes
   const std::filesystem::path key = authority_.retire_previous();
-  renew_server(server_days, now);
+  replace_server(server_days, now);
   return key;
 }
 

@@ -26,7 +26,8 @@ struct NewClient {
 
 /// The folder of a fleet's security: authority, the server's credentials, records of clients.
 ///
-/// Each function throws Failure that names the thing, its value and what to do.
+/// Each function throws Failure that names the thing, its value and what to do. What changes it may
+/// be called by several processes at once: one waits for the other.
 class SecurityFolder {
  public:
   /// Makes the folder with an authority (10 years) and the server's credentials.
@@ -46,7 +47,8 @@ class SecurityFolder {
   ClientRecord add(const NewClient& client, const std::filesystem::path& out,
                    std::chrono::sys_seconds now) const;
 
-  /// New credentials, with a new key, for a client that there is; those it has stay valid.
+  /// New credentials, with a new key, for a client that there is; those it has stay valid until
+  /// revoke_former().
   /// \throws Failure(Conflict) if it is revoked.
   ClientRecord renew(const std::string& name, std::chrono::days days,
                      const std::filesystem::path& out, std::chrono::sys_seconds now) const;
@@ -54,6 +56,11 @@ class SecurityFolder {
   /// From now on the server refuses the client. Its name stays taken.
   /// \throws Failure(NotFound) if there is no such client.
   ClientRecord revoke(const std::string& name, std::chrono::sys_seconds now) const;
+
+  /// From now on the server takes the client's newest credentials only.
+  /// \throws Failure(NotFound) if there is no such client, Failure(Conflict) if it was never
+  /// renewed.
+  ClientRecord revoke_former(const std::string& name) const;
 
   /// The server and all clients, also those whose record cannot be read.
   CredentialList list(std::chrono::sys_seconds now) const;
@@ -68,12 +75,22 @@ class SecurityFolder {
   std::filesystem::path renew_authority(std::chrono::days server_days,
                                         std::chrono::sys_seconds now);
 
+  /// For an authority whose key others know, or that is lost: a new one in the place of all that
+  /// there are. Clients are shut out, and hear no server, until they have new credentials.
+  /// \return where the credentials that the server had are now.
+  std::filesystem::path replace_authority(std::chrono::days server_days,
+                                          std::chrono::sys_seconds now);
+
   /// Names of clients, neither revoked nor expired, whose credentials the previous authority
   /// issued.
   std::vector<std::string> clients_of_previous_authority(std::chrono::sys_seconds now) const;
+  /// The same of those whose credentials trust an authority that was retired.
+  std::vector<std::string> clients_that_trust_retired(std::chrono::sys_seconds now) const;
 
   /// Ends the time of two authorities: the server is given credentials of the newer one and trusts
-  /// that one only, once it was started anew.
+  /// that one only, once it was started anew. What the previous one's key signs is refused then.
+  /// Clients that were renewed before still take for the server whom the previous one vouches for,
+  /// until they are renewed once more (trusts_a_retired_authority in the list).
   /// \return where the previous authority's key is now; empty if it is kept elsewhere.
   std::filesystem::path retire_authority(std::chrono::days server_days,
                                          std::chrono::sys_seconds now);
@@ -82,6 +99,7 @@ class SecurityFolder {
   std::filesystem::path clients() const { return folder_ / "clients"; }
 
  private:
+  std::filesystem::path replace_server(std::chrono::days days, std::chrono::sys_seconds now) const;
   std::filesystem::path record_file(const std::string& name) const;
   ClientRecord record_of(const std::string& name) const;
   ClientRecord issue_to(ClientRecord record, std::chrono::days days,

@@ -28,7 +28,10 @@ struct CredentialList {
     std::int64_t revoked_ms = 0;  ///< 0: not
     std::string authority = {};   ///< fingerprint of the one that issued them
     bool is_of_previous_authority = false;
-    std::string message = {};  ///< why its file cannot be read
+    std::string message = {};               ///< why its file cannot be read
+    std::vector<std::string> trusted = {};  ///< fingerprints of authorities that these files trust
+    /// Somebody who has that one's key is the server to a client, until it is renewed.
+    bool trusts_a_retired_authority = false;
   };
 
   std::vector<Authority> authorities;  ///< first the one that issues
@@ -53,7 +56,9 @@ inline constexpr std::tuple kFieldsOf<CredentialList::Row>{
     Field{"revoked_ms", &CredentialList::Row::revoked_ms},
     Field{"authority", &CredentialList::Row::authority},
     Field{"is_of_previous_authority", &CredentialList::Row::is_of_previous_authority},
-    Field{"message", &CredentialList::Row::message}};
+    Field{"message", &CredentialList::Row::message},
+    Field{"trusted", &CredentialList::Row::trusted},
+    Field{"trusts_a_retired_authority", &CredentialList::Row::trusts_a_retired_authority}};
 
 template <>
 inline constexpr std::tuple kFieldsOf<CredentialList>{

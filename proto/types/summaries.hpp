@@ -338,6 +338,7 @@ struct ServerStatus {
   std::vector<TroubleCount> troubles = {};
   std::vector<BoundUse> bounds = {};
   std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
+  std::int64_t credentials_expire_ms = 0;  ///< the server's own; 0: it runs without security
   std::optional<UpstreamStatus> upstream = {};  ///< of a site
 };
 
@@ -374,6 +375,7 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"troubles", &ServerStatus::troubles, {.limit = kMaxStatusRows, .may_be_missing = true}},
     Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}},
     Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}},
+    Field{"credentials_expire_ms", &ServerStatus::credentials_expire_ms, {.may_be_missing = true}},
     Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}}};
 
 }  // namespace kinship

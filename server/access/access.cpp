@@ -128,6 +128,9 @@ std::optional<Error> refusal_of_job(const Caller& caller, AdminVerb verb, const 
       std::string(verb == AdminVerb::CancelJob ? "cancel" : "see") + " job '" + job + "'";
   if (!has_role(caller, AccessRole::Operator))
     return refused(caller, act, "it is not its own, which needs role operator");
+  if (is_narrowed(caller))
+    return refused(caller, act,
+                   "it is not its own, which may be about others; " + scope_of(caller));
   return verb == AdminVerb::CancelJob ? refusal_by_place(caller, act) : std::nullopt;
 }
 
@@ -135,6 +138,14 @@ std::optional<Error> refusal_of_registration(const Caller& caller, std::string_v
   if (auto refusal = refusal_of_robots_act(caller, "register robots"))
     return refusal;
   return refusal_of_names(caller, {}, label, "register");
+}
+
+/// In words that do not tell the label.
+std::optional<Error> refusal_of_known_robot(const Caller& caller, std::string_view label) {
+  if (matches_any(caller.robots, label))
+    return std::nullopt;
+  return refused(caller, "register this robot",
+                 "it is known here under another label, and " + scope_of(caller));
 }
 
 std::optional<Error> refusal_of_report(const Caller& caller, std::string_view task,

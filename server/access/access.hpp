@@ -41,6 +41,8 @@ std::optional<Error> refusal_of_job(const Caller& caller, AdminVerb verb, const 
 
 /// Registering, reporting and fetching, by role, task and robot (label).
 std::optional<Error> refusal_of_registration(const Caller& caller, std::string_view label);
+/// Of a robot that is known under this label, whatever the registration calls it.
+std::optional<Error> refusal_of_known_robot(const Caller& caller, std::string_view label);
 std::optional<Error> refusal_of_report(const Caller& caller, std::string_view task,
                                        std::string_view robot);
 std::optional<Error> refusal_of_fetch(const Caller& caller, std::string_view task,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/access/access.hpp"
+#include "server/access/withheld_sources.hpp"
 
 namespace kinship::app {
 namespace {
@@ -20,6 +21,13 @@ struct KnownLabel {
   std::string why = {};
 };
 
+/// What the store says of a robot that it cannot read has a label, which may be another's.
+std::string why_not_now(const Digest& robot, const Error& error) {
+  return error.code == ErrorCode::Unavailable
+             ? error.message
+             : "robot " + robot.short_hex() + " cannot be read from the store now";
+}
+
 KnownLabel look_up(const Caller& caller, const RobotLabels& labels, const Digest& robot) {
   if (caller.robots.empty())
     return {};
@@ -27,7 +35,7 @@ KnownLabel look_up(const Caller& caller, const RobotLabels& labels, const Digest
   if (found == labels.end())
     return {{}, ReceiptStatus::UnknownRobot, "robot " + robot.short_hex() + " is not registered"};
   if (!found->second)
-    return {{}, ReceiptStatus::TryAgain, found->second.error().message};
+    return {{}, ReceiptStatus::TryAgain, why_not_now(robot, found->second.error())};
   return {found->second.value(), std::nullopt};
 }
 
@@ -43,10 +51,13 @@ std::optional<Receipt> receipt_against(const Caller& caller, const RobotLabels& 
   return std::nullopt;
 }
 
-void keep_allowed(ReportRequest& request, const Caller& caller, const RobotLabels& labels) {
+/// \return whether some are to be sent again.
+bool keep_allowed(ReportRequest& request, const Caller& caller, const RobotLabels& labels) {
   std::vector<Attempt> allowed;
+  bool is_postponed = false;
   for (Attempt& attempt : request.attempts) {
     if (auto receipt = receipt_against(caller, labels, attempt)) {
+      is_postponed = is_postponed || receipt->status == ReceiptStatus::TryAgain;
       request.refused.push_back(std::move(*receipt));
       continue;
     }
@@ -54,6 +65,15 @@ void keep_allowed(ReportRequest& request, const Caller& caller, const RobotLabel
     allowed.push_back(std::move(attempt));
   }
   request.attempts = std::move(allowed);
+  return is_postponed;
+}
+
+/// A robot that is known already is taken only under a label of the caller's.
+runtime::RobotRegistry::LabelRule rule_for(const Caller& caller) {
+  if (caller.robots.empty())
+    return {};
+  return
+      [caller](const std::string& label) { return access::refusal_of_known_robot(caller, label); };
 }
 
 }  // namespace
@@ -72,7 +92,7 @@ void register_robot(service::Service& service, const Caller& caller, RobotDescri
         });
         done(reply);
       },
-      caller.client);
+      caller.client, rule_for(caller));
 }
 
 void report(service::Service& service, const Caller& caller, ReportRequest request,
@@ -86,8 +106,15 @@ void report(service::Service& service, const Caller& caller, ReportRequest reque
   service.name_robots(
       robots,
       [&service, caller, request = std::move(request), done](const RobotLabels& labels) mutable {
-        keep_allowed(request, caller, labels);
-        service.report(std::move(request), done, caller.client);
+        const bool is_postponed = keep_allowed(request, caller, labels);
+        service.report(
+            std::move(request),
+            [done, is_postponed](ReportReply reply) {
+              if (is_postponed)
+                reply.retry_after = std::max(reply.retry_after, service::Service::kRetryAfter);
+              done(reply);
+            },
+            caller.client);
       },
       caller.client);
 }
@@ -96,17 +123,23 @@ void fetch(service::Service& service, const Caller& caller, const FetchRequest& 
            const std::string& waiter, const std::function<void(const FetchReply&)>& done) {
   if (const auto refusal = access::refusal_of_fetch(caller, request.task, ""))
     return service.refuse_fetch(refusal->message, done);
-  if (caller.robots.empty())
+  if (!access::withholds_sources(caller))
     return service.fetch(request, waiter, done);
+  const auto for_its_robots = [caller, robot = request.robot, done](FetchReply reply) {
+    access::withhold_sources(caller, robot, reply);
+    done(reply);
+  };
   service.name_robots(
       {request.robot},
-      [&service, caller, request, waiter, done](const RobotLabels& labels) {
+      [&service, caller, request, waiter, done, for_its_robots](const RobotLabels& labels) {
         const auto robot = labels.find(request.robot);
-        if (robot != labels.end() && robot->second)
+        if (robot != labels.end() && !robot->second)
+          return service.postpone_fetch(why_not_now(request.robot, robot->second.error()), done);
+        if (robot != labels.end())
           if (const auto refusal =
                   access::refusal_of_fetch(caller, request.task, robot->second.value()))
             return service.refuse_fetch(refusal->message, done);
-        service.fetch(request, waiter, done);  // which says what is not registered
+        service.fetch(request, waiter, for_its_robots);  // which says what is not registered
       },
       caller.client);
 }

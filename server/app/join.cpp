@@ -89,10 +89,6 @@ std::string explain(const ServerOptions& options, std::uint16_t port, const Port
   return message + "; end that one, or take another domain (--domain N)";
 }
 
-}  // namespace
-
-namespace {
-
 /// Whom the server knows: the records of its security folder.
 dds::Directory directory_of(const std::filesystem::path& security) {
   const auto clients =

@@ -307,8 +307,14 @@ std::string store_fault(const CLI::App& app, const std::filesystem::path& store)
 }  // namespace
 
 std::string insecurity_of(const ServerOptions& options) {
-  if (!options.security.empty() || options.network_interface.empty() ||
-      options.network_interface == kLoopback)
+  if (!options.security.empty())
+    return {};
+  if (std::getenv("CYCLONEDDS_URI") != nullptr)  // NOLINT(concurrency-mt-unsafe): as below
+    return "CYCLONEDDS_URI is set, which replaces the interface, and there is no security: whoever "
+           "reaches the ports that it opens reads every robot and path, reports and registers "
+           "under "
+           "any name";
+  if (options.network_interface.empty() || options.network_interface == kLoopback)
     return {};
   return "interface '" + options.network_interface +
          "' is served without security: whoever reaches its ports reads every robot and path, "

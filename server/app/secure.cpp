@@ -1,15 +1,16 @@
 #include "server/app/secure.hpp"
 
 #include <algorithm>
-#include <iomanip>
-#include <ostream>
+#include <iostream>
 #include <string>
 
 #include "proto/json/credential_list_json.hpp"
 #include "proto/security/access_role.hpp"
 #include "proto/security/security_folder.hpp"
-#include "proto/security/time_text.hpp"
+#include "proto/tables/table.hpp"
+#include "proto/tables/table_layout.hpp"
 #include "proto/types/exit_code.hpp"
+#include "proto/types/time_text.hpp"
 
 namespace kinship::app {
 namespace {
@@ -23,11 +24,6 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string date_text(std::int64_t unix_ms) {
-  const std::chrono::sys_time<std::chrono::milliseconds> time{std::chrono::milliseconds(unix_ms)};
-  return security::time_text(std::chrono::floor<std::chrono::seconds>(time));
-}
-
 /// What a client is narrowed to, in one cell.
 std::string narrowing(const CredentialList::Row& row) {
   std::string text;
@@ -38,39 +34,33 @@ std::string narrowing(const CredentialList::Row& row) {
   return text.empty() ? "-" : text;
 }
 
-void print_rows(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i + 1 < row.size(); ++i)
-      out << std::left << std::setw(static_cast<int>(widths[i]) + 2) << row[i];
-    out << row.back() << '\n';
-  }
+std::string state_text(const CredentialList::Row& row) {
+  if (row.is_of_previous_authority)
+    return row.state + ", previous authority";
+  return row.state + (row.trusts_a_retired_authority ? ", trusts a retired authority" : "");
 }
 
 void print(const CredentialList& list, std::ostream& out) {
-  std::vector<std::vector<std::string>> rows = {
-      {"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"}};
+  tables::Table table({"NAME", "ROLE", "STATE", "EXPIRES", "DAYS LEFT", "NARROWED TO"});
   for (const CredentialList::Row& row : list.credentials) {
     const bool is_readable = row.state != "unreadable";
-    rows.push_back({row.name, is_readable ? row.role : "-",
-                    row.state + (row.is_of_previous_authority ? ", previous authority" : ""),
-                    is_readable ? date_text(row.expires_ms) : "-",
-                    is_readable ? std::to_string(row.days_left) : "-",
-                    is_readable ? narrowing(row) : row.message});
+    table.add_row({row.name, is_readable ? row.role : "-", state_text(row),
+                   is_readable ? time_text(row.expires_ms) : "-",
+                   is_readable ? std::to_string(row.days_left) : "-",
+                   is_readable ? narrowing(row) : row.message});
   }
-  print_rows(rows, out);
+  tables::set_table_layout(out, {.width = &out == &std::cout ? tables::width_of_terminal()
+                                                             : tables::TableLayout().width});
+  table.print(out);
   for (const CredentialList::Authority& authority : list.authorities)
     out << authority.name << " (" << authority.fingerprint << "), expires "
-        << date_text(authority.expires_ms) << '\n';
+        << time_text(authority.expires_ms) << '\n';
 }
 
 void print_new_client(const security::ClientRecord& record, const SecureOptions& options,
                       std::ostream& out) {
   out << "client '" << record.name << "', role " << security::role_name(record.role)
-      << ", valid until " << security::time_text(record.expires) << ": credentials in "
+      << ", valid until " << time_text(record.expires) << ": credentials in "
       << options.out.string() << "\nbring them to its machine, and start it with --security "
       << options.out.filename().string() << " or KINSHIP_SECURITY\n";
 }
@@ -100,9 +90,15 @@ int add(const SecurityFolder& folder, const SecureOptions& options, std::chrono:
 
 int revoke(const SecurityFolder& folder, const SecureOptions& options, std::chrono::sys_seconds now,
            std::ostream& out) {
+  if (options.former) {
+    const security::ClientRecord record = folder.revoke_former(options.name);
+    out << "client '" << record.name << "': its newest credentials (" << record.generation
+        << ") are the only ones from now on\n";
+    return kDone;
+  }
   const security::ClientRecord record = folder.revoke(options.name, now);
-  out << "client '" << record.name << "': revoked at "
-      << security::time_text(record.revoked.value_or(now)) << '\n';
+  out << "client '" << record.name << "': revoked at " << time_text(record.revoked.value_or(now))
+      << '\n';
   return kDone;
 }
 
@@ -123,12 +119,24 @@ int list(const SecurityFolder& folder, const SecureOptions& options, std::chrono
 
 int renew_authority(SecurityFolder& folder, const SecureOptions& options,
                     std::chrono::sys_seconds now, std::ostream& out) {
-  const auto before = folder.renew_authority(std::chrono::days(options.days), now);
+  const std::chrono::days days(options.days);
+  if (options.leaked) {
+    const auto before = folder.replace_authority(days, now);
+    out << "the new authority is the only one; what the server had is in " << before.string()
+        << "\n1. kinshipd secure renew NAME for each client whose state says 'previous authority' "
+           "in "
+           "kinshipd secure list, and bring the credentials to its machine"
+           "\n2. start the server anew, and each client: what they have now is refused from then "
+           "on\n";
+    return kDone;
+  }
+  const auto before = folder.renew_authority(days, now);
   out << "a second authority issues from now on; what the server had is in " << before.string()
       << "\n1. start the server anew: it trusts both then"
          "\n2. kinshipd secure renew NAME for each client whose state says 'previous authority' in "
          "kinshipd secure list"
-         "\n3. kinshipd secure retire-authority, and start the server anew\n";
+         "\n3. kinshipd secure retire-authority, and start the server anew"
+         "\n4. the same clients once more: until then they still trust the previous authority\n";
   return kDone;
 }
 
@@ -143,7 +151,11 @@ int retire_authority(SecurityFolder& folder, const SecureOptions& options,
   const auto key = folder.retire_authority(std::chrono::days(options.days), now);
   out << "the newer authority is the only one; start the server anew\n";
   if (!key.empty())
-    out << "the key of the previous one is " << key.string() << ", of no use any more\n";
+    out << "the key of the previous one is " << key.string()
+        << ": the server refuses what it signs from then on\n";
+  if (const auto names = folder.clients_that_trust_retired(now); !names.empty())
+    out << "kinshipd secure renew once more for " << joined(names)
+        << ": until they have those credentials, they take who has that key for the server\n";
   return kDone;
 }
 
@@ -158,6 +170,9 @@ int run(const SecureOptions& options, std::chrono::sys_seconds now, std::ostream
       return add(folder, options, now, out);
     case SecureVerb::Renew:
       print_new_client(folder.renew(options.name, days, options.out, now), options, out);
+      out << "those it has stay valid too, so that it need not stop; once its machine has the new "
+             "ones: kinshipd secure revoke "
+          << options.name << " --former\n";
       return kDone;
     case SecureVerb::RenewServer:
       out << "new credentials for the server, from its next start on; what it had is in "

@@ -134,8 +134,9 @@ void add_client_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen) {
       .example(
           "kinshipd secure add arm_7 --security DIR --role robot --task 'shelf_*' --robot arm_7 "
           "--out arm_7");
-  SecureCommand(secure, chosen, "renew", SecureVerb::Renew,
-                "New credentials for a client that there is; those it has stay valid")
+  SecureCommand(
+      secure, chosen, "renew", SecureVerb::Renew,
+      "New credentials for a client that there is; those it has stay valid (revoke --former)")
       .name()
       .folder()
       .days(kClientDays)
@@ -146,6 +147,8 @@ void add_client_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen) {
                 "Have the server refuse a client, a second later at most")
       .name()
       .folder()
+      .flag("--former", &SecureOptions::former,
+            "Only what it had before secure renew: its newest credentials stay good")
       .example("kinshipd secure revoke arm_7 --security DIR");
   SecureCommand(secure, chosen, "list", SecureVerb::List, "Who has credentials, and until when")
       .folder()
@@ -166,9 +169,12 @@ void add_authority_verbs(CLI::App& secure, std::optional<SecureOptions>& chosen)
       .folder()
       .days(kServerDays)
       .authority_key()
+      .flag("--leaked", &SecureOptions::leaked,
+            "Others know the key, or it is lost: the new authority alone is trusted; clients are "
+            "shut out until they have new credentials")
       .example(
           "kinshipd secure renew-authority --security DIR     then: start the server anew,\n"
-          "  renew each client, retire-authority, start the server anew");
+          "  renew each client, retire-authority, start the server anew, renew each client again");
   SecureCommand(secure, chosen, "retire-authority", SecureVerb::RetireAuthority,
                 "Trust the newer authority only, once every client has its credentials")
       .folder()

@@ -35,6 +35,8 @@ struct SecureOptions {
   std::filesystem::path out = {};  ///< credentials folder of the client
   bool json = false;
   bool force = false;
+  bool leaked = false;  ///< the authority's key
+  bool former = false;  ///< of a client: all but its newest credentials
 };
 
 /// Adds `secure` and its verbs, which fill `options`, where one of them was called.

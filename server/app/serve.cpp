@@ -18,10 +18,10 @@
 #include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/wait_loop.hpp"
-#include "proto/security/credentials.hpp"
 #include "proto/types/names.hpp"
 #include "server/access/access.hpp"
 #include "server/app/endpoints.hpp"
+#include "server/app/expiry_watch.hpp"
 #include "server/app/join.hpp"
 #include "server/app/line_limit.hpp"
 #include "server/app/metrics_listener.hpp"
@@ -125,11 +125,16 @@ bool may_hear_announcement(const Caller& caller, const Announcement& announcemen
   return access::may_see(caller, announcement.task, "");
 }
 
-void warn_of_expiry(const dds::Participant& participant) {
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  if (const auto& credentials = participant.credentials())
-    if (const auto warning = security::expiry_warning(*credentials, now))
-      spdlog::warn("security: {}", *warning);
+ExpiryWatch watch_expiry(const dds::Participant& participant) {
+  return {participant.credentials(),
+          [] { return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()); },
+          [](std::string_view warning) { spdlog::warn("security: {}", warning); }};
+}
+
+std::int64_t expiry_ms(const dds::Participant& participant) {
+  const auto& credentials = participant.credentials();
+  return credentials ? std::chrono::milliseconds(credentials->expires.time_since_epoch()).count()
+                     : 0;
 }
 
 }  // namespace
@@ -152,6 +157,7 @@ int serve(const ServerOptions& options, std::ostream& out) {
   LineLimit log([](std::string_view line) { spdlog::info("{}", on_one_line(std::string(line))); },
                 {});
   service::ServiceOptions settings = service_options(options);
+  settings.credentials_expire_ms = expiry_ms(participant);
   settings.log = [&log](std::string_view line) { log.write(line); };
   set_upstream(options, settings);
   publish_with(settings, events, announcements);
@@ -169,7 +175,8 @@ int serve(const ServerOptions& options, std::ostream& out) {
   spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
                status.version, options.domain, store_name, status.robots, status.paths,
                status.distributions);
-  warn_of_expiry(participant);
+  ExpiryWatch expiry = watch_expiry(participant);
+  expiry.beat(WaitClock::now());
   if (!status.storage_message.empty())
     spdlog::warn("store: {}", status.storage_message);
   std::optional<MetricsListener> metrics;
@@ -181,11 +188,11 @@ int serve(const ServerOptions& options, std::ostream& out) {
   out << "ready domain=" << options.domain << " store=" << store_name << std::endl;
   notify_service_manager("READY=1");
   Watchdog watchdog;
-  loop.run([&service, &watchdog] {
+  loop.run([&service, &watchdog, &expiry] {
     const auto now = WaitClock::now();
     service.expire(now);
-    return std::min(watchdog.beat(now),
-                    service.next_deadline().value_or(WaitClock::time_point::max()));
+    return std::min({watchdog.beat(now), expiry.beat(now),
+                     service.next_deadline().value_or(WaitClock::time_point::max())});
   });
 
   notify_service_manager("STOPPING=1");

@@ -48,7 +48,7 @@ RobotRegistry::RobotRegistry(store::Store& store, Options options)
 }
 
 RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
-                                            std::int64_t now_ms) {
+                                            std::int64_t now_ms, const LabelRule& may_take) {
   if (const auto error = check_label(description.label))
     return refused(*error);
   Result<kinematics::Chain> chain = kinematics::read_chain(description);
@@ -59,12 +59,18 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   reply.robot = chain->digest();
   reply.dof = static_cast<std::uint32_t>(chain->dof());
   reply.solver = inverse::solver_name(*chain);
+  if (const auto refusal = refusal_of_known(reply.robot, may_take))
+    return refused(*refusal);
   const Result<RegisterStatus> status = store_.register_robot({.digest = reply.robot,
                                                                .description = description,
                                                                .dof = reply.dof,
                                                                .registered_ms = now_ms});
   if (!status)
     return refused(status.error());
+  // Somebody else may have registered it meanwhile.
+  if (*status == RegisterStatus::Known)
+    if (const auto refusal = refusal_of_known(reply.robot, may_take))
+      return refused(*refusal);
   reply.status = *status;
   reply.same_arms = same_arms(reply.robot, *chain);
 
@@ -81,6 +87,33 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
       reply.message = "known already, as '" + known.value()->label + "'";
   }
   return reply;
+}
+
+std::optional<Error> RobotRegistry::refusal_of_known(const Digest& robot,
+                                                     const LabelRule& may_take) {
+  if (!may_take)
+    return std::nullopt;
+  const Result<RobotPointer> known = find(robot);
+  if (known)
+    return may_take(known.value()->label);
+  if (known.error().code == ErrorCode::NotFound)
+    return std::nullopt;
+  // A damaged row is written anew by who registers its robot, so it still is somebody's.
+  const std::optional<std::string> label = listed_label(robot);
+  if (!label)
+    throw Failure(known.error());
+  return may_take(*label);
+}
+
+std::optional<std::string> RobotRegistry::listed_label(const Digest& robot) const {
+  store::Page<RobotSummary> page;
+  do {
+    page = store_.list_robots(page.next_cursor, kMaxPageRows);
+    for (const RobotSummary& row : page.rows)
+      if (row.robot == robot)
+        return row.label;
+  } while (!page.next_cursor.empty());
+  return std::nullopt;
 }
 
 /// Of a robot that is known. Whoever comes second with the same finds the first's.

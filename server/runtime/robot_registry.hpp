@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -43,6 +44,9 @@ class RobotRegistry {
   /// The registry and whoever computes with the robot share it: it never changes.
   using RobotPointer = std::shared_ptr<const Robot>;
 
+  /// Why a robot of this label is not for who asks; nothing if it is.
+  using LabelRule = std::function<std::optional<Error>(const std::string& label)>;
+
   struct Options {
     std::size_t max_robots = 1024;  ///< in memory; the one not used for longest goes first
     /// A stored robot cannot be read, with its name and why. Called from any thread.
@@ -63,9 +67,12 @@ class RobotRegistry {
   ///
   /// It is compared with robots of as many joints, the first kMaxSameArms of them; those that are
   /// not in memory are read.
-  /// \param now_ms  Unix time, UTC.
-  /// \throws Failure(Storage)
-  RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms);
+  /// \param now_ms    Unix time, UTC.
+  /// \param may_take  asked with the label under which the robot is known, before anything of it
+  ///                  is changed or told; empty: whoever registers a known robot may.
+  /// \throws Failure(Storage), also if that label cannot be told now.
+  RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms,
+                               const LabelRule& may_take = {});
 
   /// From memory, or read from the store and parsed.
   /// \return NotFound if the store has no such robot; Storage if its row is damaged, its
@@ -110,6 +117,8 @@ class RobotRegistry {
   void forget(const Digest& robot, bool is_deleted);
   void take_geometry(Robot better, const RobotDescription& description, std::int64_t now_ms,
                      RegisterReply& reply);
+  std::optional<Error> refusal_of_known(const Digest& robot, const LabelRule& may_take);
+  std::optional<std::string> listed_label(const Digest& robot) const;
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
 
   store::Store& store_;

@@ -4,15 +4,12 @@
 #include <optional>
 #include <utility>
 
-#include "proto/types/enum_text.hpp"
 #include "proto/types/limits.hpp"
-#include "proto/types/names.hpp"
 #include "robots/inverse/inverse.hpp"
 #include "server/access/verb_rules.hpp"
 #include "server/catalog/freshness.hpp"
 #include "server/service/backup_verbs.hpp"
 #include "server/service/explain_distribution.hpp"
-#include "server/service/export_configurations.hpp"
 #include "server/service/export_paths.hpp"
 #include "server/service/find_by_name.hpp"
 #include "server/service/job_verbs.hpp"
@@ -26,22 +23,12 @@ void allow_no_filter(const AdminRequest& request) {
     throw Failure(ErrorCode::InvalidInput, "this list has no filters");
 }
 
-/// \throws Failure(InvalidInput)
-Uuid report_of(const std::string& text) {
-  const std::optional<Uuid> report = Uuid::parse(text);
-  if (!report)
-    throw Failure(ErrorCode::InvalidInput, "'" + text + "' is not a report's UUID");
-  return *report;
-}
-
-std::string describe(const RobotRemoval& removal) {
-  const std::string what = "robot '" + removal.label + "' (" + removal.robot.short_hex() + ") ";
-  const std::string distributions = std::to_string(removal.distributions) + " distributions";
-  if (removal.is_deleted)
-    return what + "deleted, it had no attempts; " + distributions + " of it are gone";
-  return what + "removed: " + std::to_string(removal.paths) + " paths retired, " +
-         std::to_string(removal.attempts) + " attempts stay on record, " + distributions +
-         " are gone";
+/// Jobs that were begun are known by themselves, as they stand; and pieces of a backup, which
+/// change nothing, can be read again.
+bool is_kept(AdminVerb verb, const AdminPage& page) {
+  const bool is_begun_job = verb != AdminVerb::CancelJob && !page.rows.empty() &&
+                            std::holds_alternative<Job>(page.rows.front());
+  return verb != AdminVerb::ReadBackup && !is_begun_job;
 }
 
 }  // namespace
@@ -51,13 +38,12 @@ AdminPage Administration::answer(const AdminRequest& request, const std::string&
   const AuditEntry audit = audit_entry(caller, request);
   if (!access::rule_of(request.verb).is_change)
     return attempt(request, request_key, caller, audit);
-  // Its number alone could be made up by another client.
-  const std::string key = request_key.empty() ? request_key : caller.client + ' ' + request_key;
-  if (std::optional<AdminPage> before = answered_.find(key))
+  if (std::optional<AdminPage> before = answered_.find(request_key))
     return std::move(*before);
   AdminPage page = attempt(request, request_key, caller, audit);
   trail_.not_done(audit, page);
-  answered_.keep(key, page);
+  if (is_kept(request.verb, page))
+    answered_.keep(request_key, page);
   return page;
 }
 
@@ -153,7 +139,7 @@ AdminPage Administration::dispatch_jobs(const AdminRequest& request, const std::
     case AdminVerb::HashBackup:
       return hash_backup(request.argument, request_key, audit);
     case AdminVerb::ReadBackup:
-      return read_backup(parts_.store, parts_.backups, request);
+      return read_backup(request, audit);
     default:
       return page_of(Error{ErrorCode::InvalidInput, "this server does not know the verb"});
   }
@@ -238,144 +224,10 @@ AdminPage Administration::explain(const std::string& prefix) {
   return page_of(std::move(explanation));
 }
 
-AdminPage Administration::export_configurations(const std::string& prefix,
-                                                const std::string& request_key,
-                                                const AuditEntry& audit) {
-  const fitting::FitContext context{.store = parts_.store,
-                                    .robots = parts_.robots,
-                                    .clock = parts_.clock,
-                                    .memory = parts_.memory};
-  return begin(export_configurations_job(context, find_distribution(prefix), request_key), audit);
-}
-
-AdminPage Administration::evict_distribution(const std::string& prefix, const AuditEntry& audit) {
-  const Digest id = find_distribution_id(parts_.store, prefix).value_or_throw();
-  const bool was_there = parts_.store.evict_distribution(id, &audit);
-  // One that could not be stored is in memory only.
-  parts_.forget_distribution(id);
-  if (!was_there)
-    return page_of(not_found("distribution", prefix));
-  parts_.on_change({}, "distribution " + id.short_hex() + " evicted");
-  return page_of(Eviction{id});
-}
-
 AdminPage Administration::export_paths(const AdminRequest& request) {
   const std::optional<Digest> robot = robot_filter(request);
   check_task_filter(request);
   return service::export_paths(parts_.store, robot, request);
-}
-
-AdminPage Administration::retire_path(const std::string& uuid, const AuditEntry& audit) {
-  const Uuid report = report_of(uuid);
-  try {
-    return retired(parts_.store.retire_path(report, &audit), "path " + uuid);
-  } catch (const std::exception&) {  // it may be retired all the same
-    if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
-      parts_.forget_task(attempt->task);
-    throw;
-  }
-}
-
-AdminPage Administration::reset_task(const std::string& task, const AuditEntry& audit) {
-  Result<Retirement> retirement = Error{};
-  try {
-    retirement = parts_.store.reset_task(task, parts_.stop, &audit);
-  } catch (const std::exception&) {  // some of its paths may be retired
-    parts_.forget_task(task);
-    throw;
-  }
-  if (!retirement && retirement.error().code == ErrorCode::Unavailable)
-    parts_.forget_task(task);
-  return retired(std::move(retirement), "reset");
-}
-
-AdminPage Administration::retired(Result<Retirement> retirement, const std::string& what) {
-  if (!retirement)
-    return page_of(retirement.error());
-  parts_.forget_task(retirement->task);
-  parts_.on_change(retirement->task,
-                   what + ": " + std::to_string(retirement->paths) + " paths retired");
-  return page_of(std::move(retirement).value());
-}
-
-AdminPage Administration::rename_robot(const AdminRequest& request, const AuditEntry& audit) {
-  RobotSummary robot = find_robot(parts_.store, request.robot).value_or_throw();
-  const std::string before = std::exchange(robot.label, request.argument);
-  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label, &audit).value_or_throw());
-  name_solver(robot);
-  if (before != robot.label)
-    parts_.on_change({}, "robot '" + before + "' (" + robot.robot.short_hex() + ") is called '" +
-                             robot.label + "' now");
-  return page_of(std::move(robot));
-}
-
-AdminPage Administration::remove_robot(const std::string& name, const AuditEntry& audit) {
-  const RobotSummary robot = find_robot(parts_.store, name).value_or_throw();
-  Result<store::RemovedRobot> removed = Error{};
-  try {
-    removed = parts_.robots.remove_robot(robot.robot, parts_.stop, &audit);
-  } catch (const std::exception&) {  // some of its paths may be retired
-    forget_tasks_of(robot.robot);
-    throw;
-  }
-  if (!removed) {
-    forget_tasks_of(robot.robot);
-    return page_of(removed.error());
-  }
-  for (const Digest& distribution : removed->distributions)
-    parts_.forget_distribution(distribution);
-  parts_.forget_robot(robot.robot);
-  for (const std::string& task : removed->tasks)
-    parts_.forget_task(task);
-  parts_.on_change({}, describe(removed->removal));
-  return page_of(removed->removal);
-}
-
-/// Of a robot that was not removed as a whole.
-void Administration::forget_tasks_of(const Digest& robot) {
-  parts_.forget_robot(robot);
-  std::string cursor;
-  do {
-    const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);
-    for (const TaskSummary& task : page.rows)
-      if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
-        parts_.forget_task(task.task);
-    cursor = page.next_cursor;
-  } while (!cursor.empty());
-}
-
-AdminPage Administration::back_up(const std::string& file, const std::string& request_key,
-                                  const AuditEntry& audit) {
-  Jobs::Task task = backup_job(parts_.store, file, parts_.backups, request_key).value_or_throw();
-  trail_.begin(audit, "");
-  task.run = trail_.ending(audit, std::move(task.run));
-  return begin(std::move(task), audit);
-}
-
-/// In the audit log once, for whoever then reads the bytes.
-AdminPage Administration::hash_backup(const std::string& name, const std::string& request_key,
-                                      const AuditEntry& audit) {
-  Jobs::Task task =
-      hash_backup_job(parts_.store, parts_.backups, name, request_key).value_or_throw();
-  trail_.begin(audit, "");
-  task.run = trail_.ending(audit, std::move(task.run));
-  return begin(std::move(task), audit);
-}
-
-AdminPage Administration::cancel_job(const std::string& id, const AuditEntry& audit) {
-  const Job job = parts_.jobs.find(id).value_or_throw();
-  const std::string before = job.verb + " " + job.argument + ": " + std::string(to_text(job.state));
-  trail_.begin(audit, before);
-  Result<Job> cancelled = parts_.jobs.cancel(id);
-  if (cancelled)
-    trail_.end(audit, before, "told to end: " + std::string(to_text(cancelled->state)));
-  return page_of(std::move(cancelled));
-}
-
-AdminPage Administration::begin(Result<Jobs::Task> task, const AuditEntry& audit) {
-  Jobs::Task begun = std::move(task).value_or_throw();
-  begun.owner = audit.client;
-  return page_of(parts_.jobs.begin(std::move(begun)));
 }
 
 std::optional<Digest> Administration::robot_filter(const AdminRequest& request) const {

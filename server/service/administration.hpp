@@ -20,6 +20,7 @@
 #include "server/service/audit_trail.hpp"
 #include "server/service/backup_job.hpp"
 #include "server/service/jobs.hpp"
+#include "server/service/known_downloads.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -65,12 +66,12 @@ class Administration {
       : parts_(std::move(parts)), trail_(parts_.store, parts_.clock) {}
 
   /// Never throws: what fails is said in the page. ShowJob is answered as the job stands.
-  /// \param request_key  the request's name: sent again, as after a lost reply, it begins no second
-  /// job, and changes nothing a second time.
-  ///               Empty: it is never sent again.
+  /// \param request_key  the request's name, which nobody else can make up, for it begins with the
+  ///                     caller's client: sent again, as after a lost reply, it begins no second
+  ///                     job, and changes nothing a second time. Empty: it is never sent again.
   /// \param caller  its role was looked at before (server/access); what it is narrowed to is here.
-  AdminPage answer(const AdminRequest& request, const std::string& request_key = {},
-                   const Caller& caller = {});
+  AdminPage answer(const AdminRequest& request, const std::string& request_key,
+                   const Caller& caller);
 
   /// Keeps in the audit log that a change was refused. \return the page that says so.
   AdminPage refuse(const AdminRequest& request, const Caller& caller, const Error& refusal);
@@ -104,6 +105,8 @@ class Administration {
                     const AuditEntry& audit);
   AdminPage hash_backup(const std::string& name, const std::string& request_key,
                         const AuditEntry& audit);
+  AdminPage read_backup(const AdminRequest& request, const AuditEntry& audit);
+  AdminPage begin_audited(Result<Jobs::Task> task, const AuditEntry& audit);
   AdminPage cancel_job(const std::string& id, const AuditEntry& audit);
   AdminPage begin(Result<Jobs::Task> task, const AuditEntry& audit);
 
@@ -117,6 +120,7 @@ class Administration {
   const Parts parts_;
   AuditTrail trail_;
   AnsweredChanges answered_;
+  KnownDownloads downloads_;
 };
 
 }  // namespace kinship::service

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "server/service/admin_page.hpp"
+#include "server/service/reply_bytes.hpp"
 
 namespace kinship::service {
 
@@ -18,29 +18,44 @@ namespace kinship::service {
 class AnsweredChanges {
  public:
   static constexpr std::size_t kKept = 256;
+  /// Of all pages together, about. One that is larger than that is not kept.
+  static constexpr std::size_t kKeptBytes = std::size_t{1} << 20U;
 
   std::optional<AdminPage> find(const std::string& request_key) const {
     const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(pages_, request_key, &Entry::first);
-    return found == pages_.end() ? std::nullopt : std::optional<AdminPage>(found->second);
+    const auto found = std::ranges::find(pages_, request_key, &Entry::key);
+    return found == pages_.end() ? std::nullopt : std::optional<AdminPage>(found->page);
   }
 
-  /// What failed may be tried again, and jobs are known by themselves, as they stand.
+  /// What failed may be tried again.
   void keep(const std::string& request_key, const AdminPage& page) {
-    const bool is_job = !page.rows.empty() && std::holds_alternative<Job>(page.rows.front());
-    if (request_key.empty() || page.status == AdminStatus::Failed || is_job)
+    const std::size_t bytes = request_key.size() + page.message.size() + reply_bytes(page);
+    if (request_key.empty() || page.status == AdminStatus::Failed || bytes > kKeptBytes)
       return;
     const std::lock_guard lock(mutex_);
-    pages_.emplace_back(request_key, page);
-    if (pages_.size() > kKept)
+    pages_.push_back({request_key, page, bytes});
+    bytes_ += bytes;
+    while (pages_.size() > kKept || bytes_ > kKeptBytes) {
+      bytes_ -= pages_.front().bytes;
       pages_.pop_front();
+    }
+  }
+
+  std::size_t bytes() const {
+    const std::lock_guard lock(mutex_);
+    return bytes_;
   }
 
  private:
-  using Entry = std::pair<std::string, AdminPage>;
+  struct Entry {
+    std::string key;
+    AdminPage page;
+    std::size_t bytes;
+  };
 
-  mutable std::mutex mutex_;
-  std::deque<Entry> pages_;  // guarded by mutex_, the oldest first
+  mutable std::mutex mutex_;  // guards what follows
+  std::deque<Entry> pages_;   // the oldest first
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace kinship::service

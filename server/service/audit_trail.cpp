@@ -1,13 +1,22 @@
 #include "server/service/audit_trail.hpp"
 
-#include <algorithm>
-#include <chrono>
+#include <new>
+#include <optional>
 #include <utility>
 
 #include "proto/types/enum_text.hpp"
 #include "server/access/verb_rules.hpp"
 
 namespace kinship::service {
+namespace {
+
+/// Verbs of which the store has an entry, as begun, before they fail.
+bool is_begun_first(const AuditEntry& entry) {
+  return entry.verb == access::rule_of(AdminVerb::ResetTask).name ||
+         entry.verb == access::rule_of(AdminVerb::RemoveRobot).name;
+}
+
+}  // namespace
 
 AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
   AuditEntry entry;
@@ -21,9 +30,6 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request) {
                                                         : request.argument;
   return entry;
 }
-
-AuditTrail::AuditTrail(store::Store& store, const runtime::Clock& clock)
-    : store_(store), clock_(clock), counted_at_(clock.now()) {}
 
 void AuditTrail::begin(AuditEntry entry, const std::string& before) {
   entry.outcome = AuditOutcome::Begun;
@@ -39,37 +45,39 @@ void AuditTrail::end(AuditEntry entry, const std::string& before,
   add(entry);
 }
 
+void AuditTrail::hand_out(AuditEntry entry, const std::string& what) {
+  entry.outcome = AuditOutcome::Done;
+  entry.after = what;
+  store_.add_audit(entry);
+}
+
 void AuditTrail::not_done(AuditEntry entry, const AdminPage& page) noexcept {
   if (page.status == AdminStatus::Ok)
     return;
-  const bool has_failed = page.status == AdminStatus::Failed;
-  entry.outcome = has_failed ? AuditOutcome::Failed : AuditOutcome::Refused;
-  entry.message = page.message;
-  std::uint64_t left_out = 0;
-  if (!has_failed && !may_keep_refusal(left_out))
+  try {
+    const bool has_failed = page.status == AdminStatus::Failed;
+    entry.outcome = has_failed ? AuditOutcome::Failed : AuditOutcome::Refused;
+    entry.message = page.message;
+    if (!has_failed || !is_begun_first(entry)) {
+      const std::optional<std::uint64_t> left_out = allowance_.take(entry.client);
+      if (!left_out)
+        return;
+      if (*left_out > 0)
+        entry.message += " (" + std::to_string(*left_out) + " of its own before it were not kept)";
+    }
+  } catch (const std::bad_alloc&) {  // then not: it was not done, either
     return;
-  if (left_out > 0)
-    entry.message += " (" + std::to_string(left_out) + " refusals before it were not kept)";
+  }
   add(entry);
 }
 
-std::function<bool(JobRun&)> AuditTrail::ending(AuditEntry entry,
-                                                std::function<bool(JobRun&)> run) {
-  return [this, entry = std::move(entry), run = std::move(run)](JobRun& job) {
+std::function<void(const Job&)> AuditTrail::ending(AuditEntry entry) {
+  return [this, entry = std::move(entry)](const Job& job) {
     AuditEntry last = entry;
-    last.outcome = AuditOutcome::Failed;
-    try {
-      const bool is_complete = run(job);
-      last.outcome = is_complete ? AuditOutcome::Done : AuditOutcome::Failed;
-      last.after = is_complete ? job.message : "";
-      last.message = is_complete ? "" : "cancelled";
-    } catch (const std::exception& exception) {
-      last.message = exception.what();
-      add(last);
-      throw;
-    }
+    const bool is_done = job.state == JobState::Done;
+    last.outcome = is_done ? AuditOutcome::Done : AuditOutcome::Failed;
+    (is_done ? last.after : last.message) = job.message;
     add(last);
-    return last.outcome == AuditOutcome::Done;
   };
 }
 
@@ -79,24 +87,6 @@ void AuditTrail::add(const AuditEntry& entry) noexcept {
     store_.add_audit(entry);
   } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): see above
   }
-}
-
-bool AuditTrail::may_keep_refusal(std::uint64_t& left_out) {
-  const std::lock_guard lock(mutex_);
-  const auto now = clock_.now();
-  const auto passed = std::chrono::duration_cast<std::chrono::seconds>(now - counted_at_);
-  if (passed.count() > 0) {
-    allowance_ = std::min<std::uint64_t>(kRefusalsAtOnce,
-                                         allowance_ + static_cast<std::uint64_t>(passed.count()));
-    counted_at_ += passed;
-  }
-  if (allowance_ == 0) {
-    ++left_out_;
-    return false;
-  }
-  --allowance_;
-  left_out = std::exchange(left_out_, 0);
-  return true;
 }
 
 }  // namespace kinship::service

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <mutex>
+#include <functional>
 #include <string>
 
 #include "proto/types/audit.hpp"
@@ -9,7 +8,7 @@
 #include "proto/types/conversations.hpp"
 #include "server/runtime/clock.hpp"
 #include "server/service/admin_page.hpp"
-#include "server/service/jobs.hpp"
+#include "server/service/audit_allowance.hpp"
 #include "server/store/store.hpp"
 
 namespace kinship::service {
@@ -21,34 +20,29 @@ AuditEntry audit_entry(const Caller& caller, const AdminRequest& request);
 /// change of the store. May be shared between threads.
 class AuditTrail {
  public:
-  /// Refusals are kept up to so many at once, and one a second from then on: whoever is refused may
-  /// ask for ever, and nothing is ever taken out of the log. The next one kept counts the others.
-  static constexpr std::uint64_t kRefusalsAtOnce = 100;
-
   /// \param store, clock  outlive the trail.
-  AuditTrail(store::Store& store, const runtime::Clock& clock);
+  AuditTrail(store::Store& store, const runtime::Clock& clock) : store_(store), allowance_(clock) {}
 
   /// Before something is done: what cannot be kept is not done.
   /// \throws Failure(Storage)
   void begin(AuditEntry entry, const std::string& before);
+  /// Before something is handed out that is no change: as Done. \throws Failure(Storage)
+  void hand_out(AuditEntry entry, const std::string& what);
   /// After it was done. What cannot be kept now is in the log as begun.
   void end(AuditEntry entry, const std::string& before, const std::string& after) noexcept;
-  /// Of something that was refused or failed, unless the page is Ok.
+  /// Of something that was refused or failed, unless the page is Ok; of one client so many
+  /// (AuditAllowance), but for the end of what is in the log as begun. The next one kept counts the
+  /// others.
   void not_done(AuditEntry entry, const AdminPage& page) noexcept;
 
-  /// The job's work with the entry of how it ended. \param run  of a job that `entry` began.
-  std::function<bool(JobRun&)> ending(AuditEntry entry, std::function<bool(JobRun&)> run);
+  /// Keeps how a job ended that `entry` began; the trail outlives it.
+  std::function<void(const Job&)> ending(AuditEntry entry);
 
  private:
   void add(const AuditEntry& entry) noexcept;
-  bool may_keep_refusal(std::uint64_t& left_out);
 
   store::Store& store_;
-  const runtime::Clock& clock_;
-  std::mutex mutex_;  // guards what follows
-  std::uint64_t allowance_ = kRefusalsAtOnce;
-  std::uint64_t left_out_ = 0;
-  std::chrono::steady_clock::time_point counted_at_;
+  AuditAllowance allowance_;
 };
 
 }  // namespace kinship::service

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -19,6 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "SQLite format 3";  // and a zero, which text ends with anyway
+/// Of a store, where SQLite keeps it (schema/sqlite/0001_store.sql). Other programs' databases may
+/// lie beside the store, too.
+/// Source: sqlite.org/fileformat.html, section 1.3.
+constexpr std::string_view kApplication = "KINS";
+constexpr std::size_t kApplicationAt = 68;
 
 bool is_bare(const std::string& name) {
   const auto is_letter_or_digit = [](char c) {
@@ -96,9 +102,10 @@ Result<BackupFile> BackupFile::open(const fs::path& folder, const std::string& n
   struct stat status {};
   if (file.descriptor_ < 0 || fstat(file.descriptor_, &status) != 0 || !S_ISREG(status.st_mode))
     return no_backup(name);
-  char begin[kMagic.size()] = {};
-  if (pread(file.descriptor_, begin, sizeof begin, 0) != sizeof begin ||
-      std::memcmp(begin, kMagic.data(), sizeof begin) != 0)
+  std::array<char, kApplicationAt + kApplication.size()> begin{};
+  if (pread(file.descriptor_, begin.data(), begin.size(), 0) != std::ssize(begin) ||
+      std::string_view(begin.data(), kMagic.size()) != kMagic ||
+      std::string_view(begin.data() + kApplicationAt, kApplication.size()) != kApplication)
     return no_backup(name);
   constexpr std::int64_t kMilli = 1000, kNanosOfMilli = 1'000'000;
   file.summary_.bytes = static_cast<std::uint64_t>(status.st_size);

@@ -36,7 +36,7 @@ std::optional<Error> find_name_fault(const std::string& name,
 std::filesystem::path folder_of(const BackupPlace& place, const std::filesystem::path& store_file);
 
 /// Complete copies in the folder, the newest first: plain files of such names that begin as stores
-/// do, without the store itself and what belongs to it.
+/// do, not as another program's database, without the store itself and what belongs to it.
 /// \throws Failure(Storage) if the folder cannot be read.
 std::vector<BackupSummary> find_backups(const std::filesystem::path& folder,
                                         const std::filesystem::path& store_file);

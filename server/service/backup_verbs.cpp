@@ -12,12 +12,6 @@
 namespace kinship::service {
 namespace {
 
-Result<BackupFile> open_backup(const store::Store& store, const BackupPlace& place,
-                               const std::string& name) {
-  const std::filesystem::path store_file = store.status().file;
-  return BackupFile::open(folder_of(place, store_file), name, store_file);
-}
-
 /// \return false if it was to stop.
 bool hash(const BackupFile& file, JobRun& run) {
   constexpr std::size_t kStep = std::size_t{1} << 20U;
@@ -52,34 +46,31 @@ AdminPage list_backups(const store::Store& store, const BackupPlace& place,
   return page_of(all, *first, page_size(request));
 }
 
-Result<Jobs::Task> hash_backup_job(const store::Store& store, const BackupPlace& place,
-                                   const std::string& name, const std::string& request_key) {
-  Result<BackupFile> opened = open_backup(store, place, name);
-  if (!opened)
-    return opened.error();
-  // Shared, for a std::function is copyable.
-  const auto file = std::make_shared<const BackupFile>(std::move(opened).value());
-  return Jobs::Task{.verb = "hash backup",
-                    .argument = name,
-                    .request_key = request_key,
-                    .run = [file](JobRun& run) { return hash(*file, run); }};
+Result<BackupFile> open_backup(const store::Store& store, const BackupPlace& place,
+                               const std::string& name) {
+  const std::filesystem::path store_file = store.status().file;
+  return BackupFile::open(folder_of(place, store_file), name, store_file);
 }
 
-AdminPage read_backup(const store::Store& store, const BackupPlace& place,
-                      const AdminRequest& request) {
+Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key) {
+  // Shared, for a std::function is copyable.
+  const auto shared = std::make_shared<const BackupFile>(std::move(file));
+  return Jobs::Task{.verb = "hash backup",
+                    .argument = shared->summary().name,
+                    .request_key = request_key,
+                    .run = [shared](JobRun& run) { return hash(*shared, run); }};
+}
+
+AdminPage read_backup(const BackupFile& file, const AdminRequest& request) {
   const Result<std::size_t> begin = row_number(request.cursor);
   if (!begin)
     return page_of(begin.error());
-  const Result<BackupFile> file = open_backup(store, place, request.argument);
-  if (!file)
-    return page_of(file.error());
-  const std::vector<std::uint8_t> bytes = file->read(*begin, kMaxBackupChunkBytes);
+  const std::vector<std::uint8_t> bytes = file.read(*begin, kMaxBackupChunkBytes);
   AdminPage page;
   page.status = AdminStatus::Ok;
   if (!bytes.empty())
     page.rows.emplace_back(TextLine{to_base64(bytes)});
-  if (const std::uint64_t end = *begin + bytes.size();
-      !bytes.empty() && end < file->summary().bytes)
+  if (const std::uint64_t end = *begin + bytes.size(); !bytes.empty() && end < file.summary().bytes)
     page.next_cursor = std::to_string(end);
   return page;
 }

@@ -13,15 +13,16 @@ namespace kinship::service {
 AdminPage list_backups(const store::Store& store, const BackupPlace& place,
                        const AdminRequest& request);
 
+/// \return NotFound; InvalidInput for a name that is none.
+Result<BackupFile> open_backup(const store::Store& store, const BackupPlace& place,
+                               const std::string& name);
+
 /// The job that reads a backup through; its rows are the SHA-256 digest of its bytes in hexadecimal
 /// digits, and how many there are. From that whoever then reads them (read_backup) sees that they
 /// are all there. Reading them needs no job, so that it goes on after a restart, which ends jobs.
-/// \return NotFound; InvalidInput for a name that is none.
-Result<Jobs::Task> hash_backup_job(const store::Store& store, const BackupPlace& place,
-                                   const std::string& name, const std::string& request_key);
+Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key);
 
 /// Some bytes of a backup in base64, from the place that the cursor says; no row behind its end.
-AdminPage read_backup(const store::Store& store, const BackupPlace& place,
-                      const AdminRequest& request);
+AdminPage read_backup(const BackupFile& file, const AdminRequest& request);
 
 }  // namespace kinship::service

@@ -90,6 +90,13 @@ Result<Digest> find_distribution_id(const store::Store& store, const std::string
   return *found;
 }
 
+Uuid report_of(const std::string& text) {
+  const std::optional<Uuid> report = Uuid::parse(text);
+  if (!report)
+    throw Failure(ErrorCode::InvalidInput, "'" + text + "' is not a report's UUID");
+  return *report;
+}
+
 Error not_found(const std::string& what, const std::string& name) {
   return {ErrorCode::NotFound, "no " + what + " '" + name + "'"};
 }

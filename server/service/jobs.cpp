@@ -1,7 +1,7 @@
 #include "server/service/jobs.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <map>
 #include <utility>
 
 #include "proto/types/limits.hpp"
@@ -10,8 +10,6 @@
 
 namespace kinship::service {
 namespace {
-
-bool has_ended(JobState state) { return state != JobState::Queued && state != JobState::Running; }
 
 Error no_job(const std::string& id) { return {ErrorCode::NotFound, "no job '" + id + "'"}; }
 
@@ -32,6 +30,10 @@ std::string describe(JobState state) {
 }
 
 }  // namespace
+
+bool has_ended(JobState state) noexcept {
+  return state != JobState::Queued && state != JobState::Running;
+}
 
 struct Jobs::Entry {
   Job job;
@@ -58,12 +60,8 @@ Result<Job> Jobs::begin(Task task) {
   forget_old(clock_.now());
   if (const EntryPointer same = find_begun(task.request_key))
     return same->now();
-  if (is_stopping_)
-    return Error{ErrorCode::Unavailable, "the server is stopping"};
-  if (count(JobState::Queued) >= options_.limits.queued)
-    return Error{ErrorCode::Unavailable,
-                 "busy: " + std::to_string(options_.limits.queued) +
-                     " jobs wait already, the most there may be; cancel one or ask again later"};
+  if (auto refusal = find_refusal(task.owner))
+    return *std::move(refusal);
   const auto entry = std::make_shared<Entry>();
   entry->job.id = new_id();
   entry->job.verb = task.verb;
@@ -75,6 +73,30 @@ Result<Job> Jobs::begin(Task task) {
     is_working_ = worker_.submit(runtime::WorkerPool::Priority::Background,
                                  {.run = [this] { work(); }, .abandon = {}});
   return entry->job;
+}
+
+std::optional<Error> Jobs::refusal_of(const std::string& owner) const {
+  const std::lock_guard lock(mutex_);
+  return find_refusal(owner);
+}
+
+std::optional<Error> Jobs::find_refusal(const std::string& owner) const {
+  const Limits& limits = options_.limits;
+  if (is_stopping_)
+    return Error{ErrorCode::Unavailable, "the server is stopping"};
+  const auto of_owner = std::ranges::count_if(entries_, [&owner](const EntryPointer& entry) {
+    return entry->task.owner == owner && !has_ended(entry->job.state);
+  });
+  if (!owner.empty() && limits.client_active > 0 &&
+      static_cast<std::size_t>(of_owner) >= limits.client_active)
+    return Error{ErrorCode::Unavailable, "busy: this client has " + std::to_string(of_owner) +
+                                             " jobs that have not ended, as many as one may have; "
+                                             "cancel one or ask again later"};
+  if (count(JobState::Queued) >= limits.queued)
+    return Error{ErrorCode::Unavailable,
+                 "busy: " + std::to_string(limits.queued) +
+                     " jobs wait already, the most there may be; cancel one or ask again later"};
+  return std::nullopt;
 }
 
 void Jobs::work() {
@@ -98,18 +120,21 @@ Jobs::EntryPointer Jobs::next() {
 
 void Jobs::run(const EntryPointer& entry) {
   JobRun& result = *entry->result;
-  JobState state = JobState::Failed;
-  std::string message;
+  Job ended = entry->job;  // which this thread alone changes while it runs
+  ended.state = JobState::Failed;
   try {
-    state = entry->task.run(result) ? JobState::Done : JobState::Cancelled;
-    message = state == JobState::Done || !result.message.empty() ? result.message : "cancelled";
+    ended.state = entry->task.run(result) ? JobState::Done : JobState::Cancelled;
+    ended.message =
+        ended.state == JobState::Done || !result.message.empty() ? result.message : "cancelled";
   } catch (const std::exception& exception) {
-    message = exception.what();
+    ended.message = exception.what();
   }
+  // First: who then finds the job ended, however it asks, finds so what is told here.
+  std::exchange(entry->task.on_end, [](const Job&) {})(ended);
   Calls calls;
   {
     const std::lock_guard lock(mutex_);
-    end(*entry, state, message, calls);
+    end(*entry, ended.state, ended.message, calls);
   }
   make(calls);
 }
@@ -135,13 +160,15 @@ void Jobs::end(Entry& entry, JobState state, const std::string& message, Calls& 
   for (auto waiter = its_own; waiter != waiters_.end(); ++waiter)
     calls.answers.emplace_back(std::move(waiter->done), entry.job);
   waiters_.erase(its_own, waiters_.end());
-  calls.ended.push_back(entry.job);
+  calls.ended.emplace_back(std::exchange(entry.task.on_end, [](const Job&) {}), entry.job);
   forget_old(now);
 }
 
 void Jobs::make(const Calls& calls) const {
-  for (const Job& job : calls.ended)
+  for (const auto& [on_end, job] : calls.ended) {
+    on_end(job);
     options_.on_end(job);
+  }
   for (const auto& [done, job] : calls.answers)
     done(job);
 }
@@ -312,10 +339,14 @@ std::size_t Jobs::count(JobState state) const {
 
 void Jobs::forget_old(TimePoint now) {
   std::size_t kept = 0, bytes = 0;
+  std::map<std::string, std::size_t> kept_of;
   std::deque<EntryPointer> remaining;
   // From the newest to the oldest: those that are too many or too much are the old ones.
   for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
     if (has_ended((*entry)->job.state)) {
+      const std::string& owner = (*entry)->task.owner;
+      if (!owner.empty() && ++kept_of[owner] > options_.limits.client_kept)
+        continue;
       const std::size_t rows = (*entry)->result ? (*entry)->result->rows.bytes() : 0;
       ++kept;
       bytes += rows;

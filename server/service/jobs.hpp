@@ -20,6 +20,9 @@
 
 namespace kinship::service {
 
+/// Neither waits nor runs any more.
+bool has_ended(JobState state) noexcept;
+
 /// What a job is given while it runs, on the thread of the jobs.
 class JobRun {
  public:
@@ -47,7 +50,9 @@ class Jobs {
 
   struct Limits {
     std::size_t queued = 16;                          ///< that wait; more are refused
+    std::size_t client_active = 2;                    ///< of one client, not ended; 0: any number
     std::size_t kept = 64;                            ///< ended ones
+    std::size_t client_kept = 32;                     ///< ended ones of one client
     std::chrono::milliseconds kept_for{3'600'000};    ///< from its end
     std::size_t row_bytes = std::size_t{64} << 20U;   ///< of one job's rows
     std::size_t kept_bytes = std::size_t{64} << 20U;  ///< of the rows of all ended jobs together
@@ -67,7 +72,10 @@ class Jobs {
     /// The request that asks for it. Sent again, as after a lost reply, it begins no second job;
     /// empty: it is never sent again.
     std::string request_key;
-    std::string owner = {};  ///< the client that begins it (Caller::client)
+    std::string owner = {};  ///< the client that begins it; empty: nobody, without a quota
+    /// Called once with the job as it ended, before anybody else is told: by the thread that runs
+    /// it, in cancel() or in stop(). It must not throw.
+    std::function<void(const Job&)> on_end = [](const Job&) {};
     /// \return false if it ended early because it should stop. What it throws makes it Failed.
     std::function<bool(JobRun&)> run;
   };
@@ -77,8 +85,11 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  /// \return the job as it stands; Unavailable, with the limit, if too many wait or jobs stop.
+  /// \return the job as it stands; Unavailable, with the limit, if too many wait, of its owner or
+  ///         in all, or if jobs stop.
   Result<Job> begin(Task task);
+  /// Why an owner cannot begin one now: what begin() would return.
+  std::optional<Error> refusal_of(const std::string& owner) const;
 
   std::optional<Job> begun_by(const std::string& request_key) const;
   std::vector<Job> list() const;                  ///< in the order in which they were begun
@@ -122,8 +133,8 @@ class Jobs {
   };
   /// What is called once no lock is held.
   struct Calls {
+    std::vector<std::pair<std::function<void(const Job&)>, Job>> ended;
     std::vector<std::pair<Done, Job>> answers;
-    std::vector<Job> ended;
   };
 
   void work();
@@ -136,6 +147,7 @@ class Jobs {
   EntryPointer find_begun(const std::string& request_key) const;
   std::string new_id() const;
   std::size_t count(JobState state) const;
+  std::optional<Error> find_refusal(const std::string& owner) const;
   void end(Entry& entry, JobState state, const std::string& message, Calls& calls);
   void forget_old(TimePoint now);
 

@@ -7,6 +7,7 @@
 
 #include "proto/types/failure.hpp"
 #include "server/access/access.hpp"
+#include "server/access/withheld_sources.hpp"
 #include "server/service/find_by_name.hpp"
 
 namespace kinship::service {
@@ -120,9 +121,13 @@ bool Narrowing::keeps(AdminRow& row) const {
     return may_see(distribution->task, distribution->label);
   if (const auto* const attempt = std::get_if<Attempt>(&row))
     return may_see(attempt->task, caller_.robots.empty() ? "" : label_of(attempt->robot));
-  if (auto* const explanation = std::get_if<Explanation>(&row))
+  if (auto* const distribution = std::get_if<Distribution>(&row))
+    access::withhold_sources(caller_, *distribution);
+  if (auto* const explanation = std::get_if<Explanation>(&row)) {
+    access::withhold_sources(caller_, explanation->distribution);
     std::erase_if(explanation->experience,
                   [&](const auto& robot) { return !may_see("", robot.label); });
+  }
   if (auto* const status = std::get_if<ServerStatus>(&row))
     strip(*status);
   return true;

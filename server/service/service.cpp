@@ -183,10 +183,12 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
 
 void Service::register_robot(RobotDescription description,
                              std::function<void(const RegisterReply&)> done,
-                             const std::string& client) {
-  auto run = [this, description = std::move(description), done, client] {
+                             const std::string& client,
+                             runtime::RobotRegistry::LabelRule may_take) {
+  auto run = [this, description = std::move(description), done, client,
+              may_take = std::move(may_take)] {
     try {
-      done(registered(description, client));
+      done(registered(description, client, may_take));
     } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
       troubles_.add(Trouble::RobotUnanswered, "'" + description.label + "': " + exception.what());
     }
@@ -205,8 +207,10 @@ void Service::register_robot(RobotDescription description,
 }
 
 /// \throws Failure(Storage), std::bad_alloc: a refusal would be final.
-RegisterReply Service::registered(const RobotDescription& description, const std::string& client) {
-  const RegisterReply reply = robots_.register_robot(description, options_.clock.unix_ms());
+RegisterReply Service::registered(const RobotDescription& description, const std::string& client,
+                                  const runtime::RobotRegistry::LabelRule& may_take) {
+  const RegisterReply reply =
+      robots_.register_robot(description, options_.clock.unix_ms(), may_take);
   if (reply.status == RegisterStatus::Refused) {
     troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);
   } else {
@@ -365,6 +369,7 @@ ServerStatus Service::status() const {
   status.troubles = troubles_.counts();
   status.dropped_paths = store.dropped_paths;
   status.bounds = bounds(store);
+  status.credentials_expire_ms = options_.credentials_expire_ms;
   if (forwarder_)
     status.upstream = forwarder_->status(store.attempts);
   return status;

@@ -48,6 +48,8 @@ struct UpstreamOptions {
 
 struct ServiceOptions {
   std::string version;
+  /// When the server's certificate ends, Unix time; 0: it has none.
+  std::int64_t credentials_expire_ms = 0;
   std::size_t fit_threads = 1;
   std::size_t fit_memory_bytes = std::size_t{2048} << 20U;  ///< of all fits together, at most
   std::size_t fit_queue = 256;           ///< fits that wait; more are answered Busy
@@ -87,6 +89,8 @@ struct ServiceOptions {
 /// throw or block. None is called after shutdown() has returned.
 class Service {
  public:
+  static constexpr RetryAfter kRetryAfter{1000};  ///< of requests for which there was no room
+
   Service(std::unique_ptr<store::Store> store, ServiceOptions options);
   ~Service();  ///< shutdown()
   Service(const Service&) = delete;
@@ -94,8 +98,8 @@ class Service {
 
   /// Whether a client may ask for something now, before it is even read; not: when it may. Counts
   /// what may come in.
-  /// \param client           who asks, here and below; empty: nobody in particular, without a
-  /// quota. \param bytes, attempts  that the request has.
+  /// \param client  who asks, here and below; empty: nobody in particular, without a quota.
+  /// \param bytes, attempts  that the request has.
   std::optional<quotas::Refusal> admit(const std::string& client, std::size_t bytes,
                                        std::size_t attempts = 0);
   /// The same of a registration.
@@ -103,8 +107,10 @@ class Service {
 
   /// `done` is not called if the server is stopping or the store cannot take it: the client asks
   /// again.
+  /// \param may_take  see RobotRegistry::register_robot.
   void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done,
-                      const std::string& client = {});
+                      const std::string& client = {},
+                      runtime::RobotRegistry::LabelRule may_take = {});
   void report(ReportRequest request, std::function<void(const ReportReply&)> done,
               const std::string& client = {});
   /// \param waiter  who asks; see Catalog::fetch.
@@ -112,10 +118,11 @@ class Service {
   /// \param request_key  the request's name (catalog::client_of); see Administration::answer.
   /// \param caller  who asks: what it may not (server/access) is refused before anything is done.
   void administer(AdminRequest request, const std::string& request_key,
-                  const std::function<void(const AdminPage&)>& done, const Caller& caller = {});
+                  const std::function<void(const AdminPage&)>& done, const Caller& caller);
 
-  /// The labels of registered robots; those of others are missing, an error is of the store.
-  /// `done` is called at most once; not if the server is busy or stopping.
+  /// The labels of registered robots; those of others are missing. An error says why one cannot be
+  /// told now: of the store, or Unavailable if too much waits. `done` is called at most once; not
+  /// if the server is stopping.
   using RobotLabels = std::map<Digest, Result<std::string>>;
   void name_robots(const std::set<Digest>& robots, std::function<void(const RobotLabels&)> done,
                    const std::string& client);
@@ -124,6 +131,8 @@ class Service {
   void refuse_registration(const std::string& label, const std::string& why,
                            const std::function<void(const RegisterReply&)>& done);
   void refuse_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
+  /// The same of what cannot be told now: Busy, and when to ask again.
+  void postpone_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
   /// What somebody else changed in the store is no longer served from memory. Called by itself where
   /// a store has several servers. One call at a time. \throws Failure(Storage)
@@ -145,8 +154,6 @@ class Service {
   void shutdown();
 
  private:
-  static constexpr RetryAfter kRetryAfter{1000};  ///< of requests for which there was no room
-
   catalog::Catalog::Options catalog_options(const ServiceOptions& options);
   rehearsal::RehearsalBookOptions rehearsal_options() const;
   Jobs::Options job_options(const ServiceOptions& options);
@@ -156,7 +163,8 @@ class Service {
   void begin_epoch(const HistoryMark& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
-  RegisterReply registered(const RobotDescription& description, const std::string& client);
+  RegisterReply registered(const RobotDescription& description, const std::string& client,
+                           const runtime::RobotRegistry::LabelRule& may_take);
   std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);

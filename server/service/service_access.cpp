@@ -1,3 +1,4 @@
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -69,18 +70,27 @@ void Service::name_robots(const std::set<Digest>& robots,
       others.insert(robot);
   if (others.empty())
     return done(labels);
-  auto run = [this, labels = std::move(labels), others = std::move(others),
-              done = std::move(done)]() mutable {
+  // Shared by the task and by who finds no room for it: what `done` holds may be large.
+  const auto answer =
+      std::make_shared<const std::function<void(const RobotLabels&)>>(std::move(done));
+  auto run = [this, labels, others, answer]() mutable {
     for (const Digest& robot : others)
       if (const auto found = robots_.find(robot))
         labels.emplace(robot, found.value()->label);
       else if (found.error().code != ErrorCode::NotFound)
         labels.emplace(robot, found.error());
-    done(labels);
+    (*answer)(labels);
   };
-  if (!short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}, .client = client}))
-    options_.log("robots: not looked up, busy or stopping");
+  if (short_task_pool_.submit(runtime::WorkerPool::Priority::Interactive,
+                              {.run = std::move(run), .abandon = {}, .client = client}) ||
+      stop_source_.stop_requested())
+    return;
+  const Error busy{ErrorCode::Unavailable,
+                   is_over_waiting(client) ? "busy: this client has as much waiting as one may have"
+                                           : "the server is busy"};
+  for (const Digest& robot : others)
+    labels.emplace(robot, busy);
+  (*answer)(labels);
 }
 
 void Service::refuse_registration(const std::string& label, const std::string& why,
@@ -97,6 +107,16 @@ void Service::refuse_fetch(const std::string& why,
   FetchReply reply;
   reply.status = FetchStatus::Refused;
   reply.message = why;
+  count_fetch(reply);
+  done(reply);
+}
+
+void Service::postpone_fetch(const std::string& why,
+                             const std::function<void(const FetchReply&)>& done) {
+  FetchReply reply;
+  reply.status = FetchStatus::Busy;
+  reply.message = why;
+  reply.retry_after = kRetryAfter;
   count_fetch(reply);
   done(reply);
 }

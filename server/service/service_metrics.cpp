@@ -142,6 +142,9 @@ void Service::expose(Exposition& page) const {
   expose_measures(page, measures_);
   expose_refusals(page, troubles_.counts());
   expose_quotas(page, clients_);
+  page.gauge("kinship_credentials_expiry_timestamp_seconds",
+             "When the server's certificate ends; 0: it runs without security.",
+             seconds_of(options_.credentials_expire_ms));
   expose_use(page);
   expose_guidance(page);
   std::optional<store::StoreStatus> store;

@@ -49,6 +49,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
   const std::string dds = "proto/dds";
   const std::string manual = "proto/manual";
   const std::string security = "proto/security";
+  const std::string tables = "proto/tables";
   const std::string kinematics = "robots/kinematics";
   const std::string models = "robots/models";
   const std::string inverse = "robots/inverse";
@@ -91,6 +92,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {dds, {{types, security, codec, idl}, {"Cyclone DDS"}}},
       {manual, {{types}, {"CLI11"}}},
       {security, {{types}, {"libcrypto", "toml"}}},
+      {tables, {{types}, {}}},
       {kinematics, {{types}, {"Eigen", "urdfdom"}}},
       {models, {{geometry, kinematics, types}, {"Eigen", "toml", "tinyxml2"}}},
       {inverse, {{kinematics, types}, {"Eigen"}}},
@@ -115,7 +117,8 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
          evidence, types},
         {"Eigen"}}},
       {"server/app",
-       {{service, access, quotas, metrics, security, dds, codec, json, manual, types, store},
+       {{service, access, quotas, metrics, security, dds, codec, json, manual, tables, types,
+         store},
         {"Boost.Beast", "CLI11", "spdlog"}}},
       {files, {{types}, {}}},
       {arguments, {{models, geometry, kinematics, types}, {"Eigen", "CLI11"}}},
@@ -128,7 +131,7 @@ inline const std::map<std::string, AllowedEdges> kAllowedEdges = [] {
       {plots, {{page, evidence, geometry, kinematics, models, mixture, json, types}, {"Eigen"}}},
       {"client/cli",
        {{link, arguments, files, moveit, page, plots, inverse, collision, geometry, kinematics,
-         models, mixture, json, manual, types},
+         models, mixture, json, manual, tables, types},
         {"Eigen", "CLI11"}}},
       {"client/c", {{link, json, mixture, models, collision, kinematics, types}, {"Eigen"}}},
       {"client/library",

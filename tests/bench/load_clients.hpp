@@ -1,5 +1,6 @@
 #pragma once
 
+#include <barrier>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -66,27 +67,33 @@ inline Attempt report_of_8_kb(const Digest& panda, std::uint64_t seed) {
   return attempt;
 }
 
-/// Four clients that report, one path at a time each.
+/// Four clients that report, one path at a time each, from when each has had its first receipt:
+/// discovery and handshakes do not count. What they report nobody reported before.
 /// \param rate_per_s  of all together; 0: as many as they can.
 /// \param seconds     0: until they are killed.
 /// \return how many were stored.
 inline std::uint64_t report_at(std::uint32_t domain, const Digest& panda, double rate_per_s,
                                double seconds) {
   constexpr std::size_t kClients = 4;
+  const auto first_seed =
+      static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
   std::vector<std::uint64_t> stored(kClients);
+  std::barrier connected(kClients);
   {
     std::vector<std::jthread> threads;
     for (std::size_t number = 0; number < kClients; ++number)
       threads.emplace_back([&, number] {
         link::Client client(without_outbox(domain));
+        std::uint64_t seed = first_seed + 1'000'000 * number;
+        client.deliver({report_of_8_kb(panda, seed++)}).value_or_throw();
+        connected.arrive_and_wait();
         const double begin_s = wall_s();
         for (std::uint64_t i = 0; seconds == 0 || wall_s() < begin_s + seconds; ++i) {
           if (rate_per_s > 0) {
             const double due_s = begin_s + static_cast<double>(i * kClients) / rate_per_s;
             std::this_thread::sleep_for(std::chrono::duration<double>(due_s - wall_s()));
           }
-          const auto receipts =
-              client.deliver({report_of_8_kb(panda, 1'000'000 * number + i)}).value_or_throw();
+          const auto receipts = client.deliver({report_of_8_kb(panda, seed++)}).value_or_throw();
           stored[number] += receipts.at(0).status == ReceiptStatus::Stored ? 1U : 0U;
         }
       });

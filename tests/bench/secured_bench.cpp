@@ -5,15 +5,12 @@
 //   secured_bench
 
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "client/link/client.hpp"
@@ -21,6 +18,7 @@
 #include "tests/bench/figure.hpp"
 #include "tests/bench/load_clients.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/restarted_clients.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -39,8 +37,8 @@ std::chrono::sys_seconds now() {
 
 /// A server, and processes that are its clients: one with security hears nobody without.
 struct Side {
-  Side(const fs::path& folder, const fs::path& security, const fs::path& credentials)
-      : credentials(credentials), options{folder / "fleet.db", domain.number(), {}} {
+  Side(const fs::path& folder, const fs::path& security, fs::path own_credentials)
+      : credentials(std::move(own_credentials)), options{folder / "fleet.db", domain.number(), {}} {
     if (!security.empty())
       options.arguments = {"--security", security.string()};
     server = std::make_unique<test::ServerProcess>(options);
@@ -85,87 +83,22 @@ double fetch_often(std::uint32_t domain, const Digest& panda) {
 
 void compare(const Side& secured, const Side& open) {
   constexpr int kRounds = 5;
-  std::vector<double> secured_us, open_us;
+  std::vector<double> secured_us, open_us, secured_rates, open_rates;
   for (int round = 0; round < kRounds; ++round) {
     secured_us.push_back(secured.fetch_us());
     open_us.push_back(open.fetch_us());
+    secured_rates.push_back(secured.reports_per_s());
+    open_rates.push_back(open.reports_per_s());
   }
   bench::print({.name = "30 KB from memory with security, p50",
                 .value = bench::median(secured_us),
                 .unit = "us",
                 .reference = bench::Reference{"without", bench::median(open_us)}});
-  const double rate = secured.reports_per_s();
   bench::print({.name = "reports of 8 KB over DDS with security, 4 clients",
-                .value = rate,
+                .value = bench::median(secured_rates),
                 .unit = "reports/s",
                 .better = bench::Better::Higher,
-                .reference = bench::Reference{"without", open.reports_per_s()}});
-}
-
-/// Asks with every client until each has an answer.
-void ask_with_all(const std::vector<std::unique_ptr<link::Client>>& clients) {
-  std::vector<std::jthread> threads;
-  for (const auto& client : clients)
-    threads.emplace_back([&client] { client->admin({}).value_or_throw(); });
-}
-
-sigset_t start_signal() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGUSR1);
-  return signals;
-}
-
-/// Asks, says so, waits for a signal, asks again and says so. All with the same credentials: a
-/// process has one name in a domain, and each participant shakes hands for itself.
-int run_clients(std::uint32_t domain, const fs::path& credentials) {
-  const sigset_t signals = start_signal();
-  sigprocmask(SIG_BLOCK, &signals, nullptr);  // threads inherit it
-  std::vector<std::unique_ptr<link::Client>> clients;
-  for (int i = 0; i < kClientsOfProcess; ++i) {
-    link::ClientOptions options = bench::without_outbox(domain);
-    options.security = credentials;
-    clients.push_back(std::make_unique<link::Client>(options));
-  }
-  ask_with_all(clients);
-  std::cout << "connected" << std::endl;
-  int received = 0;
-  sigwait(&signals, &received);
-  std::cout << "asking" << std::endl;
-  ask_with_all(clients);
-  std::cout << "answered" << std::endl;
-  return 0;
-}
-
-using Processes = std::vector<std::unique_ptr<test::ChildProcess>>;
-
-void expect(const Processes& processes, const std::string& line) {
-  for (const auto& process : processes)
-    if (process->read_line() != line)
-      throw std::runtime_error("a process of clients has ended before '" + line + "'");
-}
-
-void restart(Side& secured, const std::vector<fs::path>& credentials) {
-  double start_s = bench::wall_s();
-  Processes processes;
-  for (const fs::path& folder : credentials)
-    processes.push_back(std::make_unique<test::ChildProcess>(std::vector<std::string>{
-        "/proc/self/exe", "clients", std::to_string(secured.domain.number()), folder.string()}));
-  expect(processes, "connected");
-  bench::print({.name = "100 clients with security start and are answered",
-                .value = bench::wall_s() - start_s,
-                .unit = "s"});
-  secured.server->kill();
-  for (const auto& process : processes)
-    process->signal(SIGUSR1);
-  expect(processes, "asking");
-  start_s = bench::wall_s();
-  secured.server = std::make_unique<test::ServerProcess>(secured.options);
-  expect(processes, "answered");
-  bench::print({.name = "100 clients with security answered after the server's start",
-                .value = bench::wall_s() - start_s,
-                .unit = "s",
-                .budget = 10});
+                .reference = bench::Reference{"without", bench::median(open_rates)}});
 }
 
 void run() {
@@ -181,16 +114,26 @@ void run() {
   Side secured(directory / "secured", directory / "security", add("bench", directory / "bench"));
   const Side open(directory / "open", {}, {});
   compare(secured, open);
-  std::vector<fs::path> credentials;
+  std::vector<std::string> credentials;
   for (int i = 0; i < kProcesses; ++i) {
     const std::string name = "client_" + std::to_string(i);
-    credentials.push_back(add(name, directory / name.c_str()));
+    credentials.push_back(add(name, directory / name.c_str()).string());
   }
-  restart(secured, credentials);
+  bench::measure_restart("100 clients with security", secured.domain.number(), credentials, 10,
+                         secured.server, secured.options);
 }
 
 std::uint32_t domain_of(const std::vector<std::string>& arguments) {
   return static_cast<std::uint32_t>(std::stoul(arguments[1]));
+}
+
+/// All with the same credentials: a process has one name in a domain, and each participant shakes
+/// hands for itself.
+int run_clients(std::uint32_t domain, const fs::path& credentials) {
+  link::ClientOptions options = bench::without_outbox(domain);
+  options.security = credentials;
+  return bench::run_clients(kClientsOfProcess, options,
+                            [](link::Client& client) { client.admin({}).value_or_throw(); });
 }
 
 }  // namespace

@@ -285,6 +285,7 @@ ServerStatus every_status() {
     status.bounds.push_back(bound);
   }
   status.dropped_paths = next.count();
+  status.credentials_expire_ms = next.time_ms();
   return status;
 }
 
@@ -325,6 +326,8 @@ CredentialList every_credential_list() {
   row.authority = next.name("fingerprint");
   row.is_of_previous_authority = true;
   row.message = next.text("message");
+  row.trusted = {next.name("fingerprint"), next.name("fingerprint")};
+  row.trusts_a_retired_authority = true;
   list.credentials.push_back(row);
   return list;
 }

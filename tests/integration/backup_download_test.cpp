@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <string>
 #include <thread>
 
 #include "tests/integration/admin_commands.hpp"
+#include "tests/integration/incompressible_paths.hpp"
 
 namespace kinship::backup_download_test {
 namespace {
@@ -29,24 +29,8 @@ class BackupDownload : public testing::Test {
     more.insert(more.begin(), {"--backup-folder", backups_.string()});
     return more;
   }
-  /// Some 430 kB a path that cannot be compressed.
-  void fill(const Server& server, int paths) {
-    const auto client = server.client(folder_ / "outbox");
-    const Digest panda =
-        client->register_robot(test::model_description("panda")).value_or_throw().robot;
-    std::mt19937_64 generator(1);
-    std::uniform_real_distribution<double> joint(-0.5, 0.5);
-    for (int i = 0; i < paths; ++i) {
-      Attempt attempt = test::panda_attempt(panda, "sweep", 1);
-      Eigen::MatrixXd waypoints =
-          Eigen::MatrixXd::NullaryExpr(7, 8000, [&] { return joint(generator); });
-      waypoints.row(3).array() -= 1.5;  // within the limits
-      waypoints.row(5).array() += 1.5;
-      attempt.path = Path(waypoints);
-      client->report(attempt);
-    }
-    const link::Client::OutboxState state = client->flush(seconds(60));
-    ASSERT_EQ(state.accepted, static_cast<std::size_t>(paths)) << state.problem;
+  void fill(const Server& server, std::size_t paths) {
+    test::report_incompressible_paths(*server.client(folder_ / "outbox"), paths);
   }
   /// Waits until so much of a download is here. \return whether it came to that.
   static bool has_bytes(const fs::path& part, std::uintmax_t bytes) {

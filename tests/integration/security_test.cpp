@@ -109,5 +109,27 @@ TEST_F(SecuredServer, CommandsNeedCredentials) {
     ASSERT_LT(std::chrono::steady_clock::now(), end);
 }
 
+TEST_F(SecuredServer, FormerCredentialsAreGoodUntilTheyAreRevoked) {
+  const fs::path first = add({.name = "anna", .role = AccessRole::Admin});
+  const fs::path second = folder_ / "anna-2";
+  fleet_.renew("anna", security::kDefaultDays, second, now());
+  EXPECT_EQ(kinship({"--security", first, "status"}).code, 0);
+  EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
+  fleet_.revoke_former("anna");
+  const auto is_told = [&] {
+    kinship({"--security", first, "status"});
+    return test::read_text(folder_ / "kinship.err").find("credentials were replaced (1 of 2)") !=
+           std::string::npos;
+  };
+  const auto end = std::chrono::steady_clock::now() + 10s;
+  while (!is_told())
+    ASSERT_LT(std::chrono::steady_clock::now(), end);
+  EXPECT_EQ(kinship({"--security", second, "status"}).code, 0);
+  EXPECT_EQ(kinship({"--security", second, "tasks", "reset", "none"}).code, 3);
+  const Answer log = kinship({"--security", second, "audit", "--json"});
+  EXPECT_EQ(log.code, 0);
+  EXPECT_EQ(log.out.find("anna.2"), std::string::npos) << "one name, whichever credentials";
+}
+
 }  // namespace
 }  // namespace kinship::security_test

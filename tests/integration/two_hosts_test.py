@@ -1,5 +1,5 @@
 """docs/operations.md, "Two hosts, from nothing to a secured fetch": its commands, each on its host. A host is a network namespace with
-a folder of its own; a pair of virtual interfaces is the cable."""
+a folder of its own; a pair of virtual interfaces is the cable. And what another host may do without security."""
 import json
 import os
 import pathlib
@@ -79,6 +79,9 @@ class TwoHosts(unittest.TestCase):
         *before, serve = self.of_server
         done = self.server.run("\n".join(before))
         self.assertEqual(done.returncode, 0, done.stdout)
+        self.serve(serve)
+
+    def serve(self, serve: str) -> None:
         log = open(self.server.folder / "kinshipd.log", "w")
         self.addCleanup(log.close)
         kinshipd = subprocess.Popen(self.server.command("exec " + serve), cwd=self.server.folder, stdout=subprocess.PIPE,
@@ -112,6 +115,37 @@ class TwoHosts(unittest.TestCase):
         self.assertEqual(made.returncode, 0, made.stdout)
         forged = self.robot.run("kinship --security forged " + status.removeprefix("kinship "))
         self.assertEqual(forged.returncode, 4, forged.stdout)
+
+    def test_without_security_another_host_reads_and_reports_and_changes_nothing(self):
+        (self.server.folder / "backups").mkdir()
+        self.serve("kinshipd --interface eth0 --insecure --backup-folder backups --store fleet.db")
+        of_robot = [command for command in self.of_robot if "guided" not in command]
+        done = self.robot.run("\n".join(of_robot).replace("KINSHIP_SECURITY=", "UNUSED="))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.robot.run("kinship --server 10.77.0.1 distributions fetch --robot ur10e --task load_machine --wait 30")
+
+        def listed(noun: str) -> "list[dict]":
+            return json.loads(self.robot.run(f"kinship --server 10.77.0.1 {noun} list --json").stdout)["rows"]
+
+        paths, distributions = listed("paths"), listed("distributions")
+        self.assertTrue(paths and distributions, "it has reported and fetched")
+        changes = [f"paths retire {paths[0]['report_uuid']}", f"distributions evict {distributions[0]['id']}",
+                   "backup night.db", "robots rename ur10e arm", "tasks reset load_machine --yes",
+                   "robots remove ur10e --yes"]
+        for change in changes:
+            refused = self.robot.run(f"kinship --server 10.77.0.1 {change}")
+            self.assertNotIn(refused.returncode, (0, 4), change)
+            self.assertIn("a client on another host may not", refused.stdout)
+            self.assertIn("this server runs without security, where that is for its own machine alone", refused.stdout)
+        self.assertEqual((listed("paths"), listed("distributions")), (paths, distributions))
+        self.assertEqual(list((self.server.folder / "backups").iterdir()), [])
+        self.assertEqual([robot["label"] for robot in listed("robots")], ["ur10e"])
+        # On the server's own machine each of them is done.
+        for change in changes:
+            done = self.server.run(f"kinship --server 10.77.0.1 {change.replace('remove ur10e', 'remove arm')}")
+            self.assertEqual(done.returncode, 0, f"{change}: {done.stdout}")
+        self.assertEqual(listed("robots"), [])
+        self.assertTrue((self.server.folder / "backups" / "night.db").exists())
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,9 +55,12 @@ class ChildProcess {
   }
 
   /// Whether there is something to read by now, which may be the end.
-  bool has_output() const {
+  bool has_output() const { return has_output_within(std::chrono::milliseconds(0)); }
+
+  /// Waits for it.
+  bool has_output_within(std::chrono::milliseconds patience) const {
     pollfd waits{output_, POLLIN, 0};
-    return poll(&waits, 1, 0) > 0;
+    return poll(&waits, 1, static_cast<int>(patience.count())) > 0;
   }
 
   void signal(int number) const { ::kill(pid_, number); }

@@ -12,9 +12,11 @@
 
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
 (4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.
+Credentials that end within 30 days are told by `warnings` (CredentialsExpire).
 """
 from .errors import (
     Conflict,
+    CredentialsExpire,
     Error,
     FitFailed,
     InternalError,
@@ -54,6 +56,7 @@ __all__ = [
     "Attempt",
     "Client",
     "Conflict",
+    "CredentialsExpire",
     "Distribution",
     "Error",
     "Events",

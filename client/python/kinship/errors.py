@@ -51,3 +51,7 @@ class StorageError(Error, OSError):
 
 class InternalError(Error, RuntimeError):
     """A bug of Kinship, or an unexpected answer of a library."""
+
+
+class CredentialsExpire(UserWarning):
+    """Told by `warnings` when a Client is opened: its credentials are valid for less than 30 days."""

@@ -163,8 +163,11 @@ class TroubledStore final : public store::Store {
                                        std::size_t max_bytes) const override {
     return store_.export_attempts(robot, task, cursor, limit, max_bytes);
   }
+  /// Called when a backup begins; may block.
+  std::function<void()> on_backup = [] {};
   Result<bool> backup(const std::filesystem::path& file,
                       const std::function<bool(double)>& progress) const override {
+    on_backup();
     return store_.backup(file, progress);
   }
   std::uint64_t put_distribution(const Distribution& distribution,

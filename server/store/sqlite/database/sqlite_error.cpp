@@ -2,9 +2,24 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
+#include <system_error>
+
 #include "server/store/sqlite/database/checked_vfs.hpp"
 
 namespace kinship::store {
+namespace {
+
+/// SQLite says "disk is full" of its databases only, of what it lays beside them "disk I/O error".
+std::string lack_of_room(sqlite3& connection) {
+  const int reason = sqlite3_system_errno(&connection);
+  const bool is_io_error = (sqlite3_extended_errcode(&connection) & 0xFF) == SQLITE_IOERR;
+  if (!is_io_error || (reason != ENOSPC && reason != EDQUOT && reason != EFBIG))
+    return "";
+  return ": " + std::generic_category().message(reason);
+}
+
+}  // namespace
 
 bool SqliteError::concerns_one_row() const noexcept {
   const int primary = sqlite_code_ & 0xFF;
@@ -27,7 +42,8 @@ void throw_sqlite_error(sqlite3& connection, std::string_view doing) {
   message += sqlite3_extended_errcode(&connection) == kDamagedPage
                  ? "the checksum of a page is wrong"
                  : sqlite3_errmsg(&connection);
-  message += " (code " + std::to_string(sqlite3_extended_errcode(&connection)) + ") in '";
+  message += " (code " + std::to_string(sqlite3_extended_errcode(&connection));
+  message += lack_of_room(connection) + ") in '";
   message += doing.substr(0, kMaxShown);
   message += "'";
   throw SqliteError(sqlite3_extended_errcode(&connection), message);

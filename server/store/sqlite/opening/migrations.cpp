@@ -11,12 +11,14 @@
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x4B494E53;  // "KINS"; set by migration 1
+constexpr std::int64_t kFirstAudited = 6;            // schema that has the audit log
 constexpr std::int64_t kFirstSealed = 4;             // schema of which all pages bear checksums
 
 Digest text_digest(const Migration& migration) {
@@ -69,7 +71,9 @@ void check_history(Database& database, const std::filesystem::path& file, std::i
 
 /// Without foreign keys while it lasts, which a table that is written anew would trip over: each
 /// migration leaves them as they were, which `kinshipd check` compares.
-void apply(Database& database, const Migration& migration) {
+/// \param before  the schema that the audit log tells this one from.
+void apply(Database& database, const std::filesystem::path& file, const Migration& migration,
+           std::int64_t before) {
   database.execute("PRAGMA foreign_keys = OFF");
   Transaction transaction(database, Transaction::Kind::Write);
   database.execute(std::string(migration.text));
@@ -79,6 +83,7 @@ void apply(Database& database, const Migration& migration) {
                 std::string_view(sqlite3_libversion()))
       .run();
   database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+  note_migration(database, file, before, migration.version);
   transaction.commit();
   database.execute("PRAGMA foreign_keys = ON");
 }
@@ -100,7 +105,8 @@ void apply_missing(Database& database, const std::filesystem::path& file,
                    std::span<const Migration> migrations) {
   const std::int64_t version = known_schema(database, file, migrations);
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
-    apply(database, migration);
+    apply(database, file, migration,
+          version == 0 || migration.version <= kFirstAudited ? version : migration.version - 1);
 }
 
 std::filesystem::path backup_of_version(const std::filesystem::path& file, std::int64_t version) {

@@ -26,7 +26,8 @@ std::int64_t known_schema(Database& database, const std::filesystem::path& file,
                           std::span<const Migration> migrations);
 
 /// Applies those of `migrations` that a database lacks, each in one transaction, and records each
-/// with the SHA-256 of its text. Keeps no copy.
+/// with the SHA-256 of its text, and in the audit log of a store that was there before. Keeps no
+/// copy.
 /// \throws Failure(Storage) as known_schema() does; nothing is changed then.
 void apply_missing(Database& database, const std::filesystem::path& file,
                    std::span<const Migration> migrations);

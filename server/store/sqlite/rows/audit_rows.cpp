@@ -57,6 +57,11 @@ std::string robot_of(Database& database, const Digest& robot) {
                         query->column_integer(2));
 }
 
+/// Not before schema 6.
+bool has_audit(Database& database) {
+  return database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") > 0;
+}
+
 }  // namespace
 
 void insert_audit(Database& database, const AuditEntry& entry) {
@@ -74,17 +79,26 @@ void insert_audit(Database& database, const AuditEntry& entry) {
 }
 
 void note_maintenance(Database& database, const std::string& verb,
-                      const std::filesystem::path& target, const std::string& after) {
+                      const std::filesystem::path& target, const std::string& before,
+                      const std::string& after) {
   AuditEntry entry;
   entry.client = "kinshipd of user " + std::to_string(getuid());
   entry.verb = verb;
   entry.target = target.string();
+  entry.before = before;
   entry.after = after;
   insert_audit(database, entry);
 }
 
+void note_migration(Database& database, const std::filesystem::path& file, std::int64_t before,
+                    std::int64_t after) {
+  if (before > 0 && has_audit(database))
+    note_maintenance(database, "migrate", file, "schema " + std::to_string(before),
+                     "schema " + std::to_string(after));
+}
+
 void copy_missing_audit(Database& database, Database& other) {
-  if (other.integer("SELECT count(*) FROM sqlite_master WHERE name = 'audit'") == 0)
+  if (!has_audit(other))
     return;
   const std::string columns =
       "time_ms, name, role, client, is_local, verb, target, outcome, was, became, message";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -17,9 +18,15 @@ namespace kinship::store {
 /// Adds an entry, of now; its number is given here. Texts are cut to what fits.
 void insert_audit(Database& database, const AuditEntry& entry);
 
-/// Adds what was done to a store that no server had open, by the user of this process.
+/// Adds what was done to the store as a whole, by the user of this process and at no client's wish.
 void note_maintenance(Database& database, const std::string& verb,
-                      const std::filesystem::path& target, const std::string& after);
+                      const std::filesystem::path& target, const std::string& before,
+                      const std::string& after);
+
+/// Adds that the store has another schema now, once it is one that has the log.
+/// \param before  0: there was nothing, which is not noted.
+void note_migration(Database& database, const std::filesystem::path& file, std::int64_t before,
+                    std::int64_t after);
 
 /// Adds the entries that the log of `other` has and that of `database` has not, in their order,
 /// with the times that they have. Of a store from before schema 6 none.

@@ -16,7 +16,6 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
-#include "server/store/sqlite/rows/audit_rows.hpp"
 #include "server/store/sqlite/upkeep/restoration.hpp"
 #include "server/store/sqlite/upkeep/store_check.hpp"
 
@@ -149,11 +148,7 @@ Migrated migrate_store(const fs::path& file) {
     migrated.to = static_cast<std::uint32_t>(embedded_migrations().size());
     if (migrated.from < migrated.to)
       migrated.backup = backup_of_version(located, from);
-    const std::unique_ptr<Database> database = open_migrated(located, embedded_migrations());
-    if (migrated.from < migrated.to)
-      note_maintenance(
-          *database, "migrate", located,
-          "schema " + std::to_string(migrated.to) + ", was " + std::to_string(migrated.from));
+    open_migrated(located, embedded_migrations());
     return migrated;
   });
 }

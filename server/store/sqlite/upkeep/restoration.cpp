@@ -100,7 +100,7 @@ void Restoration::prepare(const std::function<void(double)>& progress) {
                       named + std::to_string(check.problems) +
                           " problems, nothing was restored; the first: " + check.messages.front());
       keep_audit_of_old(database);
-      note_maintenance(database, "restore", backup_, "epoch " + epoch_.text());
+      note_maintenance(database, "restore", backup_, "", "epoch " + epoch_.text());
     }
     sync_file(copy_);
   } catch (const SqliteError& error) {
@@ -140,7 +140,7 @@ Repaired Restoration::repair(const std::function<void(double)>& progress) {
     repaired.damaged_pages = salvaged.damaged_pages;
     repaired.lost = std::move(salvaged.lost);
     epoch_ = write_new_epoch(*target, copy_);
-    note_maintenance(*target, "repair", file_,
+    note_maintenance(*target, "repair", file_, "",
                      "epoch " + epoch_.text() + ", " + std::to_string(repaired.damaged_pages) +
                          " damaged pages were left behind");
     repaired.check = check_database(

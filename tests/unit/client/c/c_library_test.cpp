@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <fstream>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <thread>
 
 #include "client/c/kinship.h"
+#include "proto/security/security_folder.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/reserved_domain.hpp"
@@ -70,6 +72,27 @@ class CLibraryOffline : public testing::Test {
 TEST(CLibrary, TellsItsVersionAlsoInC) {
   EXPECT_STREQ(kinship_version(), KINSHIP_EXPECTED_VERSION);
   EXPECT_EQ(version_is_told_in_c(), 1);
+}
+
+TEST_F(CLibraryOffline, CredentialsThatEndSoonAreTold) {
+  EXPECT_STREQ(kinship_client_warning(client_), "");
+  EXPECT_STREQ(kinship_client_warning(nullptr), "");
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto fleet =
+      security::SecurityFolder::init(directory_ / "fleet", security::kDefaultDays, now);
+  const std::string credentials = (directory_ / "r1").string();
+  fleet.add({.name = "r1", .days = std::chrono::days(20)}, credentials, now);
+  const test::ReservedDomain domain;  // one with security is another one
+  kinship_client_options options{};
+  options.size = sizeof options;
+  options.domain = domain.number();
+  options.without_outbox = 1;
+  options.security = credentials.c_str();
+  kinship_client* client = nullptr;
+  ASSERT_EQ(kinship_client_open(&options, &client), KINSHIP_OK) << kinship_error_text();
+  const std::string warning = kinship_client_warning(client);
+  EXPECT_EQ(warning.find("the credentials of 'r1' expire in "), 0U) << warning;
+  kinship_client_close(client);
 }
 
 TEST_F(CLibraryOffline, ARobotIsKnownByItsKinematicsAndItsReportsWait) {

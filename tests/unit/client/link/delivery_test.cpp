@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <future>
 
 #include "proto/types/limits.hpp"
 #include "tests/support/random_values.hpp"
@@ -18,10 +20,11 @@ class Deliver : public testing::Test {
  protected:
   Result<std::vector<Receipt>> deliver(const std::vector<Attempt>& attempts,
                                        std::chrono::milliseconds timeout = 5s) {
-    return link::deliver(attempts, timeout, [this](const ReportRequest& batch, Clock::time_point) {
-      batches_.push_back(batch.attempts.size());
-      return answer_(batch);
-    });
+    return link::deliver(attempts, timeout, pauses_,
+                         [this](const ReportRequest& batch, Clock::time_point) {
+                           batches_.push_back(batch.attempts.size());
+                           return answer_(batch);
+                         });
   }
   static Result<ReportReply> store(const ReportRequest& batch) {
     ReportReply reply;
@@ -43,7 +46,26 @@ class Deliver : public testing::Test {
   test::RandomValues values_{43};
   std::function<Result<ReportReply>(const ReportRequest&)> answer_ = store;
   std::vector<std::size_t> batches_;
+  Pauses pauses_;
 };
+
+TEST_F(Deliver, APauseOfAMinuteEndsWithWhoEndsIt) {
+  std::promise<void> asked;
+  answer_ = [&](const ReportRequest&) -> Result<ReportReply> {
+    asked.set_value();  // once: it is not sent again
+    ReportReply busy;
+    busy.retry_after = 60s;
+    return busy;
+  };
+  const auto begin = Clock::now();
+  auto delivered = std::async(std::launch::async, [&] { return deliver(attempts(3), 30s); });
+  asked.get_future().wait();
+  pauses_.end();
+  const auto receipts = delivered.get().value_or_throw();
+  EXPECT_LT(Clock::now() - begin, 20s);
+  ASSERT_EQ(receipts.size(), 3U);
+  EXPECT_EQ(receipts[0].status, ReceiptStatus::TryAgain);
+}
 
 TEST_F(Deliver, ReceiptsComeInTheOrderOfTheAttempts) {
   const std::vector<Attempt> sent = attempts(20);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "proto/json/problem_json.hpp"
+#include "proto/security/security_folder.hpp"
 #include "proto/types/failure.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/unit/client/planner/planar_problem.hpp"
@@ -96,6 +98,29 @@ TEST_F(PlanRun, EachSearchIsWrittenDownWhereItIsAskedForAndChangesNoResult) {
     if (results_[i].solved)
       EXPECT_LE(search.checks.back(), results_[i].collision_checks);
   }
+}
+
+TEST_F(PlanRun, CredentialsThatEndSoonAreToldOnce) {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto fleet = security::SecurityFolder::init(folder_ / "fleet", security::kDefaultDays, now);
+  const kinship::test::ReservedDomain domain;
+  options_.domain = domain.number();
+  options_.guidance = GuidanceMode::Auto;
+  options_.task = "reach";
+  options_.timeout = std::chrono::milliseconds(10);
+  const auto told = [&](const std::string& name, std::chrono::days days) {
+    options_.security = folder_ / name;
+    fleet.add({.name = name, .days = days}, options_.security, now);
+    messages_.str("");
+    EXPECT_EQ(run(line("first")), kDone) << messages_.str();
+    return messages_.str();
+  };
+  const std::string soon = told("r1", std::chrono::days(20));
+  const std::string warning = "warning: the credentials of 'r1' expire in ";
+  EXPECT_NE(soon.find(warning), std::string::npos) << soon;
+  EXPECT_EQ(soon.find(warning), soon.rfind(warning));
+  EXPECT_NE(soon.find("kinshipd secure renew r1"), std::string::npos) << soon;
+  EXPECT_EQ(told("r2", std::chrono::days(40)).find("expire"), std::string::npos);
 }
 
 TEST_F(PlanRun, UnsolvedIsAnAnswer) {

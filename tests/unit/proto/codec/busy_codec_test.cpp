@@ -60,6 +60,14 @@ TEST(BusyCodec, ARequestsSizeIsToldFromItsMessage) {
   fetch.task = "sweep";
   EXPECT_GT(size_of(encode({}, fetch).value_or_throw().wire).bytes, 0U);
   EXPECT_GT(size_of(encode({}, AdminRequest{}).value_or_throw().wire).bytes, 0U);
+  // Whoever asks may send more than any rule allows: that is looked at later.
+  std::string text(100'000, 'x');
+  kinship_wire_FetchRequest long_fetch{};
+  long_fetch.task = long_fetch.profile = text.data();
+  EXPECT_GE(size_of(long_fetch).bytes, 2 * text.size());
+  kinship_wire_AdminRequest long_admin{};
+  long_admin.argument = long_admin.robot = long_admin.task = long_admin.cursor = text.data();
+  EXPECT_GE(size_of(long_admin).bytes, 4 * text.size());
   EXPECT_EQ(size_of(kinship_wire_ReportRequest{}).attempts, 0U) << "a shorter message";
 }
 

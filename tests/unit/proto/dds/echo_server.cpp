@@ -3,34 +3,16 @@
 // all others so far, NAME:ARGUMENT; ListPaths with one row of `limit` KB. FOLDER: with the security
 // that `kinshipd secure init` made there.
 
-#include <chrono>
-#include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 
 #include "proto/dds/replier.hpp"
 #include "proto/security/access_role.hpp"
-#include "proto/security/client_directory.hpp"
+#include "tests/unit/proto/dds/secured_server.hpp"
 
 namespace {
 
 using namespace kinship;
-
-dds::ParticipantOptions options(int argc, char** argv) {
-  dds::ParticipantOptions options{.domain = static_cast<std::uint32_t>(std::stoul(argv[1])),
-                                  .role = dds::Role::Server};
-  if (argc < 3)
-    return options;
-  const std::filesystem::path folder = argv[2];
-  options.security = folder / "server";
-  const auto clients = std::make_shared<security::ClientDirectory>(folder / "clients");
-  options.directory = [clients](const std::string& name) {
-    return clients->caller(
-        name, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
-  };
-  return options;
-}
 
 std::string who(const Caller& caller) {
   return caller.client + '|' + caller.name + '|' + security::role_name(caller.role) + '|' +
@@ -50,7 +32,7 @@ std::string answer_to(const AdminRequest& request, const Caller& caller, const s
 
 int main(int argc, char** argv) {
   try {
-    const dds::Participant participant(options(argc, argv));
+    const dds::Participant participant(test::server_options(argc, argv));
     dds::WaitLoop loop(participant);
     const dds::Replier<codec::AdminConversation> admin(
         participant, loop,

@@ -22,13 +22,10 @@ class FairQueueTest : public testing::Test {
   bool offer(std::uint8_t from, std::uint64_t number) {
     const codec::Head head{client(from), number};
     const std::string name = head.client_id.text();
-    const bool has_room = queue_.has_room(name), waits = queue_.has(name, head);
-    const bool is_admitted = queue_.admit(name, head);
-    EXPECT_EQ(is_admitted, has_room && !waits);
-    if (!is_admitted)
-      return false;
-    queue_.push(name, head, static_cast<int>(number));
-    return true;
+    const auto opening = queue_.opening_for(name, head);
+    if (opening)
+      queue_.push(*opening, static_cast<int>(number));
+    return opening.has_value();
   }
   /// Who is served, in order.
   std::vector<int> clients() {
@@ -68,6 +65,15 @@ TEST_F(FairQueueTest, WhatIsSentAgainWaitsOnce) {
   EXPECT_TRUE(offer(2, 1));
   EXPECT_EQ(clients(), (std::vector<int>{1, 2}));
   EXPECT_TRUE(offer(1, 1));
+}
+
+TEST_F(FairQueueTest, WhoIsGivenRoomAndDoesNotTakeItPushesNobodyOut) {
+  for (std::uint64_t number = 1; number <= kCapacity; ++number)
+    EXPECT_TRUE(offer(1, number));
+  const codec::Head head{client(2), 1};
+  EXPECT_TRUE(queue_.opening_for(head.client_id.text(), head));
+  EXPECT_EQ(queue_.size(), kCapacity);
+  EXPECT_EQ(clients(), (std::vector<int>(kCapacity, 1)));
 }
 
 TEST_F(FairQueueTest, NobodyHasToGoForWhoHasAsMany) {

@@ -1,21 +1,28 @@
 // Somebody who does not keep to the rules, with Cyclone DDS that was changed to let him:
 //
-//   intruder write DOMAIN FOLDER PARTITION WAY TEXT   sends requests into a partition
-//   intruder read DOMAIN FOLDER PARTITION WAY         reads the replies of a partition
-//   intruder serve DOMAIN FOLDER PARTITION WAY        reads requests, at the server's port
+//   intruder write DOMAIN FOLDER PARTITION WAY TEXT          sends admin requests with an argument
+//   intruder reset DOMAIN FOLDER PARTITION WAY TASK          ... that reset a task
+//   intruder register DOMAIN FOLDER PARTITION WAY LABEL      sends the registration of a robot
+//   intruder report DOMAIN FOLDER PARTITION WAY TASK ROBOT   sends a report; ROBOT: its digest
+//   intruder read DOMAIN FOLDER PARTITION WAY                reads admin replies
+//   intruder serve DOMAIN FOLDER PARTITION WAY               reads admin requests, at the server's
+//   port intruder tell DOMAIN FOLDER PARTITION WAY TEXT           sends admin replies, from there
 //
 // FOLDER: credentials, or "-" for none; PARTITION: "-" for the default one. WAY: honest; changed,
 // with a plugin that allows whatever this process makes; hidden, which also hides the security
-// attributes of its readers and writers. Prints "joined" or "refused: WHY", and then "heard TEXT"
-// for each message that reaches it.
+// attributes of its readers and writers; earlier, honest by a clock that is a day behind. Prints
+// "joined" or "refused: WHY", and then "heard TEXT" for each message that reaches it. It does not
+// have the guard of Participant: with the server's credentials it is a server without guard.
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_plist.h>
 #include <dlfcn.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -27,6 +34,8 @@
 #include "proto/dds/qos.hpp"
 #include "proto/dds/wire.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/panda_experience.hpp"
+#include "tests/support/robots.hpp"
 
 namespace {
 
@@ -34,6 +43,7 @@ using namespace kinship;
 using namespace std::chrono_literals;
 
 bool hides_attributes = false;
+time_t behind_s = 0;  // of this process's clock
 
 /// What this process says of a reader or writer of its own.
 ddsi_plist_t told(const ddsi_plist_t& plist) {
@@ -50,18 +60,22 @@ struct Wish {
   std::string partition;
   std::string way;
   std::string text;
+  std::string robot;
 };
+
+bool is_server(const Wish& wish) { return wish.verb == "serve" || wish.verb == "tell"; }
 
 dds::Entity join(const Wish& wish) {
   const dds::ParticipantOptions options{
-      .domain = wish.domain, .role = wish.verb == "serve" ? dds::Role::Server : dds::Role::Client};
+      .domain = wish.domain, .role = is_server(wish) ? dds::Role::Server : dds::Role::Client};
   dds::require(dds_create_domain(wish.domain, dds::cyclone_configuration(options).c_str()),
                "domain");
   dds::Qos qos;
   if (wish.folder != "-") {
     qos = dds::security_qos(wish.folder);
     char* plugin = nullptr;
-    if (wish.way != "honest" && dds_qget_prop(qos.get(), "dds.sec.access.library.path", &plugin)) {
+    const bool is_changed = wish.way == "changed" || wish.way == "hidden";
+    if (is_changed && dds_qget_prop(qos.get(), "dds.sec.access.library.path", &plugin)) {
       setenv("KINSHIP_ACCESS_CONTROL", plugin, 1);
       dds_free(plugin);
       dds_qset_prop(qos.get(), "dds.sec.access.library.path", KINSHIP_PERMISSIVE_PLUGIN);
@@ -75,27 +89,62 @@ dds::Qos partition(const Wish& wish) {
 }
 
 /// Sends every 200 ms: what is not matched yet is lost.
-[[noreturn]] void write(const Wish& wish, const dds::Entity& participant) {
-  const dds::Topics topics = dds::Wire<codec::AdminConversation>::topics();
-  const dds::Entity topic(dds_create_topic(participant.get(), &topics.request,
-                                           topics.request_topic().c_str(), nullptr, nullptr),
-                          "topic");
+/// \param next  makes the next message.
+template <typename Next>
+[[noreturn]] void send(const Wish& wish, const dds::Entity& participant,
+                       const dds_topic_descriptor_t& type, const std::string& name,
+                       const Next& next) {
+  const dds::Entity topic(
+      dds_create_topic(participant.get(), &type, name.c_str(), nullptr, nullptr), "topic");
   const dds::Entity publisher(
       dds_create_publisher(participant.get(), partition(wish).get(), nullptr), "publisher");
-  const dds::Entity writer(
-      dds_create_writer(publisher.get(), topic.get(), dds::request_qos().get(), nullptr), "writer");
+  const dds::Qos qos = is_server(wish) ? dds::reply_qos() : dds::request_qos();
+  const dds::Entity writer(dds_create_writer(publisher.get(), topic.get(), qos.get(), nullptr),
+                           "writer");
   std::cout << "joined" << std::endl;
-  std::string text = wish.text, empty;
-  kinship_wire_AdminRequest request{};
-  request.client_id[0] = 1;
-  request.limit = 1;
-  request.argument = text.data();
-  request.robot = request.task = request.cursor = empty.data();
   while (true) {
-    ++request.sequence_number;
-    dds_write(writer.get(), &request);
+    const auto message = next();
+    dds_write(writer.get(), &message.wire);
     std::this_thread::sleep_for(200ms);  // as long as the test lets it
   }
+}
+
+template <typename Conversation>
+[[noreturn]] void ask(const Wish& wish, const dds::Entity& participant,
+                      const typename Conversation::Request& request) {
+  const dds::Topics topics = dds::Wire<Conversation>::topics();
+  codec::Head head{.client_id = Uuid::random()};
+  send(wish, participant, topics.request, topics.request_topic(), [&] {
+    ++head.sequence_number;
+    return codec::encode(head, request).value_or_throw();
+  });
+}
+
+[[noreturn]] void tell(const Wish& wish, const dds::Entity& participant) {
+  AdminReply reply;
+  reply.rows = {wish.text};
+  const dds::Topics topics = dds::Wire<codec::AdminConversation>::topics();
+  send(wish, participant, topics.reply, topics.reply_topic(),
+       [&] { return codec::encode(codec::Head{}, reply).value_or_throw(); });
+}
+
+/// What is sent by a verb that asks.
+[[noreturn]] void ask(const Wish& wish, const dds::Entity& participant) {
+  if (wish.verb == "register") {
+    RobotDescription robot = test::model_description("ur10e");
+    robot.label = wish.text;
+    ask<codec::RegisterConversation>(wish, participant, robot);
+  }
+  if (wish.verb == "report") {
+    ReportRequest request;
+    request.attempts = {
+        test::panda_attempt(Digest::from_hex(wish.robot).value(), wish.text, /*seed=*/1)};
+    ask<codec::ReportConversation>(wish, participant, request);
+  }
+  AdminRequest request;
+  request.verb = wish.verb == "reset" ? AdminVerb::ResetTask : AdminVerb::Status;
+  request.argument = wish.text;
+  ask<codec::AdminConversation>(wish, participant, request);
 }
 
 template <typename Message, typename TextOf>
@@ -135,17 +184,19 @@ template <typename Message, typename TextOf>
 [[noreturn]] void run(const Wish& wish) {
   const dds::Entity participant = join(wish);
   const dds::Topics topics = dds::Wire<codec::AdminConversation>::topics();
-  if (wish.verb == "write")
-    write(wish, participant);
+  if (wish.verb == "tell")
+    tell(wish, participant);
   if (wish.verb == "serve")
     read<kinship_wire_AdminRequest>(
         wish, participant, topics.request, topics.request_topic(),
         [](const kinship_wire_AdminRequest& request) { return std::string(request.argument); });
-  read<kinship_wire_AdminReply>(
-      wish, participant, topics.reply, topics.reply_topic(),
-      [](const kinship_wire_AdminReply& reply) {
-        return std::string(reply.rows._length > 0 ? reply.rows._buffer[0] : reply.message);
-      });
+  if (wish.verb == "read")
+    read<kinship_wire_AdminReply>(
+        wish, participant, topics.reply, topics.reply_topic(),
+        [](const kinship_wire_AdminReply& reply) {
+          return std::string(reply.rows._length > 0 ? reply.rows._buffer[0] : reply.message);
+        });
+  ask(wish, participant);
 }
 
 }  // namespace
@@ -159,13 +210,36 @@ extern "C" __attribute__((visibility("default"))) void ddsi_plist_addtomsg(
   kBehind(message, &said, plist_wanted, qos_wanted);
 }
 
+/// In front of the C library's, which OpenSSL and Cyclone DDS ask for the date.
+extern "C" __attribute__((visibility("default"))) int clock_gettime(clockid_t clock,
+                                                                    timespec* time) {
+  const auto result = static_cast<int>(syscall(SYS_clock_gettime, clock, time));
+  if (result == 0 && clock == CLOCK_REALTIME)
+    time->tv_sec -= behind_s;
+  return result;
+}
+
+extern "C" __attribute__((visibility("default"))) time_t time(time_t* into) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (into != nullptr)
+    *into = now.tv_sec;
+  return now.tv_sec;
+}
+
 int main(int argc, char** argv) {
   if (argc < 6)
     return 2;
-  const Wish wish{argv[1], static_cast<std::uint32_t>(std::stoul(argv[2])),
-                  argv[3], argv[4],
-                  argv[5], argc > 6 ? argv[6] : ""};
+  const Wish wish{argv[1],
+                  static_cast<std::uint32_t>(std::stoul(argv[2])),
+                  argv[3],
+                  argv[4],
+                  argv[5],
+                  argc > 6 ? argv[6] : "",
+                  argc > 7 ? argv[7] : ""};
   hides_attributes = wish.way == "hidden";
+  if (wish.way == "earlier")
+    behind_s = std::chrono::seconds(std::chrono::days(1)).count();
   dds::set_log_sink({});
   dds::limit_log();
   try {

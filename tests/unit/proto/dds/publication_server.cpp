@@ -1,31 +1,42 @@
-// A server for tests that publishes what it is told: publication_server DOMAIN. Prints "ready" when
-// it serves. Arguments of admin requests are its commands; the answer follows the publication.
-//   announce N REVISION   the distribution whose id is N in every byte
+// A server for tests that publishes what it is told: publication_server DOMAIN [FOLDER]. Prints
+// "ready" when it serves. Arguments of admin requests are its commands; the answer follows the
+// publication. FOLDER: with the security that `kinshipd secure init` made there; then a client
+// hears of tasks that it is narrowed to, and distribution 9 is announced from the start.
+//   announce N REVISION [TASK]   the distribution whose id is N in every byte
+//   overtake N REVISION   the same; when somebody is told of it, its next revision is published at
+//                         once, by another thread, and has been before that goes on
 //   withdraw N
 //   event TEXT
 //   flood COUNT           as many announcements, of ids of their own, and events; answers with the
 //                         number of times that took 90 ms or more
 //   churn COUNT           announces and withdraws as many distributions
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "proto/dds/publication.hpp"
 #include "proto/dds/replier.hpp"
 #include "proto/types/limits.hpp"
+#include "tests/unit/proto/dds/secured_server.hpp"
 
 namespace kinship {
 namespace {
 
 class Server {
  public:
-  explicit Server(std::uint32_t domain)
-      : participant_({.domain = domain, .role = dds::Role::Server}),
+  explicit Server(const dds::ParticipantOptions& options)
+      : participant_(options),
         loop_(participant_),
-        announcements_(participant_, loop_),
+        announcements_(participant_, loop_,
+                       [this](const Caller& caller, const Announcement& announcement) {
+                         return may_hear(caller, announcement);
+                       }),
         events_(participant_, loop_),
         admin_(participant_, loop_,
                [this](const AdminRequest& request,
@@ -34,13 +45,28 @@ class Server {
                  reply.status = AdminStatus::Ok;
                  reply.rows = {obey(request.argument)};
                  answer(reply);
-               }) {}
+               }) {
+    if (participant_.credentials())
+      obey("announce 9 1");
+  }
 
   void run() {
     loop_.run([] { return dds::WaitLoop::Clock::time_point::max(); });
   }
 
  private:
+  bool may_hear(const Caller& caller, const Announcement& announcement) {
+    std::uint64_t told = announcement.revision;
+    if (told > 0 && overtaken_.compare_exchange_strong(told, 0))
+      std::thread([&] {
+        Announcement next = announcement;
+        ++next.revision;
+        announcements_.publish(next);
+      }).join();
+    return caller.tasks.empty() ||
+           std::ranges::find(caller.tasks, announcement.task) != caller.tasks.end();
+  }
+
   std::string obey(const std::string& command) {
     std::istringstream words(command);
     std::string verb;
@@ -66,7 +92,11 @@ class Server {
                               .revision = revision,
                               .store_epoch = {}};
     announcement.distribution_id.bytes.fill(static_cast<std::uint8_t>(number));
-    if (verb == "announce")
+    if (std::string task; words >> task)
+      announcement.task = task;
+    if (verb == "overtake")
+      overtaken_ = revision;
+    if (verb != "withdraw")
       announcements_.publish(announcement);
     else
       announcements_.withdraw(announcement.distribution_id);
@@ -104,6 +134,7 @@ class Server {
     return "done";
   }
 
+  std::atomic<std::uint64_t> overtaken_ = 0;  // revision; 0: none
   dds::Participant participant_;
   dds::WaitLoop loop_;
   dds::Publisher<codec::AnnouncementPublication> announcements_;
@@ -117,8 +148,8 @@ class Server {
 }  // namespace
 }  // namespace kinship
 
-int main(int /*argc*/, char** argv) {
-  kinship::Server server(static_cast<std::uint32_t>(std::stoul(argv[1])));
+int main(int argc, char** argv) {
+  kinship::Server server(kinship::test::server_options(argc, argv));
   std::cout << "ready" << std::endl;
   server.run();
 }

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <barrier>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "proto/dds/endpoint_guard.hpp"
 #include "proto/dds/senders.hpp"
@@ -33,6 +38,7 @@ TEST_F(Security, TheServerKnowsAClientByItsCertificate) {
   EXPECT_EQ(ask(one, "first"), "first");
 }
 
+// Without security there is nothing to revoke: what stops her is seen by her being served before.
 TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
   ASSERT_EQ(server_.read_line(), "ready");
   const Participant participant = join(alice_);
@@ -47,11 +53,51 @@ TEST_F(Security, ARevocationCountsAtOnceAndSaysWhy) {
   EXPECT_NE(answer.find("revoked"), std::string::npos) << answer;
 }
 
-TEST_F(Security, NobodyElseIsHeard) {
+TEST_F(Security, AFloodOfWhoIsRevokedIsNotAllAnswered) {
+  constexpr int kAtOnce = 40;  // ten a second are answered
   ASSERT_EQ(server_.read_line(), "ready");
-  ASSERT_EQ(ask_as(alice_, "hello"), "hello");  // the server is heard by whom it may hear
+  const Participant participant = join(alice_);
+  AdminRequester requester(participant, Uuid::random());
+  ASSERT_EQ(ask(requester, "before"), "before");
+  fleet_.revoke("alice", now());
+  const auto deadline = AdminRequester::Clock::now() + 10s;
+  while (ask(requester, "again").find("revoked") == std::string::npos &&
+         AdminRequester::Clock::now() < deadline) {
+  }
+  std::atomic<int> answered = 0;
+  {
+    std::vector<std::jthread> callers;
+    for (int i = 0; i < kAtOnce; ++i)
+      callers.emplace_back([&] {
+        if (ask(requester, "flood", 1200ms).find("revoked") != std::string::npos)
+          ++answered;
+      });
+  }
+  EXPECT_GT(answered, 0);
+  EXPECT_LT(answered, kAtOnce);
+}
+
+TEST_F(Security, NobodyElseIsHeard) {
+  // Without security who has no certificate is, and with another authority's he is its own
+  // server's.
+  const test::ReservedDomain open, of_another;
   const fs::path namesake =
       add(init("another"), {.name = "alice", .role = AccessRole::Admin}, "namesake");
+  test::ChildProcess open_server({KINSHIP_ECHO_SERVER, std::to_string(open.number())});
+  test::ChildProcess another_server(
+      {KINSHIP_ECHO_SERVER, std::to_string(of_another.number()), directory_ / "another"});
+  ASSERT_EQ(open_server.read_line(), "ready");
+  ASSERT_EQ(another_server.read_line(), "ready");
+  const auto ask_in = [](const test::ReservedDomain& domain, const fs::path& credentials) {
+    const Participant participant({.domain = domain.number(), .security = credentials});
+    AdminRequester requester(participant, Uuid::random());
+    return ask(requester, "hello");
+  };
+  ASSERT_EQ(ask_in(open, {}), "hello");
+  ASSERT_EQ(ask_in(of_another, namesake), "hello");
+
+  ASSERT_EQ(server_.read_line(), "ready");
+  ASSERT_EQ(ask_as(alice_, "hello"), "hello");  // the server is heard by whom it may hear
   EXPECT_NE(ask_as(namesake, "other authority", 1500ms).find("no server answered"),
             std::string::npos);
   EXPECT_NE(ask_as({}, "no certificate", 1000ms).find("no server answered"), std::string::npos);
@@ -85,6 +131,29 @@ TEST_F(Security, AProcessHasOneNameInADomain) {
   const fs::path bob = add(fleet_, {.name = "bob"}, "bob");
   EXPECT_THROW(join(bob), Failure);  // Cyclone DDS would take alice's permissions for bob's
   EXPECT_NO_THROW(join(alice_));
+}
+
+TEST_F(Security, ClientsOfOneProcessMayJoinAtTheSameTime) {
+  constexpr int kClients = 4;
+  for (int round = 0; round < 5; ++round) {  // the plugins are loaded anew in each
+    std::atomic<int> joined = 0;
+    std::barrier begin(kClients), end(kClients);
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < kClients; ++i)
+      threads.emplace_back([&] {
+        std::optional<Participant> participant;
+        begin.arrive_and_wait();
+        try {
+          participant.emplace(join(alice_));
+          ++joined;
+        } catch (const Failure& failure) {
+          ADD_FAILURE() << failure.what();
+        }
+        end.arrive_and_wait();
+      });
+    threads.clear();
+    EXPECT_EQ(joined, kClients);
+  }
 }
 
 TEST(Loopback, AServerWithoutInterfaceIsNotHeardFromTheNetwork) {

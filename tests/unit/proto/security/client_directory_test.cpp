@@ -68,15 +68,44 @@ TEST_F(ClientDirectoryTest, ARevocationCountsASecondLater) {
   EXPECT_EQ(caller.error().message, "client 'arm': revoked at 2026-11-25T00:00:00Z");
 }
 
-TEST_F(ClientDirectoryTest, AClientThatIsAddedIsKnownASecondLater) {
+TEST_F(ClientDirectoryTest, CredentialsThatWereReplacedAreRefusedOnceTheFormerOnesAreRevoked) {
+  ClientRecord renewed = arm();
+  renewed.generation = 3;
+  write(renewed);
+  for (const char* const name : {"arm", "arm.2", "arm.3"}) {
+    const auto caller = directory_.caller(name, kNow);
+    ASSERT_TRUE(caller) << name << ": " << caller.error().message;
+    EXPECT_EQ(caller->name + " " + caller->client, "arm arm") << "one client, whichever it has";
+  }
+  renewed.oldest_accepted = 3;
+  write(renewed);
+  clock_ += 1s;
+  EXPECT_TRUE(directory_.caller("arm.3", kNow));
+  for (const char* const name : {"arm", "arm.2"})
+    EXPECT_FALSE(directory_.caller(name, kNow)) << name;
+  EXPECT_EQ(directory_.caller("arm", kNow).error().message,
+            "client 'arm': these credentials were replaced (1 of 3), the newest ones are accepted "
+            "only");
+  for (const char* const name : {"arm.1", "arm.03", "arm.", "arm.3.3"})
+    EXPECT_FALSE(directory_.caller(name, kNow)) << name;
+}
+
+TEST_F(ClientDirectoryTest, AClientThatIsAddedIsKnownAndOneThatIsRemovedIsNotASecondLater) {
   ASSERT_FALSE(directory_.find("arm"));
   write(arm());
-  EXPECT_FALSE(directory_.find("arm")) << "asked for again at once: the disk is left alone";
-  clock_ += 1s;
   EXPECT_TRUE(directory_.find("arm"));
   std::filesystem::remove(folder_ / "arm.toml");
   clock_ += 1s;
   EXPECT_FALSE(directory_.find("arm"));
+}
+
+TEST_F(ClientDirectoryTest, NamesThatAreMadeUpPushNobodyOut) {
+  write(arm());
+  ASSERT_TRUE(directory_.find("arm"));
+  for (int i = 0; i < 101'000; ++i)  // more than it has room for
+    directory_.find("made_up_" + std::to_string(i));
+  replace_file(folder_ / "arm.toml", "name = ", Readers::Everybody);
+  EXPECT_TRUE(directory_.find("arm")) << "within its second it is known from memory";
 }
 
 TEST_F(ClientDirectoryTest, AnExpiredClientIsRefusedWithItsTime) {

@@ -19,7 +19,10 @@ ClientRecord sample() {
           .tasks = {"shelf_*", "bin?"},
           .robots = {"ur5e", "panda.left"},
           .serial = "7f00ab",
+          .generation = 3,
+          .oldest_accepted = 2,
           .authority = "0123456789abcdef",
+          .trusted = {"0123456789abcdef", "fedcba9876543210"},
           .expires = sys_days(2027y / 11 / 25) + 3h,
           .revoked = sys_days(2026y / 12 / 1)};
 }
@@ -32,7 +35,10 @@ TEST(ClientRecord, IsReadAsItWasWritten) {
   EXPECT_EQ(read->tasks, sample().tasks);
   EXPECT_EQ(read->robots, sample().robots);
   EXPECT_EQ(read->serial, "7f00ab");
+  EXPECT_EQ(read->generation, 3U);
+  EXPECT_EQ(read->oldest_accepted, 2U);
   EXPECT_EQ(read->authority, "0123456789abcdef");
+  EXPECT_EQ(read->trusted, sample().trusted);
   EXPECT_EQ(read->expires, sample().expires);
   EXPECT_EQ(read->revoked, sample().revoked);
 }
@@ -57,7 +63,9 @@ TEST(ClientRecord, AFieldThatNarrowsIsNeverLostInSilence) {
   for (const std::string& text :
        {with("tasks = [\"shelf_*\", \"bin?\"]\n", ""), with("robots", "robot"),
         with("[\"shelf_*\", \"bin?\"]", "\"shelf_*\""), with("\"bin?\"", "7"),
-        with("\"bin?\"", "\"\""), with("expires", "expired"), with("role = \"operator\"", ""),
+        with("oldest_accepted = 2\n", ""), with("oldest_accepted = 2", "oldest_accepted = 0"),
+        with("generation = 3", "generation = 4294967296"), with("\"bin?\"", "\"\""),
+        with("expires", "expired"), with("role = \"operator\"", ""),
         with("\"operator\"", "\"root\""), with("revoked = 2026-12-01T00:00:00Z", "revoked = true"),
         with("\"arm_7\"", "\"../arm\""), std::string("name ="), std::string()})
     EXPECT_FALSE(read_record(text, "arm_7.toml")) << text;
@@ -72,11 +80,11 @@ TEST(ClientRecord, AMessageNamesFileFieldAndValue) {
 }
 
 TEST(ClientRecord, NamesMakeFileNamesAndPartitions) {
-  const std::vector<std::string> good = {"a", "arm_7", "A-9", "-", std::string(64, 'x')};
+  const std::vector<std::string> good = {"a", "arm_7", "A-9", "-", std::string(56, 'x')};
   for (const std::string& name : good)
     EXPECT_FALSE(check_client_name(name)) << name;
   const std::vector<std::string> bad = {"",   "a b", "a/b",       "..",     "a*",
-                                        "a?", "ä",   "client[1]", "server", std::string(65, 'x')};
+                                        "a?", "ä",   "client[1]", "server", std::string(57, 'x')};
   for (const std::string& name : bad)
     EXPECT_TRUE(check_client_name(name)) << name;
 }

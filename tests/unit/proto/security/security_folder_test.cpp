@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <string>
+#include <thread>
 
 #include "proto/security/permissions.hpp"
 #include "proto/security/private_files.hpp"
@@ -95,7 +98,7 @@ TEST_F(SecurityFolderTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
     EXPECT_FALSE(std::filesystem::exists(out_)) << message;
     return message;
   };
-  EXPECT_EQ(refusal({.name = "a b"}), "name 'a b' is not 1 to 64 of letters, digits, _ and -");
+  EXPECT_EQ(refusal({.name = "a b"}), "name 'a b' is not 1 to 56 of letters, digits, _ and -");
   EXPECT_EQ(refusal({.name = "server"}), "name 'server' is the server's own");
   EXPECT_NE(refusal({.name = "r1", .tasks = {"a\"b"}}).find("task pattern"), std::string::npos);
   EXPECT_NE(refusal({.name = "r1", .robots = {"a\nb"}}).find("label"), std::string::npos);
@@ -265,6 +268,78 @@ TEST_F(SecurityFolderTest, AChangeThatStoppedHalfwayGoesOn) {
   EXPECT_EQ(why_not_together(folder.server_credentials(), out_), "");
 }
 
+/// Whether the key of each authority that the folder trusts is still there.
+void expect_keys_of_all(const std::filesystem::path& authority) {
+  for (const Certificate& one : certificates_from_pem(read_file(authority / "ca.pem"), "ca.pem")) {
+    bool is_there = false;
+    for (const auto& entry : std::filesystem::directory_iterator(authority))
+      if (entry.path().extension() == ".key")
+        is_there |= belongs_to(*key_from_pem(read_file(entry.path()), "key"), *one);
+    EXPECT_TRUE(is_there) << common_name(*one);
+  }
+}
+
+TEST_F(SecurityFolderTest, NoChangeThatStoppedHalfwayLosesAKeyInTheNextOne) {
+  const std::filesystem::path authority = folder_ / "authority";
+  for (const bool is_stopped_between_renames : {false, true}) {
+    std::filesystem::remove_all(folder_);
+    SecurityFolder folder = init();
+    folder.renew_authority(kDefaultDays, now_s());
+    std::filesystem::rename(authority / "ca.key", authority / "next.key");
+    if (!is_stopped_between_renames)
+      std::filesystem::rename(authority / "previous.key", authority / "ca.key");
+
+    const std::filesystem::path retired = folder.retire_authority(kDefaultDays, now_s());
+    EXPECT_NE(retired.filename().string().find("retired-"), std::string::npos) << retired;
+    expect_keys_of_all(authority);
+    folder.renew_authority(kDefaultDays, now_s());
+    expect_keys_of_all(authority);
+    EXPECT_TRUE(std::filesystem::exists(authority / "ca.key"));
+    EXPECT_TRUE(std::filesystem::exists(authority / "previous.key"));
+    folder.renew_server(kDefaultDays, now_s());
+    EXPECT_EQ(mode_of(authority / "ca.key"), 0600U);
+  }
+}
+
+TEST_F(SecurityFolderTest, ARetirementThatStoppedHalfwayIsMadeAgain) {
+  SecurityFolder folder = init();
+  folder.renew_authority(kDefaultDays, now_s());
+  const std::string fingerprint = folder.list(now_s()).authorities.at(1).fingerprint;
+  const auto kept = folder_ / "authority" / ("retired-" + fingerprint + ".key");
+  std::filesystem::rename(folder_ / "authority/previous.key", kept);  // and then it stopped
+  EXPECT_EQ(folder.retire_authority(kDefaultDays, now_s()), kept);
+  EXPECT_EQ(folder.list(now_s()).authorities.size(), 1U);
+}
+
+TEST_F(SecurityFolderTest, ARevocationIsNotUndoneByARenewalBesideIt) {
+  constexpr int kClients = 12;
+  const SecurityFolder folder = init();
+  const auto name = [](int i) { return "r" + std::to_string(i); };
+  for (int i = 0; i < kClients; ++i)
+    folder.add({.name = name(i)}, scratch_ / name(i).c_str(), now_s());
+  for (int i = 0; i < kClients; ++i) {
+    const pid_t renewing = fork();
+    if (renewing == 0) {  // a process of its own, as secure renew is one
+      try {
+        SecurityFolder(folder_).renew(name(i), kDefaultDays, scratch_ / ("n" + name(i)).c_str(),
+                                      now_s());
+      } catch (const Failure&) {  // revoked before
+      }
+      _exit(0);
+    }
+    // Within its renewal, mostly: keys and documents take some milliseconds.
+    while (!std::filesystem::exists(scratch_ / ("n" + name(i)).c_str()) &&
+           waitpid(renewing, nullptr, WNOHANG) == 0)
+      std::this_thread::yield();
+    folder.revoke(name(i), now_s());
+    waitpid(renewing, nullptr, 0);
+    EXPECT_TRUE(read_record(read_file(folder.clients() / (name(i) + ".toml")), "record")
+                    .value_or_throw()
+                    .revoked)
+        << i;
+  }
+}
+
 TEST_F(SecurityFolderTest, TheServersFormerCredentialsAreKept) {
   const SecurityFolder folder = init();
   const std::string key = read_file(folder_ / "server/key.pem");
@@ -272,6 +347,34 @@ TEST_F(SecurityFolderTest, TheServersFormerCredentialsAreKept) {
   EXPECT_EQ(read_file(kept / "key.pem"), key);
   EXPECT_NE(read_file(folder_ / "server/key.pem"), key);
   EXPECT_NE(folder.renew_server(kDefaultDays, now_s()), kept) << "in the same second";
+}
+
+TEST_F(SecurityFolderTest, EachRenewalHasANameOfItsOwnAndTheFormerOnesCanBeRevoked) {
+  const SecurityFolder folder = init();
+  folder.add({.name = "r1"}, out_, now_s());
+  EXPECT_NE(failure_of([&] { folder.revoke_former("r1"); }).find("no former ones"),
+            std::string::npos);
+  const ClientRecord renewed = folder.renew("r1", days(20), scratch_ / "r1-2", now_s());
+  EXPECT_EQ(renewed.generation, 2U);
+  EXPECT_EQ(renewed.oldest_accepted, 1U) << "the client need not stop";
+  const Credentials credentials = read_credentials(scratch_ / "r1-2", now_s()).value_or_throw();
+  EXPECT_EQ(credentials.name, "r1.2");
+  EXPECT_NE(expiry_warning(credentials, now_s()).value_or("").find("renew r1 --out"),
+            std::string::npos);
+  EXPECT_EQ(why_not_together(folder.server_credentials(), scratch_ / "r1-2"), "");
+  EXPECT_EQ(folder.revoke_former("r1").oldest_accepted, 2U);
+  const ClientRecord again = folder.renew("r1", days(20), scratch_ / "r1-3", now_s());
+  EXPECT_EQ(again.generation, 3U);
+  EXPECT_EQ(again.oldest_accepted, 2U);
+  EXPECT_EQ(folder.list(now_s()).credentials.size(), 2U) << "one client";
+}
+
+TEST_F(SecurityFolderTest, ANameLeavesRoomForItsGeneration) {
+  const SecurityFolder folder = init();
+  const std::string name(56, 'n');
+  folder.add({.name = name}, out_, now_s());
+  folder.renew(name, days(20), scratch_ / "renewed", now_s());
+  EXPECT_EQ(read_credentials(scratch_ / "renewed", now_s())->name, name + ".2");
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "server/app/access_gate.hpp"
 
+#include <latch>
+
+#include "server/access/withheld_sources.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::app::access_gate_test {
@@ -32,6 +35,7 @@ class AccessGate : public service::ServiceFixture {
   FetchReply fetch(const runtime::Robot& robot, const std::string& task) {
     FetchRequest request = request_for(robot);
     request.task = task;
+    request.experience_bytes = experience_bytes_;
     std::promise<FetchReply> reply;
     app::fetch(*service_, caller_, request, "one",
                [&](const FetchReply& r) { reply.set_value(r); });
@@ -46,6 +50,7 @@ class AccessGate : public service::ServiceFixture {
 
   runtime::RobotRegistry::RobotPointer teacher_, pupil_, dwarf_;
   Caller caller_;
+  std::uint32_t experience_bytes_ = 0;  // that fetches ask for
 };
 
 TEST_F(AccessGate, TheNameInTheCertificateIsTheMachine) {
@@ -119,6 +124,87 @@ TEST_F(AccessGate, ARobotRegistersUnderTheLabelsOfItsCertificate) {
             RegisterStatus::Registered);
 }
 
+/// Collision geometry that a robot of `planar` may have, without being another robot.
+RobotDescription with_exact_shapes(RobotDescription description) {
+  const std::string plain = "<link name='link1'/>";
+  description.urdf.replace(
+      description.urdf.find(plain), plain.size(),
+      "<link name='link1'><collision><geometry><sphere radius='0.05'/></geometry></collision>"
+      "</link>");
+  return description;
+}
+
+TEST_F(AccessGate, ARobotThatIsKnownUnderAnothersLabelIsNotTaken) {
+  caller_.robots = {"cell_*"};
+  RobotDescription same = with_exact_shapes(fleet::teacher());
+  same.label = "cell_1";
+  const RegisterReply reply = register_robot(same);
+  EXPECT_EQ(reply.status, RegisterStatus::Refused);
+  EXPECT_EQ(reply.message,
+            "robot_7 (role robot) may not register this robot: it is known here under another "
+            "label, and its certificate is for robots cell_*");
+  EXPECT_FALSE(reply.took_geometry);
+  EXPECT_TRUE(reply.same_arms.empty());
+  EXPECT_EQ(real_store_->find_robot(teacher_->digest)->geometry_revision, 0U);
+  // Nor if its row cannot be read: it would be written anew.
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();  // another robot is in memory
+  store::damage_robot(directory_ / "fleet.db", "teacher");
+  EXPECT_EQ(register_robot(same).status, RegisterStatus::Refused);
+  // By its own label it is taken.
+  caller_.robots = {"pup*"};
+  same = with_exact_shapes(fleet::pupil());
+  EXPECT_TRUE(register_robot(same).took_geometry);
+  EXPECT_EQ(real_store_->find_robot(pupil_->digest)->geometry_revision, 1U);
+}
+
+TEST_F(AccessGate, AFetchForARobotThatCannotBeReadNowIsPutOff) {
+  adjust_ = [](service::ServiceOptions& options) { options.max_robots = 1; };
+  start();
+  report({fleet::solved(*teacher_, "shelf", 1)});
+  ASSERT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready);
+  ServiceFixture::register_robot(fleet::pupil());  // now this one is in memory
+  store::damage_robot(directory_ / "fleet.db", "teacher");
+  ASSERT_EQ(fetch(*teacher_, "shelf").status, FetchStatus::Ready) << "the distribution is there";
+  caller_.robots = {"pupil"};
+  const FetchReply reply = fetch(*teacher_, "shelf");
+  EXPECT_EQ(reply.status, FetchStatus::Busy);
+  EXPECT_GT(reply.retry_after.count(), 0);
+  EXPECT_FALSE(reply.distribution);
+  EXPECT_EQ(reply.message.find("teacher"), std::string::npos) << reply.message;
+}
+
+TEST_F(AccessGate, WhoFindsNoRoomForItsRobotsNamesIsToldWhenToComeAgain) {
+  const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
+  adjust_ = [](service::ServiceOptions& options) {
+    options.max_robots = 1;  // names are looked up in the store
+    options.client_short_tasks = 1;
+  };
+  start();
+  caller_.robots = {"teacher"};
+  std::latch may_go_on(1);
+  std::promise<void> begun;
+  service_->administer(
+      fleet::question(AdminVerb::ListTasks), "other 1",
+      [&](const service::AdminPage&) {
+        begun.set_value();
+        may_go_on.wait();
+      },
+      fleet::caller_here());
+  begun.get_future().wait();
+  std::promise<FetchReply> first;
+  app::fetch(*service_, caller_, request_for(*teacher_), "one",
+             [&](const FetchReply& reply) { first.set_value(reply); });
+  const ReportReply reply = report({attempt});
+  EXPECT_EQ(of(reply, attempt).status, ReceiptStatus::TryAgain);
+  EXPECT_GT(reply.retry_after.count(), 0);
+  const FetchReply fetched = fetch(*teacher_, "shelf");
+  EXPECT_EQ(fetched.status, FetchStatus::Busy);
+  EXPECT_GT(fetched.retry_after.count(), 0);
+  may_go_on.count_down();
+  first.get_future().wait();
+}
+
 TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
   const Attempt attempt = fleet::solved(*teacher_, "shelf", 1);
   report({attempt});
@@ -131,6 +217,36 @@ TEST_F(AccessGate, FetchesAreForItsTasksAndRobots) {
             "robot_7 (role robot) may not fetch for task 'bin': its certificate is "
             "for tasks shelf, robots teacher");
   EXPECT_EQ(fetch(*pupil_, "shelf").status, FetchStatus::Refused);
+}
+
+TEST_F(AccessGate, AFetchForSomeRobotsDoesNotSayWhichOthersItIsMadeOf) {
+  report({fleet::solved(*teacher_, "shelf", 1), fleet::solved(*pupil_, "shelf", 2)});
+  experience_bytes_ = kDefaultExperienceBytes;
+  const FetchReply open = fetch(*pupil_, "shelf");
+  ASSERT_EQ(open.status, FetchStatus::Ready) << open.message;
+  ASSERT_EQ(open.distribution->sources.size(), 2U);
+  ASSERT_TRUE(open.experience);
+  caller_.robots = {"pup*"};
+  const FetchReply reply = fetch(*pupil_, "shelf");
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->id, open.distribution->id);
+  ASSERT_EQ(reply.distribution->sources.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Source& told = reply.distribution->sources[i];
+    const Source& known = open.distribution->sources[i];
+    const bool is_own = known.label == "pupil";
+    EXPECT_EQ(told.label, is_own ? "pupil" : access::kOtherRobot);
+    EXPECT_EQ(told.robot, is_own ? pupil_->digest : Digest());
+    EXPECT_EQ(told.paths_used, known.paths_used);
+  }
+  ASSERT_TRUE(reply.experience);
+  ASSERT_EQ(reply.experience->paths.size(), open.experience->paths.size());
+  for (const PosePath& path : reply.experience->paths)
+    EXPECT_TRUE(path.source == pupil_->digest || path.source == Digest());
+  // Who asks next, without being narrowed, is told again: replies are shared.
+  caller_.robots = {};
+  EXPECT_EQ(fetch(*pupil_, "shelf").distribution->sources[0].label,
+            open.distribution->sources[0].label);
 }
 
 }  // namespace

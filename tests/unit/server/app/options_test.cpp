@@ -130,6 +130,18 @@ TEST_F(Options, OtherHostsAreServedWithSecurityOrIfInsecureIsSpeltOut) {
   EXPECT_NE(out_.str().find("[command line]\ninsecure = true\n"), std::string::npos);
 }
 
+TEST_F(Options, WhatCycloneDdsIsToldToOpenHasToBeSpeltOutToo) {
+  const test::TemporaryDirectory directory;
+  const std::string folder = directory.path().string();
+  ASSERT_EQ(setenv("CYCLONEDDS_URI", "file:///etc/cyclonedds.xml", 1), 0);
+  EXPECT_EQ(code({}), kWrongUsage);
+  EXPECT_NE(err_.str().find("CYCLONEDDS_URI is set"), std::string::npos) << err_.str();
+  EXPECT_NE(insecurity_of(good({"--insecure"})), "");
+  EXPECT_EQ(insecurity_of(good({"--security", folder.c_str()})), "");
+  unsetenv("CYCLONEDDS_URI");
+  EXPECT_EQ(insecurity_of(good({})), "");
+}
+
 TEST_F(Options, ArgumentsAreTaken) {
   const ServerOptions options = good({"--store", "fleet.db", "--domain", "7", "--workers", "4",
                                       "--interface", "eth0", "--insecure", "--log-level", "error"});

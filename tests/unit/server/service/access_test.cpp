@@ -1,74 +1,12 @@
 #include "server/access/access.hpp"
 
-#include "tests/unit/server/service/service_fixture.hpp"
+#include "server/access/withheld_sources.hpp"
+#include "tests/unit/server/service/access_fixture.hpp"
 
 namespace kinship::service::access_test {
 namespace {
 
-/// A service whose administrators are named, with paths of two tasks and robots.
-class Access : public ServiceFixture {
- protected:
-  Access() {
-    may_trouble_store_ = true;
-    start();
-    teacher_ = find("teacher");
-    pupil_ = find("pupil");
-  }
-  std::shared_ptr<const runtime::Robot> find(const std::string& label) {
-    for (const RobotSummary& robot : real_store_->list_robots("", 100).rows)
-      if (robot.label == label)
-        return registry_->find(robot.robot).value_or_throw();
-    return nullptr;
-  }
-  static Caller named(const std::string& name, AccessRole role, std::vector<std::string> tasks = {},
-                      std::vector<std::string> robots = {}) {
-    return {name, name, role, std::move(tasks), std::move(robots), false};
-  }
-  AdminPage ask(const Caller& caller, AdminVerb verb, const std::string& argument = {},
-                const std::string& task = {}, const std::string& robot = {}) {
-    AdminRequest request;
-    request.verb = verb;
-    request.argument = argument;
-    request.task = task;
-    request.robot = robot;
-    return ask_for(caller, request);
-  }
-  AdminPage ask_for(const Caller& caller, const AdminRequest& request) {
-    std::promise<AdminPage> page;
-    service_->administer(
-        request, "", [&](const AdminPage& p) { page.set_value(p); }, caller);
-    return page.get_future().get();
-  }
-  /// The oldest first: "who verb target outcome".
-  std::vector<std::string> log_entries() {
-    std::vector<std::string> lines;
-    for (const AuditEntry& entry : real_store_->list_audit("", "", 1000).rows)
-      lines.insert(lines.begin(), entry.name + " " + entry.verb + " " + entry.target + " " +
-                                      std::string(to_text(entry.outcome)));
-    return lines;
-  }
-  template <typename Row>
-  static std::vector<Row> rows(const AdminPage& page) {
-    std::vector<Row> found;
-    for (const AdminRow& row : page.rows)
-      if (const auto* const one = std::get_if<Row>(&row))
-        found.push_back(*one);
-    return found;
-  }
-  /// \return what was reported, in this order: teacher shelf, teacher bin, pupil shelf.
-  std::vector<Attempt> report_some() {
-    std::vector<Attempt> attempts = {fleet::solved(*teacher_, "shelf", 1),
-                                     fleet::solved(*teacher_, "bin", 2),
-                                     fleet::solved(*pupil_, "shelf", 3)};
-    for (const Receipt& receipt : report(attempts).receipts)
-      EXPECT_EQ(receipt.status, ReceiptStatus::Stored) << receipt.message;
-    return attempts;
-  }
-
-  std::shared_ptr<const runtime::Robot> teacher_, pupil_;
-};
-
-using Lines = std::vector<std::string>;
+class Access : public AccessFixture {};
 
 TEST_F(Access, WhatARoleMayNotIsRefusedAndChangesAreInTheAuditLog) {
   report_some();
@@ -96,6 +34,7 @@ TEST_F(Access, WithoutSecurityAnotherHostChangesNothing) {
   report_some();
   Caller elsewhere;
   elsewhere.client = "0110f31a";
+  elsewhere.role = AccessRole::Admin;
   elsewhere.is_local = false;
   EXPECT_EQ(ask(elsewhere, AdminVerb::ListTasks).status, AdminStatus::Ok);
   const AdminPage reset = ask(elsewhere, AdminVerb::ResetTask, "shelf");
@@ -112,72 +51,6 @@ TEST_F(Access, WithoutSecurityAnotherHostChangesNothing) {
   EXPECT_EQ(log[0].name + log[0].role, "") << "nobody said who it was";
 }
 
-TEST_F(Access, ABackupAndACancelledJobAreInTheAuditLogAsBegunAndAsTheyEnded) {
-  const Caller otto = named("otto", AccessRole::Operator);
-  const AdminPage begun = ask(otto, AdminVerb::Backup, "copy.db");
-  ASSERT_EQ(begun.status, AdminStatus::Ok) << begun.message;
-  const std::string job = std::get<Job>(begun.rows[0]).id;
-  AdminRequest wait;
-  wait.verb = AdminVerb::ShowJob;
-  wait.argument = job;
-  wait.deadline = std::chrono::hours(1);  // of the clock that stands still
-  ASSERT_EQ(std::get<Job>(administer(wait).rows[0]).state, JobState::Done);
-  EXPECT_EQ(ask(otto, AdminVerb::Backup, "copy.db").status, AdminStatus::Refused);
-  EXPECT_EQ(ask(otto, AdminVerb::CancelJob, job).status, AdminStatus::Ok);
-  EXPECT_EQ(
-      log_entries(),
-      (Lines{"otto backup copy.db begun", "otto backup copy.db done", "otto backup copy.db refused",
-             "otto cancel_job " + job + " begun", "otto cancel_job " + job + " done"}));
-  const auto copy = store::open_sqlite_store(directory_ / "copy.db");
-  EXPECT_EQ(copy->list_audit("otto", "", 10).rows.size(), 1U) << "a copy has what was before it";
-}
-
-TEST_F(Access, WhatCannotBeKeptInTheAuditLogIsNotDone) {
-  troubled_->on_audit = [](const AuditEntry&) {
-    throw Failure(ErrorCode::Storage, "no space is left");
-  };
-  const AdminPage backup = ask(named("otto", AccessRole::Operator), AdminVerb::Backup, "copy.db");
-  EXPECT_EQ(backup.status, AdminStatus::Failed);
-  EXPECT_EQ(backup.message, "no space is left");
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "copy.db"));
-}
-
-TEST_F(Access, WhoIsRefusedForEverFillsNoDisk) {
-  const Caller reader = named("anna", AccessRole::Reader);
-  for (std::uint64_t i = 0; i < AuditTrail::kRefusalsAtOnce + 50; ++i)
-    ask(reader, AdminVerb::ResetTask, "shelf");
-  EXPECT_EQ(log_entries().size(), AuditTrail::kRefusalsAtOnce);
-  advance(std::chrono::seconds(2));
-  ask(reader, AdminVerb::ResetTask, "shelf");
-  const std::vector<AuditEntry> log = real_store_->list_audit("", "", 1000).rows;
-  ASSERT_EQ(log.size(), AuditTrail::kRefusalsAtOnce + 1);
-  EXPECT_NE(log[0].message.find("(50 refusals before it were not kept)"), std::string::npos)
-      << log[0].message;
-}
-
-TEST_F(Access, AChangeThatIsAskedForAgainIsAnsweredAsItWasAndIsInTheLogOnce) {
-  AdminRequest rename;
-  rename.verb = AdminVerb::RenameRobot;
-  rename.robot = "dwarf";
-  rename.argument = "giant";
-  const auto ask_as = [&](const std::string& request_key) {
-    std::promise<AdminPage> page;
-    service_->administer(
-        rename, request_key, [&](const AdminPage& p) { page.set_value(p); },
-        named("root", AccessRole::Admin));
-    return page.get_future().get();
-  };
-  for (int i = 0; i < 2; ++i) {
-    const AdminPage page = ask_as("client 1");
-    ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
-    EXPECT_EQ(std::get<RobotSummary>(page.rows[0]).label, "giant");
-  }
-  EXPECT_EQ(log_entries(), Lines{"root rename_robot dwarf to giant done"});
-  EXPECT_EQ(ask_as("client 2").status, AdminStatus::NotFound) << "another request";
-  EXPECT_EQ(ask_as("client 2").status, AdminStatus::NotFound);
-  EXPECT_EQ(log_entries().size(), 2U);
-}
-
 TEST_F(Access, AJobIsForWhoBeganItAndForOperators) {
   report_some();
   const FetchReply fetched = fetch(request_for(*pupil_));
@@ -192,6 +65,32 @@ TEST_F(Access, AJobIsForWhoBeganItAndForOperators) {
   EXPECT_EQ(ask(anna, AdminVerb::ShowJob, job).status, AdminStatus::Ok);
   EXPECT_EQ(ask(anna, AdminVerb::CancelJob, job).status, AdminStatus::Ok);
   EXPECT_EQ(ask(named("otto", AccessRole::Operator), AdminVerb::CancelJob, job).status,
+            AdminStatus::Ok);
+}
+
+TEST_F(Access, ANarrowedOperatorHasNothingToDoWithJobsOfOthers) {
+  const std::string job = begin_held_job(named("otto", AccessRole::Operator));
+  const Caller nora = named("nora", AccessRole::Operator, {"shelf"});
+  for (const AdminVerb verb : {AdminVerb::ShowJob, AdminVerb::JobRows, AdminVerb::CancelJob}) {
+    const AdminPage page = ask(nora, verb, job);
+    EXPECT_EQ(page.status, AdminStatus::Refused);
+    EXPECT_NE(page.message.find("it is not its own, which may be about others; its certificate is "
+                                "for tasks shelf"),
+              std::string::npos)
+        << page.message;
+  }
+  EXPECT_EQ(state_of(job), JobState::Running);
+}
+
+TEST_F(Access, AClientHasSoManyJobsAndIsToldWhenToComeAgain) {
+  const Caller otto = named("otto", AccessRole::Operator);
+  begin_held_job(otto);
+  EXPECT_EQ(ask(otto, AdminVerb::Backup, "second.db").status, AdminStatus::Ok);
+  const AdminPage third = ask(otto, AdminVerb::Backup, "third.db");
+  EXPECT_EQ(third.status, AdminStatus::Failed) << "for now";
+  EXPECT_GT(third.retry_after.count(), 0);
+  EXPECT_NE(third.message.find("2 jobs that have not ended"), std::string::npos) << third.message;
+  EXPECT_EQ(ask(named("olga", AccessRole::Operator), AdminVerb::Backup, "other.db").status,
             AdminStatus::Ok);
 }
 
@@ -277,6 +176,31 @@ TEST_F(Access, AStatusForANarrowedCertificateTellsNoNames) {
   };
   EXPECT_NE(words(named("otto", AccessRole::Reader)).find("secret_profile"), std::string::npos);
   EXPECT_EQ(words(named("r", AccessRole::Robot, {"bin"})), "");
+}
+
+TEST_F(Access, ADistributionShownToSomeRobotsDoesNotNameTheOthersItIsMadeOf) {
+  report_some();
+  FetchRequest request = request_for(*pupil_);
+  request.task = "shelf";
+  const FetchReply fetched = fetch(request);
+  ASSERT_TRUE(fetched.distribution) << fetched.message;
+  const Caller anna = named("anna", AccessRole::Reader, {}, {"pupil"});
+  const std::string id = fetched.distribution->id.hex();
+  const auto shown = rows<Distribution>(ask(anna, AdminVerb::ShowDistribution, id));
+  const auto explained = rows<Explanation>(ask(anna, AdminVerb::ExplainDistribution, id));
+  ASSERT_EQ(shown.size() + explained.size(), 2U);
+  for (const Distribution& each : {shown[0], explained[0].distribution}) {
+    ASSERT_EQ(each.sources.size(), 2U);
+    for (const Source& source : each.sources) {
+      const bool is_own = source.robot == pupil_->digest;
+      EXPECT_EQ(source.label, is_own ? "pupil" : access::kOtherRobot);
+      EXPECT_TRUE(is_own || source.robot == Digest());
+    }
+  }
+  const Caller ben = named("ben", AccessRole::Reader);
+  for (const Source& source :
+       rows<Distribution>(ask(ben, AdminVerb::ShowDistribution, id)).at(0).sources)
+    EXPECT_NE(source.label, access::kOtherRobot);
 }
 
 }  // namespace

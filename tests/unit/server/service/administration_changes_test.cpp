@@ -172,6 +172,20 @@ TEST_F(AdministrationChanges, ABackupHasABareNameAndStaysInItsFolder) {
             std::string::npos);
 }
 
+TEST_F(AdministrationChanges, AnotherProgramsDatabaseIsNoBackup) {
+  ASSERT_EQ(end_of(ask(AdminVerb::Backup, "monday.db")).state, JobState::Done);
+  std::ifstream copy(directory_ / "monday.db", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(copy), {}};
+  constexpr std::size_t kApplicationAt = 68;  // of SQLite's header
+  bytes.replace(bytes.find("KINS", kApplicationAt), 4, 4, '\0');
+  std::ofstream(directory_ / "other.db", std::ios::binary) << bytes;
+  const AdminPage list = ask(AdminVerb::ListBackups);
+  ASSERT_EQ(list.rows.size(), 1U);
+  EXPECT_EQ(row<BackupSummary>(list).name, "monday.db");
+  for (const AdminVerb verb : {AdminVerb::HashBackup, AdminVerb::ReadBackup})
+    EXPECT_EQ(ask(verb, "other.db").status, AdminStatus::NotFound);
+}
+
 TEST_F(AdministrationChanges, ABackupWithoutRoomIsRefusedWithBothNumbers) {
   adjust_ = [](ServiceOptions& options) {
     options.backups.free_bytes = [](const std::filesystem::path&) { return std::uint64_t{4096}; };

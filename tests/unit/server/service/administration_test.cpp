@@ -22,7 +22,7 @@ class AdministrationTest : public testing::Test {
   }
 
   AdminPage ask(AdminVerb verb, const std::string& argument = "") {
-    return administration_.answer(fleet::question(verb, argument));
+    return administration_.answer(fleet::question(verb, argument), "", fleet::caller_here());
   }
   void report(const std::vector<Attempt>& attempts) {
     std::promise<void> done;
@@ -164,7 +164,7 @@ TEST_F(AdministrationTest, PathsAreListedByRobotAndTaskInPages) {
   request.limit = 2;
   std::size_t rows = 0, pages = 0;
   do {
-    const AdminPage page = administration_.answer(request);
+    const AdminPage page = administration_.answer(request, "", fleet::caller_here());
     ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
     for (std::size_t i = 0; i < page.rows.size(); ++i)
       EXPECT_EQ(row<PathSummary>(page, i).label, "teacher");
@@ -182,28 +182,29 @@ TEST_F(AdministrationTest, AttemptsAreListedByRobotAndTaskInPages) {
   AdminRequest request = fleet::question(AdminVerb::ListAttempts);
   request.task = "shelf";
   request.limit = 4;
-  const AdminPage first = administration_.answer(request);
+  const AdminPage first = administration_.answer(request, "", fleet::caller_here());
   ASSERT_EQ(first.rows.size(), 4U) << first.message;
   EXPECT_EQ(row<AttemptSummary>(first, 3).label, "pupil");
   request.cursor = first.next_cursor;
-  EXPECT_EQ(administration_.answer(request).rows.size(), 1U);
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).rows.size(), 1U);
   request = fleet::question(AdminVerb::ListAttempts);
   request.robot = "teacher";
-  EXPECT_EQ(administration_.answer(request).rows.size(), 3U);
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).rows.size(), 3U);
   request.task = "bin";
-  EXPECT_EQ(administration_.answer(request).message, "no task 'bin'");
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).message, "no task 'bin'");
 }
 
 TEST_F(AdministrationTest, FiltersThatNameNothingAreNotFoundAndUselessOnesRefused) {
   AdminRequest request = fleet::question(AdminVerb::ListPaths);
   request.robot = "nobody";
-  EXPECT_EQ(administration_.answer(request).status, AdminStatus::NotFound);
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).status,
+            AdminStatus::NotFound);
   request = fleet::question(AdminVerb::ListPaths);
   request.task = "bin";
-  EXPECT_EQ(administration_.answer(request).message, "no task 'bin'");
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).message, "no task 'bin'");
   request = fleet::question(AdminVerb::ListRobots);
   request.task = "bin";
-  EXPECT_EQ(administration_.answer(request).status, AdminStatus::Refused);
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).status, AdminStatus::Refused);
 }
 
 TEST_F(AdministrationTest, AFilterByRobotReadsNoDescriptions) {
@@ -215,7 +216,7 @@ TEST_F(AdministrationTest, AFilterByRobotReadsNoDescriptions) {
   for (const std::string& name : {std::string("teacher"), teacher_.digest.short_hex()}) {
     AdminRequest request = fleet::question(AdminVerb::ListPaths);
     request.robot = name;
-    EXPECT_EQ(administration.answer(request).rows.size(), 2U);
+    EXPECT_EQ(administration.answer(request, "", fleet::caller_here()).rows.size(), 2U);
   }
   EXPECT_EQ(watched.descriptions_read, 0);
 }
@@ -234,14 +235,15 @@ TEST_F(AdministrationTest, DistributionsAreShownByIdPrefix) {
 TEST_F(AdministrationTest, AForeignCursorIsRefused) {
   AdminRequest request = fleet::question(AdminVerb::ListPaths);
   request.cursor = "not a cursor";
-  EXPECT_EQ(administration_.answer(request).status, AdminStatus::Refused);
+  EXPECT_EQ(administration_.answer(request, "", fleet::caller_here()).status, AdminStatus::Refused);
 }
 
 TEST_F(AdministrationTest, ADamagedRobotIsListedWithWhatIsWrong) {
   store::damage_robot(directory_ / "fleet.db", "pupil");
   runtime::RobotRegistry cold(*store_);
   Administration administration(parts(cold));
-  const AdminPage page = administration.answer(fleet::question(AdminVerb::ListRobots));
+  const AdminPage page =
+      administration.answer(fleet::question(AdminVerb::ListRobots), "", fleet::caller_here());
   ASSERT_EQ(page.status, AdminStatus::Ok) << page.message;
   ASSERT_EQ(page.rows.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {

@@ -408,19 +408,22 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   const auto status = fleet::question(AdminVerb::Status);
   for (bool is_held = false; !is_held;) {  // refused ones are answered on this thread
     std::promise<bool> begun;
-    service_->administer(status, "", [&begun, released](const AdminPage& page) {
-      const bool is_short_task = page.status == AdminStatus::Ok;
-      begun.set_value(is_short_task);
-      if (is_short_task)
-        released.wait();
-    });
+    service_->administer(
+        status, "",
+        [&begun, released](const AdminPage& page) {
+          const bool is_short_task = page.status == AdminStatus::Ok;
+          begun.set_value(is_short_task);
+          if (is_short_task)
+            released.wait();
+        },
+        fleet::caller_here());
     is_held = begun.get_future().get();
   }
   for (bool is_full = false; !is_full;) {
     const auto refused = std::make_shared<std::atomic<bool>>(false);
-    service_->administer(status, "", [refused](const AdminPage& page) {
-      *refused = page.status != AdminStatus::Ok;
-    });
+    service_->administer(
+        status, "", [refused](const AdminPage& page) { *refused = page.status != AdminStatus::Ok; },
+        fleet::caller_here());
     is_full = *refused;
   }
   teach(1, 100);  // its robot is in memory: no need of the short task pool

@@ -184,6 +184,45 @@ TEST_F(JobsTest, TooManyThatWaitAreRefusedWithTheLimit) {
       << refused.error().message;
 }
 
+TEST_F(JobsTest, AnOwnerHasSoManyThatHaveNotEnded) {
+  make({.client_active = 2});
+  const auto of = [this](const std::string& owner) {
+    Jobs::Task task = held("x");
+    task.owner = owner;
+    return jobs_->begin(std::move(task));
+  };
+  const std::string running = of("anna").value_or_throw().id;
+  const std::string waiting = of("anna").value_or_throw().id;
+  const Result<Job> third = of("anna");
+  ASSERT_FALSE(third);
+  EXPECT_EQ(third.error().code, ErrorCode::Unavailable);
+  EXPECT_NE(third.error().message.find("this client has 2 jobs"), std::string::npos)
+      << third.error().message;
+  EXPECT_EQ(jobs_->refusal_of("anna")->message, third.error().message);
+  EXPECT_TRUE(of("ben"));
+  for (int i = 0; i < 3; ++i)
+    EXPECT_TRUE(of("")) << "nobody in particular";
+  jobs_->cancel(waiting).value_or_throw();
+  EXPECT_TRUE(of("anna"));
+}
+
+TEST_F(JobsTest, TheEndedOnesOfOneOwnerPushOutNobodyElses) {
+  make({.kept = 8, .client_kept = 4});
+  const auto of = [this](const std::string& owner) {
+    Jobs::Task task = quick(owner);
+    task.owner = owner;
+    const std::string id = begin(std::move(task));
+    end_of(id);
+    return id;
+  };
+  const std::string of_anna = of("anna"), first_of_ben = of("ben");
+  for (int i = 0; i < 20; ++i)
+    of("ben");
+  EXPECT_TRUE(jobs_->find(of_anna));
+  EXPECT_FALSE(jobs_->find(first_of_ben));
+  EXPECT_EQ(jobs_->list().size(), 5U);
+}
+
 TEST_F(JobsTest, ACancelledJobThatWaitedFreesItsPlaceAndNeverRuns) {
   make({.queued = 1});
   begin(held("running"));

@@ -34,8 +34,9 @@ class OwnFaults : public CatalogTest {
   }
   std::future<AdminPage> begin_reset(const std::string& task) {
     const auto page = std::make_shared<std::promise<AdminPage>>();
-    service_->administer(fleet::question(AdminVerb::ResetTask, task), "",
-                         [page](const AdminPage& answer) { page->set_value(answer); });
+    service_->administer(
+        fleet::question(AdminVerb::ResetTask, task), "",
+        [page](const AdminPage& answer) { page->set_value(answer); }, fleet::caller_here());
     return page->get_future();
   }
   std::string next_fit(const Digest& id) {

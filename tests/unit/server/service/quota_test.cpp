@@ -107,8 +107,10 @@ TEST_F(Quota, ARegistrationThatFindsNoRoomIsToldWhenToComeAgain) {
   teach(6);
   std::promise<void> go_on;
   const std::shared_future<void> gate = go_on.get_future().share();
-  service_->administer(fleet::question(AdminVerb::Status), "other 1",
-                       [gate](const AdminPage&) { gate.wait(); });  // holds the only thread
+  service_->administer(
+      fleet::question(AdminVerb::Status), "other 1",
+      [gate](const AdminPage&) { gate.wait(); },  // holds the only thread
+      fleet::caller_here());
   const auto ask_again = [this] {
     const auto reply = std::make_shared<std::promise<RegisterReply>>();
     service_->register_robot(

@@ -165,7 +165,9 @@ class ServiceFixture : public testing::Test {
   FetchReply fetch(const FetchRequest& request) { return begin_fetch(request, "one").get(); }
   AdminPage administer(AdminRequest request) {
     std::promise<AdminPage> page;
-    service_->administer(std::move(request), "", [&](const AdminPage& p) { page.set_value(p); });
+    service_->administer(
+        std::move(request), "", [&](const AdminPage& p) { page.set_value(p); },
+        fleet::caller_here());
     return page.get_future().get();
   }
 

@@ -30,6 +30,22 @@ TEST_F(ServiceTest, StatusCountsWhatWasDoneSinceTheStart) {
   EXPECT_TRUE(status.writable);
 }
 
+TEST_F(ServiceTest, StatusAndMetricsTellWhenTheServersCertificateEnds) {
+  const auto metric = [this] {
+    const std::string name = "\nkinship_credentials_expiry_timestamp_seconds ";
+    metrics::Exposition page;
+    service_->expose(page);
+    const std::size_t at = page.text().find(name);
+    return at == std::string::npos ? -1 : std::stod(page.text().substr(at + name.size()));
+  };
+  EXPECT_EQ(service_->status().credentials_expire_ms, 0);
+  EXPECT_EQ(metric(), 0) << "without security";
+  adjust_ = [](ServiceOptions& options) { options.credentials_expire_ms = 2'000'000'000'500; };
+  start();
+  EXPECT_EQ(service_->status().credentials_expire_ms, 2'000'000'000'500);
+  EXPECT_EQ(metric(), 2'000'000'000.5);
+}
+
 TEST_F(ServiceTest, ReceiptsOfWhatTheDecoderRefusedAreInTheReply) {
   const Receipt refused{Uuid::random(), ReceiptStatus::Refused, "path: 1 waypoint"};
   std::promise<ReportReply> done;

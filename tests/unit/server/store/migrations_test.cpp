@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
@@ -68,6 +69,35 @@ TEST_F(Migrations, MakeAStoreOnceAndThenLeaveItAlone) {
   run(embedded_migrations());
   EXPECT_EQ(contents(file_), bytes);
   EXPECT_FALSE(std::filesystem::exists(backup()));
+}
+
+TEST_F(Migrations, OfAStoreThatWasThereAreInItsAuditLog) {
+  const auto entries = [this](const std::string& before, const std::string& after) {
+    return integer("SELECT count(*) FROM audit WHERE verb = 'migrate' AND outcome = 2 AND was = '" +
+                   before + "' AND became = '" + after + "' AND target = '" + file_.string() +
+                   "' AND client LIKE 'kinshipd of user %'");
+  };
+  const auto known = embedded_migrations();
+  const std::int64_t newest = std::ssize(known);
+  run(known.first(3));
+  run(known.first(6));
+  EXPECT_EQ(entries("schema 3", "schema 6"), 1);
+  run(known);
+  std::vector<Migration> next(known.begin(), known.end());
+  next.push_back({newest + 1, "broken", "CREATE TABLE extra (x INTEGER); CREATE nonsense;"});
+  const std::int64_t before = integer("SELECT count(*) FROM audit");
+  EXPECT_THROW(run(next), SqliteError);
+  EXPECT_EQ(integer("SELECT count(*) FROM audit"), before) << "in the transaction of the migration";
+  next.back() = {newest + 1, "extra", "CREATE TABLE extra (x INTEGER) STRICT;"};
+  run(next);
+  EXPECT_EQ(entries("schema " + std::to_string(newest), "schema " + std::to_string(newest + 1)), 1);
+  run(next);
+  EXPECT_EQ(integer("SELECT count(*) FROM audit"), before + 1);
+}
+
+TEST_F(Migrations, OfANewStoreAreNot) {
+  run(embedded_migrations());
+  EXPECT_EQ(integer("SELECT count(*) FROM audit"), 0);
 }
 
 TEST_F(Migrations, KeepACopyOfAnOlderStore) {

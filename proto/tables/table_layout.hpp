@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <iosfwd>
 
-namespace kinship::cli {
+namespace kinship::tables {
 
 /// How tables are laid out on a stream.
 struct TableLayout {
@@ -20,4 +20,4 @@ TableLayout table_layout(std::ostream& out);
 /// Columns of text of the terminal that standard output is; that of TableLayout() if it is none.
 std::size_t width_of_terminal();
 
-}  // namespace kinship::cli
+}  // namespace kinship::tables

@@ -1,11 +1,11 @@
-#include "client/cli/table_layout.hpp"
+#include "proto/tables/table_layout.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <ostream>
 
-namespace kinship::cli {
+namespace kinship::tables {
 namespace {
 
 /// Where a stream keeps its layout: width + 1, so that 0 is a stream of which nobody said anything.
@@ -41,4 +41,4 @@ std::size_t width_of_terminal() {
   return size.ws_col;
 }
 
-}  // namespace kinship::cli
+}  // namespace kinship::tables

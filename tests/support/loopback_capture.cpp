@@ -1,4 +1,4 @@
-#include "tests/unit/proto/dds/loopback_capture.hpp"
+#include "tests/support/loopback_capture.hpp"
 
 #include <arpa/inet.h>
 #include <linux/if_ether.h>

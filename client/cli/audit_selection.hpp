@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "proto/types/audit.hpp"
+
+namespace kinship::cli {
+
+/// Which entries of the audit log are shown: the newest since a time, so many at most. Entries come
+/// in the order in which they were made, the newest first; their times need not be in that order,
+/// as after a restored store or a clock that was set back, so that an old one ends nothing.
+class AuditSelection {
+ public:
+  /// \param since_ms  Unix time, UTC; 0: all.
+  /// \param limit     0: every one.
+  AuditSelection(std::int64_t since_ms, std::size_t limit) : since_ms_(since_ms), limit_(limit) {}
+
+  /// Whether the next entry is shown.
+  bool takes(const AuditEntry& entry) noexcept {
+    if (is_full() || entry.time_ms < since_ms_)
+      return false;
+    ++taken_;
+    return true;
+  }
+  /// No further one is.
+  bool is_full() const noexcept { return limit_ > 0 && taken_ >= limit_; }
+
+ private:
+  const std::int64_t since_ms_;
+  const std::size_t limit_;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace kinship::cli

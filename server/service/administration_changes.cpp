@@ -1,0 +1,205 @@
+// What administrators change, and what leaves the server.
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "proto/types/enum_text.hpp"
+#include "server/service/administration.hpp"
+#include "server/service/backup_verbs.hpp"
+#include "server/service/export_configurations.hpp"
+#include "server/service/find_by_name.hpp"
+
+namespace kinship::service {
+namespace {
+
+std::string describe(const RobotRemoval& removal) {
+  const std::string what = "robot '" + removal.label + "' (" + removal.robot.short_hex() + ") ";
+  const std::string distributions = std::to_string(removal.distributions) + " distributions";
+  if (removal.is_deleted)
+    return what + "deleted, it had no attempts; " + distributions + " of it are gone";
+  return what + "removed: " + std::to_string(removal.paths) + " paths retired, " +
+         std::to_string(removal.attempts) + " attempts stay on record, " + distributions +
+         " are gone";
+}
+
+/// What can be asked for again: a part of it may be done until then.
+AdminPage page_of_unfinished(const Error& error) {
+  AdminPage page = page_of(error);
+  page.status = AdminStatus::Failed;
+  return page;
+}
+
+/// There is no room for a job now.
+AdminPage page_of_later(const Error& error) {
+  constexpr RetryAfter kJobEnds{5000};
+  AdminPage page = page_of_unfinished(error);
+  page.retry_after = kJobEnds;
+  return page;
+}
+
+}  // namespace
+
+AdminPage Administration::evict_distribution(const std::string& prefix, const AuditEntry& audit) {
+  const Digest id = find_distribution_id(parts_.store, prefix).value_or_throw();
+  const bool was_there = parts_.store.evict_distribution(id, &audit);
+  // One that could not be stored is in memory only.
+  parts_.forget_distribution(id);
+  if (!was_there)
+    return page_of(not_found("distribution", prefix));
+  parts_.on_change({}, "distribution " + id.short_hex() + " evicted");
+  return page_of(Eviction{id});
+}
+
+AdminPage Administration::export_configurations(const std::string& prefix,
+                                                const std::string& request_key,
+                                                const AuditEntry& audit) {
+  const fitting::FitContext context{.store = parts_.store,
+                                    .robots = parts_.robots,
+                                    .clock = parts_.clock,
+                                    .memory = parts_.memory};
+  return begin(export_configurations_job(context, find_distribution(prefix), request_key), audit);
+}
+
+AdminPage Administration::retire_path(const std::string& uuid, const AuditEntry& audit) {
+  const Uuid report = report_of(uuid);
+  try {
+    return retired(parts_.store.retire_path(report, &audit), "path " + uuid);
+  } catch (const std::exception&) {  // it may be retired all the same
+    if (const std::optional<Attempt> attempt = parts_.store.find_attempt(report))
+      parts_.forget_task(attempt->task);
+    throw;
+  }
+}
+
+AdminPage Administration::reset_task(const std::string& task, const AuditEntry& audit) {
+  Result<Retirement> retirement = Error{};
+  try {
+    retirement = parts_.store.reset_task(task, parts_.stop, &audit);
+  } catch (const std::exception&) {  // some of its paths may be retired
+    parts_.forget_task(task);
+    throw;
+  }
+  if (!retirement && retirement.error().code == ErrorCode::Unavailable) {
+    parts_.forget_task(task);
+    return page_of_unfinished(retirement.error());
+  }
+  return retired(std::move(retirement), "reset");
+}
+
+AdminPage Administration::retired(Result<Retirement> retirement, const std::string& what) {
+  if (!retirement)
+    return page_of(retirement.error());
+  parts_.forget_task(retirement->task);
+  parts_.on_change(retirement->task,
+                   what + ": " + std::to_string(retirement->paths) + " paths retired");
+  return page_of(std::move(retirement).value());
+}
+
+AdminPage Administration::rename_robot(const AdminRequest& request, const AuditEntry& audit) {
+  RobotSummary robot = find_robot(parts_.store, request.robot).value_or_throw();
+  const std::string before = std::exchange(robot.label, request.argument);
+  static_cast<void>(parts_.robots.rename_robot(robot.robot, robot.label, &audit).value_or_throw());
+  name_solver(robot);
+  if (before != robot.label)
+    parts_.on_change({}, "robot '" + before + "' (" + robot.robot.short_hex() + ") is called '" +
+                             robot.label + "' now");
+  return page_of(std::move(robot));
+}
+
+AdminPage Administration::remove_robot(const std::string& name, const AuditEntry& audit) {
+  const RobotSummary robot = find_robot(parts_.store, name).value_or_throw();
+  Result<store::RemovedRobot> removed = Error{};
+  try {
+    removed = parts_.robots.remove_robot(robot.robot, parts_.stop, &audit);
+  } catch (const std::exception&) {  // some of its paths may be retired
+    forget_tasks_of(robot.robot);
+    throw;
+  }
+  if (!removed) {
+    forget_tasks_of(robot.robot);
+    return removed.error().code == ErrorCode::Unavailable ? page_of_unfinished(removed.error())
+                                                          : page_of(removed.error());
+  }
+  for (const Digest& distribution : removed->distributions)
+    parts_.forget_distribution(distribution);
+  parts_.forget_robot(robot.robot);
+  for (const std::string& task : removed->tasks)
+    parts_.forget_task(task);
+  parts_.on_change({}, describe(removed->removal));
+  return page_of(removed->removal);
+}
+
+/// Of a robot that was not removed as a whole.
+void Administration::forget_tasks_of(const Digest& robot) {
+  parts_.forget_robot(robot);
+  std::string cursor;
+  do {
+    const store::Page<TaskSummary> page = parts_.store.list_tasks(cursor, kMaxPageRows);
+    for (const TaskSummary& task : page.rows)
+      if (std::ranges::any_of(task.robots, [&](const auto& row) { return row.robot == robot; }))
+        parts_.forget_task(task.task);
+    cursor = page.next_cursor;
+  } while (!cursor.empty());
+}
+
+AdminPage Administration::back_up(const std::string& file, const std::string& request_key,
+                                  const AuditEntry& audit) {
+  return begin_audited(backup_job(parts_.store, file, parts_.backups, request_key), audit);
+}
+
+/// In the audit log once, for whoever then reads the bytes.
+AdminPage Administration::hash_backup(const std::string& name, const std::string& request_key,
+                                      const AuditEntry& audit) {
+  BackupFile file = open_backup(parts_.store, parts_.backups, name).value_or_throw();
+  const BackupSummary backup = file.summary();
+  AdminPage page = begin_audited(hash_backup_job(std::move(file), request_key), audit);
+  if (page.status == AdminStatus::Ok)
+    downloads_.add(audit.client, backup);
+  return page;
+}
+
+/// Whoever did not have it digested, as after a restart, is in the audit log before the first byte.
+AdminPage Administration::read_backup(const AdminRequest& request, const AuditEntry& audit) {
+  const BackupFile file =
+      open_backup(parts_.store, parts_.backups, request.argument).value_or_throw();
+  AdminPage page = service::read_backup(file, request);
+  if (page.status != AdminStatus::Ok || downloads_.has(audit.client, file.summary()))
+    return page;
+  trail_.hand_out(audit, "read from byte " + (request.cursor.empty() ? "0" : request.cursor) +
+                             " on of " + std::to_string(file.summary().bytes));
+  downloads_.add(audit.client, file.summary());
+  return page;
+}
+
+/// Of one's own job, or one that has ended, there is nothing to answer for.
+AdminPage Administration::cancel_job(const std::string& id, const AuditEntry& audit) {
+  const Job job = parts_.jobs.find(id).value_or_throw();
+  if (has_ended(job.state) || parts_.jobs.owner_of(id) == audit.client)
+    return page_of(parts_.jobs.cancel(id));
+  const std::string before = job.verb + " " + job.argument + ": " + std::string(to_text(job.state));
+  trail_.begin(audit, before);
+  Result<Job> cancelled = parts_.jobs.cancel(id);
+  if (cancelled)
+    trail_.end(audit, before, "told to end: " + std::string(to_text(cancelled->state)));
+  return page_of(std::move(cancelled));
+}
+
+/// A job that is in the audit log as begun, and as it ended.
+AdminPage Administration::begin_audited(Result<Jobs::Task> task, const AuditEntry& audit) {
+  Jobs::Task begun = std::move(task).value_or_throw();
+  if (const auto refusal = parts_.jobs.refusal_of(audit.client))
+    return page_of_later(*refusal);
+  trail_.begin(audit, "");
+  begun.on_end = trail_.ending(audit);
+  return begin(std::move(begun), audit);
+}
+
+AdminPage Administration::begin(Result<Jobs::Task> task, const AuditEntry& audit) {
+  Jobs::Task begun = std::move(task).value_or_throw();
+  begun.owner = audit.client;
+  Result<Job> job = parts_.jobs.begin(std::move(begun));
+  return job ? page_of(std::move(job).value()) : page_of_later(job.error());
+}
+
+}  // namespace kinship::service
