@@ -29,7 +29,7 @@ class KinshipdIntruder : public test::SecuredSite {
     std::string way = "honest";
   };
   /// Returns once he has joined; asks again and again until his end.
-  /// \param name  in the credentials; empty: without security.
+  /// \param name  common name of the certificate; empty: without security.
   static std::unique_ptr<ChildProcess> intrude(const Site& site, const std::string& name,
                                                const fs::path& credentials, const Act& act) {
     auto process = std::make_unique<ChildProcess>(std::vector<std::string>{
@@ -63,7 +63,7 @@ TEST_F(KinshipdIntruder, WithAnExpiredCertificateIsNoLongerHeard) {
   // By his own clock it is not over.
   const auto report = intrude(site, "arm", old, {"report", "too_late", "earlier"});
   const auto other = intrude(site, "arm", old, {"register", "too_late", "earlier"});
-  const auto control = intrude(site, "arm", renewed, {"report", "renewed"});
+  const auto control = intrude(site, "arm.2", renewed, {"report", "renewed"});
   EXPECT_TRUE(site.comes(AdminVerb::ListTasks, "renewed"));
   EXPECT_FALSE(site.has(AdminVerb::ListTasks, "too_late"));
   EXPECT_FALSE(site.has(AdminVerb::ListRobots, "too_late"));
