@@ -123,13 +123,13 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   ulm.report(5);
   bern.report(4);
   EXPECT_EQ(ulm.status().upstream->waiting, 5U);
-  ulm.fetch();
   bern.retire(first.at(2));
   ulm.kill();
   ulm.start();
   memory.start();
   bern.kill();
   bern.start();
+  ulm.fetch();  // wants the task from now on; bern has wanted it since before it was killed
   for (Site* const site : {&ulm, &bern})
     ASSERT_TRUE(site->comes_true([](const ServerStatus& status) {
       return status.attempts == 17 && status.paths == 16 && status.upstream->waiting == 0;

@@ -181,7 +181,7 @@ TEST_F(OwnFaults, AResetEndsWithTheServerAndSaysHowFarItCame) {
     continue;
   may_go_on.count_down();
   const AdminPage page = reset.get();
-  EXPECT_EQ(page.status, AdminStatus::Refused);
+  EXPECT_EQ(page.status, AdminStatus::Failed);
   EXPECT_NE(page.message.find("stopping after 500 paths were retired"), std::string::npos)
       << page.message;
   end.get();
