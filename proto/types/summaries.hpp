@@ -338,7 +338,7 @@ struct ServerStatus {
   std::vector<TroubleCount> troubles = {};
   std::vector<BoundUse> bounds = {};
   std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
-  std::int64_t credentials_expire_ms = 0;  ///< the server's own; 0: it runs without security
+  std::int64_t credentials_expire_ms = 0;       ///< the server's own; 0: it runs without security
   std::optional<UpstreamStatus> upstream = {};  ///< of a site
 };
 

@@ -28,8 +28,9 @@ struct ClientQuotaOptions {
 
 /// What kinshipd was asked to do.
 struct ServerOptions {
-  std::filesystem::path store;       ///< of SQLite, or the URL of a PostgreSQL database
-  bool require_synchronous = false;  ///< of a database: acknowledge what a standby has, nothing else
+  std::filesystem::path store;  ///< of SQLite, or the URL of a PostgreSQL database
+  bool require_synchronous =
+      false;  ///< of a database: acknowledge what a standby has, nothing else
   std::uint32_t domain = 0;
   std::string network_interface;  ///< empty: loopback
   /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.

@@ -134,8 +134,8 @@ class Service {
   /// The same of what cannot be told now: Busy, and when to ask again.
   void postpone_fetch(const std::string& why, const std::function<void(const FetchReply&)>& done);
 
-  /// What somebody else changed in the store is no longer served from memory. Called by itself where
-  /// a store has several servers. One call at a time. \throws Failure(Storage)
+  /// What somebody else changed in the store is no longer served from memory. Called by itself
+  /// where a store has several servers. One call at a time. \throws Failure(Storage)
   void take_changes(const store::StoreChanges& changes);
 
   /// For the loop that waits: when to call expire(), and with what time.

@@ -291,8 +291,7 @@ class PostgresStore : public Store {
     presence_.give_back_fit_right(id, right);
   }
 
-  std::uint64_t put_distribution(const Distribution& distribution,
-                                 const FitRight& right) override {
+  std::uint64_t put_distribution(const Distribution& distribution, const FitRight& right) override {
     return write([&](Connection& connection) {
       if (right.fence > 0 && !has_fit_right(connection, distribution.id, right))
         throw Failure(ErrorCode::Unavailable,

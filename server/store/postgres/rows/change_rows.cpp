@@ -45,10 +45,11 @@ StoreChanges changes_since(Connection& connection, std::string_view cursor) {
   if (!std::ranges::all_of(cursor, is_digit))
     throw Failure(ErrorCode::InvalidInput, "cursor of another listing");
   changes.experience = changed_experience(connection, cursor);
-  changes.robots = digests(connection,
-                           "SELECT digest FROM robot WHERE changed_in >= $1::text::xid8"
-                           " UNION SELECT digest FROM gone_robot WHERE changed_in >= $1::text::xid8",
-                           cursor);
+  changes.robots =
+      digests(connection,
+              "SELECT digest FROM robot WHERE changed_in >= $1::text::xid8"
+              " UNION SELECT digest FROM gone_robot WHERE changed_in >= $1::text::xid8",
+              cursor);
   changes.evicted =
       digests(connection,
               "SELECT digest FROM evicted_distribution WHERE evicted_in >= $1::text::xid8", cursor);
