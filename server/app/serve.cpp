@@ -137,6 +137,14 @@ std::int64_t expiry_ms(const dds::Participant& participant) {
                      : 0;
 }
 
+void tell_what_is_served(const ServerStatus& status, std::uint32_t domain,
+                         const std::string& store) {
+  spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
+               status.version, domain, store, status.robots, status.paths, status.distributions);
+  if (!status.storage_message.empty())
+    spdlog::warn("store: {}", status.storage_message);
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options, std::ostream& out) {
@@ -171,14 +179,9 @@ int serve(const ServerOptions& options, std::ostream& out) {
   });
 
   const std::string store_name = store::displayed_store(options.store.string());
-  const ServerStatus status = service.status();
-  spdlog::info("kinshipd {} serves domain {} from {}: {} robots, {} paths, {} distributions",
-               status.version, options.domain, store_name, status.robots, status.paths,
-               status.distributions);
+  tell_what_is_served(service.status(), options.domain, store_name);
   ExpiryWatch expiry = watch_expiry(participant);
   expiry.beat(WaitClock::now());
-  if (!status.storage_message.empty())
-    spdlog::warn("store: {}", status.storage_message);
   std::optional<MetricsListener> metrics;
   if (metrics_port) {
     spdlog::info("metrics at {}", metrics_port->url());

@@ -161,13 +161,14 @@ AdminPage Administration::hash_backup(const std::string& name, const std::string
 
 /// Whoever did not have it digested, as after a restart, is in the audit log before the first byte.
 AdminPage Administration::read_backup(const AdminRequest& request, const AuditEntry& audit) {
+  const std::size_t begin = row_number(request.cursor).value_or_throw();
   const BackupFile file =
       open_backup(parts_.store, parts_.backups, request.argument).value_or_throw();
-  AdminPage page = service::read_backup(file, request);
-  if (page.status != AdminStatus::Ok || downloads_.has(audit.client, file.summary()))
+  AdminPage page = service::read_backup(file, begin);
+  if (downloads_.has(audit.client, file.summary()))
     return page;
-  trail_.hand_out(audit, "read from byte " + (request.cursor.empty() ? "0" : request.cursor) +
-                             " on of " + std::to_string(file.summary().bytes));
+  trail_.hand_out(audit, "read from byte " + std::to_string(begin) + " on of " +
+                             std::to_string(file.summary().bytes));
   downloads_.add(audit.client, file.summary());
   return page;
 }

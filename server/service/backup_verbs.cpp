@@ -61,16 +61,13 @@ Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key) {
                     .run = [shared](JobRun& run) { return hash(*shared, run); }};
 }
 
-AdminPage read_backup(const BackupFile& file, const AdminRequest& request) {
-  const Result<std::size_t> begin = row_number(request.cursor);
-  if (!begin)
-    return page_of(begin.error());
-  const std::vector<std::uint8_t> bytes = file.read(*begin, kMaxBackupChunkBytes);
+AdminPage read_backup(const BackupFile& file, std::size_t begin) {
+  const std::vector<std::uint8_t> bytes = file.read(begin, kMaxBackupChunkBytes);
   AdminPage page;
   page.status = AdminStatus::Ok;
   if (!bytes.empty())
     page.rows.emplace_back(TextLine{to_base64(bytes)});
-  if (const std::uint64_t end = *begin + bytes.size(); !bytes.empty() && end < file.summary().bytes)
+  if (const std::uint64_t end = begin + bytes.size(); !bytes.empty() && end < file.summary().bytes)
     page.next_cursor = std::to_string(end);
   return page;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include <string>
 
 #include "server/service/admin_page.hpp"
@@ -22,7 +24,7 @@ Result<BackupFile> open_backup(const store::Store& store, const BackupPlace& pla
 /// are all there. Reading them needs no job, so that it goes on after a restart, which ends jobs.
 Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key);
 
-/// Some bytes of a backup in base64, from the place that the cursor says; no row behind its end.
-AdminPage read_backup(const BackupFile& file, const AdminRequest& request);
+/// Some bytes of a backup in base64, from a place on; no row behind its end.
+AdminPage read_backup(const BackupFile& file, std::size_t begin);
 
 }  // namespace kinship::service

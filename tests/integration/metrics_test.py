@@ -63,7 +63,8 @@ class WithServer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server = cls.enterClassContext(Kinshipd())
-        cls.server.start("--metrics", "127.0.0.1:0", "--rehearsal-cpu", "0")
+        cls.server.start("--metrics", "127.0.0.1:0", "--rehearsal-cpu", "0",
+                         "--upstream", "postgresql://127.0.0.1:1/nobody_answers")
         cls.url = re.search(r"metrics at (http://\S+/metrics)", cls.server.log()).group(1)
         cls.run_kinship("robots", "register", str(SOURCE / "robots" / "models" / "panda"))
 

@@ -10,6 +10,7 @@
 #include "proto/types/names.hpp"
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
+#include "server/store/postgres/durable_writes.hpp"
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
@@ -38,7 +39,7 @@ class PostgresStore : public Store {
       : options_(options),
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
-        writers_([this] { return primary_.connect(); }) {
+        writes_([this] { return primary_.connect(); }, options.require_synchronous) {
     std::unique_ptr<Connection> connection = primary_.connect();
     migrate(*connection, embedded_migrations());
     history_.begin_run(*connection);
@@ -68,7 +69,7 @@ class PostgresStore : public Store {
   }
 
   bool begin_epoch_if_lost(const HistoryMark& mark) override {
-    const auto begun = write(
+    const auto begun = writes_.write(
         [&](Connection& connection) { return history_.begin_epoch_if_lost(connection, mark); });
     if (begun)
       history_.adopt(*begun);
@@ -105,21 +106,21 @@ class PostgresStore : public Store {
 
   Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
     Result<RegisterStatus> result =
-        write([&](Connection& connection) { return insert_robot(connection, robot); });
+        writes_.write([&](Connection& connection) { return insert_robot(connection, robot); });
     if (damaged_robots_ > 0)
       static_cast<void>(robots());  // counts again: this may have been one of them
     return result;
   }
 
   bool replace_geometry(const RobotRecord& robot) override {
-    return write([&](Connection& connection) { return update_robot(connection, robot); });
+    return writes_.write([&](Connection& connection) { return update_robot(connection, robot); });
   }
 
   Result<bool> rename_robot(const Digest& robot, const std::string& label,
                             const AuditEntry* audit) override {
     if (const auto error = check_label(label))
       return *error;
-    return write(
+    return writes_.write(
         [&](Connection& connection) { return rename_audited(connection, robot, label, audit); });
   }
 
@@ -129,7 +130,7 @@ class PostgresStore : public Store {
     while (true) {
       // What a transaction that is undone has counted is not counted.
       RemovedRobot next;
-      const Result<bool> is_out = write([&](Connection& connection) {
+      const Result<bool> is_out = writes_.write([&](Connection& connection) {
         next = removed;
         return continue_removal(connection, robot, next, audit);
       });
@@ -197,7 +198,7 @@ class PostgresStore : public Store {
   }
 
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
-    return write(
+    return writes_.write(
         [&](Connection& connection) { return postgres::retire_reports(connection, reports); });
   }
 
@@ -206,7 +207,7 @@ class PostgresStore : public Store {
   }
 
   void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
-    write([&](Connection& connection) {
+    writes_.write([&](Connection& connection) {
       write_notes(connection, notes);
       return true;
     });
@@ -246,7 +247,7 @@ class PostgresStore : public Store {
   }
 
   Result<Retirement> retire_path(const Uuid& report_uuid, const AuditEntry* audit) override {
-    return write([&](Connection& connection) {
+    return writes_.write([&](Connection& connection) {
       return postgres::retire_path(connection, report_uuid, audit);
     });
   }
@@ -254,14 +255,14 @@ class PostgresStore : public Store {
   Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop,
                                 const AuditEntry* audit) override {
     const Result<TaskReset> reset =
-        write([&](Connection& connection) { return begin_reset(connection, task, audit); });
+        writes_.write([&](Connection& connection) { return begin_reset(connection, task, audit); });
     if (!reset)
       return reset.error();
     Retirement retired;
     retired.task = task;
     while (true) {
       Retirement next;
-      const bool goes_on = write([&](Connection& connection) {
+      const bool goes_on = writes_.write([&](Connection& connection) {
         next = retired;
         return continue_reset(connection, *reset, next, audit);
       });
@@ -292,7 +293,7 @@ class PostgresStore : public Store {
   }
 
   std::uint64_t put_distribution(const Distribution& distribution, const FitRight& right) override {
-    return write([&](Connection& connection) {
+    return writes_.write([&](Connection& connection) {
       if (right.fence > 0 && !has_fit_right(connection, distribution.id, right))
         throw Failure(ErrorCode::Unavailable,
                       "distribution " + distribution.id.short_hex() + ": another server fits it");
@@ -305,11 +306,12 @@ class PostgresStore : public Store {
   }
 
   bool evict_distribution(const Digest& id, const AuditEntry* audit) override {
-    return write([&](Connection& connection) { return evict_audited(connection, id, audit); });
+    return writes_.write(
+        [&](Connection& connection) { return evict_audited(connection, id, audit); });
   }
 
   void add_audit(const AuditEntry& entry) override {
-    write([&](Connection& connection) {
+    writes_.write([&](Connection& connection) {
       insert_audit(connection, entry);
       return true;
     });
@@ -412,42 +414,6 @@ class PostgresStore : public Store {
         declined_item(reports, std::move(done), "the queue of reports is full, try again"));
   }
 
-  /// Runs `function(Connection&)` in a transaction, again where it was in conflict with another
-  /// server's or the connection was dead, and returns when it is durable.
-  template <typename Function>
-  std::invoke_result_t<Function, Connection&> write(Function function) {
-    constexpr int kTries = 5;
-    for (int tries = 1;; ++tries) {
-      try {
-        return writers_.use([&](Connection& connection) { return commit(connection, function); });
-      } catch (const PostgresError& error) {
-        if (error.kind() == ErrorKind::Lost || error.kind() == ErrorKind::Forgotten)
-          writers_.forget();
-        const bool may_go_on = error.kind() == ErrorKind::Conflict ||
-                               error.kind() == ErrorKind::Forgotten ||
-                               (error.kind() == ErrorKind::Lost && tries == 1);
-        if (!may_go_on || tries == kTries)
-          throw;
-      }
-    }
-  }
-
-  template <typename Function>
-  std::invoke_result_t<Function, Connection&> commit(Connection& connection, Function& function) {
-    Transaction transaction(connection, Transaction::Kind::Write);
-    if (options_.require_synchronous)
-      require_standby(connection);
-    auto value = function(connection);
-    const CommitOutcome outcome = transaction.commit();
-    if (outcome.certainty == Certainty::NotCommitted)
-      throw PostgresError("40001", outcome.why);
-    if (outcome.certainty == Certainty::InDoubt) {
-      connection.abandon();
-      throw Failure(ErrorCode::Storage, "it is not certain whether it is done: " + outcome.why);
-    }
-    return value;
-  }
-
   /// On the writer's thread; nobody waits for it.
   void write_later(std::function<void(Connection&)> function) const {
     QueuedItem item;
@@ -491,14 +457,15 @@ class PostgresStore : public Store {
   /// The writer has found the primary anew: others may still hold on to the old one.
   void forget_connections() {
     readers_.forget();
-    writers_.forget();
+    writes_.forget();
   }
 
   const PostgresOptions options_;
   Interrupt interrupt_;
   mutable Primary primary_;
   History history_;
-  mutable ConnectionPool readers_, writers_;
+  mutable ConnectionPool readers_;
+  DurableWrites writes_;
   mutable Presence presence_{readers_};
   mutable std::atomic<bool> is_backing_up_ = false;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;
