@@ -174,13 +174,8 @@ void add_client_options(CLI::App& app, ClientQuotaOptions& client) {
       "MB of paths of one client that are stored, a day; 0: no limit", kMaxPerDay);
 }
 
-/// What serving needs, each also in a file that --config names.
-void add_server_options(CLI::App& app, ServerOptions& options) {
-  constexpr std::size_t kMaxWorkers = 256;
-  constexpr int kMaxScrubMbPerS = 1000;
-  constexpr std::size_t kMinFitMemory_mb = 16, kMaxFitMemory_mb = std::size_t{1} << 24U;
-  app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
-  app.allow_config_extras(CLI::config_extras_mode::error);
+/// What is served, where, and to whom.
+void add_place_options(CLI::App& app, ServerOptions& options) {
   app.add_option("--store", options.store,
                  "SQLite file, made with its folder if there is none; or a PostgreSQL database, "
                  "which several servers may share: postgresql://USER@HOST:PORT/DATABASE")
@@ -204,6 +199,16 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
   app.add_flag("--insecure", options.insecure,
                "Serve other hosts without --security: whoever reaches the ports may read, report "
                "and register; what changes or removes is for this machine alone");
+}
+
+/// What serving needs, each also in a file that --config names.
+void add_server_options(CLI::App& app, ServerOptions& options) {
+  constexpr std::size_t kMaxWorkers = 256;
+  constexpr int kMaxScrubMbPerS = 1000;
+  constexpr std::size_t kMinFitMemory_mb = 16, kMaxFitMemory_mb = std::size_t{1} << 24U;
+  app.set_config("--config", "", "Read options from an INI or TOML file")->check(CLI::ExistingFile);
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  add_place_options(app, options);
   app.add_option("--workers", options.workers, "Threads that transfer and fit, at low priority")
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
