@@ -11,8 +11,8 @@
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/durable_writes.hpp"
+#include "server/store/postgres/opening/begin_store.hpp"
 #include "server/store/postgres/opening/history.hpp"
-#include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/presence.hpp"
 #include "server/store/postgres/report_writer.hpp"
@@ -40,9 +40,7 @@ class PostgresStore : public Store {
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
         writes_([this] { return primary_.connect(); }, options.require_synchronous) {
-    std::unique_ptr<Connection> connection = primary_.connect();
-    migrate(*connection, embedded_migrations());
-    history_.begin_run(*connection);
+    std::unique_ptr<Connection> connection = begin_store(primary_, history_);
     writer_ = std::make_unique<ReportWriter>(
         primary_, history_, std::move(connection),
         ReportWriterOptions{.max_paths_per_pair = options.max_paths_per_pair,

@@ -38,6 +38,17 @@ Primary::Found Primary::found(std::unique_ptr<Connection> connection) const {
   return {std::move(connection), timeline};
 }
 
+/// Once more where the first statement showed that there is a pooler (begin_store).
+Primary::Found Primary::ask(const ConnectionString& host) const {
+  try {
+    return found(connect_to(host));
+  } catch (const PostgresError& error) {
+    if (error.kind() != ErrorKind::Forgotten)
+      throw;
+    return found(connect_to(host));
+  }
+}
+
 /// Asks all hosts: one that answers first may be the old primary.
 Primary::Found Primary::find_newest() {
   Found newest;
@@ -45,7 +56,7 @@ Primary::Found Primary::find_newest() {
   bool is_read_only = false;
   for (const ConnectionString& host : hosts_) {
     try {
-      Found next = found(connect_to(host));
+      Found next = ask(host);
       if (next.timeline <= newest.timeline)
         continue;
       newest = std::move(next);
@@ -84,7 +95,7 @@ std::unique_ptr<Connection> Primary::connect() {
   Found made;
   try {
     if (known)
-      made = found(connect_to(*known));
+      made = ask(*known);
   } catch (const PostgresError&) {
     if (hosts_.size() == 1)
       throw;

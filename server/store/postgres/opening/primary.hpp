@@ -36,6 +36,7 @@ class Primary {
   std::unique_ptr<Connection> connect_to(const ConnectionString& host) const;
   Found find_newest();
   Found found(std::unique_ptr<Connection> connection) const;
+  Found ask(const ConnectionString& host) const;
   void require_newest(const Found& found);
 
   const ConnectionString where_;
