@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <filesystem>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/support/loopback_capture.hpp"
@@ -100,8 +100,8 @@ TEST_F(Eavesdropper, HasNothingDoneAgain) {
 /// By the writer of these messages. DDS Security leaves them open, for nobody knows the other one's
 /// key yet: who changes them can keep a client away (Limits of proto/security).
 bool is_of_handshake(const test::CapturedMessage& message) {
-  constexpr std::array<char, 4> kStatelessWriter = {'\x00', '\x02', '\x01', '\xc3'};
-  return !std::ranges::search(message.bytes, kStatelessWriter).empty();
+  constexpr std::string_view kStatelessWriter("\x00\x02\x01\xc3", 4);
+  return message.bytes.find(kStatelessWriter) != std::string::npos;
 }
 
 /// Sends the requests of a session again under further numbers, with another text of that length.
