@@ -240,7 +240,7 @@ fitting::FitOutcome Catalog::fit(const Digest& id, const fitting::DistributionKe
 std::optional<Distribution> Catalog::made_elsewhere(const Digest& id,
                                                     const fitting::DistributionKey& key) {
   const LookUp found = catalog::look_up(id, key, nullptr, parts_.store, parts_.robots);
-  if (found.end || !found.known || is_behind(*found.known->distribution, found.experience))
+  if (found.end || !found.known || has_changed(*found.known->distribution, found.experience))
     return std::nullopt;
   return found.known->distribution;
 }
