@@ -102,9 +102,8 @@ class PostgresPlans : public testing::Test {
     for (const json& explained : plans_since(begin)) {
       const std::string text = explained.at("Query Text");
       statements_.insert(text);
-      if (std::ranges::any_of(kWholeTables, [&](const std::string& end) {
-            return text.ends_with(end);
-          }))
+      if (std::ranges::any_of(kWholeTables,
+                              [&](const std::string& end) { return text.ends_with(end); }))
         continue;
       std::vector<std::string> faults;
       find_faults(explained.at("Plan"), faults);
@@ -112,6 +111,25 @@ class PostgresPlans : public testing::Test {
                                   << text << "\n"
                                   << explained.at("Plan").dump(1);
     }
+  }
+  /// A path and a scene that are damaged, noticed, and mended by a report.
+  void ask_about_damage(const Digest& robot, std::uint64_t number) {
+    Attempt attempt = test::make_attempt(robot, "damaged", number);
+    attempt.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
+    test::report(*store_, {attempt});
+    const std::vector<StoredPath> paths = store_->read_paths(robot, "damaged", {0, 10, 0});
+    ASSERT_EQ(paths.size(), 1U);
+    cluster_->query(
+        "UPDATE path SET crc32c = 1 WHERE id = " + std::to_string(paths[0].id) +
+            "; UPDATE scene SET crc32c = 1 WHERE id = " + std::to_string(paths[0].scene_id.value()),
+        "store");
+    ask("damage", [&] {
+      EXPECT_TRUE(store_->read_paths(robot, "damaged", {0, 10, 0}).empty());
+      EXPECT_FALSE(store_->read_scene(*paths[0].scene_id));
+    });
+    EXPECT_TRUE(store_->status().damaged);
+    ask("mending", [&] { test::report(*store_, {attempt}); });
+    EXPECT_FALSE(store_->status().damaged);
   }
   std::size_t statements() const { return statements_.size(); }
 
@@ -180,6 +198,7 @@ TEST_F(PostgresPlans, NoStatementOfAServingStoreReadsWhatOthersHave) {
       for (const RobotRecord& each : {panda, test::make_robot("iiwa", 2)})
         EXPECT_TRUE(store_->register_robot(each));
     });
+    ASSERT_NO_FATAL_FAILURE(ask_about_damage(panda.digest, first_number + 9000));
     EveryQuestion questions(*store_, panda.digest, first_number,
                             [this](const std::string& what, const std::function<void()>& question) {
                               ask(what, question);
