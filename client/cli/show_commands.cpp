@@ -144,6 +144,14 @@ void print_upstream(const UpstreamStatus& upstream, std::ostream& out) {
            << upstream.first_refused << '\n';
 }
 
+void print_replica(const ReplicaUse& replica, std::ostream& out) {
+  out << "host           " << replica.host << ": " << count_text(replica.readings, "reading")
+      << " of fits, behind for " << replica.behind << ", failed " << replica.failed;
+  if (!replica.message.empty())
+    out << "; " << replica.message;
+  out << '\n';
+}
+
 void print_status(const ServerStatus& status, std::ostream& out) {
   out << "kinshipd       " << status.version << ", up " << status.uptime_s << " s\n"
       << "store          " << status.store_file << ", " << size_text(status.store_bytes)
@@ -175,6 +183,8 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "
                                  : std::string())
       << number_text(100 * status.scrub_part, 0) << " % read\n";
+  for (const ReplicaUse& replica : status.replicas)
+    print_replica(replica, out);
   if (status.upstream)
     print_upstream(*status.upstream, out);
   for (const TroubleCount& trouble : status.troubles)

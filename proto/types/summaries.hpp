@@ -277,6 +277,23 @@ inline constexpr std::tuple kFieldsOf<BoundUse>{
     Field{"what", &BoundUse::what, {.limit = kMaxWordBytes}}, Field{"used", &BoundUse::used},
     Field{"limit", &BoundUse::limit}};
 
+/// A host of the store's database that fits read while it is a standby and new enough; else they
+/// read the primary. Since start.
+struct ReplicaUse {
+  std::string host;
+  std::uint64_t readings = 0;  ///< that it answered
+  std::uint64_t behind = 0;    ///< that it did not yet have what was wanted for
+  std::uint64_t failed = 0;    ///< that it did not answer, or ended
+  std::string message;         ///< why it is not read now; empty: it is
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<ReplicaUse>{
+    Field{"host", &ReplicaUse::host, {.limit = kMaxMessageBytes}},
+    Field{"readings", &ReplicaUse::readings}, Field{"behind", &ReplicaUse::behind},
+    Field{"failed", &ReplicaUse::failed},
+    Field{"message", &ReplicaUse::message, {.limit = kMaxPageBytes}}};
+
 /// How a site stands with the memory above it (kinshipd --upstream).
 struct UpstreamStatus {
   std::string name;
@@ -340,6 +357,7 @@ struct ServerStatus {
   std::uint64_t dropped_paths = 0;  ///< were beyond the cap of their robot and task, since ever
   std::int64_t credentials_expire_ms = 0;       ///< the server's own; 0: it runs without security
   std::optional<UpstreamStatus> upstream = {};  ///< of a site
+  std::vector<ReplicaUse> replicas = {};        ///< hosts of a database that fits may read
 };
 
 template <>
@@ -376,6 +394,7 @@ inline constexpr std::tuple kFieldsOf<ServerStatus>{
     Field{"bounds", &ServerStatus::bounds, {.limit = kMaxStatusRows, .may_be_missing = true}},
     Field{"dropped_paths", &ServerStatus::dropped_paths, {.may_be_missing = true}},
     Field{"credentials_expire_ms", &ServerStatus::credentials_expire_ms, {.may_be_missing = true}},
-    Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}}};
+    Field{"upstream", &ServerStatus::upstream, {.may_be_missing = true}},
+    Field{"replicas", &ServerStatus::replicas, {.limit = kMaxStatusRows, .may_be_missing = true}}};
 
 }  // namespace kinship

@@ -185,6 +185,9 @@ void add_place_options(CLI::App& app, ServerOptions& options) {
       "--require-synchronous", options.require_synchronous,
       "Of a PostgreSQL database: while it has no synchronous standby, reports are answered "
       "'try again'");
+  app.add_flag("--primary-only", options.primary_only,
+               "Of a PostgreSQL database: fits read from its primary too; default: from a standby "
+               "that --store names, while that one is as new as they want");
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("KINSHIP_DOMAIN")
       ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))

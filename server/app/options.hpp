@@ -30,7 +30,8 @@ struct ClientQuotaOptions {
 struct ServerOptions {
   std::filesystem::path store;  ///< of SQLite, or the URL of a PostgreSQL database
   bool require_synchronous =
-      false;  ///< of a database: acknowledge what a standby has, nothing else
+      false;                  ///< of a database: acknowledge what a standby has, nothing else
+  bool primary_only = false;  ///< of a database: fits read no standby
   std::uint32_t domain = 0;
   std::string network_interface;  ///< empty: loopback
   /// Folder of certificates and records of clients (kinshipd secure init); empty: no security.

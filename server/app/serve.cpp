@@ -86,6 +86,7 @@ store::StoreOptions store_options(const ServerOptions& options) {
   store.postgres.max_paths_per_pair = options.max_paths_per_pair;
   store.postgres.max_distribution_bytes = options.stored_distributions_mb * kMega;
   store.postgres.require_synchronous = options.require_synchronous;
+  store.postgres.read_replicas = !options.primary_only;
   store.postgres.log = store.sqlite.log;
   return store;
 }

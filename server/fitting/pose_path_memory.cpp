@@ -92,7 +92,8 @@ bool PosePathMemory::read_new(SourcePaths& known, const store::ExperienceSummary
   known.is_cut = known.is_cut || older > 0;
   while (!stop.stop_requested()) {
     const std::vector<store::StoredPath> page = store_.read_paths(
-        now.robot, task, {.after_id = known.last_id, .limit = kPosePathPage, .since_ms = 0});
+        now.robot, task,
+        {.after_id = known.last_id, .limit = kPosePathPage, .generation = now.generation});
     if (page.empty()) {
       known.generation = now.generation;
       known.retired_generation = now.retired_generation;
@@ -120,7 +121,7 @@ void PosePathMemory::add(SourcePaths& known, const store::StoredPath& stored,
 /// Those beyond the store's cap may be of any age.
 void PosePathMemory::forget_dropped(SourcePaths& known, const store::ExperienceSummary& now,
                                     const std::string& task) const {
-  const std::vector<std::int64_t> ids = store_.path_ids(now.robot, task);
+  const std::vector<std::int64_t> ids = store_.path_ids(now.robot, task, now.generation);
   std::erase_if(known.paths, [&ids](const KnownPath& path) {
     return !std::binary_search(ids.begin(), ids.end(), path.id);
   });

@@ -33,12 +33,16 @@ Relation relation_of(const transfer::ArmPair& pair) {
 
 /// Calls `visit` with the paths of a robot and task in the order of arrival, page by page, until it
 /// says false.
+/// \param source  says from which generation of which robot on.
 template <typename Visit>
-void visit_pages(const store::Store& store, const Digest& robot, const DistributionKey& key,
+void visit_pages(const store::Store& store, const Source& source, const DistributionKey& key,
                  Visit visit) {
-  store::PathRange range{.after_id = 0, .limit = kPathsPerRead, .since_ms = key.since_ms};
+  store::PathRange range{.after_id = 0,
+                         .limit = kPathsPerRead,
+                         .since_ms = key.since_ms,
+                         .generation = source.generation};
   for (;;) {
-    std::vector<store::StoredPath> page = store.read_paths(robot, key.task, range);
+    std::vector<store::StoredPath> page = store.read_paths(source.robot, key.task, range);
     if (page.empty())
       return;
     range.after_id = page.back().id;
@@ -78,7 +82,7 @@ std::uint64_t SourceTransfer::count_selected(const store::ExperienceSummary& exp
   if (key_.since_ms == 0)
     return experience.paths;
   std::uint64_t count = 0;
-  visit_pages(store_, experience.robot, key_, [&](const std::vector<store::StoredPath>& page) {
+  visit_pages(store_, source_of(experience), key_, [&](const std::vector<store::StoredPath>& page) {
     count += page.size();
     return !stop.stop_requested();
   });
@@ -124,7 +128,7 @@ void SourceTransfer::add_paths(const runtime::Robot& robot, std::uint64_t wanted
   const std::uint64_t count = summary.paths_selected;
   std::uint64_t index = 0;
   if (count > 0)
-    visit_pages(store_, robot.digest, key_, [&](std::vector<store::StoredPath> page) {
+    visit_pages(store_, summary.source, key_, [&](std::vector<store::StoredPath> page) {
       std::erase_if(page, [&](const store::StoredPath& stored) {
         const bool is_wanted = index < count && is_chosen(index, count, wanted) &&
                                !(leaves_out_ && leaves_out_(stored.report_uuid));

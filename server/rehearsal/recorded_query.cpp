@@ -42,7 +42,8 @@ class QueryReader {
     const auto robot = robots_.find(source.robot);
     if (!robot)
       return;
-    store::PathRange range{.after_id = 0, .limit = kPage, .since_ms = key_.since_ms};
+    store::PathRange range{
+        .after_id = 0, .limit = kPage, .since_ms = key_.since_ms, .generation = source.generation};
     std::uint64_t index = 0;
     while (!stop.stop_requested()) {
       const std::vector<store::StoredPath> page = store_.read_paths(source.robot, key_.task, range);

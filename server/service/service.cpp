@@ -360,6 +360,7 @@ ServerStatus Service::status() const {
   status.writable = store.writable;
   status.storage_message = store.message;
   status.rollbacks = store.rollbacks;
+  status.replicas = store.replicas;
   status.scrubbed_ms = store.scrubbed_ms;
   status.scrub_part = store.scrub_part;
   const rehearsal::RehearsalTotals rehearsals = rehearsals_.totals();

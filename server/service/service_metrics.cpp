@@ -88,6 +88,19 @@ void expose_rows(Exposition& page, const store::StoreStatus& store) {
              store.max_paths_per_pair);
 }
 
+/// Of a database that has other hosts.
+void expose_replicas(Exposition& page, const std::vector<ReplicaUse>& replicas) {
+  if (replicas.empty())
+    return;
+  page.family("kinship_replica_readings_total", Type::Counter,
+              "Readings of fits by host; what a standby did not answer the primary did.");
+  for (const ReplicaUse& replica : replicas) {
+    page.sample(replica.readings, {{"host", replica.host}, {"result", "answered"}});
+    page.sample(replica.behind, {{"host", replica.host}, {"result", "behind"}});
+    page.sample(replica.failed, {{"host", replica.host}, {"result", "failed"}});
+  }
+}
+
 void expose_store(Exposition& page, const store::StoreStatus& store) {
   page.gauge("kinship_store_writable", "1 if reports are taken, else 0.",
              std::uint64_t{store.writable});
@@ -102,6 +115,7 @@ void expose_store(Exposition& page, const store::StoreStatus& store) {
   page.gauge("kinship_store_distribution_limit_bytes", "Those that are kept; 0: all.",
              store.max_distribution_bytes);
   expose_rows(page, store);
+  expose_replicas(page, store.replicas);
   page.gauge("kinship_store_scrub_progress_ratio",
              "How much of the store was read in search of damage since that began anew.",
              store.scrub_part);

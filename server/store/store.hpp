@@ -48,6 +48,9 @@ struct PathRange {
   std::int64_t after_id = 0;  ///< ids greater than this
   std::size_t limit = 0;
   std::int64_t since_ms = 0;  ///< received at or after; 0: all
+  /// As they are at this generation of the robot and task or at a later one, which is never one
+  /// from before what was read last; 0: as they are now.
+  std::uint64_t generation = 0;
 };
 
 /// One (robot, task) pair that has, or had, paths.
@@ -140,7 +143,8 @@ struct StoreStatus {
       0;                  ///< when all of the file was last read in search of damage; 0: never
   double scrub_part = 0;  ///< how far the search for damage is since then
   std::string message;  ///< why not writable, what is damaged, warnings; mostly one warning or none
-  std::uint64_t rollbacks = 0;  ///< noticed since it was opened, each with a new epoch
+  std::uint64_t rollbacks = 0;       ///< noticed since it was opened, each with a new epoch
+  std::vector<ReplicaUse> replicas;  ///< hosts of a database that fits may read
 };
 
 /// One page of a listing; `next_cursor` is empty on the last one.
@@ -237,7 +241,9 @@ class Store {
                                              const PathRange& range) const = 0;
 
   /// The ids of these paths, ascending, without a look at the paths themselves.
-  virtual std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const = 0;
+  /// \param generation  see PathRange.
+  virtual std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
+                                             std::uint64_t generation = 0) const = 0;
 
   /// The scene of a path: equal ids, equal scenes. Nothing if it is not there or damaged; one whose
   /// blob fails its CRC is set aside (kept, marked damaged, counted in status().message) until a

@@ -286,6 +286,12 @@ ServerStatus every_status() {
   }
   status.dropped_paths = next.count();
   status.credentials_expire_ms = next.time_ms();
+  for (int i = 0; i < 2; ++i)
+    status.replicas.push_back({.host = next.text("host"),
+                               .readings = next.count(),
+                               .behind = next.count(),
+                               .failed = next.count(),
+                               .message = next.text("message")});
   return status;
 }
 

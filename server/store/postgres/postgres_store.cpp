@@ -11,6 +11,7 @@
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/durable_writes.hpp"
+#include "server/store/postgres/fit_reads.hpp"
 #include "server/store/postgres/opening/begin_store.hpp"
 #include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/primary.hpp"
@@ -41,13 +42,14 @@ class PostgresStore : public Store {
         readers_([this] { return primary_.connect(); }),
         writes_([this] { return primary_.connect(); }, options.require_synchronous) {
     std::unique_ptr<Connection> connection = begin_store(primary_, history_);
+    fit_reads_.run_began(history_.run(), timeline_of(*connection));
     writer_ = std::make_unique<ReportWriter>(
         primary_, history_, std::move(connection),
         ReportWriterOptions{.max_paths_per_pair = options.max_paths_per_pair,
                             .require_synchronous = options.require_synchronous,
                             .retry_after = options.retry_after,
                             .log = options.log},
-        [this] { forget_connections(); });
+        [this](Connection& anew) { connected(anew); });
     writer_->set_interrupt(interrupt_);
   }
 
@@ -85,6 +87,7 @@ class PostgresStore : public Store {
     status.epoch = history_.epoch();
     status.rollbacks = history_.rollbacks();
     status.queued = writer_->queued();
+    status.replicas = fit_reads_.use();
     status.max_paths_per_pair = options_.max_paths_per_pair;
     status.max_distribution_bytes = options_.max_distribution_bytes;
     if (status.rollbacks > 0)
@@ -222,23 +225,21 @@ class PostgresStore : public Store {
 
   std::vector<StoredPath> read_paths(const Digest& robot, std::string_view task,
                                      const PathRange& range) const override {
-    PathsRead read = readers_.read_snapshot([&](Connection& connection) {
-      constexpr std::size_t kMaxPaths = 1'000'000;
-      return select_paths(connection, robot, task,
-                          {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms});
-    });
+    constexpr std::size_t kMaxPaths = 1'000'000;
+    PathRange bounded = range;
+    bounded.limit = std::min(range.limit, kMaxPaths);
+    PathsRead read = fit_reads_.paths(robot, task, bounded);
     set_aside_later({.paths = std::move(read.damaged), .scenes = {}});
     return std::move(read.paths);
   }
 
-  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
-    return readers_.read(
-        [&](Connection& connection) { return select_path_ids(connection, robot, task); });
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
+                                     std::uint64_t generation) const override {
+    return fit_reads_.path_ids(robot, task, generation);
   }
 
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
-    SceneRead read =
-        readers_.read([&](Connection& connection) { return select_scene(connection, scene_id); });
+    SceneRead read = fit_reads_.scene(scene_id);
     if (read.damaged)
       set_aside_later({.paths = {}, .scenes = {scene_id}});
     return std::move(read.scene);
@@ -453,9 +454,10 @@ class PostgresStore : public Store {
   }
 
   /// The writer has found the primary anew: others may still hold on to the old one.
-  void forget_connections() {
+  void connected(Connection& anew) {
     readers_.forget();
     writes_.forget();
+    fit_reads_.run_began(history_.run(), timeline_of(anew));
   }
 
   const PostgresOptions options_;
@@ -464,6 +466,7 @@ class PostgresStore : public Store {
   History history_;
   mutable ConnectionPool readers_;
   DurableWrites writes_;
+  mutable FitReads fit_reads_{primary_, readers_, options_.read_replicas};
   mutable Presence presence_{readers_};
   mutable std::atomic<bool> is_backing_up_ = false;
   mutable std::atomic<std::size_t> damaged_robots_ = 0;

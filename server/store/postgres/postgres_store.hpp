@@ -22,6 +22,8 @@ struct PostgresOptions {
   std::uint64_t max_paths_per_pair = 0;      ///< of a robot and task; 0: no cap
   /// Nothing is acknowledged that no synchronous standby has.
   bool require_synchronous = false;
+  /// What fits read may come from standbys that the URL names, see store.hpp.
+  bool read_replicas = true;
   /// Takes a line when reports cannot be stored and when they can again, from a thread of the
   /// store's own; may be empty.
   std::function<void(std::string_view)> log = {};

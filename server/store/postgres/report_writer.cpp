@@ -49,7 +49,7 @@ void require_standby(Connection& connection) {
 
 ReportWriter::ReportWriter(Primary& primary, History& history,
                            std::unique_ptr<Connection> connection, ReportWriterOptions options,
-                           std::function<void()> connected)
+                           std::function<void(Connection&)> connected)
     : primary_(primary),
       history_(history),
       options_(std::move(options)),
@@ -214,7 +214,7 @@ bool ReportWriter::is_connected() {
     migrate(*connection, embedded_migrations());
     history_.begin_run(*connection);
     connection_ = std::move(connection);
-    connected_();
+    connected_(*connection_);
     note("");
     return true;
   } catch (const Failure& failure) {

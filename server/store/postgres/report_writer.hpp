@@ -39,7 +39,7 @@ class ReportWriter {
   /// \param connection  on which a run of the history has begun.
   /// \param connected   called on the writer's thread when it has connected anew.
   ReportWriter(Primary& primary, History& history, std::unique_ptr<Connection> connection,
-               ReportWriterOptions options, std::function<void()> connected);
+               ReportWriterOptions options, std::function<void(Connection&)> connected);
   ReportWriter(const ReportWriter&) = delete;
   ReportWriter& operator=(const ReportWriter&) = delete;
   /// Writes what is queued. What the database does not take within some seconds is answered
@@ -77,7 +77,7 @@ class ReportWriter {
   Primary& primary_;
   History& history_;
   const ReportWriterOptions options_;
-  const std::function<void()> connected_;
+  const std::function<void(Connection&)> connected_;
   Interrupt* interrupt_ = nullptr;
   ReportQueue queue_;
   // The writer's thread only:

@@ -241,7 +241,8 @@ class SqliteStore : public Store {
         *reader, *key, {range.after_id, std::min(range.limit, kMaxPaths), range.since_ms}));
   }
 
-  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
+                                     std::uint64_t /*generation*/) const override {
     const ReaderPool::Lease reader = readers_.lease();
     const std::optional<ExperienceKey> key = find_experience(*reader, robot, task);
     return key ? select_path_ids(*reader, *key) : std::vector<std::int64_t>();

@@ -121,8 +121,9 @@ class TroubledStore final : public store::Store {
     on_paths_read_();
     return paths;
   }
-  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task) const override {
-    return store_.path_ids(robot, task);
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
+                                     std::uint64_t generation) const override {
+    return store_.path_ids(robot, task, generation);
   }
   std::optional<RecordedScene> read_scene(std::int64_t scene_id) const override {
     return store_.read_scene(scene_id);

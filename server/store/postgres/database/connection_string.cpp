@@ -89,6 +89,12 @@ std::vector<ConnectionString> ConnectionString::each_host() const {
   return hosts;
 }
 
+ConnectionString ConnectionString::to_any_role() const {
+  ConnectionString any = *this;
+  any.set("target_session_attrs", "any");
+  return any;
+}
+
 void ConnectionString::set(std::string_view keyword, const std::string& value) {
   for (auto& [known, old] : parameters_)
     if (known == keyword)

@@ -30,6 +30,9 @@ class ConnectionString {
   /// The same for each of its hosts alone; itself if it has one.
   std::vector<ConnectionString> each_host() const;
 
+  /// The same, whether its host takes writes or not (target_session_attrs).
+  ConnectionString to_any_role() const;
+
   /// A message without any of the passwords of this string.
   std::string without_secrets(std::string message) const;
 

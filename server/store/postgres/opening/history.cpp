@@ -213,6 +213,11 @@ Uuid History::epoch() const {
   return state_.epoch;
 }
 
+Uuid History::run() const {
+  const std::lock_guard lock(mutex_);
+  return state_.run;
+}
+
 StorePoint History::point() const {
   Digest key;
   Uuid epoch;

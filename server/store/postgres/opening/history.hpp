@@ -40,6 +40,7 @@ class History {
   void refresh(Connection& connection);
 
   Uuid epoch() const;
+  Uuid run() const;  ///< of this server now
   StorePoint point() const;
 
   /// The point that a mark names, if it is one of this epoch, and what is not known to be there.

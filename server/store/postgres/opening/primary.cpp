@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::string_view kReadOnly = "25006";
 
+}  // namespace
+
 /// It is in the name of the file that is being written; the control file tells it later.
 std::int64_t timeline_of(Connection& connection) {
   return connection
@@ -20,7 +22,11 @@ std::int64_t timeline_of(Connection& connection) {
       .column_integer(0);
 }
 
-}  // namespace
+StandbyState standby_state(Connection& connection, const Uuid& run) {
+  const Rows rows = connection.query(
+      "SELECT pg_is_in_recovery(), EXISTS (SELECT FROM run WHERE run = $1)", Bytes(run.bytes));
+  return {rows.front().column_integer(0) != 0, rows.front().column_integer(1) != 0};
+}
 
 Primary::Primary(ConnectionString where, const ConnectionOptions& options)
     : where_(std::move(where)),
@@ -83,6 +89,11 @@ void Primary::require_newest(const Found& found) {
                                 " was met); it has to follow the new "
                                 "one (pg_rewind)");
   timeline_ = found.timeline;
+}
+
+std::int64_t Primary::timeline() const {
+  const std::lock_guard lock(mutex_);
+  return timeline_;
 }
 
 std::unique_ptr<Connection> Primary::connect() {

@@ -7,10 +7,22 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "proto/types/uuid.hpp"
 #include "server/store/postgres/database/connection.hpp"
 
 namespace kinship::store::postgres {
+
+/// How often a standby was promoted before a server that takes writes.
+std::int64_t timeline_of(Connection& connection);
+
+/// Whether a server is a standby, and has the row of a run.
+struct StandbyState {
+  bool is_standby = false;
+  bool has_run = false;
+};
+StandbyState standby_state(Connection& connection, const Uuid& run);
 
 /// Makes connections to the server that takes writes: of several hosts the one whose timeline is
 /// the greatest. An old primary that came back after another one was promoted is not taken, not
@@ -25,9 +37,12 @@ class Primary {
   std::unique_ptr<Connection> connect();
 
   const std::string& description() const noexcept { return where_.description(); }
+  const std::vector<ConnectionString>& hosts() const noexcept { return hosts_; }
+  const ConnectionOptions& connection_options() const noexcept { return options_; }
+  std::int64_t timeline() const;  ///< the greatest that was met
 
  private:
-  /// A connection to a host that takes writes, and how often a standby was promoted before it.
+  /// A connection to a host that takes writes, and its timeline.
   struct Found {
     std::unique_ptr<Connection> connection;
     std::int64_t timeline = 0;
@@ -44,7 +59,7 @@ class Primary {
   std::atomic<bool> is_pooled_ = false;
   const ConnectionOptions options_;  // with is_pooled_
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::int64_t timeline_ = 0;                                // guarded by mutex_: the greatest met
   std::optional<ConnectionString> newest_;                   // guarded by mutex_
   std::chrono::steady_clock::time_point newest_until_ = {};  // guarded by mutex_

@@ -105,8 +105,10 @@ TEST(SummariesJson, StatusIsReadBack) {
         &upstream.left_out, &upstream.retired_above, &upstream.retired_here, &upstream.tasks})
     *counter = ++value;
   status.upstream = upstream;
+  status.replicas = {{"postgresql://db2/kinship", value + 1, value + 2, value + 3, "it is behind"}};
   expect_same_text_again(status, server_status_from_json);
   EXPECT_EQ(server_status_from_json(to_json(status))->upstream->tasks, value);
+  EXPECT_EQ(server_status_from_json(to_json(status))->replicas.at(0).failed, value + 3);
 }
 
 TEST(SummariesJson, StatusOfAServerThatRehearsesNothingIsRead) {

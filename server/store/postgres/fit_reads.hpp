@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/types/digest.hpp"
+#include "proto/types/summaries.hpp"
+#include "proto/types/uuid.hpp"
+#include "server/store/postgres/database/connection_pool.hpp"
+#include "server/store/postgres/opening/primary.hpp"
+#include "server/store/postgres/replica.hpp"
+#include "server/store/postgres/rows/path_rows.hpp"
+#include "server/store/postgres/rows/scene_rows.hpp"
+#include "server/store/store.hpp"
+
+namespace kinship::store::postgres {
+
+/// What fits read: of a replica that has the generation which is wanted, in the state of the
+/// database that is read, else of the primary. What is read of a robot and task is never older than
+/// what was read of them before. May be shared between threads.
+class FitReads {
+ public:
+  /// \param primary, readers  outlive it; readers are connections to the primary.
+  /// \param uses_replicas     else all comes from the primary.
+  FitReads(const Primary& primary, ConnectionPool& readers, bool uses_replicas);
+
+  /// This server began a run, on a primary of a timeline. Who has the row of that run has the
+  /// history of that primary, and not one of a primary from before, with what was lost since.
+  void run_began(const Uuid& run, std::int64_t timeline);
+
+  /// See Store.
+  PathsRead paths(const Digest& robot, std::string_view task, const PathRange& range);
+  std::vector<std::int64_t> path_ids(const Digest& robot, std::string_view task,
+                                     std::uint64_t generation);
+  SceneRead scene(std::int64_t id);
+
+  std::vector<ReplicaUse> use() const;
+
+ private:
+  using Pair = std::pair<Digest, std::string>;
+  /// Of a standby that has the history of the primary.
+  using ReadReplica = std::function<Replica::Answer(Connection&)>;
+
+  /// \param read      gives a value of one state of the database.
+  /// \param is_whole  whether nothing in it is damaged; else the primary is asked.
+  template <typename Value, typename Read, typename IsWhole>
+  Value read_pair(const Pair& pair, std::uint64_t generation, Read read, IsWhole is_whole);
+  bool ask_replicas(std::size_t first, const ReadReplica& read);
+  std::optional<Uuid> usable_run() const;
+  std::uint64_t newest_read(const Pair& pair) const;
+  void note_read(const Pair& pair, std::uint64_t generation);
+
+  const Primary& primary_;
+  ConnectionPool& readers_;
+  std::vector<std::unique_ptr<Replica>> replicas_;
+
+  mutable std::mutex mutex_;
+  Uuid run_;                            // guarded by mutex_; zero: none
+  std::int64_t timeline_ = 0;           // guarded by mutex_
+  std::map<Pair, std::uint64_t> read_;  // guarded by mutex_: the newest generation of each
+};
+
+}  // namespace kinship::store::postgres

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "proto/types/summaries.hpp"
+#include "server/store/postgres/database/connection_pool.hpp"
+#include "server/store/postgres/database/connection_string.hpp"
+
+namespace kinship::store::postgres {
+
+/// A host of the database that may be a standby, which is read while it is one and answers. One
+/// that did not answer is left alone for a while, twice as long each time; then one reader tries
+/// it, and the others do without. May be shared between threads.
+class Replica {
+ public:
+  /// What became of a reading.
+  enum class Answer {
+    Read,     ///< done
+    Behind,   ///< it does not have yet what is wanted
+    Primary,  ///< it takes writes: not to be read as a replica
+    Damaged,  ///< what it has cannot be read
+    Failed,   ///< it did not answer, or ended the reading for what it had to replay
+    LeftOut   ///< was not asked
+  };
+  using Read = std::function<Answer(Connection&)>;
+
+  Replica(const ConnectionString& host, const ConnectionOptions& options);
+
+  /// Runs `read` on one state of the database. What fails is not tried again, nor thrown.
+  Answer read(const Read& read);
+
+  ReplicaUse use() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool begin();
+  void end(Answer answer, const std::string& message, bool is_away);
+  void leave_alone(Clock::duration time);
+
+  const ConnectionString host_;
+  std::atomic<bool> is_pooled_ = false;
+  const ConnectionOptions options_;  // with is_pooled_
+  ConnectionPool pool_;
+
+  mutable std::mutex mutex_;
+  ReplicaUse use_;                     // guarded by mutex_
+  bool is_left_alone_ = false;         // guarded by mutex_: until one reader has tried it
+  bool is_tried_ = false;              // guarded by mutex_: by that one
+  Clock::time_point left_until_ = {};  // guarded by mutex_
+  Clock::duration pause_ = {};         // guarded by mutex_: the last one
+};
+
+}  // namespace kinship::store::postgres
