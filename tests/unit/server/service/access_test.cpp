@@ -198,8 +198,9 @@ TEST_F(Access, ADistributionShownToSomeRobotsDoesNotNameTheOthersItIsMadeOf) {
     }
   }
   const Caller ben = named("ben", AccessRole::Reader);
-  for (const Source& source :
-       rows<Distribution>(ask(ben, AdminVerb::ShowDistribution, id)).at(0).sources)
+  const auto whole = rows<Distribution>(ask(ben, AdminVerb::ShowDistribution, id));
+  ASSERT_EQ(whole.size(), 1U);
+  for (const Source& source : whole[0].sources)
     EXPECT_NE(source.label, access::kOtherRobot);
 }
 
