@@ -107,7 +107,7 @@ void measure_vacuum(const Database& database) {
 
 /// What is stored of a path without its waypoints, by relation, and the waypoints of the first
 /// pair.
-void measure_sizes(const Database& database, const FillPlan& plan) {
+void measure_sizes(const Database& database, const Database& alone, const FillPlan& plan) {
   const double millions = database.number("SELECT count(*) FROM path") / kMillion;
   const auto per_million = [&](const std::string& name, const std::string& bytes) {
     print({.name = "a million paths: " + name,
