@@ -36,8 +36,6 @@ Replica::Answer Replica::read(const Read& read) {
       const Transaction snapshot(connection, Transaction::Kind::Snapshot);
       return read(connection);
     });
-    if (answer == Answer::Primary)
-      pool_.forget();
     end(answer, "", false);
     return answer;
   } catch (const PostgresError& error) {
@@ -68,14 +66,15 @@ void Replica::end(Answer answer, const std::string& message, bool is_away) {
   use_.message = message;
   if (answer == Answer::Failed)
     ++use_.failed;
-  if (is_away)
-    return leave_alone(std::clamp<Clock::duration>(2 * pause_, kFirstPause, kLongestPause));
-  if (answer == Answer::Primary) {
+  // Several that were on their way when it went away are one time.
+  if (is_away && is_left_alone_ && Clock::now() < left_until_)
+    return;
+  pause_ = is_away ? std::clamp<Clock::duration>(2 * pause_, kFirstPause, kLongestPause)
+                   : Clock::duration::zero();
+  is_left_alone_ = is_away || answer == Answer::Primary;
+  left_until_ = Clock::now() + (is_away ? pause_ : kPauseOfAPrimary);
+  if (answer == Answer::Primary)
     use_.message = "it is the primary";
-    return leave_alone(kPauseOfAPrimary);
-  }
-  is_left_alone_ = false;
-  pause_ = {};
   if (answer == Answer::Read)
     ++use_.readings;
   if (answer == Answer::Behind) {
@@ -86,16 +85,6 @@ void Replica::end(Answer answer, const std::string& message, bool is_away) {
     ++use_.failed;
     use_.message = "what it has is damaged";
   }
-}
-
-/// With mutex_.
-void Replica::leave_alone(Clock::duration time) {
-  // Several that were on their way when it went away are one time.
-  if (is_left_alone_ && Clock::now() < left_until_)
-    return;
-  is_left_alone_ = true;
-  pause_ = time;
-  left_until_ = Clock::now() + time;
 }
 
 ReplicaUse Replica::use() const {

@@ -40,7 +40,6 @@ class Replica {
 
   bool begin();
   void end(Answer answer, const std::string& message, bool is_away);
-  void leave_alone(Clock::duration time);
 
   const ConnectionString host_;
   std::atomic<bool> is_pooled_ = false;
@@ -52,7 +51,7 @@ class Replica {
   bool is_left_alone_ = false;         // guarded by mutex_: until one reader has tried it
   bool is_tried_ = false;              // guarded by mutex_: by that one
   Clock::time_point left_until_ = {};  // guarded by mutex_
-  Clock::duration pause_ = {};         // guarded by mutex_: the last one
+  Clock::duration pause_ = {};         // guarded by mutex_: the last one, for want of an answer
 };
 
 }  // namespace kinship::store::postgres

@@ -6,6 +6,7 @@
 
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
+#include "server/store/postgres/opening/primary.hpp"
 #include "server/store/values/clock.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/history_seal.hpp"
@@ -16,6 +17,8 @@ namespace {
 constexpr std::string_view kKey = "history_key";
 constexpr std::string_view kIdentity = "database_identity";
 constexpr std::string_view kForgottenRun = "forgotten_run";
+constexpr std::string_view kTimeline = "timeline";
+constexpr std::int64_t kMoreThanWereLost = 1'000'000;
 constexpr std::size_t kUuidBytes = 16;
 
 std::string setting(Connection& connection, std::string_view name) {
@@ -70,6 +73,15 @@ NewestEpoch newest_epoch(Connection& connection) {
   return read_epoch(connection.query(kNewestEpoch));
 }
 
+/// Paths and scenes that were lost had ids which servers have in memory: no other ones get these.
+void skip_lost_ids(Connection& connection) {
+  for (const char* const table : {"path", "scene"})
+    connection.query(
+        "SELECT setval(pg_get_serial_sequence($1, 'id'),"
+        " nextval(pg_get_serial_sequence($1, 'id')) + $2)",
+        table, kMoreThanWereLost);
+}
+
 /// With the lock of lock_epochs().
 Uuid begin_epoch(Connection& connection, std::string_view reason) {
   const NewestEpoch before = newest_epoch(connection);
@@ -78,12 +90,12 @@ Uuid begin_epoch(Connection& connection, std::string_view reason) {
                    Bytes(epoch.bytes), now_ms(), reason);
   if (before.number > 0) {
     // What was lost had generations that come again now, with other paths.
-    constexpr std::int64_t kMoreThanWereLost = 1'000'000;
     connection.query("SELECT 1 FROM experience ORDER BY task_id, robot_id FOR NO KEY UPDATE");
     connection.query(
         "UPDATE experience SET changed_in = pg_current_xact_id(),"
         " generation = generation + $1 WHERE generation > 0",
         kMoreThanWereLost);
+    skip_lost_ids(connection);
   }
   return epoch;
 }
@@ -163,6 +175,12 @@ void History::begin_run(Connection& connection) {
   else
     next.epoch = loss.empty() ? newest.epoch : begin_epoch(connection, loss);
   set(connection, kIdentity, identity_of(connection));
+  const std::string timeline = std::to_string(timeline_of(connection));
+  // What a standby had not got when it was promoted may be of servers that nobody can ask.
+  if (const std::string before = setting(connection, kTimeline);
+      !before.empty() && before != timeline)
+    skip_lost_ids(connection);
+  set(connection, kTimeline, timeline);
   next.key = ensure_key(connection);
   next.run = timed_uuid();
   next.position = 1;  // vouches for all that was there before

@@ -72,7 +72,6 @@ class EveryQuestion {
     store_->has_lost(store_->point().mark);
   }
   void list_names() {
-    store_->status();
     store_->robots();
     store_->geometry_revisions();
     store_->list_robots("", 1);

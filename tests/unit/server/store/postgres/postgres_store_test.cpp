@@ -194,6 +194,8 @@ TEST_F(PostgresStoreTest, AMarkOfOneServerIsJudgedByTheOther) {
   EXPECT_EQ(test::report(*store_, {attempt(2)}).at(0).status, ReceiptStatus::Stored);
   EXPECT_EQ(store_->epoch(), third->epoch());
   EXPECT_GT(store_->generation(robot_.digest, "shelf"), 1'000'000U);
+  EXPECT_GT(store_->path_ids(robot_.digest, "shelf").back(), 1'000'000)
+      << "no id of a path that was lost comes again";
 }
 
 TEST_F(PostgresStoreTest, GoesOnWhenItsConnectionsAreCut) {

@@ -203,6 +203,7 @@ TEST_F(PostgresPlans, NoStatementOfAServingStoreReadsWhatOthersHave) {
                             [this](const std::string& what, const std::function<void()>& question) {
                               ask(what, question);
                             });
+    ask("the status", [&] { EXPECT_TRUE(store_->status().writable); });
     ASSERT_NO_FATAL_FAILURE(questions.ask_all());
     first_number += 10'000;
   }
