@@ -103,6 +103,9 @@ class PostgresStore : public Store {
   }
 
   Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
+    if (writes_.write(
+            [&](Connection& connection) { return confirm_robot(connection, robot.digest); }))
+      return RegisterStatus::Known;
     Result<RegisterStatus> result =
         writes_.write([&](Connection& connection) { return insert_robot(connection, robot); });
     if (damaged_robots_ > 0)

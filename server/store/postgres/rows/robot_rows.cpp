@@ -137,16 +137,22 @@ std::optional<std::int64_t> lock_robot(Connection& connection, const Digest& rob
   return rows.front().column_integer(0);
 }
 
+bool confirm_robot(Connection& connection, const Digest& robot) {
+  const Rows rows = connection.query(
+      std::string(kRobotColumns) + "WHERE digest = $1 FOR KEY SHARE OF robot", Bytes(robot.bytes));
+  if (rows.empty())
+    return false;
+  RobotRow row = read_row(rows.front());
+  return !is_removed_label(row.robot.description.label) && completed(connection, std::move(row));
+}
+
 Result<RegisterStatus> insert_robot(Connection& connection, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
   static_cast<void>(lock_robot(connection, robot.digest));
   const std::optional<RobotRow> before = find_row(connection, robot.digest);
   if (before && !is_removed_label(before->robot.description.label) &&
-      completed(connection, *before)) {
-    // Known is an answer that vouches for the row: it writes, so that it waits for the standby too.
-    connection.query("UPDATE robot SET label = label WHERE id = $1", before->id);
-    return RegisterStatus::Known;
-  }
+      completed(connection, *before))
+    return RegisterStatus::Known;  // by another server just now; its lock is in the log, too
   if (auto conflict = check_free(connection, description.label, robot.digest))
     return *conflict;
   const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
