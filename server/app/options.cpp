@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/metrics_address.hpp"
+#include "server/app/password.hpp"
 #include "server/app/upstream_url.hpp"
 
 namespace kinship::app {
@@ -341,7 +343,9 @@ std::filesystem::path default_store() {
   return state / "kinship" / "experience.db";
 }
 
-Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+namespace {
+
+Options parse_words(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   ServerOptions options;
   options.store = default_store();
   options.workers = default_workers();
@@ -353,8 +357,9 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   app.footer(kFooter);
   add_server_options(app, options);
   bool print_config = false;
-  app.add_flag("--print-config", print_config,
-               "Print the options that would serve, as a file for --config, and end")
+  app.add_flag(
+         "--print-config", print_config,
+         "Print the options that would serve, as a file for --config, without passwords, and end")
       ->configurable(false);
   add_verbs(app, offline);
   std::optional<SecureOptions> secure;
@@ -394,6 +399,15 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
            "--insecure if that is what you want\n";
     return kWrongUsage;
   }
+  return options;
+}
+
+}  // namespace
+
+Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  std::ostringstream said;
+  Options options = parse_words(argc, argv, out, said);
+  err << without_passwords_of({argv, static_cast<std::size_t>(argc)}, said.str());
   return options;
 }
 

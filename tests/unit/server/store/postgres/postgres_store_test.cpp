@@ -21,12 +21,13 @@ std::unique_ptr<Store> open(const std::filesystem::path& folder,
 std::vector<Engine> postgres_engines() {
   if (!test::missing_postgres().empty())
     return {};
-  return {{"Postgres", [](const std::filesystem::path& directory, const EngineLimits& limits) {
-             if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
-               return open_sqlite_store(copy);  // a backup is one
-             return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
-                                     .max_paths_per_pair = limits.paths_per_pair});
-           }}};
+  const auto open_in = [](const std::filesystem::path& directory, const EngineLimits& limits) {
+    if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
+      return open_sqlite_store(copy);  // a backup is one
+    return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
+                            .max_paths_per_pair = limits.paths_per_pair});
+  };
+  return {{"Postgres", open_in, Engine::BackupInstant::Begin}};
 }
 std::string name_of_postgres(const testing::TestParamInfo<Engine>& engine) {
   return engine.param.name;
@@ -34,6 +35,10 @@ std::string name_of_postgres(const testing::TestParamInfo<Engine>& engine) {
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreConformance, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreRetention, testing::ValuesIn(postgres_engines()),
+                         name_of_postgres);
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreBackup, testing::ValuesIn(postgres_engines()),
+                         name_of_postgres);
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreRetentionBackup, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreSharing, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
