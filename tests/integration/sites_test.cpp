@@ -120,6 +120,9 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   memory.kill();
   ASSERT_TRUE(ulm.comes_true(
       [](const ServerStatus& status) { return !status.upstream.value().connected; }));
+  ulm.fetch();  // wants the task from now on
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->tasks == 1; }));
   ulm.report(5);
   bern.report(4);
   EXPECT_EQ(ulm.status().upstream->waiting, 5U);
@@ -129,7 +132,6 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   memory.start();
   bern.kill();
   bern.start();
-  ulm.fetch();  // wants the task from now on; bern has wanted it since before it was killed
   for (Site* const site : {&ulm, &bern})
     ASSERT_TRUE(site->comes_true([](const ServerStatus& status) {
       return status.attempts == 17 && status.paths == 16 && status.upstream->waiting == 0;
@@ -139,6 +141,30 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
             "17\t17");
   EXPECT_EQ(ulm.terminate(), 0);
   EXPECT_EQ(bern.terminate(), 0);
+}
+
+TEST(Sites, StopAtOnceAlsoWhileTheMemoryDoesNotAnswer) {
+  if (const std::string missing = test::missing_postgres(); !missing.empty())
+    GTEST_SKIP() << missing;
+  test::PostgresCluster memory;
+  const std::string url = memory.create_database("kinship");
+  const test::TemporaryDirectory folder;
+  Site ulm(folder.path(), "ulm", url);
+  ulm.report(1);
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->sent == 1; }));
+  memory.freeze();
+  ulm.report(1);
+  const auto began = Clock::now();
+  EXPECT_EQ(ulm.terminate(), 0);
+  // Whoever waits for it gives up after 10 s, and tries once more.
+  EXPECT_LT(Clock::now() - began, seconds(8));
+  memory.thaw();
+  ulm.start();
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->waiting == 0; }));
+  EXPECT_EQ(memory.query("SELECT count(*) FROM attempt", "kinship"), "2");
+  EXPECT_EQ(ulm.terminate(), 0);
 }
 
 }  // namespace
