@@ -128,7 +128,9 @@ void Forwarder::exchange(const std::stop_token& stop) {
     return;
   Positions positions(site_);
   ExchangeOptions exchange_options = options_.exchange;
-  exchange_options.rest = [this](std::chrono::nanoseconds load, const std::stop_token& stopping) {
+  exchange_options.rest = [this, &positions](std::chrono::nanoseconds load,
+                                             const std::stop_token& stopping) {
+    publish(positions);
     rest(load, stopping);
   };
   Exchange exchange(site_, *memory, positions, counts_, options_.hooks, exchange_options);
