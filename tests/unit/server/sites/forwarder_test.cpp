@@ -92,6 +92,31 @@ TEST_F(ForwarderTest, ALineThatIsCutComesBackAndEverybodyHears) {
   EXPECT_EQ(lines()[2], lines()[0]);
 }
 
+TEST_F(ForwarderTest, ALineThatHeldIsTriedAgainSoon) {
+  constexpr int kFailures = 8;  // after them it waits for 128 ms at least
+  options_.longest_retry = 1h;
+  std::atomic<int> opened = 0;
+  std::atomic<std::chrono::steady_clock::duration> cut_at{}, shortest{1h};
+  options_.open = [&]() -> std::unique_ptr<store::Store> {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    if (++opened <= kFailures)
+      throw Failure(ErrorCode::Unavailable, "no route to host");
+    if (opened > kFailures + 1)
+      shortest = std::min(shortest.load(), now - cut_at.load());
+    auto connection = std::make_unique<store::TroubledStore>(*memory_);
+    connection->on_exchange = [&, calls = 0]() mutable {
+      if (++calls < 100)
+        return;
+      cut_at = std::chrono::steady_clock::now().time_since_epoch();
+      throw Failure(ErrorCode::Unavailable, "the line was cut");
+    };
+    return connection;
+  };
+  const Forwarder forwarder(*site_, options_);
+  // Once at least nothing else keeps this machine that long.
+  ASSERT_TRUE(comes_true([&] { return shortest.load() < 100ms; }));
+}
+
 TEST_F(ForwarderTest, ALineThatIsDownFromTheStartIsTold) {
   is_cut_ = true;
   const Forwarder forwarder(*site_, options_);
