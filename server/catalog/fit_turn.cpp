@@ -4,20 +4,16 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "proto/types/failure.hpp"
 
 namespace kinship::catalog {
-namespace {
 
-constexpr std::chrono::milliseconds kLook{100};  // nobody tells that another server has ended
-constexpr std::chrono::seconds kPatience{60};
-
-}  // namespace
-
-FitTurn::FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop)
+FitTurn::FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop,
+                 const Patience& patience)
     : store_(store), id_(id) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + patience.longest;
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::optional<store::FitRight> right = store_.take_fit_right(id_);
@@ -25,9 +21,10 @@ FitTurn::FitTurn(store::Store& store, const Digest& id, const std::stop_token& s
     if (stop.stop_requested())
       throw Failure(ErrorCode::Unavailable, "the server is stopping");
     if (std::chrono::steady_clock::now() >= deadline)
-      throw Failure(ErrorCode::Unavailable, "another server fits it for longer than a minute");
+      throw Failure(ErrorCode::Unavailable, "another server fits it for longer than " +
+                                                std::to_string(patience.longest.count()) + " ms");
     std::unique_lock lock(mutex);
-    stopped.wait_for(lock, stop, kLook, [] { return false; });
+    stopped.wait_for(lock, stop, patience.between_looks, [] { return false; });
     right = store_.take_fit_right(id_);
   }
   right_ = *right;

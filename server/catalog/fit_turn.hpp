@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <stop_token>
 
 #include "proto/types/digest.hpp"
@@ -10,11 +11,20 @@ namespace kinship::catalog {
 /// The right to fit a distribution among all servers of a store, for as long as this lives.
 class FitTurn {
  public:
+  /// How long it is waited for.
+  struct Patience {
+    std::chrono::milliseconds longest{60'000};
+    std::chrono::milliseconds between_looks{100};  // nobody tells that another server has ended
+  };
+
   /// Waits while another server has it.
   /// \param store  outlives the turn.
-  /// \throws Failure(Unavailable) if it was stopped, or the other one takes longer than a minute;
+  /// \throws Failure(Unavailable) if it was stopped, or the other one takes longer;
   ///         Failure(Storage)
-  FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop);
+  FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop,
+          const Patience& patience);
+  FitTurn(store::Store& store, const Digest& id, const std::stop_token& stop)
+      : FitTurn(store, id, stop, Patience{}) {}
   FitTurn(const FitTurn&) = delete;
   FitTurn& operator=(const FitTurn&) = delete;
   ~FitTurn() { store_.give_back_fit_right(id_, right_); }

@@ -49,6 +49,8 @@ BENCHES = [
     bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1),
     bench("large-store", "large_store_bench", "A store of 1 000 000 paths of 200 robots and tasks", ["1000000", "200"],
           repeats=1, minutes=60, is_long=True),
+    bench("large-postgres", "large_postgres_bench", "A PostgreSQL database of 10 000 000 paths of 1000 robots and tasks",
+          ["10000000", "1000"], repeats=1, minutes=90, is_long=True),
     bench("many-clients", "many_clients_bench", "1000 clients", repeats=1, minutes=10, is_long=True),
     bench("soak", "soak_bench", "20 minutes of reports, fits, fetches and short-lived clients", repeats=1, minutes=30, is_long=True),
 ]

@@ -13,11 +13,13 @@ import tempfile
 from kinshipd_process import reserve_domain
 from markdown import Command, Document
 from output import match, normalised
+from postgres_hosts import PostgresHosts
 from terminal import Terminal
 
 SOURCE = pathlib.Path(os.environ["KINSHIP_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["KINSHIP_BIN_DIR"])
-WITH_INSTALLED_PROGRAMS = {"operations.md", "reference.md"}  # which are in the PATH from the start
+WITH_INSTALLED_PROGRAMS = {"fleet.md", "operations.md", "reference.md"}  # which are in the PATH from the start
+DOMAINS = 4  # that a document may name as KINSHIP_DOMAIN; most name none, which is 0
 LANGUAGES_WITHOUT_COMMANDS = {"text", "json", "toml", "cpp", "c", "python", "cmake", "xml", "yaml"}
 
 NOT_RUN = re.compile(r"not run in the tests: \S+ \S+")
@@ -35,17 +37,18 @@ class DocumentRun:
         self.failures = []  # "file:line: what is wrong"
         self._is_written = is_written
         self._outputs = []  # (command, lines to be written)
-        self._domain, self._claim = reserve_domain()
+        self._domains, self._claims = zip(*(reserve_domain() for _ in range(DOMAINS)))
         self._home = tempfile.TemporaryDirectory(prefix="kinship-documents-")
         home = pathlib.Path(self._home.name)
         self._folder = home / "kinship"
         self._lay_out()
+        self._postgres = PostgresHosts(home, self._folder)
         path = "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"
         if document.path.name in WITH_INSTALLED_PROGRAMS:
-            path = f"{PROGRAMS}:{path}"
+            path = f"{self._postgres.programs}:{PROGRAMS}:{path}"
         self._terminal = Terminal(self._folder, {
             "PATH": path, "HOME": str(home), "XDG_STATE_HOME": str(home / "state"), "LANG": "C.UTF-8",
-            "KINSHIP_DOMAIN": str(self._domain)})
+            "KINSHIP_DOMAIN": str(self._domains[0])})
 
     def _lay_out(self) -> None:
         """As a clone after deploy/build, but what the commands write goes here."""
@@ -79,7 +82,7 @@ class DocumentRun:
         elif block.mark == BESIDE:
             for command in commands:
                 lines = self._terminal.start(
-                    command.text, lambda lines, wanted=command.output: match(wanted, self._shown(lines)) is not None)
+                    self._placed(command.text), lambda lines, wanted=command.output: match(wanted, self._shown(lines)) is not None)
                 self._compare(command, lines)
         elif NOT_RUN.match(block.mark):
             return True
@@ -88,7 +91,7 @@ class DocumentRun:
         else:
             for command in commands:
                 wanted = int(exit_code[1]) if exit_code and command is commands[-1] else 0
-                code, lines = self._terminal.run(command.text)
+                code, lines = self._terminal.run(self._placed(command.text))
                 if code != wanted:
                     self._fail(command.line, f"$ {command.text}\nexit code {code}, not {wanted}:\n" + "\n".join(lines))
                     return False
@@ -116,12 +119,19 @@ class DocumentRun:
                      for line, i in zip(command.output, found)]
             self._outputs.append((command, fresh))
 
+    def _placed(self, text: str) -> str:
+        """A command with the domains and ports of this run in place of those that the document names."""
+        text = re.sub(r"\bKINSHIP_DOMAIN=(\d)\b", lambda named: f"KINSHIP_DOMAIN={self._domains[int(named[1])]}", text)
+        return self._postgres.placed(text)
+
     def _shown(self, lines: "list[str]") -> "list[str]":
-        """As a reader has them: without this run's folder and domain, and without empty lines at the end."""
+        """As a reader has them: without this run's folder, domains and ports, and without empty lines at the end."""
         shown = []
         for line in lines:
             line = line.replace(str(self._folder), "/home/you/kinship").replace(self._home.name, "/home/you")
-            shown.append(re.sub(rf"\b(domain[ =]){self._domain}\b", r"\g<1>0", line).rstrip())
+            for number, domain in enumerate(self._domains):
+                line = re.sub(rf"\b(domain[ =]){domain}\b", rf"\g<1>{number}", line)
+            shown.append(self._postgres.shown(line).rstrip())
         while shown and not shown[-1]:
             shown.pop()
         return shown
@@ -144,5 +154,7 @@ class DocumentRun:
         codes = self._terminal.close()
         if any(codes):
             self.failures.append(f"{self.document.path.name}: what ran beside ended with {codes}")
-        self._claim.close()
+        self._postgres.close()
+        for claim in self._claims:
+            claim.close()
         self._home.cleanup()

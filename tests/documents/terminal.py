@@ -49,7 +49,7 @@ class Terminal:
         self.run(f"env -0 > '{self._state}'; pwd >> '{self._state}'")
         *variables, folder = self._state.read_text(encoding="utf-8").split("\0")
         process = subprocess.Popen(
-            ["bash", "-c", "exec " + command], cwd=folder.strip(), env=dict(v.split("=", 1) for v in variables),
+            ["bash", "-c", "exec env " + command], cwd=folder.strip(), env=dict(v.split("=", 1) for v in variables),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         timer = threading.Timer(self.STARTING_S, process.kill)
         timer.start()

@@ -1,95 +1,51 @@
-// Two kinshipd, each with a DDS domain of its own, over one PostgreSQL database: what is done at
-// one counts at the other, also if that is killed.
+// Several kinshipd, each with a DDS domain of its own, over one PostgreSQL database: what is done
+// at one counts at the others, also if that is killed.
 
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <filesystem>
+#include <future>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
-#include <vector>
 
-#include "client/link/client.hpp"
-#include "tests/support/panda_experience.hpp"
+#include "tests/support/cell.hpp"
+#include "tests/support/locked_table.hpp"
 #include "tests/support/postgres_cluster.hpp"
 #include "tests/support/postgres_programs.hpp"
-#include "tests/support/reserved_domain.hpp"
-#include "tests/support/robots.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/postgres_query.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::shared_store_test {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr seconds kEnough{60};  // the machine may have other work
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
-/// A domain with one of the servers, and a client.
-class Cell {
- public:
-  Cell(const std::filesystem::path& folder, std::string url)
-      : folder_(folder), url_(std::move(url)) {
-    std::filesystem::create_directories(folder_);
-    start();
-    client_ = std::make_unique<link::Client>(link::ClientOptions{
-        .domain = domain_.number(), .outbox = folder_ / "outbox", .timeout = seconds(60)});
+/// Asks until it is so; nobody tells that a server has noticed what another one did.
+template <typename Condition>
+bool comes_true(Condition condition) {
+  const auto end = Clock::now() + test::Cell::kEnough;
+  while (!condition()) {
+    if (Clock::now() > end)
+      return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  return true;
+}
 
-  void start() {
-    server_ = std::make_unique<test::Program>(
-        "kinshipd",
-        std::vector<std::string>{"--store", url_, "--domain", std::to_string(domain_.number())},
-        folder_ / "log");
-    ASSERT_TRUE(server_->read_line().starts_with("ready "));
-  }
-  void kill() {
-    server_->signal(SIGKILL);
-    server_->wait();
-  }
-  int terminate() {
-    server_->signal(SIGTERM);
-    return server_->wait();
-  }
-
-  Digest register_model(const std::string& model) const {
-    return client_->register_robot(test::model_description(model)).value_or_throw().robot;
-  }
-  Uuid report(const Digest& panda, std::uint64_t first, std::uint64_t count) const {
-    Uuid last;
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const Attempt attempt = test::panda_attempt(panda, "sweep", first + i);
-      last = attempt.report_uuid;
-      client_->report(attempt);
-    }
-    EXPECT_EQ(client_->flush(kEnough).pending, 0U);
-    return last;
-  }
-  FetchReply fetch(const Digest& robot) const {
-    FetchRequest request;
-    request.task = "sweep";
-    request.robot = robot;
-    request.profile = "paper";  // the cheapest fits
-    request.deadline = seconds(30);
-    return client_->fetch(request).value_or_throw();
-  }
-  AdminStatus ask(AdminVerb verb, const std::string& argument) const {
-    AdminRequest request;
-    request.verb = verb;
-    request.argument = argument;
-    return client_->admin(request).value_or_throw().status;
-  }
-
- private:
-  const std::filesystem::path folder_;
-  const std::string url_;
-  const test::ReservedDomain domain_;
-  std::unique_ptr<test::Program> server_;
-  std::unique_ptr<link::Client> client_;
-};
+int fits_of(const test::Cell& cell) {
+  const std::string log = cell.log();
+  int fits = 0;
+  for (std::size_t at = log.find(" revision "); at != std::string::npos;
+       at = log.find(" revision ", at + 1))
+    ++fits;
+  return fits;
+}
 
 class SharedStore : public testing::Test {
  protected:
@@ -97,16 +53,27 @@ class SharedStore : public testing::Test {
     if (const std::string missing = test::missing_postgres(); !missing.empty())
       GTEST_SKIP() << missing;
     cluster_ = std::make_unique<test::PostgresCluster>();
-    const std::string url = cluster_->create_database("kinship");
-    one_ = std::make_unique<Cell>(folder_.path() / "one", url);
-    other_ = std::make_unique<Cell>(folder_.path() / "other", url);
-    panda_ = one_->register_model("panda");
-    ur10e_ = other_->register_model("ur10e");
+    url_ = cluster_->create_database("kinship");
+    one_ = cell("one");
+    one_->start();
+    other_ = cell("other");
+    other_->start();
+    panda_ = one_->register_model("panda").robot;
+    ur10e_ = other_->register_model("ur10e").robot;
   }
+  std::unique_ptr<test::Cell> cell(const std::string& name) const {
+    return std::make_unique<test::Cell>(
+        test::Cell::Options{.folder = folder_.path() / name, .store = url_});
+  }
+  std::future<FetchReply> begin_fetch(test::Cell& cell) const {
+    return std::async(std::launch::async, [this, &cell] { return cell.fetch(ur10e_); });
+  }
+  std::string query(const std::string& sql) const { return cluster_->query(sql, "kinship"); }
 
   const test::TemporaryDirectory folder_;
   std::unique_ptr<test::PostgresCluster> cluster_;
-  std::unique_ptr<Cell> one_, other_;
+  std::string url_;
+  std::unique_ptr<test::Cell> one_, other_;
   Digest panda_, ur10e_;
 };
 
@@ -121,30 +88,120 @@ TEST_F(SharedStore, WhatOneServerIsToldTheOtherServes) {
   EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
 }
 
+TEST_F(SharedStore, WhoeverAsksForAGenerationGetsItThoughAnotherServerMadeAnOlderOne) {
+  one_->report(panda_, 1, 8);
+  ASSERT_EQ(one_->fetch(panda_).status, FetchStatus::Ready);
+  one_->report(panda_, 100, 2);  // too few for a fit that nobody waits for
+  const std::uint64_t generation = std::stoull(query("SELECT generation FROM experience"));
+  const FetchReply reply = other_->fetch(panda_, generation);
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->revision, 2U);
+  EXPECT_EQ(reply.distribution->sources.at(0).generation, generation);
+}
+
+TEST_F(SharedStore, TwoServersThatAreAskedAtOnceMakeOneFit) {
+  one_->report(panda_, 1, 8);
+  auto fits = std::make_unique<test::LockedTable>(url_, "fit_lease");
+  std::future<FetchReply> of_one = begin_fetch(*one_), of_other = begin_fetch(*other_);
+  fits->wait_until_wanted_by(2);  // both have found that there is none, and are about to make it
+  fits.reset();
+  const FetchReply from_one = of_one.get(), from_other = of_other.get();
+  ASSERT_EQ(from_one.status, FetchStatus::Ready) << from_one.message;
+  ASSERT_EQ(from_other.status, FetchStatus::Ready) << from_other.message;
+  EXPECT_EQ(from_one.distribution->revision, 1U);
+  EXPECT_EQ(from_other.distribution->revision, 1U);
+  EXPECT_EQ(fits_of(*one_) + fits_of(*other_), 1) << one_->log() << other_->log();
+}
+
+TEST_F(SharedStore, AFitWhoseServerIsKilledIsMadeByAnother) {
+  one_->report(panda_, 1, 8);
+  auto paths = std::make_unique<test::LockedTable>(url_, "path");
+  std::future<FetchReply> of_one = begin_fetch(*one_);
+  paths->wait_until_wanted_by(1);
+  ASSERT_EQ(query("SELECT fence, holder <> '' FROM fit_lease"), "1\tt") << "it fits";
+  one_->kill();
+  paths.reset();
+  const auto killed = Clock::now();
+  const FetchReply reply = other_->fetch(ur10e_);
+  std::cout << "another server made the fit of a killed one after " << seconds_since(killed)
+            << " s\n";
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_LT(seconds_since(killed), 20);
+  EXPECT_EQ(query("SELECT fence FROM fit_lease"), "2");
+  one_->start();  // its client has gone on asking
+  const FetchReply late = of_one.get();
+  ASSERT_EQ(late.status, FetchStatus::Ready) << late.message;
+  EXPECT_EQ(late.distribution->revision, 1U);
+}
+
+TEST_F(SharedStore, AServerThatWasHeldUpInAFitStoresNothingOverThatOfAnother) {
+  one_->report(panda_, 1, 8);
+  auto paths = std::make_unique<test::LockedTable>(url_, "path");
+  std::future<FetchReply> of_one = begin_fetch(*one_);
+  paths->wait_until_wanted_by(1);
+  one_->signal(SIGSTOP);
+  paths.reset();
+  ASSERT_EQ(other_->fetch(ur10e_).status, FetchStatus::Ready);
+  one_->signal(SIGCONT);
+  const FetchReply reply = of_one.get();
+  ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+  EXPECT_EQ(reply.distribution->revision, 1U) << one_->log();
+  EXPECT_EQ(fits_of(*one_), 0) << one_->log();
+}
+
 TEST_F(SharedStore, WhatIsRetiredAtOneServerTheOtherServesNoMore) {
   one_->report(panda_, 1, 8);
   ASSERT_EQ(other_->fetch(ur10e_).status, FetchStatus::Ready);  // in its memory from now on
-  ASSERT_EQ(one_->ask(AdminVerb::ResetTask, "sweep"), AdminStatus::Ok);
-  const auto end = Clock::now() + kEnough;
-  FetchStatus status = FetchStatus::Ready;
-  while (status == FetchStatus::Ready && Clock::now() < end) {
-    status = other_->fetch(ur10e_).status;
-    std::this_thread::sleep_for(milliseconds(20));
-  }
-  EXPECT_EQ(status, FetchStatus::NoExperience);
+  ASSERT_EQ(one_->ask(AdminVerb::ResetTask, "sweep").status, AdminStatus::Ok);
+  EXPECT_TRUE(comes_true([&] { return other_->fetch(ur10e_).status != FetchStatus::Ready; }));
+  EXPECT_EQ(other_->fetch(ur10e_).status, FetchStatus::NoExperience);
+}
+
+TEST_F(SharedStore, WhatIsEvictedOrRenamedAtOneServerTheOtherNotices) {
+  one_->report(panda_, 1, 8);
+  const FetchReply first = other_->fetch(ur10e_);  // in its memory from now on
+  ASSERT_EQ(first.status, FetchStatus::Ready) << first.message;
+  ASSERT_EQ(other_->register_model("ur10e").message, "");
+  ASSERT_EQ(one_->ask(AdminVerb::EvictDistribution, first.distribution->id.hex()).status,
+            AdminStatus::Ok);
+  EXPECT_TRUE(comes_true([&] { return other_->fetch(ur10e_).distribution->revision == 2; }));
+
+  AdminRequest rename;
+  rename.verb = AdminVerb::RenameRobot;
+  rename.robot = "ur10e";
+  rename.argument = "arm-7";
+  ASSERT_EQ(one_->ask(rename).status, AdminStatus::Ok);
+  EXPECT_TRUE(comes_true(
+      [&] { return other_->register_model("ur10e").message == "known already, as 'arm-7'"; }));
+}
+
+TEST_F(SharedStore, AServerThatJoinsServesWhatOthersMadeAtOnce) {
+  one_->report(panda_, 1, 8);
+  const FetchReply made = one_->fetch(ur10e_);
+  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
+  const std::unique_ptr<test::Cell> third = cell("third");
+  const auto began = Clock::now();
+  std::future<FetchReply> first = begin_fetch(*third);  // its client asks before there is a server
+  third->start();
+  const FetchReply taken = first.get();
+  const double joined_s = seconds_since(began);
+  std::cout << "the first fetch of a server that joins was answered after " << joined_s << " s\n";
+  ASSERT_EQ(taken.status, FetchStatus::Ready) << taken.message;
+  EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
+  EXPECT_EQ(fits_of(*third), 0);
+  EXPECT_LT(joined_s, 20);  // mostly well below 1; the machine may have other work
 }
 
 TEST_F(SharedStore, AServerThatIsKilledTakesNothingAlong) {
-  const Uuid report = one_->report(panda_, 1, 8);
+  const Uuid report = one_->report(panda_, 1, 8).back();
   one_->kill();
   const FetchReply reply = other_->fetch(ur10e_);
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
-  EXPECT_EQ(other_->ask(AdminVerb::RetirePath, report.text()), AdminStatus::Ok);
+  EXPECT_EQ(other_->ask(AdminVerb::RetirePath, report.text()).status, AdminStatus::Ok);
   one_->start();
   one_->report(panda_, 100, 2);
-  EXPECT_EQ(cluster_->query("SELECT count(*), count(DISTINCT report_uuid) FROM attempt", "kinship"),
-            "10\t10");
-  EXPECT_EQ(cluster_->query("SELECT paths FROM experience", "kinship"), "9");
+  EXPECT_EQ(query("SELECT count(*), count(DISTINCT report_uuid) FROM attempt"), "10\t10");
+  EXPECT_EQ(query("SELECT paths FROM experience"), "9");
   EXPECT_EQ(one_->terminate(), 0);
   EXPECT_EQ(other_->terminate(), 0);
 }

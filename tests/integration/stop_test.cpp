@@ -103,8 +103,8 @@ TEST_F(Stopping, DuringATransfer) {
 }
 
 TEST_F(Stopping, DuringAFitOfAThousandComponents) {
-  report(750);
-  begin_fit("default,pose_spacing=0.005,max_poses_per_path=900,components=1000");
+  report(1500);
+  begin_fit("default,pose_spacing=0.01,max_poses_per_path=600,components=1000");
   expect_end_soon("a fit of 1000 components", milliseconds(1500));
   expect_no_fit();
 }

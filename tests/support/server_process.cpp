@@ -69,6 +69,10 @@ std::vector<std::string> server_arguments(const ServerProcess::Options& options)
   return arguments;
 }
 
+std::filesystem::path log_of(const ServerProcess::Options& options) {
+  return options.log.empty() ? std::filesystem::path(options.store.string() + ".log") : options.log;
+}
+
 }  // namespace
 
 Program::Program(const std::string& name, const std::vector<std::string>& arguments,
@@ -121,12 +125,12 @@ int Program::wait() {
 }
 
 ServerProcess::ServerProcess(const Options& options)
-    : program_("kinshipd", server_arguments(options), options.store.string() + ".log"),
+    : program_("kinshipd", server_arguments(options), log_of(options)),
       ready_line_(program_.read_line()) {
   if (!ready_line_.starts_with("ready "))
     throw std::runtime_error("kinshipd ended with " + std::to_string(program_.wait()) +
                              " before it was ready: " + ready_line_ + "\n" +
-                             read_text(options.store.string() + ".log"));
+                             read_text(log_of(options)));
 }
 
 int ServerProcess::terminate() {

@@ -41,9 +41,10 @@ class Program {
 class ServerProcess {
  public:
   struct Options {
-    std::filesystem::path store;  ///< its log goes beside it, into <store>.log
+    std::filesystem::path store;  ///< or a URL
     std::uint32_t domain = 0;
     std::vector<std::string> arguments;  ///< further ones
+    std::filesystem::path log = {};      ///< appended to; empty: <store>.log
   };
 
   /// Returns when it serves.
@@ -52,6 +53,7 @@ class ServerProcess {
 
   const std::string& ready_line() const noexcept { return ready_line_; }
   pid_t pid() const noexcept { return program_.pid(); }
+  void signal(int number) const { program_.signal(number); }
 
   int terminate();  ///< SIGTERM; \return exit code
   void kill();      ///< SIGKILL; returns when it is gone

@@ -1,5 +1,7 @@
 #include "server/store/values/audit_texts.hpp"
 
+#include <unistd.h>
+
 #include <utility>
 
 #include "proto/types/names.hpp"
@@ -15,6 +17,22 @@ AuditEntry cut_to_fit(AuditEntry entry) {
   for (std::string* const message : {&entry.before, &entry.after, &entry.message})
     cut(*message, kMaxMessageBytes);
   return entry;
+}
+
+AuditEntry entry_of_maintenance(const std::string& verb, const std::string& store,
+                                const std::string& before, const std::string& after) {
+  AuditEntry entry;
+  entry.client = "kinshipd of user " + std::to_string(getuid());
+  entry.verb = verb;
+  entry.target = store;
+  entry.before = before;
+  entry.after = after;
+  return entry;
+}
+
+AuditEntry entry_of_migration(const std::string& store, std::int64_t before, std::int64_t after) {
+  return entry_of_maintenance("migrate", store, "schema " + std::to_string(before),
+                              "schema " + std::to_string(after));
 }
 
 std::string in_number(std::int64_t count, const std::string& noun) {

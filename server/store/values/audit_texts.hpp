@@ -13,6 +13,13 @@ namespace kinship::store {
 /// An entry whose texts fit.
 AuditEntry cut_to_fit(AuditEntry entry);
 
+/// What kinshipd did to a store by itself, or by a verb of its command line.
+AuditEntry entry_of_maintenance(const std::string& verb, const std::string& store,
+                                const std::string& before, const std::string& after);
+
+/// \param before, after  versions of the schema.
+AuditEntry entry_of_migration(const std::string& store, std::int64_t before, std::int64_t after);
+
 /// "1 path", "2 paths".
 std::string in_number(std::int64_t count, const std::string& noun);
 

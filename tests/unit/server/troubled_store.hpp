@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <new>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -18,7 +19,8 @@ inline void damage_robot(const std::filesystem::path& file, const std::string& l
 }
 
 /// A store that has no memory left for reports (unless it is told to take them), and where
-/// something may happen whenever paths were read or a task is reset; else the real one.
+/// something may happen whenever paths were read or a task is reset, or which may have other
+/// servers; else the real one.
 class TroubledStore final : public store::Store {
  public:
   explicit TroubledStore(
@@ -78,6 +80,21 @@ class TroubledStore final : public store::Store {
     });
   }
 
+  /// What other servers did, and whether one of them fits; empty: there is no other one.
+  std::function<std::optional<store::StoreChanges>(std::string_view cursor)> on_changes;
+  std::optional<store::StoreChanges> changes_since(std::string_view cursor) const override {
+    return on_changes ? on_changes(cursor) : store_.changes_since(cursor);
+  }
+  std::function<std::optional<store::FitRight>()> on_fit_right;
+  std::optional<store::FitRight> take_fit_right(const Digest& id) override {
+    return on_fit_right ? on_fit_right() : store_.take_fit_right(id);
+  }
+  std::vector<std::pair<Digest, std::uint64_t>> given_back;  ///< rights: of which, and the fence
+  void give_back_fit_right(const Digest& id, const store::FitRight& right) noexcept override {
+    given_back.emplace_back(id, right.fence);
+    store_.give_back_fit_right(id, right);
+  }
+
   Uuid epoch() const override { return store_.epoch(); }
   store::StorePoint point() const override { return store_.point(); }
   bool has_lost(const HistoryMark& mark) const override { return store_.has_lost(mark); }
@@ -106,7 +123,10 @@ class TroubledStore final : public store::Store {
   std::map<Digest, std::uint64_t> geometry_revisions() const override {
     return store_.geometry_revisions();
   }
+  /// Called before a robot is read; may throw.
+  std::function<void()> on_robot_read = [] {};
   std::optional<store::RobotRecord> find_robot(const Digest& robot) const override {
+    on_robot_read();
     return store_.find_robot(robot);
   }
   mutable std::atomic<int> descriptions_read = 0;  ///< how often all of them were
@@ -175,8 +195,11 @@ class TroubledStore final : public store::Store {
     on_backup();
     return store_.backup(file, progress);
   }
+  /// Called before a distribution is stored; may throw.
+  std::function<void(const store::FitRight&)> on_put = [](const store::FitRight&) {};
   std::uint64_t put_distribution(const Distribution& distribution,
                                  const store::FitRight& right) override {
+    on_put(right);
     return store_.put_distribution(distribution, right);
   }
   std::optional<Distribution> find_distribution(const Digest& id) const override {

@@ -66,6 +66,8 @@ class Connection {
   /// COMMIT, however long it takes: only the interrupt ends the wait.
   Rows query_without_limit(std::string_view sql);
 
+  /// Where it leads, for people, without a password.
+  const std::string& description() const noexcept { return where_.description(); }
   bool is_alive() const noexcept;  ///< as far as libpq knows
   bool in_transaction() const noexcept;
   int server_version() const noexcept;            ///< 150004 for 15.4

@@ -6,6 +6,8 @@
 #include "proto/types/sha256.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
+#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/values/audit_texts.hpp"
 #include "server/store/values/clock.hpp"
 
 namespace kinship::store::postgres {
@@ -62,6 +64,8 @@ void migrate(Connection& connection, std::span<const Migration> migrations) {
   const std::int64_t version = checked_version(connection, migrations);
   for (const Migration& migration : migrations.subspan(static_cast<std::size_t>(version)))
     apply(connection, migration);
+  if (version > 0)
+    insert_audit(connection, entry_of_migration(connection.description(), version, newest));
   if (const CommitOutcome outcome = transaction.commit(); outcome.certainty != Certainty::Committed)
     throw Failure(ErrorCode::Storage, "its schema could not be made: " + outcome.why);
 }

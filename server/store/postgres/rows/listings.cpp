@@ -70,6 +70,21 @@ std::string newest_paths(const PairFilter& filter, Parameters& parameters) {
          " ORDER BY newest.id DESC LIMIT $2";
 }
 
+/// The same of distributions. In the order of one index alone, so that no other one is read to its
+/// end for what is not there: the rows below, of which those of others are left out.
+std::string newest_distributions(const PairFilter& filter, Parameters& parameters) {
+  std::string columns, ids, falling, are_asked_for;
+  for (const PairFilter::Column& column : filter.columns(parameters)) {
+    columns += column.name + ", ";
+    ids += column.id + ", ";
+    falling += column.name + " DESC, ";
+    are_asked_for += " AND " + column.name + " = " + column.id;
+  }
+  return "SELECT id FROM (SELECT " + columns + "id FROM distribution WHERE (" + columns +
+         "id) < (" + ids + "$1) ORDER BY " + falling + "id DESC LIMIT $2) AS below WHERE TRUE" +
+         are_asked_for;
+}
+
 }  // namespace
 
 Page<RobotSummary> page_of_robots(Connection& connection, std::string_view cursor,
@@ -127,13 +142,14 @@ Page<DistributionSummary> page_of_distributions(Connection& connection, const Pa
                                                 std::string_view cursor, std::size_t limit) {
   const std::int64_t rows = rows_of_page(limit);
   Parameters parameters(parse_falling_cursor(cursor), rows + 1);
-  const std::string condition = filter.condition("distribution", parameters);
+  const std::string page = newest_distributions(filter, parameters);
   return page_of<DistributionSummary>(
-      connection.query("SELECT " + std::string(kDistributionSummaryColumns) +
-                           "FROM distribution JOIN robot ON robot.id = distribution.robot_id "
+      connection.query("SELECT " + std::string(kDistributionSummaryColumns) + "FROM (" + page +
+                           ") AS page CROSS JOIN LATERAL (SELECT * FROM distribution AS found"
+                           " WHERE found.id = page.id OFFSET 0) AS distribution "
+                           "JOIN robot ON robot.id = distribution.robot_id "
                            "JOIN task ON task.id = distribution.task_id "
-                           "WHERE distribution.id < $1" +
-                           condition + " ORDER BY distribution.id DESC LIMIT $2",
+                           "ORDER BY distribution.id DESC",
                        parameters),
       rows, read_distribution_summary<Row>,
       [](const Row& row) { return std::to_string(row.column_integer(kIdOfDistributionSummary)); });

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proto/types/digest.hpp"
 #include "server/store/postgres/database/parameters.hpp"
@@ -16,8 +17,15 @@ struct PairFilter {
 
   bool is_empty() const noexcept { return !robot && task.empty(); }
 
+  /// A column of a table, and the SQL of what it has to be.
+  struct Column {
+    std::string name, id;
+  };
+  /// task_id and robot_id, of what it asks for, which is added to the parameters.
+  std::vector<Column> columns(Parameters& parameters) const;
+
   /// Adds what it asks for to the parameters.
-  /// \return " AND <table>.robot_id = ... AND <table>.task_id = ...", of what it asks for.
+  /// \return " AND <table>.task_id = ... AND <table>.robot_id = ...", of what it asks for.
   std::string condition(const std::string& table, Parameters& parameters) const;
 };
 

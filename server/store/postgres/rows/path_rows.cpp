@@ -65,7 +65,8 @@ std::vector<std::int64_t> select_path_ids(Connection& connection, const Digest& 
 void set_aside_paths(Connection& connection, const std::vector<std::int64_t>& paths) {
   connection.query(
       "SELECT 1 FROM experience WHERE (task_id, robot_id) IN"
-      " (SELECT task_id, robot_id FROM path WHERE id = ANY($1))"
+      " (SELECT found.task_id, found.robot_id FROM unnest($1) AS wanted (id) CROSS JOIN LATERAL"
+      "  (SELECT task_id, robot_id FROM path WHERE path.id = wanted.id OFFSET 0) AS found)"
       " ORDER BY task_id, robot_id FOR NO KEY UPDATE",
       paths);
   connection.query(

@@ -67,13 +67,17 @@ std::vector<Bytes> bytes_of(std::span<const Uuid> reports) {
 }
 
 /// Of its path, or what replaced that one; a dropped one is not retired.
+/// OFFSET 0 keeps PostgreSQL from reading all of a table for the rows of a page, whose number it
+/// does not know.
 constexpr std::string_view kIsRetired =
     " EXISTS (SELECT 1 FROM retired_report"
-    "  WHERE retired_report.report_uuid = attempt.report_uuid)"
+    "  WHERE retired_report.report_uuid = attempt.report_uuid OFFSET 0)"
     " OR coalesce(path.retired_ms IS NOT NULL AND length(path.waypoints) > 1, FALSE) ";
 constexpr std::string_view kPathOfAttempt =
-    "LEFT JOIN path AS named ON named.id = attempt.path_id "
-    "LEFT JOIN path ON path.id = coalesce(named.replaced_by, named.id) ";
+    "LEFT JOIN LATERAL (SELECT id, replaced_by FROM path AS found"
+    " WHERE found.id = attempt.path_id OFFSET 0) AS named ON TRUE "
+    "LEFT JOIN LATERAL (SELECT id, retired_ms, waypoints, dof, waypoint_count FROM path AS found"
+    " WHERE found.id = coalesce(named.replaced_by, named.id) OFFSET 0) AS path ON TRUE ";
 
 /// A report without its path and scene, and where these are.
 struct SharedRow {
@@ -113,7 +117,8 @@ std::map<Uuid, SharedRow> select_rows(Connection& connection, std::span<const Uu
           "FROM attempt JOIN robot ON robot.id = attempt.robot_id"
           " JOIN task ON task.id = attempt.task_id " +
           std::string(kPathOfAttempt) +
-          "LEFT JOIN scene ON scene.id = attempt.scene_id AND scene.damaged_ms IS NULL "
+          "LEFT JOIN LATERAL (SELECT id, size FROM scene AS found WHERE found.id = attempt.scene_id"
+          " AND found.damaged_ms IS NULL OFFSET 0) AS scene ON TRUE "
           "WHERE attempt.report_uuid = ANY ($1)",
       bytes_of(reports));
   std::map<Uuid, SharedRow> found;
@@ -204,7 +209,8 @@ Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view ta
   const Rows rows =
       connection.query("SELECT attempt.arrived_in::text::bigint, attempt.id, attempt.report_uuid," +
                            std::string(kIsRetired) + "FROM (" + page +
-                           ") AS page JOIN attempt ON attempt.id = page.id " +
+                           ") AS page CROSS JOIN LATERAL (SELECT * FROM attempt AS found"
+                           " WHERE found.id = page.id OFFSET 0) AS attempt " +
                            std::string(kPathOfAttempt) + "ORDER BY attempt.arrived_in, attempt.id",
                        parameters);
   return feed_of<ArrivedReport>(rows, cursor, limit, [](const Row& row) {
@@ -215,7 +221,8 @@ Feed<ArrivedReport> feed_of_arrivals(Connection& connection, std::string_view ta
 Feed<Uuid> feed_of_retirements(Connection& connection, std::string_view cursor, std::size_t limit) {
   const FeedPlace after = place_of_cursor(cursor);
   const Rows rows = connection.query(
-      "SELECT arrived_in::text::bigint, id, report_uuid FROM retired_report WHERE " +
+      // By another name: the rows are to come in the order of the column, which an index has.
+      "SELECT arrived_in::text::bigint AS place, id, report_uuid FROM retired_report WHERE " +
           std::string(kNextSettled),
       after.transaction, after.id, static_cast<std::int64_t>(limit) + 1);
   return feed_of<Uuid>(rows, cursor, limit,

@@ -11,9 +11,8 @@ namespace {
 
 constexpr std::string_view kCounts =
     "SELECT (SELECT count(*) FROM robot WHERE label NOT LIKE 'removed %'),"
-    " (SELECT count(*) FROM task), (SELECT count(*) FROM distribution),"
-    " (SELECT coalesce(sum(bytes), 0)::bigint FROM distribution_use),"
-    " (SELECT max(version) FROM schema_migration)";
+    " (SELECT count(*) FROM task), count(*), coalesce(sum(bytes), 0)::bigint,"
+    " (SELECT max(version) FROM schema_migration) FROM distribution_use";
 
 constexpr std::string_view kPairs =
     "SELECT coalesce(sum(paths), 0)::bigint, coalesce(sum(attempts), 0)::bigint,"

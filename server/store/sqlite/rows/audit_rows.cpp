@@ -1,7 +1,5 @@
 #include "server/store/sqlite/rows/audit_rows.hpp"
 
-#include <unistd.h>
-
 #include <optional>
 #include <string>
 #include <utility>
@@ -81,20 +79,13 @@ void insert_audit(Database& database, const AuditEntry& entry) {
 void note_maintenance(Database& database, const std::string& verb,
                       const std::filesystem::path& target, const std::string& before,
                       const std::string& after) {
-  AuditEntry entry;
-  entry.client = "kinshipd of user " + std::to_string(getuid());
-  entry.verb = verb;
-  entry.target = target.string();
-  entry.before = before;
-  entry.after = after;
-  insert_audit(database, entry);
+  insert_audit(database, entry_of_maintenance(verb, target.string(), before, after));
 }
 
 void note_migration(Database& database, const std::filesystem::path& file, std::int64_t before,
                     std::int64_t after) {
   if (before > 0 && has_audit(database))
-    note_maintenance(database, "migrate", file, "schema " + std::to_string(before),
-                     "schema " + std::to_string(after));
+    insert_audit(database, entry_of_migration(file.string(), before, after));
 }
 
 void copy_missing_audit(Database& database, Database& other) {

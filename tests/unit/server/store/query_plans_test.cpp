@@ -12,6 +12,7 @@
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/store/every_question.hpp"
 
 /// What SQLite does for the statements that a serving store runs: none of them reads what other
 /// robots and tasks have, however much that is.
@@ -70,7 +71,8 @@ bool is_costly(const std::string& step) {
 class QueryPlans : public testing::Test {
  protected:
   QueryPlans() {
-    store_ = open_sqlite_store(file_, {.max_distribution_bytes = 6000, .max_paths_per_pair = 4});
+    store_ = open_sqlite_store(file_, {.max_distribution_bytes = 6000,
+                                       .max_paths_per_pair = EveryQuestion::kPathsOfAPair});
     for (const RobotRecord& robot : {panda_, test::make_robot("iiwa", 2)})
       static_cast<void>(store_->register_robot(robot));
   }
@@ -98,64 +100,11 @@ class QueryPlans : public testing::Test {
 };
 
 TEST_F(QueryPlans, NoStatementOfAServingStoreReadsWhatOthersHave) {
-  const Digest robot = panda_.digest;
-  const std::string task = "shelf";
-  ask("reports", [&] {
-    for (std::uint64_t number = 1; number < 40; ++number) {
-      Attempt attempt = test::make_attempt(robot, task, number);
-      if (number % 2 == 0)
-        attempt.scene = RecordedScene{{{"table", BoxShape{{1, 1, 0.1}}}}, {}, {}};
-      test::report(*store_, {attempt, test::make_unsolved(robot, task, 1000 + number)});
-      test::report(*store_, {attempt});
-    }
-  });
-  const std::vector<StoredPath> paths =
-      store_->read_paths(robot, task, {.after_id = 0, .limit = 10});
-  ASSERT_EQ(paths.size(), 4U);
-  ask("a fit", [&] {
-    store_->experience(task);
-    store_->generation(robot, task);
-    store_->path_ids(robot, task);
-    store_->attempt_totals(robot, task);
-    for (const StoredPath& path : store_->read_paths(robot, task, {0, 10, 5}))
-      if (path.scene_id)
-        store_->read_scene(*path.scene_id);
-    for (std::uint64_t number = 1; number < 9; ++number)
-      store_->put_distribution(test::make_distribution(robot, task, number));
-  });
-  ask("a fetch", [&] {
-    EXPECT_TRUE(store_->find_distribution(test::id_from<Digest>(8)));
-    store_->note_use(test::id_from<Digest>(8));
-    store_->find_robot(robot);
-  });
-  ask("listings", [&] {
-    store_->list_robots("", 1);
-    store_->list_robots("iiwa", 1);
-    store_->list_tasks("", 1);
-    store_->find_task(task);
-    store_->list_paths(robot, task, "", 2);
-    store_->list_paths({}, "", "2", 2);
-    store_->list_attempts({}, "", "", 2);
-    store_->list_attempts(robot, task, "", 2);
-    store_->list_distributions({}, "", "", 2);
-    store_->list_distributions(robot, task, "", 2);
-    store_->list_distributions({}, task, "", 2);
-    store_->list_distributions(robot, "", "", 2);
-    store_->find_attempt(paths[0].report_uuid);
-    store_->list_audit("", "", 2);
-    store_->list_audit("anna", "7", 2);
-    store_->export_attempts({}, "", "", 2, 1'000'000);
-    store_->export_attempts(robot, task, "", 2, 1'000'000);
-  });
-  ask("retirement", [&] {
-    AuditEntry audit;
-    audit.verb = "act";
-    static_cast<void>(store_->retire_path(paths[0].report_uuid, &audit));
-    static_cast<void>(store_->reset_task(task, {}, &audit));
-    store_->evict_distribution(test::id_from<Digest>(8), &audit);
-    static_cast<void>(store_->rename_robot(robot, "panda_2", &audit));
-    static_cast<void>(store_->remove_robot(robot, {}, &audit));
-  });
+  EveryQuestion questions(*store_, panda_.digest, 1,
+                          [this](const std::string& what, const std::function<void()>& question) {
+                            ask(what, question);
+                          });
+  ASSERT_NO_FATAL_FAILURE(questions.ask_all());
   store_.reset();
   Database database(file_, Access::ReadOnly);
   std::size_t explained = 0;

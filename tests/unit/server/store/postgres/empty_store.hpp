@@ -9,6 +9,7 @@
 #include "server/store/postgres/opening/opening.hpp"
 #include "tests/support/postgres_cluster.hpp"
 #include "tests/support/postgres_programs.hpp"
+#include "tests/support/postgres_query.hpp"
 
 namespace kinship::store::postgres {
 
