@@ -51,6 +51,8 @@ class PostgresStore : public Store {
     writer_->set_interrupt(interrupt_);
   }
 
+  void stop_waiting() noexcept override { interrupt_.raise(); }
+
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }
 
