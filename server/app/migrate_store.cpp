@@ -69,8 +69,8 @@ class MoveLine {
 void print_tables(const store::MoveResult& result, std::ostream& out) {
   for (const store::moving::VerifiedTable& table : result.verification.tables) {
     out << "  " << std::left << std::setw(24) << table.name << std::right << std::setw(10)
-        << table.source_rows << " rows" << std::setw(10) << table.target_rows << " there" << "  "
-        << std::hex << std::setfill('0') << std::setw(8) << table.target_digest << std::dec
+        << table.source_rows << " rows" << std::setw(10) << table.target_rows << " there"
+        << "  " << std::hex << std::setfill('0') << std::setw(8) << table.target_digest << std::dec
         << std::setfill(' ');
     if (table.differences > 0)
       out << "  " << table.differences << " differ";
@@ -94,10 +94,11 @@ int print(const store::MoveResult& result, std::ostream& out) {
     out << "'" << result.from << "' was moved to '" << result.to << "' already\n";
     return kDone;
   }
-  out << "copied " << rows_written(result) << " rows from '" << result.from << "' to '"
-      << result.to << "'\n";
+  out << "copied " << rows_written(result) << " rows from '" << result.from << "' to '" << result.to
+      << "'\n";
   if (!result.served_by.empty()) {
-    out << "not done yet: " << result.served_by << "\nStop it and run the same command again: what came during "
+    out << "not done yet: " << result.served_by
+        << "\nStop it and run the same command again: what came during "
         << "the last copy took " << std::fixed << std::setprecision(1) << result.last_copy_s
         << " s; then each row is compared\n";
     return kFailed;
@@ -108,8 +109,8 @@ int print(const store::MoveResult& result, std::ostream& out) {
         << " rows differ: not done; the source may be served on\n";
     return kFailed;
   }
-  out << "all rows are the same\ndone: serve '" << result.to
-      << "' now; '" << result.from << "' is closed to servers, and can be removed\n";
+  out << "all rows are the same\ndone: serve '" << result.to << "' now; '" << result.from
+      << "' is closed to servers, and can be removed\n";
   return kDone;
 }
 

@@ -6,7 +6,7 @@
 namespace kinship::store::moving {
 namespace {
 
-constexpr std::size_t kRowsRead = 128;          // at once; of 4 MB at most
+constexpr std::size_t kRowsRead = 128;  // at once; of 4 MB at most
 constexpr std::size_t kRowsOfTransaction = 1024;
 
 MovedRow key_of(const MovedTable& table, const MovedRow& row) {
@@ -182,17 +182,15 @@ void Copying::copy_pair(const Pair& pair) {
   paths_.clear();
   for (const LightRow& row : state.paths)
     paths_.insert(row[0]);
-  for (const auto& [name, wanted] : {std::pair<const char*, const std::vector<LightRow>&>(
-                                         "path", state.paths),
-                                     std::pair<const char*, const std::vector<LightRow>&>(
-                                         "attempt", state.attempts)}) {
+  for (const auto& [name, wanted] :
+       {std::pair<const char*, const std::vector<LightRow>&>("path", state.paths),
+        std::pair<const char*, const std::vector<LightRow>&>("attempt", state.attempts)}) {
     const MovedTable& table = moved_table(name);
     const DifferingIds differing = compare_ids(wanted, target_.light(table, pair));
     copy_ids(table, differing.changed);
     copy_ids(table, differing.missing);
   }
-  target_.in_transaction(
-      [&] { write(experience, std::vector<MovedRow>{state.experience}); });
+  target_.in_transaction([&] { write(experience, std::vector<MovedRow>{state.experience}); });
 }
 
 void Copying::copy_by_id(const MovedTable& table) {
@@ -209,8 +207,8 @@ void Copying::copy_ids(const MovedTable& table, const std::vector<std::int64_t>&
     const std::size_t end = std::min(begin + kRowsOfTransaction, ids.size());
     target_.in_transaction([&] {
       for (std::size_t from = begin; from < end; from += kRowsRead) {
-        std::vector<MovedRow> rows = source_.of_ids(
-            table, std::span(ids).subspan(from, std::min(kRowsRead, end - from)));
+        std::vector<MovedRow> rows =
+            source_.of_ids(table, std::span(ids).subspan(from, std::min(kRowsRead, end - from)));
         bring_scenes(table, rows);
         drop_unknown_paths(table, rows);
         write(table, rows);
@@ -234,8 +232,7 @@ void Copying::bring_scenes(const MovedTable& table, const std::vector<MovedRow>&
   if (lacking.empty())
     return;
   const MovedTable& scenes = moved_table("scene");
-  write(scenes,
-        source_.of_ids(scenes, std::vector<std::int64_t>(lacking.begin(), lacking.end())));
+  write(scenes, source_.of_ids(scenes, std::vector<std::int64_t>(lacking.begin(), lacking.end())));
   scenes_.merge(lacking);
 }
 

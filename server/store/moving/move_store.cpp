@@ -25,10 +25,10 @@ bool is_database(const std::string& name) {
 void require_move(const MoveOptions& options) {
   if (is_database(options.from) || is_database(options.to))
     return;
-  throw Failure(ErrorCode::InvalidInput,
-                "migrate-store: '" + options.from + "' and '" + options.to +
-                    "' are both files: 'kinshipd backup --store " + options.from + " " +
-                    options.to + "' copies one");
+  throw Failure(ErrorCode::InvalidInput, "migrate-store: '" + options.from + "' and '" +
+                                             options.to +
+                                             "' are both files: 'kinshipd backup --store " +
+                                             options.from + " " + options.to + "' copies one");
 }
 
 std::unique_ptr<Side> open_source(const std::string& name) {
@@ -129,8 +129,8 @@ class Move {
       const std::string writes = source_.writes_seen();
       require_unserved(writes);
       copy();
-      result_.verification = moving::verify(
-          source_, target_, [&](std::uint64_t rows, std::uint64_t total) {
+      result_.verification =
+          moving::verify(source_, target_, [&](std::uint64_t rows, std::uint64_t total) {
             options_.progress({MoveStep::Verifying, rows, total});
           });
       require_unserved(writes);

@@ -66,9 +66,10 @@ MovedTable scenes() {
                       {"crc32c"},
                       noticed("scene", 3),
                       {"scene", Blob}},
-          .sqlite_light = "SELECT id, coalesce((SELECT max(1, noticed_ms) FROM set_aside WHERE"
-                          " kind = 3 AND set_aside.id = scene.id), 0) FROM scene WHERE " +
-                          in_use + " ORDER BY id",
+          .sqlite_light =
+              "SELECT id, coalesce((SELECT max(1, noticed_ms) FROM set_aside WHERE"
+              " kind = 3 AND set_aside.id = scene.id), 0) FROM scene WHERE " +
+              in_use + " ORDER BY id",
           .postgres_light = "SELECT id, coalesce(damaged_ms, 0) FROM scene ORDER BY id",
           .aside_kind = 3};
 }
@@ -110,9 +111,10 @@ MovedTable paths() {
                   {"waypoints", Blob}},
       .sqlite_light = indexed("path_by_task_robot", "aside.retired_ms IS NOT NULL", "NULL") +
                       " UNION ALL " + indexed("path_retired", "1", "NOT NULL") + " ORDER BY 1",
-      .postgres_light = "SELECT id, (retired_ms IS NOT NULL)::int::bigint, coalesce(damaged_ms, 0),"
-                        " coalesce(replaced_by, 0) FROM path"
-                        " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
+      .postgres_light =
+          "SELECT id, (retired_ms IS NOT NULL)::int::bigint, coalesce(damaged_ms, 0),"
+          " coalesce(replaced_by, 0) FROM path"
+          " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
       .aside_kind = 1};
 }
 
@@ -145,11 +147,13 @@ MovedTable attempts() {
                       {"received_ms"},
                       {"scene_id"}},
           .sqlite_condition = readable,
-          .sqlite_light = "SELECT id, status, coalesce(path_id, 0) FROM attempt"
-                          " WHERE task_id = ?1 AND robot_id = ?2 AND " +
-                          readable + " ORDER BY id",
-          .postgres_light = "SELECT id, status, coalesce(path_id, 0) FROM attempt"
-                            " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
+          .sqlite_light =
+              "SELECT id, status, coalesce(path_id, 0) FROM attempt"
+              " WHERE task_id = ?1 AND robot_id = ?2 AND " +
+              readable + " ORDER BY id",
+          .postgres_light =
+              "SELECT id, status, coalesce(path_id, 0) FROM attempt"
+              " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
           .is_in_arrival = true};
 }
 
@@ -183,9 +187,8 @@ MovedTable distributions() {
 MovedTable uses() {
   return {.name = "distribution_use",
           .columns = {{"id"}, {"used_ms"}, {"bytes"}},
-          .sqlite_condition =
-              std::string(kSoundDistribution) +
-              "distribution_use.id) AND id IN (SELECT id FROM distribution)"};
+          .sqlite_condition = std::string(kSoundDistribution) +
+                              "distribution_use.id) AND id IN (SELECT id FROM distribution)"};
 }
 
 /// With what is set aside in SQLite: no revision that was given is given again.

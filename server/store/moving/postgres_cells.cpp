@@ -77,8 +77,8 @@ void add_column(postgres::Parameters& parameters, std::span<const MovedRow> rows
       parameters.add(elements_of<std::optional<std::int64_t>>(rows, column, integer_in));
       return;
     case CellType::Real:
-      parameters.add(elements_of<double>(
-          rows, column, [](const Cell& cell) { return std::get<double>(cell); }));
+      parameters.add(elements_of<double>(rows, column,
+                                         [](const Cell& cell) { return std::get<double>(cell); }));
       return;
     case CellType::Text:
       parameters.add(elements_of<std::string>(

@@ -45,7 +45,8 @@ std::string upsert_sql(const MovedTable& table) {
                     unnested(table, columns) + " AS moved";
   if (table.name == "audit")
     return sql;
-  sql += " ON CONFLICT (" + (table.name == "retired_report" ? "report_uuid" : listed(table, table.keys)) +
+  sql += " ON CONFLICT (" +
+         (table.name == "retired_report" ? "report_uuid" : listed(table, table.keys)) +
          ") DO UPDATE SET ";
   for (std::size_t i = table.keys; i < columns; ++i)
     sql += (i == table.keys ? "" : ", ") + table.columns[i].name + " = excluded." +
@@ -65,14 +66,13 @@ class PostgresSide : public Side {
                .front()
                .column_integer(0) != 0;
   }
-  void bring_schema() {
-    postgres::migrate(*connection_, postgres::embedded_migrations());
-  }
+  void bring_schema() { postgres::migrate(*connection_, postgres::embedded_migrations()); }
 
   const std::string& name() const override { return name_; }
 
   Uuid epoch() override {
-    const postgres::Rows rows = connection_->query("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
+    const postgres::Rows rows =
+        connection_->query("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
     return rows.empty() ? Uuid{} : id_of<Uuid>(rows.front().column_blob(0));
   }
 
@@ -82,18 +82,19 @@ class PostgresSide : public Side {
   }
 
   std::vector<MovedRow> all(const MovedTable& table) override {
-    return rows_of(connection_->query(
-                       "SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
-                       (table.postgres_condition.empty() ? "" : " WHERE ") +
-                       table.postgres_condition),
-                   table);
+    return rows_of(
+        connection_->query("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
+                           (table.postgres_condition.empty() ? "" : " WHERE ") +
+                           table.postgres_condition),
+        table);
   }
 
   MovedRow experience_of(const Pair& pair) override {
     const MovedTable& table = moved_table("experience");
-    const postgres::Rows rows = connection_->query("SELECT " + listed(table, table.columns.size()) +
-                                             " FROM experience WHERE task_id = $1 AND robot_id = $2",
-                                         pair.task_id, pair.robot_id);
+    const postgres::Rows rows =
+        connection_->query("SELECT " + listed(table, table.columns.size()) +
+                               " FROM experience WHERE task_id = $1 AND robot_id = $2",
+                           pair.task_id, pair.robot_id);
     return rows.empty() ? MovedRow() : read_row(rows.front(), table);
   }
 
@@ -106,9 +107,10 @@ class PostgresSide : public Side {
   }
 
   std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
-    const postgres::Rows found = table.reading == Reading::ByPair
-                           ? connection_->query(table.postgres_light, pair.task_id, pair.robot_id)
-                           : connection_->query(table.postgres_light);
+    const postgres::Rows found =
+        table.reading == Reading::ByPair
+            ? connection_->query(table.postgres_light, pair.task_id, pair.robot_id)
+            : connection_->query(table.postgres_light);
     std::vector<LightRow> rows;
     rows.reserve(static_cast<std::size_t>(found.size()));
     for (const postgres::Row row : found) {
@@ -148,11 +150,12 @@ class PostgresSide : public Side {
 
   /// Each transaction of reports raises the position of a run.
   std::string writes_seen() override {
-    return std::string(connection_
-                           ->query("SELECT count(*)::text || ' ' || coalesce(sum(position), 0)::text"
-                                   " FROM run")
-                           .front()
-                           .column_text(0));
+    return std::string(
+        connection_
+            ->query("SELECT count(*)::text || ' ' || coalesce(sum(position), 0)::text"
+                    " FROM run")
+            .front()
+            .column_text(0));
   }
 
   bool has_content() override {
@@ -178,9 +181,10 @@ class PostgresSide : public Side {
     in_transaction([&] {
       put_setting(kClaim, mine);
       if (setting(kArrival).empty())
-        put_setting(kArrival, std::string(connection_->query("SELECT pg_current_xact_id()::text")
-                                              .front()
-                                              .column_text(0)));
+        put_setting(
+            kArrival,
+            std::string(
+                connection_->query("SELECT pg_current_xact_id()::text").front().column_text(0)));
     });
     claim_ = mine;
     arrival_ = setting(kArrival);
@@ -216,9 +220,7 @@ class PostgresSide : public Side {
     put_setting(kArrival, std::nullopt);
   }
 
-  void add_audit(const AuditEntry& entry) override {
-    postgres::insert_audit(*connection_, entry);
-  }
+  void add_audit(const AuditEntry& entry) override { postgres::insert_audit(*connection_, entry); }
 
   /// Our tables, and with them that this is one of ours: a move begins anew with the schema.
   void remove_all() override {

@@ -15,6 +15,7 @@
 #include "server/store/sqlite/files/new_file.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/audit_rows.hpp"
@@ -59,8 +60,7 @@ MovedRow read_row(const Statement& row, const MovedTable& table) {
   MovedRow cells;
   cells.reserve(table.columns.size());
   for (int column = 0; column < std::ssize(table.columns); ++column)
-    cells.push_back(
-        read_cell(row, column, table.columns[static_cast<std::size_t>(column)].type));
+    cells.push_back(read_cell(row, column, table.columns[static_cast<std::size_t>(column)].type));
   return cells;
 }
 
@@ -295,6 +295,7 @@ class SqliteSide : public Side {
   }
 
   void complete() override {
+    static_cast<void>(write_new_epoch(*database_, file_));
     database_->execute(
         "DELETE FROM same_content;"
         "INSERT INTO same_content SELECT path_id, report_uuid FROM attempt"
@@ -343,8 +344,7 @@ class SqliteSide : public Side {
     }
   }
 
-  static void name_first_scene(const MovedTable& table, MovedRow& row,
-                               const SqliteScenes& scenes) {
+  static void name_first_scene(const MovedTable& table, MovedRow& row, const SqliteScenes& scenes) {
     for (std::size_t i = 0; i < row.size(); ++i)
       if (table.columns[i].name == "scene_id" && integer_of(row, i) != 0)
         row[i] = scenes.first_of(integer_of(row, i));

@@ -60,7 +60,7 @@ class Comparison {
     auto one = source.begin();
     auto other = target.begin();
     while (one != source.end() || other != target.end()) {
-      const int order = one == source.end()    ? 1
+      const int order = one == source.end()     ? 1
                         : other == target.end() ? -1
                                                 : order_of(*one, *other);
       if (order < 0)

@@ -15,7 +15,8 @@ namespace kinship::store::postgres {
 ///
 /// The server is noted among those that are alive before it looks whether the store is being moved:
 /// who moves it first says so, then looks who is alive, so one of the two sees the other.
-/// \throws PostgresError; Failure; Failure(Unavailable) if it is half moved, or was moved elsewhere.
+/// \throws PostgresError; Failure; Failure(Unavailable) if it is half moved, or was moved
+/// elsewhere.
 std::unique_ptr<Connection> begin_store(Primary& primary, History& history, const Uuid& server);
 
 }  // namespace kinship::store::postgres

@@ -25,8 +25,7 @@ void note_alive(Connection& connection, const Uuid& server) {
 }
 
 void note_gone(Connection& connection, const Uuid& server) {
-  write_lightly(connection,
-                {"DELETE FROM server WHERE run = $1", Parameters(Bytes(server.bytes))});
+  write_lightly(connection, {"DELETE FROM server WHERE run = $1", Parameters(Bytes(server.bytes))});
 }
 
 std::optional<FitRight> take_fit_right(Connection& connection, const Digest& id,
