@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "server/app/password.hpp"
+
 namespace kinship::app {
 namespace {
 
@@ -61,8 +63,10 @@ std::string configuration_text(const CLI::App& app, const std::vector<std::strin
     const std::string value = option->count() > 0 ? option->as<std::string>()
                               : is_flag           ? "false"
                                                   : option->get_default_str();
-    text += "\n# " + option->get_description() + " [" + origin(app, *option, arguments) + "]\n" +
-            (value.empty() ? "# " : "") + option->get_lnames().front() + " = " + toml_value(value) +
+    const std::string shown = without_password(value);
+    text += "\n# " + option->get_description() + " [" + origin(app, *option, arguments) +
+            (shown == value ? "" : "; its password is not shown") + "]\n" +
+            (shown.empty() ? "# " : "") + option->get_lnames().front() + " = " + toml_value(shown) +
             '\n';
   }
   return text;

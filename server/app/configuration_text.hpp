@@ -10,7 +10,7 @@ class App;
 namespace kinship::app {
 
 /// The options of a parsed command line as a file that --config reads (TOML): one a line with what
-/// it is for, its value, and where the value is from.
+/// it is for, its value, and where the value is from. Of passwords it says that they are not shown.
 /// \param arguments  of the command line, by which what was said there is told from the file.
 std::string configuration_text(const CLI::App& app, const std::vector<std::string>& arguments);
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
 #include "server/app/metrics_address.hpp"
+#include "server/app/password.hpp"
 #include "server/app/upstream_url.hpp"
 
 namespace kinship::app {
@@ -43,6 +45,7 @@ Examples:
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
   kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one
+  kinshipd migrate-store --from fleet.db --to 'postgresql://kinship@db1/fleet'    each row, resumable
   kinshipd secure init DIR                       certificates for the fleet; kinshipd secure --help)";
 
 /// What the help of a verb ends with, before its example.
@@ -344,7 +347,9 @@ std::filesystem::path default_store() {
   return state / "kinship" / "experience.db";
 }
 
-Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+namespace {
+
+Options parse_words(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   ServerOptions options;
   options.store = default_store();
   options.workers = default_workers();
@@ -356,12 +361,15 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   app.footer(kFooter);
   add_server_options(app, options);
   bool print_config = false;
-  app.add_flag("--print-config", print_config,
-               "Print the options that would serve, as a file for --config, and end")
+  app.add_flag(
+         "--print-config", print_config,
+         "Print the options that would serve, as a file for --config, without passwords, and end")
       ->configurable(false);
   add_verbs(app, offline);
   std::optional<SecureOptions> secure;
   add_secure_verbs(app, secure);
+  std::optional<MigrateStoreOptions> move;
+  add_migrate_store(app, move);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
@@ -378,6 +386,8 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
   }
   if (secure)
     return *secure;
+  if (move)
+    return *move;
   const bool is_offline = !app.get_subcommands().empty();
   if (const std::string fault = store_fault(app, is_offline ? offline.store : options.store);
       !fault.empty()) {
@@ -397,6 +407,15 @@ Options parse_arguments(int argc, const char* const* argv, std::ostream& out, st
            "--insecure if that is what you want\n";
     return kWrongUsage;
   }
+  return options;
+}
+
+}  // namespace
+
+Options parse_arguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  std::ostringstream said;
+  Options options = parse_words(argc, argv, out, said);
+  err << without_passwords_of({argv, static_cast<std::size_t>(argc)}, said.str());
   return options;
 }
 

@@ -140,6 +140,37 @@ TEST_F(PostgresReceipt, ACancelledWaitAndTheDuplicateAfterItAreNoReceipts) {
   EXPECT_TRUE(one->find_attempt(numbered_report(2).report_uuid));
 }
 
+TEST_F(PostgresReceipt, ARetirementThatIsThereAlreadyIsNoAnswerBeforeItsStandbyHasIt) {
+  make_pair("ANY 1 (a, b)");
+  const std::string url = primary_->url(kDatabase);
+  const std::unique_ptr<store::Store> one = open(true), other = open(true);
+  wait_until_replayed(*primary_, *standby_);
+  standby_->freeze_receiver();
+  const std::vector<Uuid> reports = {numbered_report(7).report_uuid};  // that has not come yet
+  const auto retire = [&reports](store::Store& store) {
+    return std::async(std::launch::async, [&] {
+      try {
+        store.retire_reports(reports);
+        return true;
+      } catch (const Failure&) {
+        return false;
+      }
+    });
+  };
+  std::future<bool> first = retire(*one);
+  wait_until_true(url, kSomebodyWaits);
+  end_waits(*primary_, "pg_cancel_backend");
+  EXPECT_FALSE(first.get()) << "it is not certain";
+  std::future<bool> second = retire(*other);
+  wait_until_true(url, kSomebodyWaits);
+  EXPECT_NE(second.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  standby_->thaw_receiver();
+  EXPECT_TRUE(second.get());
+  lose_primary(*primary_, *standby_);
+  standby_->promote();
+  EXPECT_EQ(standby_->query("SELECT count(*) FROM retired_report", kDatabase), "1");
+}
+
 TEST_F(PostgresReceipt, WithoutItsStandbyNothingIsAcknowledgedUntilItIsBack) {
   make_pair("ANY 1 (a, b)");
   const std::unique_ptr<store::Store> store = open(true);
@@ -155,6 +186,27 @@ TEST_F(PostgresReceipt, WithoutItsStandbyNothingIsAcknowledgedUntilItIsBack) {
   lose_primary(*primary_, *standby_);
   standby_->promote();
   EXPECT_TRUE(store->find_attempt(numbered_report(2).report_uuid));
+}
+
+TEST_F(PostgresReceipt, ARobotThatIsKnownIsSaidToBeOnceAStandbyKnowsIt) {
+  make_pair("ANY 1 (a, b)");
+  const std::unique_ptr<store::Store> one = open(true), other = open(true);
+  const store::RobotRecord robot = make_robot("newcomer", 77);
+  standby_->freeze_receiver();
+  std::future<Result<RegisterStatus>> first =
+      std::async(std::launch::async, [&] { return one->register_robot(robot); });
+  wait_until_true(primary_->url(), kSomebodyWaits);
+  end_waits(*primary_, "pg_cancel_backend");  // the row is there, and in doubt
+  EXPECT_THROW(static_cast<void>(first.get()), Failure);
+  std::future<Result<RegisterStatus>> again =
+      std::async(std::launch::async, [&] { return other->register_robot(robot); });
+  wait_until_true(primary_->url(), kSomebodyWaits);
+  EXPECT_EQ(again.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  standby_->thaw_receiver();
+  EXPECT_EQ(again.get().value_or_throw(), RegisterStatus::Known);
+  lose_primary(*primary_, *standby_);
+  standby_->promote();
+  EXPECT_TRUE(one->find_robot(robot.digest));
 }
 
 /// What the ledger of the other tests would see if the engine did not wait.

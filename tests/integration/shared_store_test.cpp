@@ -61,9 +61,10 @@ class SharedStore : public testing::Test {
     panda_ = one_->register_model("panda").robot;
     ur10e_ = other_->register_model("ur10e").robot;
   }
-  std::unique_ptr<test::Cell> cell(const std::string& name) const {
+  std::unique_ptr<test::Cell> cell(const std::string& name) const { return cell(name, url_); }
+  std::unique_ptr<test::Cell> cell(const std::string& name, const std::string& url) const {
     return std::make_unique<test::Cell>(
-        test::Cell::Options{.folder = folder_.path() / name, .store = url_});
+        test::Cell::Options{.folder = folder_.path() / name, .store = url});
   }
   std::future<FetchReply> begin_fetch(test::Cell& cell) const {
     return std::async(std::launch::async, [this, &cell] { return cell.fetch(ur10e_); });
@@ -190,6 +191,31 @@ TEST_F(SharedStore, AServerThatJoinsServesWhatOthersMadeAtOnce) {
   EXPECT_EQ(taken.distribution->revision, made.distribution->revision);
   EXPECT_EQ(fits_of(*third), 0);
   EXPECT_LT(joined_s, 20);  // mostly well below 1; the machine may have other work
+}
+
+TEST_F(SharedStore, ThePasswordOfTheDatabaseIsSaidToNobodyAlsoWhenItCannotBeReached) {
+  const std::unique_ptr<test::Cell> third =
+      cell("third", url_ + (url_.find('?') == std::string::npos ? "?" : "&") + "password=s3cret");
+  third->start();
+  EXPECT_EQ(third->status().store_file.find("s3cret"), std::string::npos);
+  cluster_->kill();
+  ServerStatus status;
+  EXPECT_TRUE(comes_true([&] {
+    status = third->status();
+    return !status.writable;
+  }));
+  EXPECT_FALSE(status.storage_message.empty());
+  EXPECT_EQ(status.storage_message.find("s3cret"), std::string::npos) << status.storage_message;
+  EXPECT_EQ(third->terminate(), 0);
+  EXPECT_FALSE(third->log().empty());
+  EXPECT_EQ(third->log().find("s3cret"), std::string::npos) << third->log();
+  try {
+    third->start();  // does not begin without its database
+    ADD_FAILURE();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("postgresql://"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("s3cret"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(SharedStore, AServerThatIsKilledTakesNothingAlong) {

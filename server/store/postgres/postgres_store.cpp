@@ -41,7 +41,7 @@ class PostgresStore : public Store {
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
         writes_([this] { return primary_.connect(); }, options.require_synchronous) {
-    std::unique_ptr<Connection> connection = begin_store(primary_, history_);
+    std::unique_ptr<Connection> connection = begin_store(primary_, history_, presence_.server());
     fit_reads_.run_began(history_.run(), timeline_of(*connection));
     writer_ = std::make_unique<ReportWriter>(
         primary_, history_, std::move(connection),
@@ -52,6 +52,8 @@ class PostgresStore : public Store {
         [this](Connection& anew) { connected(anew); });
     writer_->set_interrupt(interrupt_);
   }
+
+  void stop_waiting() noexcept override { interrupt_.raise(); }
 
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }
@@ -106,6 +108,9 @@ class PostgresStore : public Store {
   }
 
   Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
+    if (writes_.write(
+            [&](Connection& connection) { return confirm_robot(connection, robot.digest); }))
+      return RegisterStatus::Known;
     Result<RegisterStatus> result =
         writes_.write([&](Connection& connection) { return insert_robot(connection, robot); });
     if (damaged_robots_ > 0)
@@ -166,8 +171,7 @@ class PostgresStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    commit(std::move(attempts), std::move(done),
-           [](const Attempt& attempt) { return attempt.report_uuid; });
+    commit(std::move(attempts), std::move(done));
   }
 
   Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
@@ -194,8 +198,7 @@ class PostgresStore : public Store {
   }
 
   void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
-    commit(std::move(reports), std::move(done),
-           [](const SharedReport& report) { return report.attempt.report_uuid; });
+    commit(std::move(reports), std::move(done));
   }
 
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
@@ -402,15 +405,12 @@ class PostgresStore : public Store {
   }
 
  private:
-  /// \param uuid_of  of one of them.
-  template <typename Reported, typename UuidOf>
-  void commit(std::vector<Reported> reported, ReportsDone done, UuidOf uuid_of) {
+  template <typename Reported>
+  void commit(std::vector<Reported> reported, ReportsDone done) {
     if (writer_->queued_bytes() <= options_.max_queued_bytes)
       return writer_->submit(prepare_item(std::move(reported), std::move(done)));
-    std::vector<Uuid> reports(reported.size());
-    std::ranges::transform(reported, reports.begin(), uuid_of);
-    writer_->submit(
-        declined_item(reports, std::move(done), "the queue of reports is full, try again"));
+    writer_->submit(declined_item(report_uuids(reported), std::move(done),
+                                  "the queue of reports is full, try again"));
   }
 
   /// On the writer's thread; nobody waits for it.

@@ -172,8 +172,7 @@ class SqliteStore : public Store {
   }
 
   void commit_reports(std::vector<Attempt> attempts, ReportsDone done) override {
-    commit(std::move(attempts), std::move(done),
-           [](const Attempt& attempt) { return attempt.report_uuid; });
+    commit(std::move(attempts), std::move(done));
   }
 
   Feed<ArrivedReport> list_arrivals(std::string_view task, std::string_view cursor,
@@ -200,8 +199,7 @@ class SqliteStore : public Store {
   }
 
   void commit_shared(std::vector<SharedReport> reports, ReportsDone done) override {
-    commit(std::move(reports), std::move(done),
-           [](const SharedReport& report) { return report.attempt.report_uuid; });
+    commit(std::move(reports), std::move(done));
   }
 
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
@@ -385,19 +383,14 @@ class SqliteStore : public Store {
   }
 
  private:
-  /// \param uuid_of  of one of them.
-  template <typename Reported, typename UuidOf>
-  void commit(std::vector<Reported> reported, ReportsDone done, UuidOf uuid_of) {
+  template <typename Reported>
+  void commit(std::vector<Reported> reported, ReportsDone done) {
     std::string why = lack_of_room();
     if (why.empty() && writer_->queued_bytes() > options_.max_queued_bytes)
       why = "the queue of reports is full, try again";
-    if (!why.empty()) {
-      std::vector<Uuid> reports(reported.size());
-      std::ranges::transform(reported, reports.begin(), uuid_of);
-      writer_->submit(
-          ReportItem::declined(history_, damaged_reports_, reports, std::move(done), why));
-      return;
-    }
+    if (!why.empty())
+      return writer_->submit(ReportItem::declined(history_, damaged_reports_,
+                                                  report_uuids(reported), std::move(done), why));
     writer_->submit(std::make_unique<ReportItem>(history_, damaged_reports_, std::move(reported),
                                                  std::move(done), options_.max_paths_per_pair));
     take_ballast_later();

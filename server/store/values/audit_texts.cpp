@@ -19,6 +19,15 @@ AuditEntry cut_to_fit(AuditEntry entry) {
   return entry;
 }
 
+AuditEntry entry_of_act(const AuditEntry& asked, AuditOutcome outcome, std::string before,
+                        std::string after) {
+  AuditEntry entry = asked;
+  entry.outcome = outcome;
+  entry.before = std::move(before);
+  entry.after = std::move(after);
+  return entry;
+}
+
 AuditEntry entry_of_maintenance(const std::string& verb, const std::string& store,
                                 const std::string& before, const std::string& after) {
   AuditEntry entry;

@@ -13,6 +13,10 @@ namespace kinship::store {
 /// An entry whose texts fit.
 AuditEntry cut_to_fit(AuditEntry entry);
 
+/// What an entry says of an act beyond who asked for what.
+AuditEntry entry_of_act(const AuditEntry& asked, AuditOutcome outcome, std::string before,
+                        std::string after);
+
 /// What kinshipd did to a store by itself, or by a verb of its command line.
 AuditEntry entry_of_maintenance(const std::string& verb, const std::string& store,
                                 const std::string& before, const std::string& after);

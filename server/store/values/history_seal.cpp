@@ -26,6 +26,15 @@ Digest hmac(const Digest& key, std::span<const std::uint8_t> message) {
 
 }  // namespace
 
+Digest random_key() {
+  Digest key;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Uuid random = Uuid::random();
+    std::ranges::copy(random.bytes, key.bytes.begin() + kUuidBytes * half);
+  }
+  return key;
+}
+
 HistoryMark seal(const Digest& key, const Uuid& epoch, const HistoryPoint& point) {
   HistoryMark mark(point.run.bytes.begin(), point.run.bytes.end());
   for (std::size_t i = 0; i < kPositionBytes; ++i)

@@ -8,6 +8,9 @@
 
 namespace kinship::store {
 
+/// Of a new store: 244 random bits.
+Digest random_key();
+
 /// A point as bytes for clients, with a seal (HMAC-SHA-256 of epoch, run and position, its first 16
 /// bytes) that only this store can make: nobody can name a point at which the store never was.
 /// \param key  of the store, secret.

@@ -1,5 +1,6 @@
 #include "server/store/values/prepared_attempt.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>
@@ -57,7 +58,22 @@ Digest body_digest(const Attempt& attempt, const std::optional<PreparedPath>& pa
   return hash.finish();
 }
 
+template <typename Reported, typename UuidOf>
+std::vector<Uuid> uuids(const std::vector<Reported>& reported, UuidOf uuid_of) {
+  std::vector<Uuid> uuids(reported.size());
+  std::ranges::transform(reported, uuids.begin(), uuid_of);
+  return uuids;
+}
+
 }  // namespace
+
+std::vector<Uuid> report_uuids(const std::vector<Attempt>& attempts) {
+  return uuids(attempts, [](const Attempt& attempt) { return attempt.report_uuid; });
+}
+
+std::vector<Uuid> report_uuids(const std::vector<SharedReport>& reports) {
+  return uuids(reports, [](const SharedReport& report) { return report.attempt.report_uuid; });
+}
 
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine) {
   Attempt said = prepared.attempt;

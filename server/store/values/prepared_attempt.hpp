@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/types/attempt.hpp"
 #include "proto/types/result.hpp"
@@ -35,6 +36,10 @@ struct PreparedAttempt {
   std::optional<std::int64_t> received_ms;  ///< by the store that had it first; missing: now
   bool is_retired = false;                  ///< its path, elsewhere
 };
+
+/// Which reports these are.
+std::vector<Uuid> report_uuids(const std::vector<Attempt>& attempts);
+std::vector<Uuid> report_uuids(const std::vector<SharedReport>& reports);
 
 /// The body as it would be if another machine said the same.
 Digest body_said_by(const PreparedAttempt& prepared, const std::string& machine);

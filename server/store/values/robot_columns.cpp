@@ -64,6 +64,24 @@ std::optional<RobotRecord> complete_robot(RobotRecord robot, Bytes T_tip_transfe
   return robot;
 }
 
+std::optional<Error> find_pose_fault(const RobotDescription& description) {
+  if (pose_from_blob(pose_blob(description.T_tip_transfer)))
+    return std::nullopt;
+  return Error{ErrorCode::InvalidInput,
+               "robot '" + description.label + "': T_tip_transfer is no pose"};
+}
+
+std::optional<RobotRecord> with_better_geometry(const std::optional<RobotRecord>& before,
+                                                RobotRecord better) {
+  if (!before || is_removed_label(before->description.label) ||
+      before->geometry_revision + 1 != better.geometry_revision ||
+      find_pose_fault(better.description))
+    return std::nullopt;
+  better.description.label = before->description.label;
+  better.registered_ms = before->registered_ms;
+  return better;
+}
+
 std::string removed_label(const Digest& robot) {
   constexpr std::size_t kDigits = 24;
   return std::string(kRemoved) + robot.hex().substr(0, kDigits);

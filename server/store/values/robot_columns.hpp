@@ -30,6 +30,16 @@ std::uint32_t robot_crc(const RobotRecord& robot, Bytes T_tip_transfer, Bytes me
 std::optional<RobotRecord> complete_robot(RobotRecord robot, Bytes T_tip_transfer,
                                           Bytes mesh_solids, std::int64_t crc);
 
+/// InvalidInput if T_tip_transfer does not come back from its row.
+std::optional<Error> find_pose_fault(const RobotDescription& description);
+
+/// A known robot as it is written anew when better geometry of it comes: its label stays, and when
+/// it was registered.
+/// \param before  as it is now; nothing: it is not there, or damaged.
+/// \return nothing, and nothing is to be written, if `better` is not one revision ahead of it.
+std::optional<RobotRecord> with_better_geometry(const std::optional<RobotRecord>& before,
+                                                RobotRecord better);
+
 /// The label of a removed robot's row, which nobody can register: labels have no blanks. It says
 /// that the robot is removed, to whoever reads the row or the index of labels alone.
 std::string removed_label(const Digest& robot);

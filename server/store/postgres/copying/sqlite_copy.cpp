@@ -124,8 +124,9 @@ class RowCopy {
       insert_all(insert, columns, rows);
       last_id = rows[rows.size() - 1].column_integer(static_cast<int>(columns.size()));
       copied_ += rows.size();
-      if (!(*progress_)(std::min(kShareOfRows, kShareOfRows * static_cast<double>(copied_) /
-                                                   static_cast<double>(std::max(rows_, copied_)))))
+      const double part =  // 1 at most, and never less than before, also by its last bit
+          static_cast<double>(copied_) / static_cast<double>(std::max(rows_, copied_));
+      if (!(*progress_)(kShareOfRows * part))
         return false;
     }
   }

@@ -1,6 +1,5 @@
 #include "server/store/postgres/opening/history.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -19,7 +18,6 @@ constexpr std::string_view kIdentity = "database_identity";
 constexpr std::string_view kForgottenRun = "forgotten_run";
 constexpr std::string_view kTimeline = "timeline";
 constexpr std::int64_t kMoreThanWereLost = 1'000'000;
-constexpr std::size_t kUuidBytes = 16;
 
 std::string setting(Connection& connection, std::string_view name) {
   const Rows rows = connection.query("SELECT value FROM setting WHERE key = $1", name);
@@ -33,15 +31,11 @@ void set(Connection& connection, std::string_view name, std::string_view value) 
       name, value);
 }
 
-/// 244 random bits; what another server wrote before counts.
+/// What another server wrote before counts.
 Digest ensure_key(Connection& connection) {
   if (const std::optional<Digest> key = Digest::from_hex(setting(connection, kKey)))
     return *key;
-  Digest key;
-  for (std::size_t half = 0; half < 2; ++half) {
-    const Uuid random = Uuid::random();
-    std::ranges::copy(random.bytes, key.bytes.begin() + kUuidBytes * half);
-  }
+  const Digest key = random_key();
   set(connection, kKey, key.hex());
   return key;
 }

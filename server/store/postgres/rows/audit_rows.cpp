@@ -26,13 +26,8 @@ bool evict_audited(Connection& connection, const Digest& id, const AuditEntry* a
       before = describe_distribution(*known);
   if (!delete_distribution(connection, id))
     return false;
-  if (audit != nullptr) {
-    AuditEntry entry = *audit;
-    entry.outcome = AuditOutcome::Done;
-    entry.before = before;
-    entry.after = "gone";
-    insert_audit(connection, entry);
-  }
+  if (audit != nullptr)
+    insert_audit(connection, entry_of_act(*audit, AuditOutcome::Done, std::move(before), "gone"));
   return true;
 }
 

@@ -84,13 +84,8 @@ void add_robot(Retirement& retired, const Digest& robot) {
 
 void note_act(Connection& connection, const AuditEntry* audit, AuditOutcome outcome,
               std::string before, std::string after) {
-  if (audit == nullptr)
-    return;
-  AuditEntry entry = *audit;
-  entry.outcome = outcome;
-  entry.before = std::move(before);
-  entry.after = std::move(after);
-  insert_audit(connection, entry);
+  if (audit != nullptr)
+    insert_audit(connection, entry_of_act(*audit, outcome, std::move(before), std::move(after)));
 }
 
 Result<Retirement> retire_path(Connection& connection, const Uuid& report_uuid,

@@ -1,7 +1,6 @@
 #include "server/store/postgres/rows/robot_removal.hpp"
 
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -12,16 +11,10 @@
 #include "server/store/values/audit_texts.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
+#include "server/store/values/robot_rest.hpp"
 
 namespace kinship::store::postgres {
 namespace {
-
-/// What is left of a robot whose paths are retired.
-struct RobotRest {
-  std::uint64_t attempts = 0;
-  std::set<std::string> tasks;
-  std::vector<Digest> distributions;
-};
 
 RobotRest select_rest(Connection& connection, std::int64_t robot_id) {
   RobotRest rest;
@@ -85,7 +78,7 @@ Result<bool> continue_removal(Connection& connection, const Digest& robot, Remov
     return false;
   }
   lock_distributions(connection);
-  const RobotRest rest = select_rest(connection, *id);
+  RobotRest rest = select_rest(connection, *id);
   for (const Digest& distribution : rest.distributions)
     static_cast<void>(delete_distribution(connection, distribution));
   const bool is_deleted = !has_pairs(connection, *id);
@@ -94,13 +87,7 @@ Result<bool> continue_removal(Connection& connection, const Digest& robot, Remov
   else if (const auto relabelled = relabel_robot(connection, robot, removed_label(robot));
            !relabelled)
     return relabelled.error();
-  removed.removal.robot = robot;
-  removed.removal.label = record->description.label;
-  removed.removal.attempts = rest.attempts;
-  removed.removal.distributions = rest.distributions.size();
-  removed.removal.is_deleted = is_deleted;
-  removed.tasks.assign(rest.tasks.begin(), rest.tasks.end());
-  removed.distributions = rest.distributions;
+  complete_removal(removed, *record, std::move(rest), is_deleted);
   note_act(connection, audit, AuditOutcome::Done, before, describe_removal(removed.removal));
   return true;
 }

@@ -80,8 +80,9 @@ std::optional<Error> check_free(Connection& connection, const std::string& label
 
 /// \return the id of the row, the old one if the digest is there; nothing if another robot took
 ///         its label just now.
-std::int64_t upsert_row(Connection& connection, const RobotRecord& robot, Bytes T_tip_transfer) {
+std::int64_t upsert_row(Connection& connection, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
+  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
   const Rows rows = connection.query(
       "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
       " registered_ms, crc32c, urdf) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)"
@@ -118,8 +119,8 @@ void insert_parts(Connection& connection, std::int64_t robot_id, const RobotReco
 }
 
 /// Writes a robot's rows, anew if they are there.
-void write_robot(Connection& connection, const RobotRecord& robot, Bytes T_tip_transfer) {
-  const std::int64_t id = upsert_row(connection, robot, T_tip_transfer);
+void write_robot(Connection& connection, const RobotRecord& robot) {
+  const std::int64_t id = upsert_row(connection, robot);
   delete_parts(connection, id);
   insert_parts(connection, id, robot);
 }
@@ -137,27 +138,31 @@ std::optional<std::int64_t> lock_robot(Connection& connection, const Digest& rob
   return rows.front().column_integer(0);
 }
 
+bool confirm_robot(Connection& connection, const Digest& robot) {
+  const Rows rows = connection.query(
+      std::string(kRobotColumns) + "WHERE digest = $1 FOR KEY SHARE OF robot", Bytes(robot.bytes));
+  if (rows.empty())
+    return false;
+  RobotRow row = read_row(rows.front());
+  return !is_removed_label(row.robot.description.label) && completed(connection, std::move(row));
+}
+
 Result<RegisterStatus> insert_robot(Connection& connection, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
   static_cast<void>(lock_robot(connection, robot.digest));
   const std::optional<RobotRow> before = find_row(connection, robot.digest);
   if (before && !is_removed_label(before->robot.description.label) &&
-      completed(connection, *before)) {
-    // Known is an answer that vouches for the row: it writes, so that it waits for the standby too.
-    connection.query("UPDATE robot SET label = label WHERE id = $1", before->id);
-    return RegisterStatus::Known;
-  }
+      completed(connection, *before))
+    return RegisterStatus::Known;  // by another server just now; its lock is in the log, too
   if (auto conflict = check_free(connection, description.label, robot.digest))
     return *conflict;
-  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
-  if (!pose_from_blob(T_tip_transfer))
-    return Error{ErrorCode::InvalidInput,
-                 "robot '" + description.label + "': T_tip_transfer is no pose"};
+  if (auto fault = find_pose_fault(description))
+    return *std::move(fault);
   RobotRecord written = robot;
   // Neither what was fitted with the geometry of before nor a fit that failed over it is its own.
   if (before)
     written.geometry_revision = before->robot.geometry_revision + 1;
-  write_robot(connection, written, T_tip_transfer);
+  write_robot(connection, written);
   return RegisterStatus::Registered;
 }
 
@@ -187,19 +192,12 @@ void delete_robot(Connection& connection, std::int64_t robot_id) {
 
 bool update_robot(Connection& connection, const RobotRecord& robot) {
   static_cast<void>(lock_robot(connection, robot.digest));
-  const std::optional<RobotRow> row = find_row(connection, robot.digest);
-  const std::optional<RobotRecord> before = row ? completed(connection, *row) : std::nullopt;
-  if (!before || is_removed_label(before->description.label) ||
-      before->geometry_revision + 1 != robot.geometry_revision)
-    return false;
-  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(robot.description.T_tip_transfer);
-  if (!pose_from_blob(T_tip_transfer))
-    return false;
-  RobotRecord written = robot;
-  written.description.label = before->description.label;
-  written.registered_ms = before->registered_ms;
-  write_robot(connection, written, T_tip_transfer);
-  return true;
+  std::optional<RobotRow> row = find_row(connection, robot.digest);
+  const std::optional<RobotRecord> written =
+      with_better_geometry(row ? completed(connection, *std::move(row)) : std::nullopt, robot);
+  if (written)
+    write_robot(connection, *written);
+  return written.has_value();
 }
 
 std::map<Digest, std::uint64_t> select_geometry_revisions(Connection& connection) {

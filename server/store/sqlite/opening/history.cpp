@@ -28,16 +28,6 @@ void set(Database& database, std::string_view name, std::string_view value) {
       .run();
 }
 
-/// 244 random bits.
-Digest random_key() {
-  Digest key;
-  for (std::size_t half = 0; half < 2; ++half) {
-    const Uuid random = Uuid::random();
-    std::copy(random.bytes.begin(), random.bytes.end(), key.bytes.begin() + 16 * half);
-  }
-  return key;
-}
-
 Digest ensure_key(Database& database) {
   if (const std::optional<Digest> key = Digest::from_hex(setting(database, kKey)))
     return *key;

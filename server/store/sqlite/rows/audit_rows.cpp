@@ -14,16 +14,10 @@
 namespace kinship::store {
 namespace {
 
-/// What an entry says of an act beyond who asked for what.
 void note(Database& database, const AuditEntry* audit, AuditOutcome outcome, std::string before,
           std::string after = {}) {
-  if (audit == nullptr)
-    return;
-  AuditEntry entry = *audit;
-  entry.outcome = outcome;
-  entry.before = std::move(before);
-  entry.after = std::move(after);
-  insert_audit(database, entry);
+  if (audit != nullptr)
+    insert_audit(database, entry_of_act(*audit, outcome, std::move(before), std::move(after)));
 }
 
 std::int64_t count_paths_of(Database& database, std::string_view task) {

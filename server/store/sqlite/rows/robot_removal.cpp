@@ -1,8 +1,8 @@
 #include "server/store/sqlite/rows/robot_removal.hpp"
 
 #include <algorithm>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/store/sqlite/rows/distribution_rows.hpp"
@@ -11,29 +11,24 @@
 #include "server/store/sqlite/rows/robot_rows.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/robot_columns.hpp"
+#include "server/store/values/robot_rest.hpp"
 
 namespace kinship::store {
 namespace {
 
-/// What is in indexes and small rows of a robot.
-struct RobotRest {
-  std::int64_t id = 0;
-  std::uint64_t attempts = 0;
-  std::set<std::string> tasks;
-  std::vector<Digest> distributions;
-};
+std::int64_t row_of(Database& database, const Digest& robot) {
+  const auto query = database.cached("SELECT id FROM robot WHERE digest = ?");
+  query->bind(1, Bytes(robot.bytes)).step();
+  return query->column_integer(0);
+}
 
-RobotRest select_rest(Database& database, const Digest& robot) {
+/// From indexes and small rows.
+RobotRest select_rest(Database& database, std::int64_t robot_id) {
   RobotRest rest;
-  {
-    const auto query = database.cached("SELECT id FROM robot WHERE digest = ?");
-    query->bind(1, Bytes(robot.bytes)).step();
-    rest.id = query->column_integer(0);
-  }
   const auto tasks = database.cached(
       "SELECT task.name, experience.attempts FROM experience "
       "JOIN task ON task.id = experience.task_id WHERE robot_id = ?");
-  tasks->bind(1, rest.id);
+  tasks->bind(1, robot_id);
   while (tasks->step()) {
     rest.tasks.emplace(tasks->column_text(0));
     rest.attempts += count_of(*tasks, 1);
@@ -42,7 +37,7 @@ RobotRest select_rest(Database& database, const Digest& robot) {
       "SELECT distribution.digest, task.name FROM distribution "
       "JOIN task ON task.id = distribution.task_id WHERE robot_id = ? AND NOT EXISTS "
       "(SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = distribution.id)");
-  distributions->bind(1, rest.id);
+  distributions->bind(1, robot_id);
   while (distributions->step()) {
     rest.distributions.push_back(id_of<Digest>(distributions->column_blob(0)));
     rest.tasks.emplace(distributions->column_text(1));
@@ -81,22 +76,17 @@ Result<bool> continue_removal(Batch& batch, const Digest& robot, RemovedRobot& r
     return Error{ErrorCode::NotFound, "robot " + robot.short_hex() + " is not registered"};
   if (!retire_step(batch, robot, removed))
     return false;
-  const RobotRest rest = select_rest(database, robot);
+  const std::int64_t id = row_of(database, robot);
+  RobotRest rest = select_rest(database, id);
   for (const Digest& distribution : rest.distributions)
     static_cast<void>(delete_distribution(database, distribution));
-  const bool is_deleted = !is_referred_to(database, rest.id);
+  const bool is_deleted = !is_referred_to(database, id);
   if (is_deleted)
-    delete_robot(database, rest.id);
+    delete_robot(database, id);
   else if (const auto relabelled = relabel_robot(database, robot, removed_label(robot));
            !relabelled)
     return relabelled.error();
-  removed.removal.robot = robot;
-  removed.removal.label = record->description.label;
-  removed.removal.attempts = rest.attempts;
-  removed.removal.distributions = rest.distributions.size();
-  removed.removal.is_deleted = is_deleted;
-  removed.tasks.assign(rest.tasks.begin(), rest.tasks.end());
-  removed.distributions = rest.distributions;
+  complete_removal(removed, *record, std::move(rest), is_deleted);
   return true;
 }
 

@@ -118,8 +118,9 @@ std::optional<Error> check_free(Database& database, const std::string& label, co
 }
 
 /// \return the id of the row, the old one if the digest is there.
-std::int64_t upsert_row(Database& database, const RobotRecord& robot, Bytes T_tip_transfer) {
+std::int64_t upsert_row(Database& database, const RobotRecord& robot) {
   const RobotDescription& description = robot.description;
+  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
   const auto row = database.cached(
       "INSERT INTO robot (digest, label, dof, base_link, tip_link, T_tip_transfer, task_axes,"
       " registered_ms, crc32c, urdf) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
@@ -147,8 +148,8 @@ void delete_parts(Database& database, std::int64_t robot_id) {
 }
 
 /// Writes a robot's rows, anew if they are there.
-void write_robot(Database& database, const RobotRecord& robot, Bytes T_tip_transfer) {
-  const std::int64_t id = upsert_row(database, robot, T_tip_transfer);
+void write_robot(Database& database, const RobotRecord& robot) {
+  const std::int64_t id = upsert_row(database, robot);
   delete_parts(database, id);
   insert_parts(database, id, robot.description);
   insert_geometry(database, id, robot);
@@ -170,14 +171,12 @@ Result<RegisterStatus> insert_robot(Database& database, const RobotRecord& robot
     return RegisterStatus::Known;
   if (auto conflict = check_free(database, description.label, robot.digest))
     return *conflict;
-  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(description.T_tip_transfer);
-  if (!pose_from_blob(T_tip_transfer))
-    return Error{ErrorCode::InvalidInput,
-                 "robot '" + description.label + "': T_tip_transfer is no pose"};
+  if (auto fault = find_pose_fault(description))
+    return *std::move(fault);
   RobotRecord written = robot;
   if (const std::optional<std::int64_t> before = id_of_robot(database, robot.digest))
     written.geometry_revision = next_revision(database, *before);
-  write_robot(database, written, T_tip_transfer);
+  write_robot(database, written);
   return RegisterStatus::Registered;
 }
 
@@ -215,18 +214,11 @@ void delete_robot(Database& database, std::int64_t robot_id) {
 
 bool update_robot(Database& database, const RobotRecord& robot) {
   const std::optional<std::int64_t> id = id_of_robot(database, robot.digest);
-  const std::optional<RobotRecord> before = id ? read_robot_of(database, *id) : std::nullopt;
-  if (!before || is_removed_label(before->description.label) ||
-      before->geometry_revision + 1 != robot.geometry_revision)
-    return false;
-  const std::vector<std::uint8_t> T_tip_transfer = pose_blob(robot.description.T_tip_transfer);
-  if (!pose_from_blob(T_tip_transfer))
-    return false;
-  RobotRecord written = robot;
-  written.description.label = before->description.label;
-  written.registered_ms = before->registered_ms;
-  write_robot(database, written, T_tip_transfer);
-  return true;
+  const std::optional<RobotRecord> written =
+      with_better_geometry(id ? read_robot_of(database, *id) : std::nullopt, robot);
+  if (written)
+    write_robot(database, *written);
+  return written.has_value();
 }
 
 std::map<Digest, std::uint64_t> select_geometry_revisions(Database& database) {

@@ -283,6 +283,34 @@ TEST_F(Options, ThePrintedConfigurationSaysWhereEachValueIsFrom) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST_F(Options, NothingThatIsPrintedHasAPassword) {
+  const test::TemporaryDirectory directory;
+  const std::string file = (directory / "kinshipd.toml").string();
+  std::ofstream(file) << "upstream = \"postgres://db2/memory?password=s3cret&user=ann\"\n";
+  EXPECT_EQ(code({"--store", "postgresql://ann:s3cret@db1/fleet", "--config", file.c_str(),
+                  "--print-config"}),
+            kDone);
+  const std::string text = out_.str();
+  EXPECT_EQ(text.find("s3cret"), std::string::npos) << text;
+  for (const std::string& part :
+       {std::string("[command line; its password is not shown]\n"
+                    "store = \"postgresql://ann@db1/fleet\"\n"),
+        "[" + file +
+            "; its password is not shown]\nupstream = \"postgres://db2/memory?user=ann\"\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  const std::string url = "postgresql://ann:s3cret@db1/fleet";
+  for (const std::vector<const char*>& wrong :
+       std::vector<std::vector<const char*>>{{url.c_str()},
+                                             {"--domain", url.c_str()},
+                                             {"check", url.c_str()},
+                                             {"--log-level", url.c_str()}}) {
+    EXPECT_EQ(code(wrong), kWrongUsage);
+    EXPECT_EQ(err_.str().find("s3cret"), std::string::npos) << err_.str();
+    EXPECT_NE(err_.str().find("ann@db1/fleet"), std::string::npos) << err_.str();
+  }
+  EXPECT_EQ(good({"--store", url.c_str()}).store, url) << "it is used all the same";
+}
+
 TEST_F(Options, ThePrintedConfigurationIsAFileThatSaysTheSame) {
   const test::TemporaryDirectory directory;
   const std::string file = (directory / "kinshipd.toml").string();

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "proto/types/failure.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
@@ -79,8 +80,11 @@ TEST_F(FitTurnTest, WhoStopsWhileItWaitsHasNothingToGiveBack) {
 TEST_F(FitTurnTest, AStopEndsTheWaitBeforeTheNextLook) {
   constexpr FitTurn::Patience kSlow{.longest = std::chrono::hours(1),
                                     .between_looks = std::chrono::hours(1)};
-  busy_for(1);
-  stop_.request_stop();
+  std::jthread stopper;
+  store_.on_fit_right = [&]() -> std::optional<store::FitRight> {
+    stopper = std::jthread([this] { stop_.request_stop(); });
+    return std::nullopt;
+  };
   EXPECT_EQ(code_of([&] { const FitTurn turn(store_, id_, stop_.get_token(), kSlow); }),
             ErrorCode::Unavailable);
 }

@@ -15,12 +15,13 @@ namespace kinship::store::sqlite_store_test {
 namespace {
 
 Engine sqlite_engine() {
-  return {"Sqlite", [](const std::filesystem::path& directory, const EngineLimits& limits) {
-            SqliteOptions options;
-            options.max_paths_per_pair = limits.paths_per_pair;
-            options.max_distribution_bytes = limits.distribution_bytes;
-            return open_sqlite_store(directory / "store.db", options);
-          }};
+  const auto open_in = [](const std::filesystem::path& directory, const EngineLimits& limits) {
+    SqliteOptions options;
+    options.max_paths_per_pair = limits.paths_per_pair;
+    options.max_distribution_bytes = limits.distribution_bytes;
+    return open_sqlite_store(directory / "store.db", options);
+  };
+  return {"Sqlite", open_in, Engine::BackupInstant::End};
 }
 std::string name_of_engine(const testing::TestParamInfo<Engine>& engine) {
   return engine.param.name;

@@ -29,6 +29,9 @@ struct Engine {
   std::function<std::unique_ptr<Store>(const std::filesystem::path& directory,
                                        const EngineLimits& limits)>
       open;
+  /// What a backup has of the reports that come while it is made: those acknowledged before its
+  /// copying ended, or those before it began.
+  enum class BackupInstant { End, Begin } backup_instant = BackupInstant::End;
 };
 
 /// The laws of Store, for every engine. An engine's own test instantiates the suite:

@@ -21,12 +21,13 @@ std::unique_ptr<Store> open(const std::filesystem::path& folder,
 std::vector<Engine> postgres_engines() {
   if (!test::missing_postgres().empty())
     return {};
-  return {{"Postgres", [](const std::filesystem::path& directory, const EngineLimits& limits) {
-             if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
-               return open_sqlite_store(copy);  // a backup is one
-             return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
-                                     .max_paths_per_pair = limits.paths_per_pair});
-           }}};
+  const auto open_in = [](const std::filesystem::path& directory, const EngineLimits& limits) {
+    if (const std::filesystem::path copy = directory / "store.db"; exists(copy))
+      return open_sqlite_store(copy);  // a backup is one
+    return open(directory, {.max_distribution_bytes = limits.distribution_bytes,
+                            .max_paths_per_pair = limits.paths_per_pair});
+  };
+  return {{"Postgres", open_in, Engine::BackupInstant::Begin}};
 }
 std::string name_of_postgres(const testing::TestParamInfo<Engine>& engine) {
   return engine.param.name;
@@ -34,6 +35,10 @@ std::string name_of_postgres(const testing::TestParamInfo<Engine>& engine) {
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreConformance, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreRetention, testing::ValuesIn(postgres_engines()),
+                         name_of_postgres);
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreBackup, testing::ValuesIn(postgres_engines()),
+                         name_of_postgres);
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreRetentionBackup, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
 INSTANTIATE_TEST_SUITE_P(Postgres, StoreSharing, testing::ValuesIn(postgres_engines()),
                          name_of_postgres);
@@ -214,6 +219,37 @@ TEST_F(PostgresStoreTest, GoesOnWhenItsConnectionsAreCut) {
   EXPECT_EQ(status, ReceiptStatus::Stored);
   EXPECT_EQ(store_->status().rollbacks, 0U);
   EXPECT_TRUE(store_->status().writable);
+}
+
+TEST_F(PostgresStoreTest, WhoStopsDoesNotWaitForADatabaseThatDoesNotAnswer) {
+  test::report(*store_, {attempt(1)});
+  const test::PostgresCluster& cluster = FreshDatabases::of_program().cluster();
+  const auto ask = [this](auto question) {
+    return std::async(std::launch::async, [question] {
+      try {
+        question();
+        return std::string("it answered");
+      } catch (const Failure& failure) {
+        return std::string(failure.what());
+      }
+    });
+  };
+  cluster.freeze();
+  std::future<std::string> reading =
+      ask([this] { static_cast<void>(store_->list_arrivals("", "", 1)); });
+  std::future<std::string> writing =
+      ask([this] { store_->retire_reports(std::vector{attempt(1).report_uuid}); });
+  EXPECT_EQ(reading.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  store_->stop_waiting();
+  for (std::future<std::string>* const asked : {&reading, &writing}) {
+    const std::string why = asked->get();
+    EXPECT_NE(why.find("the server is stopping"), std::string::npos) << why;
+  }
+  const std::string later = ask([this] { static_cast<void>(store_->notes("")); }).get();
+  EXPECT_NE(later.find("the server is stopping"), std::string::npos) << later;
+  store_.reset();
+  cluster.thaw();
+  EXPECT_EQ(another()->status().attempts, 1U);
 }
 
 TEST_F(PostgresStoreTest, ADamagedPathIsSetAsideAndComesBackWithItsReport) {
