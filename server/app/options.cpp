@@ -45,6 +45,7 @@ Examples:
   kinshipd backup --store fleet.db copy.db       (of a running server: kinship backup)
   kinshipd restore --store fleet.db copy.db      keeps the old one as fleet.db.replaced-<time>
   kinshipd repair --store fleet.db               what can be read of a damaged store, as a new one
+  kinshipd migrate-store --from fleet.db --to 'postgresql://kinship@db1/fleet'    each row, resumable
   kinshipd secure init DIR                       certificates for the fleet; kinshipd secure --help)";
 
 /// What the help of a verb ends with, before its example.
@@ -364,6 +365,8 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   add_verbs(app, offline);
   std::optional<SecureOptions> secure;
   add_secure_verbs(app, secure);
+  std::optional<MigrateStoreOptions> move;
+  add_migrate_store(app, move);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ConfigError& error) {  // says what of it, but not where
@@ -380,6 +383,8 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   }
   if (secure)
     return *secure;
+  if (move)
+    return *move;
   const bool is_offline = !app.get_subcommands().empty();
   if (const std::string fault = store_fault(app, is_offline ? offline.store : options.store);
       !fault.empty()) {

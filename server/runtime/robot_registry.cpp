@@ -98,6 +98,18 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   return reply;
 }
 
+bool RobotRegistry::offer_geometry(const Digest& robot, const RobotDescription& description,
+                                   std::int64_t now_ms) {
+  Result<kinematics::Chain> chain = kinematics::read_chain(description);
+  if (!chain || chain->digest() != robot)
+    return false;
+  RegisterReply reply;
+  reply.robot = robot;
+  reply.dof = static_cast<std::uint32_t>(chain->dof());
+  take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+  return reply.took_geometry;
+}
+
 std::optional<Error> RobotRegistry::refusal_of_known(const Digest& robot,
                                                      const LabelRule& may_take) {
   if (!may_take)

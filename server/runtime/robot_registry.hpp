@@ -77,6 +77,12 @@ class RobotRegistry {
   RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms,
                                const LabelRule& may_take = {});
 
+  /// Takes over the geometry of a known robot that somebody else knows better, as
+  /// register_robot() does of who registers it again. \return whether it was better.
+  /// \throws Failure(Storage)
+  bool offer_geometry(const Digest& robot, const RobotDescription& description,
+                      std::int64_t now_ms);
+
   /// From memory, or read from the store and parsed.
   /// \return NotFound if the store has no such robot; Storage if its row is damaged, its
   /// description

@@ -32,6 +32,12 @@ void Service::start_forwarder() {
                                   store::Store::ReportsDone done) {
     commit_from_above(std::move(reports), std::move(done));
   };
+  forwarder.hooks.take_geometry = [this](const Digest& robot, const RobotDescription& description) {
+    if (!robots_.offer_geometry(robot, description, options_.clock.unix_ms()))
+      return false;
+    tell_line("better geometry of robot " + robot.short_hex() + " came");
+    return true;
+  };
   forwarder.hooks.on_retired = [this](const Retirement& retirement) {
     forget_task(retirement.task);
     const std::string what = std::to_string(retirement.paths) + " paths retired above";

@@ -22,6 +22,8 @@ void throw_if_stopped(const Way& way) {
 std::vector<Receipt> commit(const Way& way, std::vector<SharedReport> reports) {
   if (reports.empty())
     return {};
+  way.before_write();
+  throw_if_stopped(way);
   // Shared with the callback, which may come after nobody waits for it any more.
   const auto promise = std::make_shared<std::promise<std::vector<Receipt>>>();
   std::future<std::vector<Receipt>> receipts = promise->get_future();
@@ -46,7 +48,8 @@ std::vector<SharedReport> with_robots(const Way& way, std::vector<SharedReport> 
   for (SharedReport& report : reports) {
     const auto [robot, is_new] = robots.try_emplace(report.attempt.robot);
     if (is_new)
-      robot->second = carry_robot(way.from, way.to, report.attempt.robot);
+      robot->second = way.bring_robot ? way.bring_robot(report.attempt.robot)
+                                      : carry_robot(way.from, way.to, report.attempt.robot);
     std::optional<Error> fault = robot->second;
     if (!fault && way.check)
       fault = way.check(report.attempt);
@@ -78,7 +81,10 @@ void count(const std::vector<Receipt>& receipts, CarriedReports& carried) {
 void retire(const Way& way, std::span<const Uuid> reports) {
   if (reports.empty())
     return;
-  for (const Retirement& retirement : way.to.retire_reports(reports))
+  way.before_write();
+  throw_if_stopped(way);
+  for (const Retirement& retirement :
+       way.retire ? way.retire(reports) : way.to.retire_reports(reports))
     way.on_retired(retirement);
 }
 
@@ -128,7 +134,11 @@ CarriedPage carry_page(const Way& way, std::string_view task, const std::string&
     else if (report.is_retired)  // perhaps before there was a list of retirements
       retired_before.push_back(report.report_uuid);
   }
-  retire(way, retired_before);
+  for (std::span<const Uuid> left = retired_before; !left.empty();) {
+    const std::size_t next = std::min(left.size(), piece.retirements);
+    retire(way, left.first(next));
+    left = left.subspan(next);
+  }
   CarriedPage page{carry_reports(way, missing, retired, piece), arrived.size(), feed.cursor,
                    feed.has_more};
   if (missing.empty())

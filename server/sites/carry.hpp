@@ -23,12 +23,18 @@ namespace kinship::sites {
 struct Way {
   store::Store& from;
   store::Store& to;
+  /// Registers a robot at `to` that may not be there; empty: carry_robot().
+  std::function<std::optional<Error>(const Digest&)> bring_robot = {};
   /// Commits at `to`; empty: `to.commit_shared`.
   std::function<void(std::vector<store::SharedReport>, store::Store::ReportsDone)> commit = {};
+  /// Retires at `to`; empty: `to.retire_reports`.
+  std::function<std::vector<Retirement>(std::span<const Uuid>)> retire = {};
   /// What is wrong with an attempt that is to be committed at `to`; empty: nobody looks.
   std::function<std::optional<Error>(const Attempt&)> check = {};
   /// What was retired at `to`.
   std::function<void(const Retirement&)> on_retired = [](const Retirement&) {};
+  /// Called before each transaction at `to`; may take its time.
+  std::function<void()> before_write = [] {};
   std::stop_token stop = {};
 };
 
@@ -37,7 +43,7 @@ struct Piece {
   std::size_t reports = 256;                  ///< looked at together
   std::size_t commit = 256;                   ///< of them committed together
   std::size_t bytes = std::size_t{4} << 20U;  ///< of waypoints and scenes in one commit
-  std::size_t retirements = 256;
+  std::size_t retirements = 256;              ///< told in one transaction
 };
 
 /// A report that `to` does not take, and why.

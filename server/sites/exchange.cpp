@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "server/runtime/robot_registry.hpp"
+#include "server/sites/carry_robot.hpp"
 #include "server/sites/wanted_tasks.hpp"
 
 namespace kinship::sites {
@@ -31,7 +33,10 @@ Exchange::Exchange(store::Store& site, store::Store& memory, Positions& position
       positions_(positions),
       counts_(counts),
       hooks_(std::move(hooks)),
-      options_(std::move(options)) {
+      options_(std::move(options)),
+      geometry_(site, memory,
+                hooks_.take_geometry ? hooks_.take_geometry : take_with_registry(site),
+                take_with_registry(memory)) {
   begin();
 }
 
@@ -46,27 +51,67 @@ void Exchange::begin() {
   down_due_.clear();
 }
 
+TakeGeometry Exchange::take_with_registry(store::Store& store) const {
+  return [this, &store](const Digest& robot, const RobotDescription& description) {
+    return runtime::RobotRegistry(store).offer_geometry(robot, description,
+                                                        options_.clock.unix_ms());
+  };
+}
+
+/// Once a connection: if it is removed meanwhile, its next report says so, and ends the connection.
+std::optional<Error> Exchange::bring_robot(store::Store& from, store::Store& to,
+                                           const Digest& robot) {
+  if (robots_of_both_.contains(robot))
+    return std::nullopt;
+  if (std::optional<Error> error = carry_robot(from, to, robot))
+    return error;
+  robots_of_both_.insert(robot);
+  geometry_.compare_new(robot);
+  return std::nullopt;
+}
+
+/// Processor time of this thread and time of commits here since the last call.
+std::chrono::nanoseconds Exchange::take_load() {
+  const std::chrono::nanoseconds now = processor_time();
+  return now - std::exchange(processor_before_, now) +
+         std::chrono::nanoseconds(commits_ns_->exchange(0));
+}
+
+/// After the last one whoever calls step() rests. What is retired by now need not be so again after
+/// a restart.
+void Exchange::rest_before_write(const std::stop_token& stop) {
+  if (!std::exchange(has_written_, true))
+    return;
+  positions_.save();
+  options_.rest(take_load(), stop);
+}
+
 Way Exchange::way_up(const std::stop_token& stop) {
   return {.from = site_,
           .to = memory_,
+          .bring_robot = [this](const Digest& robot) { return bring_robot(site_, memory_, robot); },
           .on_retired =
               [this](const Retirement& retirement) { counts_.retired_above += retirement.paths; },
+          .before_write = [this, stop] { rest_before_write(stop); },
           .stop = stop};
 }
 
 Way Exchange::way_down(const std::stop_token& stop) {
   return {.from = memory_,
           .to = site_,
+          .bring_robot = [this](const Digest& robot) { return bring_robot(memory_, site_, robot); },
           .commit =
               [this](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
                 commit_here(std::move(reports), std::move(done));
               },
+          .retire = [this](std::span<const Uuid> reports) { return retire_here(reports); },
           .check = hooks_.check,
           .on_retired =
               [this](const Retirement& retirement) {
                 counts_.retired_here += retirement.paths;
                 hooks_.on_retired(retirement);
               },
+          .before_write = [this, stop] { rest_before_write(stop); },
           .stop = stop};
 }
 
@@ -81,6 +126,13 @@ void Exchange::commit_here(std::vector<store::SharedReport> reports,
     hooks_.commit(std::move(reports), timed);
   else
     site_.commit_shared(std::move(reports), timed);
+}
+
+std::vector<Retirement> Exchange::retire_here(std::span<const Uuid> reports) {
+  const auto began = std::chrono::steady_clock::now();
+  std::vector<Retirement> retired = site_.retire_reports(reports);
+  *commits_ns_ += std::chrono::nanoseconds(std::chrono::steady_clock::now() - began).count();
+  return retired;
 }
 
 std::uint64_t Exchange::take(const CarriedReports& carried, bool is_up) {
@@ -114,7 +166,6 @@ void Exchange::try_refused_again(const std::stop_token& stop) {
 }
 
 void Exchange::want_tasks() {
-  constexpr std::int64_t kHour_ms = 3'600'000;
   const std::int64_t now_ms = options_.clock.unix_ms();
   std::set<std::string> wanted = hooks_.tasks_in_use();
   if (!options_.task_patterns.empty()) {
@@ -126,11 +177,7 @@ void Exchange::want_tasks() {
           wanted.insert(task.task);
     } while (!page.next_cursor.empty());
   }
-  for (const std::string& task : wanted) {
-    Positions::Task& position = positions_.tasks[task];
-    if (now_ms - position.used_ms > kHour_ms)  // not a write each time
-      position.used_ms = now_ms;
-  }
+  positions_.want(wanted, now_ms);
   const std::int64_t use_ms = std::chrono::milliseconds(options_.task_use).count();
   std::map<std::string, TimePoint> due;
   for (const auto& [task, position] : positions_.tasks)
@@ -166,20 +213,21 @@ bool Exchange::carry_down(const std::string& task, const std::stop_token& stop) 
 }
 
 Exchange::Step Exchange::step(const std::stop_token& stop) {
-  const std::chrono::nanoseconds began = processor_time();
+  take_load();
+  has_written_ = false;
   begin();
   const TimePoint now = options_.clock.now();
-  *commits_ns_ = 0;
+  Step step;
   if (!std::exchange(has_tried_refused_, true))
     try_refused_again(stop);
   if (tasks_due_ <= now) {
     want_tasks();
+    geometry_.compare_changed();
     // Also where no task is wanted: what this site sent may be retired above.
-    carry_retirements(way_down(stop), positions_.down_retired, options_.down);
+    step.has_worked = carry_retirements(way_down(stop), positions_.down_retired, options_.down) > 0;
     positions_.save();
     tasks_due_ = look_again();
   }
-  Step step;
   const auto is_due = [now](const auto& entry) { return entry.second <= now; };
   // In turns: up, one task, up, the next task.
   auto down = std::find_if(down_due_.upper_bound(last_), down_due_.end(), is_due);
@@ -187,16 +235,16 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
     down = std::ranges::find_if(down_due_, is_due);
   const bool is_up = up_due_ <= now && (is_ups_turn_ || down == down_due_.end());
   if (is_up) {
-    step.has_worked = carry_up(stop);
+    step.has_worked |= carry_up(stop);
   } else if (down != down_due_.end()) {
     last_ = down->first;
-    step.has_worked = carry_down(std::string(last_), stop);
+    step.has_worked |= carry_down(std::string(last_), stop);
   }
   is_ups_turn_ = !is_up;
   step.next = std::min(up_due_, tasks_due_);
   for (const auto& [task, due] : down_due_)
     step.next = std::min(step.next, due);
-  step.load = processor_time() - began + std::chrono::nanoseconds(*commits_ns_);
+  step.load = take_load();
   return step;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 
 #include "server/runtime/clock.hpp"
 #include "server/sites/carry.hpp"
+#include "server/sites/carry_geometry.hpp"
 #include "server/sites/positions.hpp"
 #include "server/store/store.hpp"
 
@@ -27,6 +29,7 @@ struct SiteHooks {
   /// What is wrong with an attempt that came down.
   std::function<std::optional<Error>(const Attempt&)> check = {};
   std::function<void(const Retirement&)> on_retired = [](const Retirement&) {};
+  TakeGeometry take_geometry = {};  ///< empty: a registry that nobody else asks
   /// Tasks that robots here use just now.
   std::function<std::set<std::string>()> tasks_in_use = [] { return std::set<std::string>(); };
 };
@@ -35,11 +38,15 @@ struct ExchangeOptions {
   runtime::Clock clock;
   Piece up;
   /// Smaller: robots of the site wait for each commit.
-  Piece down = {.reports = 256, .commit = 32, .bytes = std::size_t{1} << 20U};
+  Piece down = {.reports = 256, .commit = 32, .bytes = std::size_t{1} << 20U, .retirements = 64};
   std::vector<std::string> task_patterns;      ///< of tasks that are always brought down
   std::chrono::milliseconds look_every{5000};  ///< at a stream that had nothing
   /// A task that nobody here asked for is not brought down any more.
   std::chrono::hours task_use{std::chrono::days(30)};
+  /// Called between two transactions of a step, with what was taken of this machine since the last
+  /// time.
+  std::function<void(std::chrono::nanoseconds load, const std::stop_token&)> rest =
+      [](std::chrono::nanoseconds, const std::stop_token&) {};
   /// Lines for people: what begins again, what is refused.
   std::function<void(std::string_view)> log = [](std::string_view) {};
 };
@@ -66,7 +73,7 @@ class Exchange {
 
   struct Step {
     bool has_worked = false;
-    std::chrono::nanoseconds load{0};  ///< that it was to this machine
+    std::chrono::nanoseconds load{0};  ///< that it was to this machine since it last rested
     TimePoint next;                    ///< when there is something to look at again
   };
   /// Carries one piece of the stream whose turn it is. \throws Failure of either store.
@@ -84,9 +91,14 @@ class Exchange {
   bool carry_up(const std::stop_token& stop);
   bool carry_down(const std::string& task, const std::stop_token& stop);
   std::uint64_t take(const CarriedReports& carried, bool is_up);
+  std::chrono::nanoseconds take_load();
+  void rest_before_write(const std::stop_token& stop);
+  TakeGeometry take_with_registry(store::Store& store) const;
+  std::optional<Error> bring_robot(store::Store& from, store::Store& to, const Digest& robot);
   Way way_up(const std::stop_token& stop);
   Way way_down(const std::stop_token& stop);
   void commit_here(std::vector<store::SharedReport> reports, store::Store::ReportsDone done);
+  std::vector<Retirement> retire_here(std::span<const Uuid> reports);
   TimePoint look_again() const { return options_.clock.now() + options_.look_every; }
 
   store::Store& site_;
@@ -97,10 +109,15 @@ class Exchange {
   const ExchangeOptions options_;
   TimePoint up_due_{}, tasks_due_{};
   std::map<std::string, TimePoint> down_due_;  // by task
-  std::string last_;                           // task that had its turn
+  std::set<Digest> robots_of_both_;
+  GeometryExchange geometry_;
+  std::string last_;  // task that had its turn
   bool is_ups_turn_ = true;
   bool has_tried_refused_ = false;
-  /// How long commits here took. Shared with their callbacks, which may come after the exchange.
+  bool has_written_ = false;                      // in this step
+  std::chrono::nanoseconds processor_before_{0};  // when it last rested
+  /// How long commits here took since. Shared with their callbacks, which may come after the
+  /// exchange.
   std::shared_ptr<std::atomic<std::int64_t>> commits_ns_ =
       std::make_shared<std::atomic<std::int64_t>>(0);
 };

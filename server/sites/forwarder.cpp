@@ -14,6 +14,22 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
+class Forwarder::Connected {
+ public:
+  Connected(Forwarder& forwarder, store::Store& memory) : forwarder_(forwarder) { set(&memory); }
+  Connected(const Connected&) = delete;
+  Connected& operator=(const Connected&) = delete;
+  ~Connected() { set(nullptr); }
+
+ private:
+  void set(store::Store* memory) {
+    const std::lock_guard lock(forwarder_.mutex_);
+    forwarder_.memory_ = memory;
+  }
+
+  Forwarder& forwarder_;
+};
+
 Forwarder::Forwarder(store::Store& site, ForwarderOptions options)
     : site_(site),
       options_(std::move(options)),
@@ -28,6 +44,11 @@ Forwarder::~Forwarder() { stop(); }
 
 void Forwarder::stop() {
   thread_.request_stop();
+  {
+    const std::lock_guard lock(mutex_);
+    if (memory_ != nullptr)
+      memory_->stop_waiting();
+  }
   if (thread_.joinable())
     thread_.join();
 }
@@ -71,20 +92,48 @@ void Forwarder::run(const std::stop_token& stop) {
       if (!stop.stop_requested())
         tell_line(false, exception.what());
     }
-    try {
-      note_oldest(Positions(site_));
-    } catch (const std::exception&) {  // the store is at its end: its own status says so
-    }
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, backoff_.next(), [] { return false; });
+    wait_for_line(stop);
   }
+}
+
+/// Of a site that is cut off: which tasks it wants, whether or not it is restarted before the line
+/// is back, and since when its reports wait.
+void Forwarder::remember() {
+  try {
+    Positions positions(site_);
+    positions.want(options_.hooks.tasks_in_use(), options_.exchange.clock.unix_ms());
+    positions.save();
+    note_oldest(positions);
+    const std::lock_guard lock(mutex_);
+    status_.tasks = positions.tasks.size();
+  } catch (const std::exception&) {  // the store is at its end: its own status says so
+  }
+}
+
+void Forwarder::wait_for_line(const std::stop_token& stop) {
+  const auto until = Clock::now() + backoff_.next();
+  do {
+    remember();
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, stop, until, [this] { return has_new_task_; });
+    has_new_task_ = false;
+  } while (!stop.stop_requested() && Clock::now() < until);
 }
 
 /// As long as the line holds. \throws what ends it.
 void Forwarder::exchange(const std::stop_token& stop) {
   const std::unique_ptr<store::Store> memory = options_.open();
+  const Connected connected(*this, *memory);
+  if (stop.stop_requested())
+    return;
   Positions positions(site_);
-  Exchange exchange(site_, *memory, positions, counts_, options_.hooks, options_.exchange);
+  ExchangeOptions exchange_options = options_.exchange;
+  exchange_options.rest = [this, &positions](std::chrono::nanoseconds load,
+                                             const std::stop_token& stopping) {
+    publish(positions);
+    rest(load, stopping);
+  };
+  Exchange exchange(site_, *memory, positions, counts_, options_.hooks, exchange_options);
   tell_line(true, {});
   publish(positions);
   while (!stop.stop_requested()) {

@@ -62,8 +62,13 @@ class Forwarder {
   UpstreamStatus status(std::uint64_t attempts) const;
 
  private:
+  /// While it lives, whoever stops can end what waits for the memory.
+  class Connected;
+
   void run(const std::stop_token& stop);
   void exchange(const std::stop_token& stop);
+  void remember();
+  void wait_for_line(const std::stop_token& stop);
   void tell_line(bool is_connected, const std::string& why);
   void publish(const Positions& positions);
   void note_oldest(const Positions& positions);
@@ -82,6 +87,7 @@ class Forwarder {
   bool has_new_task_ = false;
   UpstreamStatus status_;
   std::uint64_t passed_ = 0;
+  store::Store* memory_ = nullptr;  // while there is a Connected
 
   std::jthread thread_;  // last: it uses all above
 };

@@ -84,6 +84,15 @@ bool Positions::begin(const Uuid& site_epoch, const Uuid& memory_epoch) {
   return true;
 }
 
+void Positions::want(const std::set<std::string>& names, std::int64_t now_ms) {
+  constexpr std::int64_t kHour_ms = 3'600'000;
+  for (const std::string& name : names) {
+    Task& task = tasks[name];
+    if (now_ms - task.used_ms > kHour_ms)
+      task.used_ms = now_ms;
+  }
+}
+
 void Positions::refuse(const RefusedReport& report, bool is_up) {
   if (refused_.size() >= kMaxRefused)
     return;

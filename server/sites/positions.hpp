@@ -40,6 +40,9 @@ class Positions {
   HistoryMark mark;                          ///< the newest that the memory gave
   std::map<std::string, Task> tasks;
 
+  /// These are used here now; precise to the hour, so that not each look is a write.
+  void want(const std::set<std::string>& names, std::int64_t now_ms);
+
   /// What was set aside, by report; of more than kMaxRefused the reasons are not kept.
   const std::map<Uuid, Refused>& refused() const noexcept { return refused_; }
   void refuse(const RefusedReport& report, bool is_up);

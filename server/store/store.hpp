@@ -161,6 +161,10 @@ class Store {
  public:
   virtual ~Store() = default;
 
+  /// Ends every wait for a database that does not answer, from any thread: what waits, and
+  /// whatever is asked for from now on, throws. For who stops. Nothing where files are read.
+  virtual void stop_waiting() noexcept {}
+
   /// Of the store's life: changes when it is restored, or was found to be a copy or rolled back.
   virtual Uuid epoch() const = 0;
   virtual StorePoint point() const = 0;

@@ -48,9 +48,9 @@ inline Digest teach(link::Client& client, std::uint64_t sweeps) {
 }
 
 /// A report of 8 KB for a task of which nobody wants a distribution.
-inline Attempt report_of_8_kb(const Digest& panda, std::uint64_t seed) {
+inline Attempt report_of_8_kb(const Digest& panda, const std::string& task, std::uint64_t seed) {
   constexpr Eigen::Index kWaypoints = 146;  // 8176 bytes as float64
-  Attempt attempt = test::panda_attempt(panda, "beside", seed);
+  Attempt attempt = test::panda_attempt(panda, task, seed);
   const Eigen::MatrixXd corners = attempt.path->waypoints();
   Eigen::MatrixXd waypoints(corners.rows(), kWaypoints);
   std::mt19937_64 generator(seed);
@@ -73,7 +73,7 @@ inline Attempt report_of_8_kb(const Digest& panda, std::uint64_t seed) {
 /// \param seconds     0: until they are killed.
 /// \return how many were stored.
 inline std::uint64_t report_at(std::uint32_t domain, const Digest& panda, double rate_per_s,
-                               double seconds) {
+                               double seconds, const std::string& task) {
   constexpr std::size_t kClients = 4;
   const auto first_seed =
       static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
@@ -85,7 +85,7 @@ inline std::uint64_t report_at(std::uint32_t domain, const Digest& panda, double
       threads.emplace_back([&, number] {
         link::Client client(without_outbox(domain));
         std::uint64_t seed = first_seed + 1'000'000 * number;
-        client.deliver({report_of_8_kb(panda, seed++)}).value_or_throw();
+        client.deliver({report_of_8_kb(panda, task, seed++)}).value_or_throw();
         connected.arrive_and_wait();
         const double begin_s = wall_s();
         for (std::uint64_t i = 0; seconds == 0 || wall_s() < begin_s + seconds; ++i) {
@@ -93,7 +93,8 @@ inline std::uint64_t report_at(std::uint32_t domain, const Digest& panda, double
             const double due_s = begin_s + static_cast<double>(i * kClients) / rate_per_s;
             std::this_thread::sleep_for(std::chrono::duration<double>(due_s - wall_s()));
           }
-          const auto receipts = client.deliver({report_of_8_kb(panda, seed++)}).value_or_throw();
+          const auto receipts =
+              client.deliver({report_of_8_kb(panda, task, seed++)}).value_or_throw();
           stored[number] += receipts.at(0).status == ReceiptStatus::Stored ? 1U : 0U;
         }
       });
@@ -120,15 +121,16 @@ inline std::uint64_t report_at(std::uint32_t domain, const Digest& panda, double
 }
 
 /// The work of a process of this program.
-/// \param arguments  ROLE DOMAIN ROBOT, and of `reports` RATE SECONDS.
+/// \param arguments  ROLE DOMAIN ROBOT, and of `reports` RATE SECONDS [TASK].
 /// \return whether ROLE is one of these.
 inline bool run_role(const std::vector<std::string>& arguments) {
   if (arguments.size() < 3)
     return false;
   const auto domain = static_cast<std::uint32_t>(std::stoul(arguments[1]));
   const auto robot = Digest::from_hex(arguments[2]);
-  if (arguments[0] == "reports" && arguments.size() == 5 && robot)
-    std::cout << report_at(domain, *robot, std::stod(arguments[3]), std::stod(arguments[4]))
+  if (arguments[0] == "reports" && arguments.size() >= 5 && robot)
+    std::cout << report_at(domain, *robot, std::stod(arguments[3]), std::stod(arguments[4]),
+                           arguments.size() > 5 ? arguments[5] : "beside")
               << std::endl;
   else if (arguments[0] == "fits" && robot)
     have_fits_made(domain, *robot);

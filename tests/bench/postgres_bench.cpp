@@ -7,14 +7,12 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <random>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,10 +20,9 @@
 #include "server/store/postgres/postgres_store.hpp"
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
-#include "tests/support/child_process.hpp"
+#include "tests/bench/pgbench.hpp"
 #include "tests/support/postgres_cluster.hpp"
 #include "tests/support/postgres_programs.hpp"
-#include "tests/support/postgres_query.hpp"
 #include "tests/support/store_values.hpp"
 
 namespace kinship::store {
@@ -114,25 +111,6 @@ class PostgresClients {
   std::vector<std::unique_ptr<Store>> stores_;
 };
 
-/// Inserts a second of 16 clients of pgbench: one row of 8 KB with two indexes, one transaction.
-double pgbench_inserts_per_s(const test::PostgresCluster& cluster, const std::string& database) {
-  const std::filesystem::path script = cluster.folder() / "inserts.sql";
-  std::ofstream(script) << "INSERT INTO bench_row (uuid, payload) "
-                           "VALUES (gen_random_uuid(), decode(repeat('00', 8176), 'hex'));\n";
-  std::ostringstream seconds;
-  seconds << std::max(1.0, std::round(kRound_s));
-  test::ChildProcess pgbench({test::postgres_program("pgbench"), "--no-vacuum", "--client=16",
-                              "--jobs=2", "--time=" + seconds.str(), "--file=" + script.string(),
-                              cluster.url(database)});
-  double per_s = 0;
-  for (std::string line = pgbench.read_line(); !line.empty(); line = pgbench.read_line())
-    if (line.starts_with("tps = "))
-      per_s = std::stod(line.substr(6));
-  if (pgbench.wait() != 0 || per_s <= 0)
-    throw std::runtime_error("pgbench: no result");
-  return per_s;
-}
-
 std::string latencies(const Seen& seen) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "p50 " << bench::median(seen.latencies_ms)
@@ -149,15 +127,14 @@ test::PostgresCluster::Options durable(const std::string& name, const std::strin
 void measure_rates() {
   const test::PostgresCluster cluster(durable("a", ""));
   const std::string url = cluster.create_database("bench");
-  cluster.query(
-      "CREATE TABLE bench_row (id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,"
-      " uuid uuid UNIQUE, payload bytea);"
-      "ALTER TABLE bench_row ALTER payload SET STORAGE EXTERNAL",
-      "bench");
+  bench::prepare_pgbench(cluster, "bench");
   std::vector<double> inserts_per_s;
   std::map<std::size_t, Seen> seen;  // by the number of stores
+  Seen before;
+  PostgresClients(url, 1).run(16, before);
+  cluster.query("ANALYZE", "bench");  // as autovacuum does within a minute
   for (int round = 0; round < kRounds; ++round) {
-    inserts_per_s.push_back(pgbench_inserts_per_s(cluster, "bench"));
+    inserts_per_s.push_back(bench::pgbench_inserts_per_s(cluster, "bench", 16, kRound_s));
     for (const std::size_t stores : {1U, 2U, 4U})
       PostgresClients(url, stores).run(16, seen[stores]);
   }
@@ -179,7 +156,9 @@ void measure_receipts(bool has_standby) {
   if (has_standby)
     standby = std::make_unique<test::PostgresCluster>(primary, durable("b", ""));
   PostgresClients clients(url, 1);
-  Seen seen;
+  Seen before, seen;
+  clients.run(1, before);
+  primary.query("ANALYZE", "bench");
   for (int round = 0; round < kRounds; ++round)
     clients.run(1, seen);
   const std::string beside = has_standby ? ", synchronous standby" : ", no standby";

@@ -39,6 +39,8 @@ BENCHES = [
     bench("cached-fetch", "cached_fetch_bench", "Distributions from memory, over DDS"),
     bench("durable-report", "report_bench", "Durable reports of 8 KB"),
     bench("postgres", "postgres_bench", "Durable reports of 8 KB into PostgreSQL", repeats=1),
+    bench("fleet", "fleet_bench", "Several servers over one PostgreSQL database, over DDS", repeats=1),
+    bench("site", "site_bench", "A site that catches up, beside its robots", repeats=1),
     bench("secured", "secured_bench", "Security: fetches, reports, 100 clients after a restart", repeats=1),
     bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread"),
     bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),

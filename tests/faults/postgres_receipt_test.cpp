@@ -140,6 +140,37 @@ TEST_F(PostgresReceipt, ACancelledWaitAndTheDuplicateAfterItAreNoReceipts) {
   EXPECT_TRUE(one->find_attempt(numbered_report(2).report_uuid));
 }
 
+TEST_F(PostgresReceipt, ARetirementThatIsThereAlreadyIsNoAnswerBeforeItsStandbyHasIt) {
+  make_pair("ANY 1 (a, b)");
+  const std::string url = primary_->url(kDatabase);
+  const std::unique_ptr<store::Store> one = open(true), other = open(true);
+  wait_until_replayed(*primary_, *standby_);
+  standby_->freeze_receiver();
+  const std::vector<Uuid> reports = {numbered_report(7).report_uuid};  // that has not come yet
+  const auto retire = [&reports](store::Store& store) {
+    return std::async(std::launch::async, [&] {
+      try {
+        store.retire_reports(reports);
+        return true;
+      } catch (const Failure&) {
+        return false;
+      }
+    });
+  };
+  std::future<bool> first = retire(*one);
+  wait_until_true(url, kSomebodyWaits);
+  end_waits(*primary_, "pg_cancel_backend");
+  EXPECT_FALSE(first.get()) << "it is not certain";
+  std::future<bool> second = retire(*other);
+  wait_until_true(url, kSomebodyWaits);
+  EXPECT_NE(second.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  standby_->thaw_receiver();
+  EXPECT_TRUE(second.get());
+  lose_primary(*primary_, *standby_);
+  standby_->promote();
+  EXPECT_EQ(standby_->query("SELECT count(*) FROM retired_report", kDatabase), "1");
+}
+
 TEST_F(PostgresReceipt, WithoutItsStandbyNothingIsAcknowledgedUntilItIsBack) {
   make_pair("ANY 1 (a, b)");
   const std::unique_ptr<store::Store> store = open(true);

@@ -65,6 +65,9 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   memory.kill();
   ASSERT_TRUE(ulm.comes_true(
       [](const ServerStatus& status) { return !status.upstream.value().connected; }));
+  ulm.fetch();  // wants the task from now on
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->tasks == 1; }));
   ulm.report(101, 5);
   bern.report(201, 4);
   EXPECT_EQ(ulm.cell().status().upstream->waiting, 5U);
@@ -74,7 +77,6 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
   memory.start();
   bern.cell().kill();
   bern.cell().start();
-  ulm.fetch();  // wants the task from now on; bern has wanted it since before it was killed
   for (Site* const site : {&ulm, &bern})
     ASSERT_TRUE(site->comes_true([](const ServerStatus& status) {
       return status.attempts == 17 && status.paths == 16 && status.upstream->waiting == 0;
@@ -84,6 +86,30 @@ TEST(Sites, ShareOneMemoryThroughCutLinesAndKills) {
             "17\t17");
   EXPECT_EQ(ulm.cell().terminate(), 0);
   EXPECT_EQ(bern.cell().terminate(), 0);
+}
+
+TEST(Sites, StopAtOnceAlsoWhileTheMemoryDoesNotAnswer) {
+  if (const std::string missing = test::missing_postgres(); !missing.empty())
+    GTEST_SKIP() << missing;
+  test::PostgresCluster memory;
+  const std::string url = memory.create_database("kinship");
+  const test::TemporaryDirectory folder;
+  Site ulm(folder.path() / "ulm", url);
+  ulm.report(1, 1);
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->sent == 1; }));
+  memory.freeze();
+  ulm.report(2, 1);
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(ulm.cell().terminate(), 0);
+  // Whoever waits for it gives up after 10 s, and tries once more.
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(8));
+  memory.thaw();
+  ulm.cell().start();
+  ASSERT_TRUE(
+      ulm.comes_true([](const ServerStatus& status) { return status.upstream->waiting == 0; }));
+  EXPECT_EQ(memory.query("SELECT count(*) FROM attempt", "kinship"), "2");
+  EXPECT_EQ(ulm.cell().terminate(), 0);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class PostgresStore : public Store {
         primary_(ConnectionString(url), {.patience = options.patience, .interrupt = &interrupt_}),
         readers_([this] { return primary_.connect(); }),
         writes_([this] { return primary_.connect(); }, options.require_synchronous) {
-    std::unique_ptr<Connection> connection = begin_store(primary_, history_);
+    std::unique_ptr<Connection> connection = begin_store(primary_, history_, presence_.server());
     writer_ = std::make_unique<ReportWriter>(
         primary_, history_, std::move(connection),
         ReportWriterOptions{.max_paths_per_pair = options.max_paths_per_pair,
@@ -50,6 +50,8 @@ class PostgresStore : public Store {
         [this] { forget_connections(); });
     writer_->set_interrupt(interrupt_);
   }
+
+  void stop_waiting() noexcept override { interrupt_.raise(); }
 
   Uuid epoch() const override { return history_.epoch(); }
   StorePoint point() const override { return history_.point(); }

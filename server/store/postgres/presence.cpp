@@ -7,6 +7,13 @@
 
 namespace kinship::store::postgres {
 
+Presence::~Presence() {
+  try {
+    pool_.use([&](Connection& connection) { postgres::note_gone(connection, server_); });
+  } catch (const std::exception&) {  // then it is dead a few seconds later
+  }
+}
+
 StoreChanges Presence::changes_since(std::string_view cursor) {
   note_alive();
   return pool_.read_snapshot(

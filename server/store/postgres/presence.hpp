@@ -18,6 +18,11 @@ class Presence {
  public:
   /// \param pool  outlives it.
   explicit Presence(ConnectionPool& pool) : pool_(pool) {}
+  Presence(const Presence&) = delete;
+  Presence& operator=(const Presence&) = delete;
+  ~Presence();  ///< from now on it is not there: nobody waits until it counts as dead
+
+  const Uuid& server() const noexcept { return server_; }
 
   /// See Store. Called at least every 2 s by who wants to keep its rights.
   StoreChanges changes_since(std::string_view cursor);

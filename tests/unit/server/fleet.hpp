@@ -49,6 +49,15 @@ inline RobotDescription planar(const std::string& label, const std::vector<doubl
   return description;
 }
 
+/// With a shape on its first link, as the element of the URDF.
+inline RobotDescription with_shape(RobotDescription description, const std::string& geometry) {
+  const std::string link = "<link name='link1'/>";
+  description.urdf.replace(
+      description.urdf.find(link), link.size(),
+      "<link name='link1'><collision><geometry>" + geometry + "</geometry></collision></link>");
+  return description;
+}
+
 inline RobotDescription teacher() { return planar("teacher", {0.4, 0.3, 0.2}); }
 inline RobotDescription pupil() { return planar("pupil", {0.35, 0.3, 0.2, 0.1}); }
 /// So short that it reaches nothing of what the teacher does.

@@ -62,9 +62,14 @@ class TroubledStore final : public store::Store {
       return true;
     });
   }
+  /// Called when reports of another store are to be retired.
+  std::function<void(std::span<const Uuid>)> on_retire = [](std::span<const Uuid>) {};
   std::vector<Retirement> retire_reports(std::span<const Uuid> reports) override {
+    on_retire(reports);
     return exchange([&] { return store_.retire_reports(reports); });
   }
+  std::function<void()> on_stop_waiting = [] {};
+  void stop_waiting() noexcept override { on_stop_waiting(); }
   std::map<std::string, std::string> notes(std::string_view prefix) const override {
     return store_.notes(prefix);
   }

@@ -47,6 +47,8 @@ std::string begin_of(std::string_view sql) {
 
 Connection::Connection(const ConnectionString& where, const ConnectionOptions& options)
     : where_(where), options_(options) {
+  if (options_.interrupt != nullptr && options_.interrupt->is_raised())
+    throw PostgresError("", where_.description() + ": the server is stopping");
   std::vector<const char*> keywords, values;
   for (const auto& [keyword, value] : where_.parameters()) {
     keywords.push_back(keyword.c_str());

@@ -13,6 +13,7 @@ class Interrupt {
   ~Interrupt();
 
   void raise() noexcept;
+  bool is_raised() const noexcept;
   int descriptor() const noexcept { return descriptor_; }  ///< readable once it is raised
 
  private:

@@ -65,6 +65,8 @@ double Row::column_real(int column) const {
 
 int Rows::size() const noexcept { return PQntuples(result_.get()); }
 
+int Rows::columns() const noexcept { return PQnfields(result_.get()); }
+
 std::int64_t Rows::changed() const {
   const std::string_view text = PQcmdTuples(result_.get());
   std::int64_t rows = 0;

@@ -36,6 +36,7 @@ class Rows {
 
   const pg_result* get() const noexcept { return result_.get(); }
   int size() const noexcept;
+  int columns() const noexcept;
   bool empty() const noexcept { return size() == 0; }
   Row operator[](int row) const { return {*result_, row}; }
   Row front() const { return {*result_, 0}; }

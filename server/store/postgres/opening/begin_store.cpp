@@ -2,15 +2,34 @@
 
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
+#include "server/store/postgres/rows/fit_lease_rows.hpp"
+#include "server/store/values/move_marks.hpp"
 
 namespace kinship::store::postgres {
 
-std::unique_ptr<Connection> begin_store(Primary& primary, History& history) {
+namespace {
+
+void enter(Connection& connection, const Uuid& server) {
+  note_alive(connection, server);
+  std::string moving_from, moved_to;
+  for (const Row row : connection.query("SELECT key, value FROM setting WHERE key IN ($1, $2)",
+                                        kMovingFrom, kMovedTo))
+    (row.column_text(0) == kMovingFrom ? moving_from : moved_to) = row.column_text(1);
+  if (moving_from.empty() && moved_to.empty())
+    return;
+  note_gone(connection, server);
+  refuse_moving_store("it", moving_from, moved_to);
+}
+
+}  // namespace
+
+std::unique_ptr<Connection> begin_store(Primary& primary, History& history, const Uuid& server) {
   constexpr int kTries = 3;
   for (int tries = 1;; ++tries) {
     try {
       std::unique_ptr<Connection> connection = primary.connect();
       migrate(*connection, embedded_migrations());
+      enter(*connection, server);
       history.begin_run(*connection);
       return connection;
     } catch (const PostgresError& error) {

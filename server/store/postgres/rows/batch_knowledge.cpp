@@ -83,14 +83,17 @@ std::string paths_of_reports() {
          " WHERE id IN (SELECT path_id FROM attempt WHERE report_uuid = ANY($1))";
 }
 
+/// One look at the index for each: joined, they would be all paths read once, in a plan made while
+/// there were few.
 std::string paths_of_contents() {
-  return "SELECT " + std::string(kPathContentColumns) +
-         ", (SELECT digest FROM robot WHERE robot.id = path.robot_id), wanted.task, content_sha256"
-         " FROM unnest($1, $2, $3) AS wanted (task, wanted_robot, content)"
-         " JOIN (SELECT id AS wanted_task, name FROM task) AS named ON named.name = wanted.task"
-         " JOIN path ON path.robot_id = wanted_robot AND path.task_id = wanted_task"
-         " AND path.content_sha256 = wanted.content"
-         " WHERE retired_ms IS NULL AND damaged_ms IS NULL";
+  return "SELECT same.*, robot.digest, wanted.task, wanted.content"
+         " FROM unnest($1, $2, $3) AS wanted (task, robot_id, content)"
+         " JOIN task ON task.name = wanted.task JOIN robot ON robot.id = wanted.robot_id"
+         " CROSS JOIN LATERAL (SELECT " +
+         std::string(kPathContentColumns) +
+         " FROM path WHERE path.robot_id = wanted.robot_id AND path.task_id = task.id"
+         "  AND path.content_sha256 = wanted.content AND retired_ms IS NULL"
+         "  AND damaged_ms IS NULL LIMIT 1) AS same";
 }
 
 std::vector<Bytes> uuids_of(PreparedAttempts attempts) {

@@ -24,6 +24,10 @@ void note_alive(Connection& connection, const Uuid& server) {
   write_lightly(connection, {"DELETE FROM server WHERE alive_until < now() - interval '1 day'"});
 }
 
+void note_gone(Connection& connection, const Uuid& server) {
+  write_lightly(connection, {"DELETE FROM server WHERE run = $1", Parameters(Bytes(server.bytes))});
+}
+
 std::optional<FitRight> take_fit_right(Connection& connection, const Digest& id,
                                        const Uuid& server) {
   const Rows taken = write_lightly(

@@ -14,6 +14,8 @@ namespace kinship::store::postgres {
 
 /// This server is alive for some seconds more. Call it again within 2 s.
 void note_alive(Connection& connection, const Uuid& server);
+/// It has ended in order.
+void note_gone(Connection& connection, const Uuid& server);
 
 /// \return nothing while another server that is alive has it.
 std::optional<FitRight> take_fit_right(Connection& connection, const Digest& id,

@@ -10,6 +10,7 @@
 #include "server/store/sqlite/opening/seal_store.hpp"
 #include "server/store/sqlite/rows/path_rows.hpp"
 #include "server/store/values/clock.hpp"
+#include "server/store/values/move_marks.hpp"
 
 namespace kinship::store {
 namespace {
@@ -27,6 +28,15 @@ void configure_writer(Database& database) {
   gather_wal_writes(database.connection());
 }
 
+/// Not half a store, nor one that is elsewhere now.
+void require_not_moving(Database& database, const std::filesystem::path& file) {
+  const auto setting = [&](std::string_view key) {
+    Statement query(database.connection(), "SELECT value FROM setting WHERE key = ?");
+    return query.bind(1, key).step() ? std::string(query.column_text(0)) : "";
+  };
+  refuse_moving_store("store '" + file.string() + "'", setting(kMovingFrom), setting(kMovedTo));
+}
+
 }  // namespace
 
 std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
@@ -34,6 +44,7 @@ std::unique_ptr<Database> open_writer(const std::filesystem::path& file) {
   make_wal_durable(file);
   // A file of somebody else is refused before anything is written to it.
   std::unique_ptr<Database> database = open_migrated(file, embedded_migrations());
+  require_not_moving(*database, file);
   configure_writer(*database);
   sync_directory_of(file);  // SQLite drops errors of that
   return database;

@@ -143,15 +143,8 @@ TEST_F(Registry, CollisionMeshesThatItCannotReadDoNotKeepARobotOut) {
   EXPECT_EQ(registry_.register_robot(description, 1).status, RegisterStatus::Registered);
 }
 
-constexpr const char* kLink = "<link name='link1'/>";
-
-/// The teacher with a shape on its first link, as the element of the URDF.
 RobotDescription shaped(const std::string& geometry) {
-  RobotDescription description = fleet::teacher();
-  description.urdf.replace(
-      description.urdf.find(kLink), std::string(kLink).size(),
-      "<link name='link1'><collision><geometry>" + geometry + "</geometry></collision></link>");
-  return description;
+  return fleet::with_shape(fleet::teacher(), geometry);
 }
 RobotDescription with_mesh() { return shaped("<mesh filename='package://nowhere/l1.stl'/>"); }
 RobotDescription with_mesh_solids(double radius_m) {
@@ -223,6 +216,21 @@ TEST_F(Registry, GeometryThatIsNoBetterChangesNothing) {
   EXPECT_EQ(registry_.geometry_revision(robot), 0U);
   const std::vector<LinkSolid> solids = store_->find_robot(robot)->description.mesh_solids.solids;
   EXPECT_EQ(std::get<SphereShape>(solids.at(0).shape).radius_m, 0.1) << "the first stays";
+}
+
+TEST_F(Registry, GeometryThatIsOfferedIsTakenOverIfItIsBetter) {
+  const Digest robot = registry_.register_robot(with_mesh(), 1).robot;
+  EXPECT_FALSE(registry_.offer_geometry(robot, with_mesh(), 2));
+  EXPECT_FALSE(registry_.offer_geometry(robot, fleet::pupil(), 2)) << "it is another robot";
+  RobotDescription better = with_sphere();
+  better.label = "elsewhere";
+  EXPECT_TRUE(registry_.offer_geometry(robot, better, 2));
+  EXPECT_EQ(registry_.find(robot).value()->grade, GeometryGrade::Exact);
+  EXPECT_EQ(registry_.find(robot).value()->label, "teacher");
+  EXPECT_EQ(registry_.geometry_revision(robot), 1U);
+  const Digest unknown = fleet::chain_of(fleet::pupil()).digest();
+  EXPECT_FALSE(registry_.offer_geometry(unknown, fleet::pupil(), 2));
+  EXPECT_FALSE(store_->find_robot(unknown));
 }
 
 TEST_F(Registry, SolidsThatMakeNoSenseAreNoGeometryAndAreToldOf) {

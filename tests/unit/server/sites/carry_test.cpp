@@ -120,6 +120,29 @@ TEST_F(Carry, AStoreThatWantsItAgainIsAskedAgain) {
   EXPECT_EQ(carry().reports.new_there, 1U);
 }
 
+TEST_F(Carry, ARobotThatIsRemovedOnTheWayIsNotTheEndOfItsReports) {
+  test::report(*site_, {solved(1)});
+  store::TroubledStore memory(*memory_);
+  memory.on_commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+    EXPECT_TRUE(memory_->remove_robot(panda_.digest));
+    memory_->commit_shared(std::move(reports), std::move(done));
+  };
+  EXPECT_THROW(carry_page({.from = *site_, .to = memory}, "", cursor_, retired_, {}), Failure);
+  EXPECT_TRUE(reports_of(*memory_).empty());
+  EXPECT_EQ(carry().reports.new_there, 1U);
+}
+
+TEST_F(Carry, WhatCannotBeLookedAtNowIsNotRefused) {
+  test::report(*site_, {solved(1)});
+  const auto check = [](const Attempt&) {
+    return std::optional(Error{ErrorCode::Storage, "the robot cannot be read"});
+  };
+  EXPECT_THROW(
+      carry_page({.from = *site_, .to = *memory_, .check = check}, "", cursor_, retired_, {}),
+      Failure);
+  EXPECT_EQ(carry().reports.new_there, 1U);
+}
+
 TEST_F(Carry, ADroppedPathIsCounted) {
   site_.reset();
   site_ = store::open_sqlite_store(directory_ / "site.db", {.max_paths_per_pair = 1});
@@ -155,21 +178,90 @@ TEST_F(Carry, ContentThatWasReportedAnewAfterARetirementStays) {
   carry();
   Attempt anew = solved(1);
   anew.report_uuid = test::id_from<Uuid>(50);
-  store::TroubledStore site(*site_);
-  // Both happen while the page is under way.
-  int calls = 0;
-  site.on_exchange = [&] {
-    if (++calls != 1)
-      return;
-    ASSERT_TRUE(site_->retire_path(solved(1).report_uuid));
-    test::report(*site_, {anew});
-  };
-  for (int i = 0; i < 2; ++i)
-    cursor_ = carry_page({.from = site, .to = *memory_}, "", cursor_, retired_, {}).cursor;
-  EXPECT_EQ(paths_of(*site_), 1U);
-  const auto paths = memory_->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 9});
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(paths[0].report_uuid, anew.report_uuid);
+  // Each of the two happens before or after any call of a page that carries a third report.
+  for (int retired_at = 1; retired_at <= 7; ++retired_at)
+    for (int reported_at = retired_at; reported_at <= 7; ++reported_at) {
+      const std::string name = std::to_string(retired_at) + "_" + std::to_string(reported_at);
+      const auto here = store::open_sqlite_store(directory_.path() / ("here_" + name));
+      const auto there = store::open_sqlite_store(directory_.path() / ("there_" + name));
+      for (store::Store* const store : {here.get(), there.get()}) {
+        ASSERT_TRUE(store->register_robot(panda_));
+        test::report(*store, {solved(1)});
+      }
+      test::report(*here, {solved(2)});
+      store::TroubledStore from(*here);
+      int calls = 0;
+      from.on_exchange = [&] {
+        ++calls;
+        if (calls == retired_at) {
+          ASSERT_TRUE(here->retire_path(solved(1).report_uuid));
+        }
+        if (calls == reported_at)
+          test::report(*here, {anew});
+      };
+      std::string cursor, retired;
+      for (int page = 0; page < 3; ++page)
+        cursor = carry_page({.from = from, .to = *there}, "", cursor, retired, {}).cursor;
+      ASSERT_GE(calls, 7);
+      const auto paths = there->read_paths(panda_.digest, "shelf", {.after_id = 0, .limit = 9});
+      ASSERT_EQ(paths.size(), 2U) << name;
+      EXPECT_EQ(paths[0].report_uuid, solved(2).report_uuid);
+      EXPECT_EQ(paths[1].report_uuid, anew.report_uuid);
+    }
+}
+
+TEST_F(Carry, ARetirementThatCouldNotBeToldIsToldAgain) {
+  test::report(*site_, {solved(1), solved(2)});
+  carry();
+  ASSERT_TRUE(site_->reset_task("shelf"));
+  store::TroubledStore cut(*memory_);
+  cut.on_exchange = [] { throw Failure(ErrorCode::Unavailable, "the line was cut"); };
+  EXPECT_THROW(carry_retirements({.from = *site_, .to = cut}, retired_, {}), Failure);
+  EXPECT_EQ(paths_of(*memory_), 2U);
+  EXPECT_EQ(carry_retirements({.from = *site_, .to = *memory_}, retired_, {}), 2U);
+  EXPECT_EQ(paths_of(*memory_), 0U);
+}
+
+TEST_F(Carry, ALongListOfRetirementsIsToldPieceByPiece) {
+  constexpr std::uint64_t kPaths = 50;
+  for (std::uint64_t number = 1; number <= kPaths; ++number)
+    test::report(*site_, {solved(number)});
+  carry();
+  ASSERT_TRUE(site_->reset_task("shelf"));
+  std::vector<std::size_t> told;
+  int rests = 0;
+  const Way way{.from = *site_,
+                .to = *memory_,
+                .retire =
+                    [&](std::span<const Uuid> reports) {
+                      told.push_back(reports.size());
+                      EXPECT_EQ(static_cast<std::size_t>(rests), told.size());
+                      return memory_->retire_reports(reports);
+                    },
+                .before_write = [&] { ++rests; }};
+  EXPECT_EQ(carry_retirements(way, retired_, {.retirements = 20}), kPaths);
+  EXPECT_EQ(told, (std::vector<std::size_t>{20, 20, 10}));
+  EXPECT_EQ(rests, 3);
+  // The same where no list says so: as of a store from before there was one.
+  const auto other = store::open_sqlite_store(directory_ / "other.db");
+  ASSERT_TRUE(other->register_robot(panda_));
+  for (std::uint64_t number = 1; number <= kPaths; ++number)
+    test::report(*other, {solved(number)});
+  told.clear();
+  rests = 0;
+  std::string from_now = retired_;
+  Way to_other{.from = *site_,
+               .to = *other,
+               .retire =
+                   [&](std::span<const Uuid> reports) {
+                     told.push_back(reports.size());
+                     return other->retire_reports(reports);
+                   },
+               .before_write = [&] { ++rests; }};
+  carry_page(to_other, "", "", from_now, {.retirements = 20});
+  EXPECT_EQ(told, (std::vector<std::size_t>{20, 20, 10}));
+  EXPECT_EQ(rests, 3);
+  EXPECT_EQ(paths_of(*other), 0U);
 }
 
 TEST_F(Carry, WhoStopsDoesNotWaitForAStoreThatNeverAnswers) {

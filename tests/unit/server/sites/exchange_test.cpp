@@ -1,5 +1,9 @@
 #include "server/sites/exchange.hpp"
 
+#include <fstream>
+#include <thread>
+
+#include "tests/support/server_process.hpp"
 #include "tests/unit/server/sites/site_and_memory.hpp"
 
 namespace kinship::sites {
@@ -24,8 +28,11 @@ class ExchangeTest : public SiteAndMemory {
     if (!exchange_)
       connect();
     constexpr int kIdle = 8;
-    for (int idle = 0; idle < kIdle;)
-      idle = exchange_->step().has_worked ? 0 : idle + 1;
+    for (int idle = 0; idle < kIdle;) {
+      const Exchange::Step step = exchange_->step();
+      load_ += step.load;
+      idle = step.has_worked ? 0 : idle + 1;
+    }
   }
   Attempt other_task(std::uint64_t number) const {
     return test::make_attempt(panda_.digest, "table", number);
@@ -36,6 +43,7 @@ class ExchangeTest : public SiteAndMemory {
   ExchangeOptions options_;
   ExchangeCounts counts_;
   std::vector<std::string> lines_;
+  std::chrono::nanoseconds load_{0};
   std::optional<Positions> positions_;
   std::optional<Exchange> exchange_;
 };
@@ -103,21 +111,34 @@ TEST_F(ExchangeTest, RetirementsGoBothWaysAlsoWhereNoTaskIsUsed) {
 TEST_F(ExchangeTest, AMemoryThatLostWhatItAcknowledgedGetsItAgain) {
   test::report(*site_, {solved(1)});
   exchange();
-  ASSERT_TRUE(memory_->backup(directory_ / "copy.db", [](double) { return true; }).value());
+  // Its machine goes back in time: the same file with its witness, so that it cannot tell itself.
+  const std::vector<std::filesystem::path> files = {directory_ / "memory.db",
+                                                    directory_ / "memory.db.witness"};
+  exchange_.reset();
+  memory_.reset();
+  std::vector<std::string> before;
+  for (const std::filesystem::path& file : files)
+    before.push_back(test::read_text(file));
+  memory_ = store::open_sqlite_store(files[0]);
+  const Uuid epoch = memory_->epoch();
+  connect();
   test::report(*site_, {solved(2)});
   exchange();
   EXPECT_EQ(memory_->status().attempts, 2U);
-  // Under its own name and epoch, as if its machine had gone back in time.
   exchange_.reset();
   memory_.reset();
-  for (const char* const suffix : {"", "-wal", "-shm", ".witness", ".lock"})
-    std::filesystem::remove((directory_ / "memory.db").string() + suffix);
-  std::filesystem::rename(directory_ / "copy.db", directory_ / "memory.db");
-  memory_ = store::open_sqlite_store(directory_ / "memory.db");
+  for (std::size_t i = 0; i < files.size(); ++i)
+    std::ofstream(files[i], std::ios::binary | std::ios::trunc) << before[i];
+  memory_ = store::open_sqlite_store(files[0]);
+  ASSERT_EQ(memory_->epoch(), epoch);
   EXPECT_EQ(memory_->status().attempts, 1U);
+  lines_.clear();
   connect();
   exchange();
   EXPECT_EQ(memory_->status().attempts, 2U);
+  EXPECT_NE(memory_->epoch(), epoch) << "its other sites begin again, too";
+  ASSERT_EQ(lines_.size(), 2U);
+  EXPECT_NE(lines_[0].find("rolled back"), std::string::npos);
 }
 
 TEST_F(ExchangeTest, AnEpochThatChangesWhileConnectedBeginsAgain) {
@@ -170,6 +191,53 @@ TEST_F(ExchangeTest, WhatCameDownIsHandedToTheServerOfTheSite) {
   exchange();
   EXPECT_EQ(all, 20U);
   EXPECT_EQ(most, 3U);
+}
+
+TEST_F(ExchangeTest, ARemovalOfARobotRetiresItsPathsAbove) {
+  test::report(*site_, {solved(1), other_task(2)});
+  exchange();
+  ASSERT_EQ(paths_of(*memory_), 2U);
+  ASSERT_TRUE(site_->remove_robot(panda_.digest));
+  in_use_ = {"shelf"};
+  exchange();
+  EXPECT_EQ(paths_of(*memory_), 0U);
+  EXPECT_TRUE(memory_->find_robot(panda_.digest)) << "other sites may have it";
+  EXPECT_FALSE(site_->find_robot(panda_.digest)) << "what it did does not bring it back";
+  EXPECT_EQ(reports_of(*memory_).size(), 2U);
+}
+
+TEST_F(ExchangeTest, RestsBetweenTwoTransactionsAtTheSite) {
+  constexpr std::uint64_t kPaths = 40;
+  for (std::uint64_t number = 1; number <= kPaths; ++number)
+    test::report(*memory_, {solved(number)});
+  options_.down = {.reports = 20, .commit = 10, .retirements = 8};
+  in_use_ = {"shelf"};
+  std::size_t written = 0, rested = 0;
+  options_.rest = [&](std::chrono::nanoseconds load, const std::stop_token&) {
+    ++rested;
+    load_ += load;
+  };
+  constexpr std::chrono::milliseconds kSlow{1};  // of the site's disk
+  hooks_.commit = [&](std::vector<store::SharedReport> reports, store::Store::ReportsDone done) {
+    ++written;
+    std::this_thread::sleep_for(kSlow);
+    site_->commit_shared(std::move(reports), std::move(done));
+  };
+  exchange();
+  EXPECT_EQ(written, 4U);
+  EXPECT_EQ(rested, 2U) << "and after each page whoever takes the steps";
+  EXPECT_GE(load_, 4 * kSlow) << "for the time that robots here waited, too";
+  rested = 0;
+  load_ = {};
+  ASSERT_TRUE(memory_->reset_task("shelf"));
+  store::TroubledStore slow(*site_);
+  slow.on_exchange = [&] { std::this_thread::sleep_for(kSlow); };
+  exchange_.emplace(slow, *memory_, *positions_, counts_, hooks_, options_);
+  exchange();
+  EXPECT_EQ(paths_of(*site_), 0U);
+  EXPECT_EQ(rested, 5U) << "between five pieces, and before the memory hears what it knows";
+  EXPECT_GE(load_, 2 * 5 * kSlow);
+  exchange_.reset();
 }
 
 TEST_F(ExchangeTest, SendingTakesTurnsWithWhatComesDown) {

@@ -44,12 +44,15 @@ TEST_F(PositionsTest, BeginAgainWithAnotherEpochOfEitherSide) {
                                      std::pair(test::id_from<Uuid>(1), test::id_from<Uuid>(2))}) {
     positions.up = "7";
     positions.passed = 7;
+    positions.up_retired = "8";
+    positions.down_retired = "9";
     positions.mark = {1};
     positions.tasks["shelf"] = {"9", 5};
     positions.refuse({test::id_from<Uuid>(3), "why"}, true);
     positions.save();
     EXPECT_TRUE(positions.begin(site, memory));
     EXPECT_EQ(positions.up + positions.tasks["shelf"].cursor, "");
+    EXPECT_EQ(positions.up_retired + positions.down_retired, "");
     EXPECT_EQ(positions.passed, 0U);
     EXPECT_TRUE(positions.mark.empty());
     EXPECT_EQ(positions.tasks["shelf"].used_ms, 5) << "it is wanted as before";

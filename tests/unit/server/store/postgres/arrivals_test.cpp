@@ -4,11 +4,13 @@
 
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/rows/export_rows.hpp"
+#include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/values/codes.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/unit/server/store/postgres/empty_store.hpp"
 
-/// Exports while several servers commit: ids and transactions become visible out of order.
+/// Exports and feeds while several servers commit: ids and transactions become visible out of
+/// order.
 namespace kinship::store::postgres::arrivals_test {
 namespace {
 
@@ -80,6 +82,47 @@ TEST_F(Arrivals, AnExportMissesNothingThatIsCommittedLate) {
   EXPECT_EQ(rest(second.next_cursor, 2), (Numbers{10, 4, 5, 6}));
   const PairFilter shelf{.robot = {}, .task = "shelf"};
   EXPECT_EQ(rest("", 2, shelf), (Numbers{1, 2, 3, 10, 4, 5, 6}));
+}
+
+TEST_F(Arrivals, AFeedEndsBeforeWhatIsStillOpenAndSkipsNothing) {
+  const auto retire = [](Connection& connection, std::uint64_t number) {
+    connection.query("INSERT INTO retired_report (report_uuid, retired_ms) VALUES ($1, 1)",
+                     Bytes(test::id_from<Uuid>(number).bytes));
+  };
+  /// Behind a cursor, which is moved.
+  const auto arrived = [this](std::string_view task, std::string& cursor) {
+    Numbers numbers;
+    const Feed<ArrivedReport> feed = feed_of_arrivals(*connection_, task, cursor, 100);
+    for (const ArrivedReport& report : feed.rows)
+      numbers.push_back(number_of(report.report_uuid));
+    cursor = feed.cursor;
+    return numbers;
+  };
+  const auto retired = [this](std::string& cursor) {
+    Numbers numbers;
+    const Feed<Uuid> feed = feed_of_retirements(*connection_, cursor, 100);
+    for (const Uuid& report : feed.rows)
+      numbers.push_back(number_of(report));
+    cursor = feed.cursor;
+    return numbers;
+  };
+  insert(1);
+  retire(*connection_, 1);
+  const auto other = connect();
+  Transaction late(*other, Transaction::Kind::Write);
+  insert(*other, 10);
+  retire(*other, 10);
+  insert(2);
+  retire(*connection_, 2);
+  std::string all, shelf, list;
+  EXPECT_EQ(arrived("", all), (Numbers{1}));
+  EXPECT_EQ(arrived("shelf", shelf), (Numbers{1}));
+  EXPECT_EQ(retired(list), (Numbers{1}));
+  ASSERT_EQ(late.commit().certainty, Certainty::Committed);
+  EXPECT_EQ(arrived("", all), (Numbers{10, 2}));
+  EXPECT_EQ(arrived("shelf", shelf), (Numbers{10, 2}));
+  EXPECT_EQ(retired(list), (Numbers{10, 2}));
+  EXPECT_EQ(arrived("", all), Numbers());
 }
 
 TEST_F(Arrivals, TheLastPageHasWhatIsCommittedByNow) {

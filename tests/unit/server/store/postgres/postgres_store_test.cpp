@@ -219,6 +219,37 @@ TEST_F(PostgresStoreTest, GoesOnWhenItsConnectionsAreCut) {
   EXPECT_TRUE(store_->status().writable);
 }
 
+TEST_F(PostgresStoreTest, WhoStopsDoesNotWaitForADatabaseThatDoesNotAnswer) {
+  test::report(*store_, {attempt(1)});
+  const test::PostgresCluster& cluster = FreshDatabases::of_program().cluster();
+  const auto ask = [this](auto question) {
+    return std::async(std::launch::async, [question] {
+      try {
+        question();
+        return std::string("it answered");
+      } catch (const Failure& failure) {
+        return std::string(failure.what());
+      }
+    });
+  };
+  cluster.freeze();
+  std::future<std::string> reading =
+      ask([this] { static_cast<void>(store_->list_arrivals("", "", 1)); });
+  std::future<std::string> writing =
+      ask([this] { store_->retire_reports(std::vector{attempt(1).report_uuid}); });
+  EXPECT_EQ(reading.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  store_->stop_waiting();
+  for (std::future<std::string>* const asked : {&reading, &writing}) {
+    const std::string why = asked->get();
+    EXPECT_NE(why.find("the server is stopping"), std::string::npos) << why;
+  }
+  const std::string later = ask([this] { static_cast<void>(store_->notes("")); }).get();
+  EXPECT_NE(later.find("the server is stopping"), std::string::npos) << later;
+  store_.reset();
+  cluster.thaw();
+  EXPECT_EQ(another()->status().attempts, 1U);
+}
+
 TEST_F(PostgresStoreTest, ADamagedPathIsSetAsideAndComesBackWithItsReport) {
   test::report(*store_, {attempt(1), attempt(2), attempt(3)});
   sql("UPDATE path SET waypoints = set_byte(waypoints, 50, get_byte(waypoints, 50) # 255)"

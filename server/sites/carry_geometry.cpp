@@ -1,0 +1,68 @@
+#include "server/sites/carry_geometry.hpp"
+
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "proto/types/failure.hpp"
+
+namespace kinship::sites {
+namespace {
+
+std::uint64_t revision_of(const std::map<Digest, std::uint64_t>& revisions, const Digest& robot) {
+  const auto found = revisions.find(robot);
+  return found == revisions.end() ? 0 : found->second;
+}
+
+/// Nothing also if its row is damaged: who registers it anew mends that.
+std::optional<store::RobotRecord> find_whole(const store::Store& site, const Digest& robot) {
+  try {
+    return site.find_robot(robot);
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+GeometryExchange::GeometryExchange(store::Store& here, store::Store& above, TakeGeometry take_here,
+                                   TakeGeometry take_above)
+    : here_(here),
+      above_(above),
+      take_here_(std::move(take_here)),
+      take_above_(std::move(take_above)) {}
+
+void GeometryExchange::compare(const Digest& robot) {
+  const std::optional<store::RobotRecord> of_site = find_whole(here_, robot);
+  if (!of_site)
+    return;
+  const std::optional<store::RobotRecord> of_memory = above_.find_robot(robot);
+  if (!of_memory)
+    return;
+  compared_[robot] = {of_site->geometry_revision, of_memory->geometry_revision};
+  if (!take_above_(robot, of_site->description))
+    take_here_(robot, of_memory->description);
+}
+
+void GeometryExchange::compare_new(const Digest& robot) {
+  if (!compared_.contains(robot))
+    compare(robot);
+}
+
+void GeometryExchange::compare_changed() {
+  const std::map<Digest, std::uint64_t> here = here_.geometry_revisions();
+  const std::map<Digest, std::uint64_t> above = above_.geometry_revisions();
+  std::set<Digest> robots;
+  for (const auto& [robot, revision] : here)
+    robots.insert(robot);
+  for (const auto& [robot, revision] : above)
+    robots.insert(robot);
+  for (const Digest& robot : robots) {
+    const auto known = compared_.find(robot);
+    if (known == compared_.end() ||
+        known->second != Revisions(revision_of(here, robot), revision_of(above, robot)))
+      compare(robot);
+  }
+}
+
+}  // namespace kinship::sites

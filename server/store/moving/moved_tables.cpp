@@ -1,0 +1,283 @@
+#include "server/store/moving/moved_tables.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kinship::store::moving {
+namespace {
+
+using enum CellType;
+
+/// A mark of damage in SQLite; what was found before there were times is of 1 ms.
+MovedColumn noticed(const std::string& table, int kind) {
+  return {"damaged_ms", Integer,
+          "(SELECT max(1, noticed_ms) FROM set_aside WHERE kind = " + std::to_string(kind) +
+              " AND set_aside.id = " + table + ".id)",
+          true};
+}
+
+MovedTable robots() {
+  return {.name = "robot",
+          .columns = {{"id"},
+                      {"digest", Blob},
+                      {"label", Text},
+                      {"dof"},
+                      {"base_link", Text},
+                      {"tip_link", Text},
+                      {"T_tip_transfer", Blob},
+                      {"task_axes"},
+                      {"registered_ms"},
+                      {"crc32c"},
+                      {"urdf", Text}}};
+}
+
+MovedTable experience() {
+  MovedTable table{.name = "experience",
+                   .keys = 2,
+                   .columns = {{"task_id"},
+                               {"robot_id"},
+                               {"generation"},
+                               {"retired_generation"},
+                               {"paths"},
+                               {"attempts"},
+                               {"dropped"}}};
+  for (const std::string mode : {"guided", "control"}) {
+    table.columns.push_back({mode + "_attempts"});
+    table.columns.push_back({mode + "_solved"});
+    for (const char* const sum : {"_checks", "_checks_squared", "_checks_of_solved"})
+      table.columns.push_back({mode + sum, Real});
+  }
+  return table;
+}
+
+/// One that was replaced in SQLite has its first id and the content of the last (sqlite_scenes): in
+/// PostgreSQL a content has one row, which is mended.
+MovedTable scenes() {
+  const std::string in_use =
+      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 3 AND set_aside.id = scene.id"
+      " AND replaced_by IS NOT NULL)";
+  return {.name = "scene",
+          .reading = Reading::ById,
+          .columns = {{"id"},
+                      {"content_sha256", Blob},
+                      {"received_ms"},
+                      {"size"},
+                      {"encoding"},
+                      {"crc32c"},
+                      noticed("scene", 3),
+                      {"scene", Blob}},
+          .sqlite_light =
+              "SELECT id, coalesce((SELECT max(1, noticed_ms) FROM set_aside WHERE"
+              " kind = 3 AND set_aside.id = scene.id), 0) FROM scene WHERE " +
+              in_use + " ORDER BY id",
+          .postgres_light = "SELECT id, coalesce(damaged_ms, 0) FROM scene ORDER BY id",
+          .aside_kind = 3};
+}
+
+MovedTable paths() {
+  // Whether one is retired stands behind the waypoints: the indexes know it without a look there.
+  const auto indexed = [](const std::string& index, const std::string& retired,
+                          const std::string& condition) {
+    return "SELECT path.id, " + retired +
+           ", coalesce(max(1, aside.noticed_ms), 0), coalesce(aside.replaced_by, 0)"
+           " FROM path INDEXED BY " +
+           index +
+           " LEFT JOIN set_aside AS aside ON aside.kind = 1 AND aside.id = path.id"
+           " WHERE path.task_id = ?1 AND path.robot_id = ?2 AND path.retired_ms IS " +
+           condition;
+  };
+  const auto aside = [](const std::string& column) {
+    return "(SELECT " + column + " FROM set_aside WHERE kind = 1 AND set_aside.id = path.id)";
+  };
+  return {
+      .name = "path",
+      .reading = Reading::ByPair,
+      .columns = {{"id"},
+                  {"task_id"},
+                  {"robot_id"},
+                  {"report_uuid", Blob},
+                  {"content_sha256", Blob},
+                  {"waypoint_count"},
+                  {"dof"},
+                  {"length", Real},
+                  {"received_ms"},
+                  {"retired_ms", Integer, "coalesce(path.retired_ms, " + aside("retired_ms") + ")"},
+                  noticed("path", 1),
+                  {"replaced_by", Integer, aside("replaced_by"), true},
+                  {"scene_id"},
+                  {"T_task_base", Blob},
+                  {"encoding"},
+                  {"crc32c"},
+                  {"waypoints", Blob}},
+      .sqlite_light = indexed("path_by_task_robot", "aside.retired_ms IS NOT NULL", "NULL") +
+                      " UNION ALL " + indexed("path_retired", "1", "NOT NULL") + " ORDER BY 1",
+      .postgres_light =
+          "SELECT id, (retired_ms IS NOT NULL)::int::bigint, coalesce(damaged_ms, 0),"
+          " coalesce(replaced_by, 0) FROM path"
+          " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
+      .aside_kind = 1};
+}
+
+/// One that is set aside in SQLite stands for nothing: its UUID may come again, as if it were new.
+MovedTable attempts() {
+  const std::string readable =
+      "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 2 AND set_aside.id = attempt.id)";
+  return {.name = "attempt",
+          .reading = Reading::ByPair,
+          .columns = {{"id"},
+                      {"task_id"},
+                      {"robot_id"},
+                      {"report_uuid", Blob},
+                      {"body_sha256", Blob},
+                      {"path_id"},
+                      {"status"},
+                      {"machine", Text},
+                      {"T_task_base", Blob},
+                      {"outcome"},
+                      {"planner", Text},
+                      {"planner_options", Text},
+                      {"planning_time_s", Real},
+                      {"collision_checks"},
+                      {"projections"},
+                      {"time_limit_s", Real},
+                      {"arm"},
+                      {"share", Real},
+                      {"distribution_digest", Blob},
+                      {"distribution_revision"},
+                      {"received_ms"},
+                      {"scene_id"}},
+          .sqlite_condition = readable,
+          .sqlite_light =
+              "SELECT id, status, coalesce(path_id, 0) FROM attempt"
+              " WHERE task_id = ?1 AND robot_id = ?2 AND " +
+              readable + " ORDER BY id",
+          .postgres_light =
+              "SELECT id, status, coalesce(path_id, 0) FROM attempt"
+              " WHERE task_id = $1 AND robot_id = $2 ORDER BY id",
+          .is_in_arrival = true};
+}
+
+constexpr const char* kSoundDistribution =
+    "NOT EXISTS (SELECT 1 FROM set_aside WHERE kind = 4 AND set_aside.id = ";
+
+MovedTable distributions() {
+  const std::string sound = std::string(kSoundDistribution) + "distribution.id)";
+  return {.name = "distribution",
+          .reading = Reading::ById,
+          .columns = {{"id"},
+                      {"digest", Blob},
+                      {"revision"},
+                      {"task_id"},
+                      {"robot_id"},
+                      {"profile", Text},
+                      {"state"},
+                      {"reason", Text},
+                      {"components"},
+                      {"configurations"},
+                      {"paths"},
+                      {"fitted_ms"},
+                      {"crc32c"},
+                      {"payload", Blob}},
+          .sqlite_condition = sound,
+          .sqlite_light =
+              "SELECT id, revision, crc32c FROM distribution WHERE " + sound + " ORDER BY id",
+          .postgres_light = "SELECT id, revision, crc32c FROM distribution ORDER BY id"};
+}
+
+MovedTable uses() {
+  return {.name = "distribution_use",
+          .columns = {{"id"}, {"used_ms"}, {"bytes"}},
+          .sqlite_condition = std::string(kSoundDistribution) +
+                              "distribution_use.id) AND id IN (SELECT id FROM distribution)"};
+}
+
+/// With what is set aside in SQLite: no revision that was given is given again.
+MovedTable evictions() {
+  return {.name = "evicted_distribution",
+          .columns = {{"digest", Blob}, {"revision"}, {"evicted_ms"}},
+          .sqlite_from =
+              "(SELECT digest, max(revision) AS revision, max(evicted_ms) AS evicted_ms FROM"
+              " (SELECT digest, revision, evicted_ms FROM evicted_distribution UNION ALL"
+              " SELECT digest, revision, noticed_ms FROM distribution JOIN set_aside"
+              " ON kind = 4 AND set_aside.id = distribution.id) GROUP BY digest)"};
+}
+
+MovedTable audit() {
+  return {.name = "audit",
+          .reading = Reading::ById,
+          .columns = {{"id"},
+                      {"time_ms"},
+                      {"name", Text},
+                      {"role", Text},
+                      {"client", Text},
+                      {"is_local"},
+                      {"verb", Text},
+                      {"target", Text},
+                      {"outcome"},
+                      {"was", Text},
+                      {"became", Text},
+                      {"message", Text}},
+          .sqlite_light = "SELECT id FROM audit ORDER BY id",
+          .postgres_light = "SELECT id FROM audit ORDER BY id"};
+}
+
+/// Notes, and what keeps revisions growing; epochs, runs and keys belong to one store.
+MovedTable settings() {
+  const std::string moved = "key = 'revision_floor' OR key LIKE 'note:%'";
+  return {.name = "setting",
+          .columns = {{"key", Text}, {"value", Text}},
+          .sqlite_condition = moved,
+          .postgres_condition = moved};
+}
+
+std::vector<MovedTable> all_tables() {
+  return {robots(),
+          {.name = "robot_held_joint",
+           .keys = 2,
+           .columns = {{"robot_id"}, {"joint", Text}, {"position", Real}}},
+          {.name = "robot_never_colliding",
+           .keys = 2,
+           .columns = {{"robot_id"}, {"ordinal"}, {"link_a", Text}, {"link_b", Text}}},
+          {.name = "robot_geometry",
+           .columns = {{"robot_id"}, {"revision"}, {"taken_ms"}, {"mesh_solids", Blob}}},
+          {.name = "task", .columns = {{"id"}, {"name", Text}}},
+          experience(),
+          scenes(),
+          paths(),
+          attempts(),
+          distributions(),
+          uses(),
+          evictions(),
+          audit(),
+          settings(),
+          {.name = "retired_report",
+           .reading = Reading::ById,
+           .columns = {{"id"}, {"report_uuid", Blob}, {"retired_ms"}},
+           .sqlite_light = "SELECT id FROM retired_report ORDER BY id",
+           .postgres_light = "SELECT id FROM retired_report ORDER BY id",
+           .is_in_arrival = true}};
+}
+
+}  // namespace
+
+std::size_t MovedTable::column(const std::string& wanted) const {
+  const auto found = std::ranges::find(columns, wanted, &MovedColumn::name);
+  if (found == columns.end())
+    throw std::logic_error("table " + name + " has no column " + wanted);
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+std::span<const MovedTable> moved_tables() {
+  static const std::vector<MovedTable> tables = all_tables();
+  return tables;
+}
+
+const MovedTable& moved_table(const std::string& name) {
+  const std::span<const MovedTable> tables = moved_tables();
+  const auto found = std::ranges::find(tables, name, &MovedTable::name);
+  if (found == tables.end())
+    throw std::logic_error("there is no table " + name);
+  return *found;
+}
+
+}  // namespace kinship::store::moving

@@ -1,0 +1,287 @@
+#include "server/store/moving/postgres_side.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "server/store/moving/postgres_cells.hpp"
+#include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/database/transaction.hpp"
+#include "server/store/postgres/opening/migrations.hpp"
+#include "server/store/postgres/opening/primary.hpp"
+#include "server/store/postgres/rows/audit_rows.hpp"
+#include "server/store/values/columns.hpp"
+#include "server/store/values/move_marks.hpp"
+
+namespace kinship::store::moving {
+namespace {
+
+constexpr std::string_view kClaim = "moving_run";
+constexpr std::string_view kArrival = "moving_arrival";  // the transaction that all rows came in
+
+std::string listed(const MovedTable& table, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i)
+    text += (i == 0 ? "" : ", ") + table.columns[i].name;
+  return text;
+}
+
+/// "unnest($1::bigint[], $2::bytea[])" of the first columns.
+std::string unnested(const MovedTable& table, std::size_t count) {
+  std::string text = "unnest(";
+  for (std::size_t i = 0; i < count; ++i)
+    text += std::string(i == 0 ? "$" : ", $") + std::to_string(i + 1) +
+            "::" + array_type_of(table.columns[i].type);
+  return text + ")";
+}
+
+/// As the other engine's; what the server keeps of a row's arrival is of one transaction, so that
+/// ids alone order what came from elsewhere.
+std::string upsert_sql(const MovedTable& table) {
+  const std::size_t columns = table.columns.size();
+  const std::string arrival = "$" + std::to_string(columns + 1) + "::text::xid8";
+  std::string sql = "INSERT INTO " + table.name + " (" + listed(table, columns) +
+                    (table.is_in_arrival ? ", arrived_in" : "") + ") SELECT moved.*" +
+                    (table.is_in_arrival ? ", " + arrival : "") + " FROM " +
+                    unnested(table, columns) + " AS moved";
+  if (table.name == "audit")
+    return sql;
+  sql += " ON CONFLICT (" +
+         (table.name == "retired_report" ? "report_uuid" : listed(table, table.keys)) +
+         ") DO UPDATE SET ";
+  for (std::size_t i = table.keys; i < columns; ++i)
+    sql += (i == table.keys ? "" : ", ") + table.columns[i].name + " = excluded." +
+           table.columns[i].name;
+  return sql;
+}
+
+class PostgresSide : public Side {
+ public:
+  explicit PostgresSide(const std::string& url)
+      : primary_(postgres::ConnectionString(url), {.patience = std::chrono::seconds(120)}),
+        name_(primary_.description()),
+        connection_(primary_.connect()) {}
+
+  bool has_store() {
+    return connection_->query("SELECT to_regclass('schema_migration') IS NOT NULL")
+               .front()
+               .column_integer(0) != 0;
+  }
+  void bring_schema() { postgres::migrate(*connection_, postgres::embedded_migrations()); }
+
+  const std::string& name() const override { return name_; }
+
+  Uuid epoch() override {
+    const postgres::Rows rows =
+        connection_->query("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
+    return rows.empty() ? Uuid{} : id_of<Uuid>(rows.front().column_blob(0));
+  }
+
+  void in_snapshot(const std::function<void()>& read) override {
+    const postgres::Transaction snapshot(*connection_, postgres::Transaction::Kind::Snapshot);
+    read();
+  }
+
+  std::vector<MovedRow> all(const MovedTable& table) override {
+    return rows_of(
+        connection_->query("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
+                           (table.postgres_condition.empty() ? "" : " WHERE ") +
+                           table.postgres_condition),
+        table);
+  }
+
+  MovedRow experience_of(const Pair& pair) override {
+    const MovedTable& table = moved_table("experience");
+    const postgres::Rows rows =
+        connection_->query("SELECT " + listed(table, table.columns.size()) +
+                               " FROM experience WHERE task_id = $1 AND robot_id = $2",
+                           pair.task_id, pair.robot_id);
+    return rows.empty() ? MovedRow() : read_row(rows.front(), table);
+  }
+
+  std::vector<MovedRow> of_ids(const MovedTable& table,
+                               std::span<const std::int64_t> ids) override {
+    return rows_of(connection_->query("SELECT " + listed(table, table.columns.size()) + " FROM " +
+                                          table.name + " WHERE id = ANY($1) ORDER BY id",
+                                      std::vector<std::int64_t>(ids.begin(), ids.end())),
+                   table);
+  }
+
+  std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
+    const postgres::Rows found =
+        table.reading == Reading::ByPair
+            ? connection_->query(table.postgres_light, pair.task_id, pair.robot_id)
+            : connection_->query(table.postgres_light);
+    std::vector<LightRow> rows;
+    rows.reserve(static_cast<std::size_t>(found.size()));
+    for (const postgres::Row row : found) {
+      LightRow& light = rows.emplace_back();
+      for (int column = 0; column < found.columns(); ++column)
+        light.at(static_cast<std::size_t>(column)) = row.column_integer(column);
+    }
+    return rows;
+  }
+
+  std::string setting(std::string_view key) override {
+    const postgres::Rows rows = connection_->query("SELECT value FROM setting WHERE key = $1", key);
+    return rows.empty() ? "" : std::string(rows.front().column_text(0));
+  }
+
+  void put_setting(std::string_view key, const std::optional<std::string>& value) override {
+    if (value)
+      connection_->query(
+          "INSERT INTO setting VALUES ($1, $2)"
+          " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
+          key, *value);
+    else
+      connection_->query("DELETE FROM setting WHERE key = $1", key);
+  }
+
+  std::string served_by() override {
+    std::string servers;
+    for (const postgres::Row row : connection_->query(
+             "SELECT name, ceil(extract(epoch FROM alive_until - now()))::bigint FROM server"
+             " WHERE alive_until > now() ORDER BY name, run"))
+      servers += (servers.empty() ? "" : ", ") + std::string(row.column_text(0)) +
+                 " (unless it ended less than 6 s ago: then it counts for another " +
+                 std::to_string(row.column_integer(1)) + " s)";
+    return servers.empty() ? ""
+                           : "store '" + name_ + "' is open in servers, from addresses " + servers;
+  }
+
+  /// Each transaction of reports raises the position of a run.
+  std::string writes_seen() override {
+    return std::string(
+        connection_
+            ->query("SELECT count(*)::text || ' ' || coalesce(sum(position), 0)::text"
+                    " FROM run")
+            .front()
+            .column_text(0));
+  }
+
+  bool has_content() override {
+    return connection_
+               ->query(
+                   "SELECT EXISTS (SELECT FROM robot) OR EXISTS (SELECT FROM attempt) OR"
+                   " EXISTS (SELECT FROM audit) OR EXISTS (SELECT FROM retired_report)")
+               .front()
+               .column_integer(0) != 0;
+  }
+
+  void in_transaction(const std::function<void()>& write) override {
+    in_one(postgres::Transaction::Kind::Local, write);
+  }
+  /// It waits for a standby, and with it for all before.
+  void in_last_transaction(const std::function<void()>& write) override {
+    in_one(postgres::Transaction::Kind::Write, write);
+  }
+
+  void claim() override {
+    claim_.clear();
+    const std::string mine = Uuid::random().text();
+    in_transaction([&] {
+      put_setting(kClaim, mine);
+      if (setting(kArrival).empty())
+        put_setting(
+            kArrival,
+            std::string(
+                connection_->query("SELECT pg_current_xact_id()::text").front().column_text(0)));
+    });
+    claim_ = mine;
+    arrival_ = setting(kArrival);
+  }
+
+  void write(const MovedTable& table, std::span<const MovedRow> rows) override {
+    postgres::Parameters parameters;
+    for (std::size_t column = 0; column < table.columns.size(); ++column)
+      add_column(parameters, rows, column, table.columns[column].type);
+    if (table.is_in_arrival)
+      parameters.add(arrival_);
+    connection_->query(upsert_sql(table), parameters);
+  }
+
+  void erase(const MovedTable& table, std::span<const MovedRow> rows) override {
+    postgres::Parameters parameters;
+    for (std::size_t column = 0; column < table.keys; ++column)
+      add_column(parameters, rows, column, table.columns[column].type);
+    const std::string keys = listed(table, table.keys);
+    connection_->query("DELETE FROM " + table.name + " WHERE (" + keys + ") IN (SELECT * FROM " +
+                           unnested(table, table.keys) + ")",
+                       parameters);
+  }
+
+  /// What servers add next comes behind what was moved.
+  void complete() override {
+    for (const MovedTable& table : moved_tables())
+      if (table.columns.front().name == "id" && table.name != "distribution_use")
+        connection_->query("SELECT setval(pg_get_serial_sequence('" + table.name +
+                           "', 'id'), greatest((SELECT max(id) FROM " + table.name +
+                           "), 1), EXISTS (SELECT FROM " + table.name + "))");
+    put_setting(kClaim, std::nullopt);
+    put_setting(kArrival, std::nullopt);
+  }
+
+  void add_audit(const AuditEntry& entry) override { postgres::insert_audit(*connection_, entry); }
+
+  /// Our tables, and with them that this is one of ours: a move begins anew with the schema.
+  void remove_all() override {
+    claim_.clear();
+    in_transaction([&] {
+      connection_->execute(
+          "DROP TABLE IF EXISTS audit, fit_lease, server, evicted_distribution, distribution_use,"
+          " distribution, retired_report, attempt, path, scene, experience, task, robot_geometry,"
+          " robot_never_colliding, robot_held_joint, gone_robot, robot, run, epoch, setting,"
+          " schema_migration; DROP FUNCTION IF EXISTS audit_is_append_only()");
+    });
+  }
+
+ private:
+  static std::vector<MovedRow> rows_of(const postgres::Rows& found, const MovedTable& table) {
+    std::vector<MovedRow> rows;
+    rows.reserve(static_cast<std::size_t>(found.size()));
+    for (const postgres::Row row : found)
+      rows.push_back(read_row(row, table));
+    return rows;
+  }
+
+  void in_one(postgres::Transaction::Kind kind, const std::function<void()>& write) {
+    postgres::Transaction transaction(*connection_, kind);
+    if (!claim_.empty())
+      require_claim();
+    write();
+    if (const postgres::CommitOutcome outcome = transaction.commit();
+        outcome.certainty != postgres::Certainty::Committed)
+      throw Failure(ErrorCode::Storage, "store '" + name_ + "': " + outcome.why);
+  }
+
+  void require_claim() {
+    const postgres::Rows rows =
+        connection_->query("SELECT value FROM setting WHERE key = $1 FOR SHARE", kClaim);
+    if (rows.empty() || rows.front().column_text(0) != claim_)
+      throw Failure(ErrorCode::Unavailable,
+                    "store '" + name_ + "': another migrate-store fills it now");
+  }
+
+  postgres::Primary primary_;
+  const std::string name_;
+  std::unique_ptr<postgres::Connection> connection_;
+  std::string claim_;
+  std::string arrival_;
+};
+
+}  // namespace
+
+std::unique_ptr<Side> open_postgres_source(const std::string& url) {
+  auto side = std::make_unique<PostgresSide>(url);
+  if (!side->has_store())
+    throw Failure(ErrorCode::NotFound, "store '" + side->name() + "': there is no store in it");
+  side->bring_schema();
+  return side;
+}
+
+std::unique_ptr<Side> open_postgres_target(const std::string& url) {
+  auto side = std::make_unique<PostgresSide>(url);
+  side->bring_schema();
+  return side;
+}
+
+}  // namespace kinship::store::moving

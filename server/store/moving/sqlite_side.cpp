@@ -1,0 +1,403 @@
+#include "server/store/moving/sqlite_side.hpp"
+
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "server/store/moving/sqlite_scenes.hpp"
+#include "server/store/sqlite/database/sqlite_error.hpp"
+#include "server/store/sqlite/database/transaction.hpp"
+#include "server/store/sqlite/database/wal_file.hpp"
+#include "server/store/sqlite/files/lock_file.hpp"
+#include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/files/store_file.hpp"
+#include "server/store/sqlite/opening/connection.hpp"
+#include "server/store/sqlite/opening/history.hpp"
+#include "server/store/sqlite/opening/migrations.hpp"
+#include "server/store/sqlite/opening/seal_store.hpp"
+#include "server/store/sqlite/rows/audit_rows.hpp"
+
+namespace kinship::store::moving {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string joined_with_commas(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts)
+    text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+std::string selected_columns(const MovedTable& table) {
+  std::vector<std::string> columns;
+  for (const MovedColumn& column : table.columns)
+    columns.push_back(column.sqlite.empty() ? column.name : column.sqlite);
+  return joined_with_commas(columns);
+}
+
+Cell read_cell(const Statement& row, int column, CellType type) {
+  if (row.column_is_null(column))
+    return {};
+  switch (type) {
+    case CellType::Integer:
+      return row.column_integer(column);
+    case CellType::Real:
+      return row.column_real(column);
+    case CellType::Text:
+      return std::string(row.column_text(column));
+    case CellType::Blob:
+      break;
+  }
+  const Bytes bytes = row.column_blob(column);
+  return std::string(bytes.begin(), bytes.end());
+}
+
+MovedRow read_row(const Statement& row, const MovedTable& table) {
+  MovedRow cells;
+  cells.reserve(table.columns.size());
+  for (int column = 0; column < std::ssize(table.columns); ++column)
+    cells.push_back(read_cell(row, column, table.columns[static_cast<std::size_t>(column)].type));
+  return cells;
+}
+
+void bind_cell(Statement& statement, int index, const Cell& cell, CellType type) {
+  if (const auto* const integer = std::get_if<std::int64_t>(&cell))
+    statement.bind(index, *integer);
+  else if (const auto* const real = std::get_if<double>(&cell))
+    statement.bind(index, *real);
+  else if (const auto* const text = std::get_if<std::string>(&cell); text == nullptr)
+    statement.bind(index, std::nullopt);
+  else if (type == CellType::Text)
+    statement.bind(index, std::string_view(*text));
+  else
+    statement.bind(index, Bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size()));
+}
+
+/// INSERT of the columns that are the table's own; one that is never changed in place is not
+/// replaced, which the triggers of the audit log would refuse.
+std::string upsert_into(const MovedTable& table) {
+  std::vector<std::string> names, places, keys, changes;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const MovedColumn& column = table.columns[i];
+    if (column.is_aside)
+      continue;
+    names.push_back(column.name);
+    places.emplace_back("?");
+    if (i < table.keys)
+      keys.push_back(column.name);
+    else
+      changes.push_back(column.name + " = excluded." + column.name);
+  }
+  std::string sql = "INSERT INTO " + table.name + " (" + joined_with_commas(names) + ") VALUES (" +
+                    joined_with_commas(places) + ")";
+  if (table.name != "audit")
+    sql += " ON CONFLICT (" + joined_with_commas(keys) + ") DO UPDATE SET " +
+           joined_with_commas(changes);
+  return sql;
+}
+
+class SqliteSide : public Side {
+ public:
+  SqliteSide(const fs::path& file, bool is_target)
+      : file_(file), name_(file.string()), is_target_(is_target) {}
+  ~SqliteSide() override { database_.reset(); }
+
+  /// Of a source. A reader that ends leaves the WAL alone: it may be the server's.
+  void open_source() {
+    static_cast<void>(served_by());
+    open_beside();
+  }
+
+  void open_target() {
+    lock_.emplace(file_);
+    make_for_owner(file_);
+    make_wal_durable(file_);
+    database_ = open_migrated(file_, embedded_migrations());
+    // What a power cut takes of the last seconds is copied again.
+    database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
+    sync_directory_of(file_);
+  }
+
+  const std::string& name() const override { return name_; }
+  Uuid epoch() override { return Uuid::parse(setting("epoch")).value_or(Uuid{}); }
+
+  void in_snapshot(const std::function<void()>& read) override {
+    naming_damage([&] {
+      const Transaction snapshot(*database_, Transaction::Kind::Read);
+      read();
+    });
+  }
+
+  std::vector<MovedRow> all(const MovedTable& table) override {
+    const std::string from = table.sqlite_from.empty() ? table.name : table.sqlite_from;
+    const std::string condition = table.sqlite_condition.empty() ? "TRUE" : table.sqlite_condition;
+    std::vector<MovedRow> rows;
+    naming_damage([&] {
+      const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " + from +
+                                           " WHERE " + condition);
+      while (query->step())
+        rows.push_back(read_row(*query, table));
+    });
+    return rows;
+  }
+
+  MovedRow experience_of(const Pair& pair) override {
+    const MovedTable& table = moved_table("experience");
+    MovedRow row;
+    naming_damage([&] {
+      const auto query = database_->cached("SELECT " + selected_columns(table) +
+                                           " FROM experience WHERE task_id = ? AND robot_id = ?");
+      if (query->bind_all(pair.task_id, pair.robot_id).step())
+        row = read_row(*query, table);
+    });
+    return row;
+  }
+
+  std::vector<MovedRow> of_ids(const MovedTable& table,
+                               std::span<const std::int64_t> ids) override {
+    std::vector<MovedRow> rows;
+    naming_damage([&] {
+      const SqliteScenes scenes(*database_);
+      const bool is_scene = table.name == "scene";
+      const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " +
+                                           table.name + " WHERE id = ?");
+      for (const std::int64_t id : ids) {
+        if (query->bind(1, is_scene ? scenes.last_of(id) : id).step()) {
+          MovedRow& row = rows.emplace_back(read_row(*query, table));
+          if (is_scene)
+            row.front() = id;
+          else
+            name_first_scene(table, row, scenes);
+        }
+        query->reset();
+      }
+    });
+    return rows;
+  }
+
+  std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
+    std::vector<LightRow> rows;
+    naming_damage([&] {
+      const SqliteScenes scenes(*database_);
+      const auto query = database_->cached(table.sqlite_light);
+      if (table.reading == Reading::ByPair)
+        query->bind_all(pair.task_id, pair.robot_id);
+      while (query->step()) {
+        LightRow& row = rows.emplace_back();
+        for (int column = 0; column < std::ssize(row); ++column)
+          row[static_cast<std::size_t>(column)] = query->column_integer(column);
+        if (table.name == "scene")
+          row[0] = scenes.first_of(row[0]);
+      }
+    });
+    std::ranges::sort(rows);
+    return rows;
+  }
+
+  std::string setting(std::string_view key) override {
+    const auto query = database_->cached("SELECT value FROM setting WHERE key = ?");
+    return query->bind(1, key).step() ? std::string(query->column_text(0)) : "";
+  }
+
+  void put_setting(std::string_view key, const std::optional<std::string>& value) override {
+    if (value)
+      database_
+          ->cached(
+              "INSERT INTO setting VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value ="
+              " excluded.value")
+          ->bind_all(key, std::string_view(*value))
+          .run();
+    else
+      database_->cached("DELETE FROM setting WHERE key = ?")->bind(1, key).run();
+  }
+
+  std::string served_by() override {
+    if (lock_)
+      return {};
+    try {
+      lock_.emplace(file_);
+    } catch (const Failure& failure) {
+      if (failure.code() != ErrorCode::Unavailable)
+        throw;
+      return failure.what();
+    }
+    // What a server left in the WAL is read once it is on the disk.
+    database_.reset();
+    make_wal_durable(file_);
+    open_beside();
+    return {};
+  }
+
+  std::string writes_seen() override { return {}; }  // the lock keeps others out
+
+  bool has_content() override {
+    return !setting("epoch").empty() ||
+           database_->integer(
+               "SELECT EXISTS (SELECT 1 FROM robot) OR EXISTS (SELECT 1 FROM attempt) OR"
+               " EXISTS (SELECT 1 FROM audit) OR EXISTS (SELECT 1 FROM retired_report)") != 0;
+  }
+
+  void in_transaction(const std::function<void()>& write) override {
+    if (is_target_)
+      return in_transaction_of(*database_, write);
+    // Of a source only its mark is written, and only while nobody has it open.
+    if (!lock_)
+      throw Failure(ErrorCode::Unavailable, "store '" + name_ + "': a server has it open");
+    database_.reset();
+    database_ = std::make_unique<Database>(file_, Access::ReadWrite);
+    database_->execute("PRAGMA synchronous = FULL");
+    in_transaction_of(*database_, write);
+    database_.reset();
+    open_beside();
+  }
+
+  void in_last_transaction(const std::function<void()>& write) override {
+    if (!is_target_)
+      return in_transaction(write);
+    database_->execute("PRAGMA synchronous = FULL");
+    in_transaction(write);
+    if (!checkpoint(*database_, CheckpointKind::Whole))
+      throw Failure(ErrorCode::Storage,
+                    "store '" + name_ + "': another program reads it and keeps its WAL");
+  }
+
+  void claim() override {}  // the lock is the claim
+
+  void write(const MovedTable& table, std::span<const MovedRow> rows) override {
+    const auto upsert = database_->cached(upsert_into(table));
+    for (const MovedRow& row : rows) {
+      int index = 0;
+      for (std::size_t i = 0; i < row.size(); ++i)
+        if (!table.columns[i].is_aside)
+          bind_cell(*upsert, ++index, row[i], table.columns[i].type);
+      upsert->run();
+      upsert->reset();
+      if (table.aside_kind != 0)
+        write_aside(table, row);
+    }
+  }
+
+  void erase(const MovedTable& table, std::span<const MovedRow> rows) override {
+    std::string condition;
+    for (std::size_t i = 0; i < table.keys; ++i)
+      condition += (i == 0 ? "" : " AND ") + table.columns[i].name + " = ?";
+    const auto erase = database_->cached("DELETE FROM " + table.name + " WHERE " + condition);
+    for (const MovedRow& row : rows) {
+      for (std::size_t i = 0; i < table.keys; ++i)
+        bind_cell(*erase, static_cast<int>(i) + 1, row[i], table.columns[i].type);
+      erase->run();
+      erase->reset();
+    }
+  }
+
+  void complete() override {
+    static_cast<void>(write_new_epoch(*database_, file_));
+    database_->execute(
+        "DELETE FROM same_content;"
+        "INSERT INTO same_content SELECT path_id, report_uuid FROM attempt"
+        " WHERE status = 2 AND path_id IS NOT NULL;"
+        "INSERT OR IGNORE INTO set_aside SELECT 5, id, 1, NULL, NULL, 'its attempt is lost'"
+        " FROM path WHERE NOT EXISTS (SELECT 1 FROM set_aside AS aside WHERE kind = 1"
+        " AND aside.id = path.id) AND NOT EXISTS (SELECT 1 FROM attempt"
+        " WHERE attempt.report_uuid = path.report_uuid AND attempt.path_id = path.id)");
+  }
+
+  void add_audit(const AuditEntry& entry) override { insert_audit(*database_, entry); }
+
+  void remove_all() override {
+    database_.reset();
+    for (const char* const companion : kCompanions)
+      unlink((name_ + companion).c_str());
+    unlink((name_ + ".witness").c_str());
+    if (unlink(name_.c_str()) != 0)
+      refuse_store(file_, "cannot be removed");
+    sync_directory_of(file_);
+  }
+
+ private:
+  void open_beside() {
+    database_ = open_reader(file_);
+    sqlite3_db_config(&database_->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  }
+
+  static void in_transaction_of(Database& database, const std::function<void()>& write) {
+    Transaction transaction(database, Transaction::Kind::Write);
+    write();
+    transaction.commit();
+  }
+
+  template <typename Read>
+  void naming_damage(Read read) const {
+    try {
+      read();
+    } catch (const SqliteError& error) {
+      throw Failure(ErrorCode::Storage,
+                    "store '" + name_ + "': " + error.what() +
+                        (error.is_damage() ? "; a part of it is damaged and cannot be moved: stop "
+                                             "its server, 'kinshipd repair --store " +
+                                                 name_ + "', then go on"
+                                           : ""));
+    }
+  }
+
+  static void name_first_scene(const MovedTable& table, MovedRow& row, const SqliteScenes& scenes) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (table.columns[i].name == "scene_id" && integer_of(row, i) != 0)
+        row[i] = scenes.first_of(integer_of(row, i));
+  }
+
+  void write_aside(const MovedTable& table, const MovedRow& row) {
+    const std::size_t damaged = table.column("damaged_ms");
+    if (integer_of(row, damaged) == 0) {
+      database_->cached("DELETE FROM set_aside WHERE kind = ? AND id = ?")
+          ->bind_all(std::int64_t{table.aside_kind}, integer_of(row, 0))
+          .run();
+      return;
+    }
+    const bool is_path = table.name == "path";
+    const auto insert = database_->cached(
+        "INSERT OR REPLACE INTO set_aside VALUES (?, ?, ?, ?, ?, 'was set aside before a move')");
+    insert->bind_all(std::int64_t{table.aside_kind}, integer_of(row, 0), integer_of(row, damaged));
+    constexpr int kReplacedBy = 4, kRetired = 5;
+    if (is_path) {
+      bind_cell(*insert, kReplacedBy, row[table.column("replaced_by")], CellType::Integer);
+      bind_cell(*insert, kRetired, row[table.column("retired_ms")], CellType::Integer);
+    }
+    insert->run();
+  }
+
+  const fs::path file_;
+  const std::string name_;
+  const bool is_target_;
+  std::optional<LockFile> lock_;
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace
+
+std::unique_ptr<Side> open_sqlite_source(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error))
+    throw Failure(ErrorCode::NotFound, "store '" + file.string() + "': there is no such file");
+  const fs::path located = locate_store(file);
+  {
+    const std::unique_ptr<Database> database = open_reader(located);
+    sqlite3_db_config(&database->connection(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    check_schema(*database, located, embedded_migrations());
+  }
+  auto side = std::make_unique<SqliteSide>(located, false);
+  side->open_source();
+  return side;
+}
+
+std::unique_ptr<Side> open_sqlite_target(const fs::path& file) {
+  auto side = std::make_unique<SqliteSide>(locate_servable(file), true);
+  side->open_target();
+  return side;
+}
+
+}  // namespace kinship::store::moving
