@@ -214,6 +214,57 @@ TEST_F(MigrateStore, KilledAtAnyTimeItGoesOnAndHalfAStoreIsNotServed) {
   EXPECT_EQ(test::differences_of(file_, back_), "");
 }
 
+TEST_F(MigrateStore, KilledWhileItComparesAndClosesTheSourceItGoesOn) {
+  test::make_large_store(file_, 3000);
+  for (const auto& [from, to] : {std::pair(file_, url_), std::pair(url_, back_)}) {
+    test::Program program("kinshipd", arguments(from, to));
+    // The source is closed first; then all is copied, compared, and the target opened.
+    const auto is_closed = [&] {
+      return from == file_
+                 ? test::number_in(file_,
+                                   "SELECT count(*) FROM setting WHERE key ="
+                                   " 'moved_to'") == 1
+                 : number_there("SELECT count(*) FROM setting WHERE key = 'moved_to'") == 1;
+    };
+    while (!is_closed())
+      look_again();
+    program.signal(SIGKILL);
+    ASSERT_EQ(program.wait(), 128 + SIGKILL);
+    EXPECT_TRUE(serve(from).says("was moved to '")) << serve(from).err;
+    const Ended ended = move(from, to);
+    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+    EXPECT_TRUE(move(from, to).says("already"));
+  }
+  EXPECT_EQ(test::differences_of(file_, back_), "");
+}
+
+TEST_F(MigrateStore, ADatabaseThatDiesIsAnErrorToGoOnFrom) {
+  test::make_large_store(file_, 3000);
+  test::PostgresCluster own;
+  const std::string url = own.create_database("own");
+  const auto rows = [&own] {
+    try {
+      return std::stoll(own.query(kAttempts, "own"));
+    } catch (const std::exception&) {
+      return 0LL;
+    }
+  };
+  const fs::path errors = folder_ / "lost";
+  {
+    test::Program program("kinshipd", arguments(file_, url), errors);
+    while (rows() < 500)
+      look_again();
+    own.kill();
+    EXPECT_EQ(program.wait(), 1);
+  }
+  EXPECT_NE(test::read_text(errors), "");
+  EXPECT_EQ(move(file_, url).code, 1);  // it is down
+  own.start();
+  const Ended there = move(file_, url);
+  EXPECT_EQ(there.code, 0) << there.out << there.err;
+  EXPECT_LT(there.out.find("copied "), there.out.find("all rows are the same"));
+}
+
 TEST_F(MigrateStore, HalfAStoreSaysHowToGoOnOrToGiveUp) {
   test::make_large_store(file_, 3000);
   {

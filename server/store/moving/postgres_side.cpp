@@ -216,6 +216,7 @@ class PostgresSide : public Side {
         connection_->query("SELECT setval(pg_get_serial_sequence('" + table.name +
                            "', 'id'), greatest((SELECT max(id) FROM " + table.name +
                            "), 1), EXISTS (SELECT FROM " + table.name + "))");
+    connection_->query("DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) + "%'");
     put_setting(kClaim, std::nullopt);
     put_setting(kArrival, std::nullopt);
   }

@@ -297,6 +297,8 @@ class SqliteSide : public Side {
   void complete() override {
     static_cast<void>(write_new_epoch(*database_, file_));
     database_->execute(
+        "DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) +
+        "%';"
         "DELETE FROM same_content;"
         "INSERT INTO same_content SELECT path_id, report_uuid FROM attempt"
         " WHERE status = 2 AND path_id IS NOT NULL;"
