@@ -143,10 +143,12 @@ TEST_P(StoreSharing, ARetirementIsListedOnceWithAllReportsOfItsContent) {
 TEST_P(StoreSharing, TheRemovalOfARobotRetiresItsPathsForOthersToo) {
   report(solved(1));
   report(test::make_attempt(iiwa_.digest, "shelf", 2));
+  report(test::make_unsolved(panda_.digest, "shelf", 3));
   ASSERT_TRUE(store_->remove_robot(panda_.digest));
   EXPECT_TRUE(is_listed_as_retired(*store_, solved(1).report_uuid));
   EXPECT_FALSE(is_listed_as_retired(*store_, test::id_from<Uuid>(2)));
-  EXPECT_TRUE(store_->read_reports(std::vector{solved(1).report_uuid}, kManyBytes).reports.empty());
+  const std::vector<Uuid> of_panda = {solved(1).report_uuid, test::id_from<Uuid>(3)};
+  EXPECT_TRUE(store_->read_reports(of_panda, kManyBytes).reports.empty());
 }
 
 TEST_P(StoreSharing, WhatAnotherStoreRetiredIsRetiredHere) {
