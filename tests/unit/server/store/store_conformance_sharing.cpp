@@ -153,6 +153,9 @@ TEST_P(StoreSharing, TheRemovalOfARobotRetiresItsPathsForOthersToo) {
 
 TEST_P(StoreSharing, WhatAnotherStoreRetiredIsRetiredHere) {
   report(solved(1));
+  Attempt same = solved(1);
+  same.report_uuid = test::id_from<Uuid>(77);
+  EXPECT_EQ(report(same), ReceiptStatus::Duplicate);
   report(solved(2));
   report(test::make_attempt(iiwa_.digest, "table", 3));
   const std::uint64_t generation = store_->generation(panda_.digest, "shelf");
@@ -166,6 +169,7 @@ TEST_P(StoreSharing, WhatAnotherStoreRetiredIsRetiredHere) {
   EXPECT_GT(store_->generation(panda_.digest, "shelf"), generation);
   EXPECT_TRUE(store_->retire_reports(reports).empty()) << "again";
   EXPECT_TRUE(is_listed_as_retired(*store_, solved(1).report_uuid));
+  EXPECT_TRUE(is_listed_as_retired(*store_, same.report_uuid)) << "of the same content";
 }
 
 TEST_P(StoreSharing, WhatIsRetiredBeforeItComesIsRetiredWhenItComes) {
