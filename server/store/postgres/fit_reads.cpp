@@ -27,7 +27,8 @@ void FitReads::run_began(const Uuid& run, std::int64_t timeline) {
 
 template <typename Value, typename Read, typename IsWhole>
 Value FitReads::read_pair(const Pair& pair, std::uint64_t generation, Read read, IsWhole is_whole) {
-  const auto& [robot, task] = pair;
+  const Digest& robot = pair.first;
+  const std::string& task = pair.second;
   Value value;
   const auto read_replica = [&](Connection& connection) {
     const std::uint64_t has = generation_of(connection, robot, task);
