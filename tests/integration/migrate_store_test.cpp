@@ -69,10 +69,20 @@ class MigrateStore : public testing::Test {
   Ended move(const std::string& from, const std::string& to) const {
     return run(arguments(from, to));
   }
-  /// What a server says that is to serve it.
+  /// What a server says that is to serve it; it is ended if it does.
   Ended serve(const std::string& store) const {
     const test::ReservedDomain domain;
-    return run({"--store", store, "--domain", std::to_string(domain.number())});
+    const fs::path errors = folder_ / "server_errors";
+    fs::remove(errors);
+    test::Program program("kinshipd",
+                          {"--store", store, "--domain", std::to_string(domain.number())}, errors);
+    Ended ended;
+    ended.out = program.read_line();
+    if (ended.out.starts_with("ready "))
+      program.signal(SIGTERM);
+    ended.code = program.wait();
+    ended.err = test::read_text(errors);
+    return ended;
   }
   /// Kills one move after the other, each once `rows` have grown by some, until one ends by itself.
   Ended move_killed(const std::string& from, const std::string& to,
