@@ -88,10 +88,8 @@ void expose_rows(Exposition& page, const store::StoreStatus& store) {
              store.max_paths_per_pair);
 }
 
-/// Of a database that has other hosts.
+/// Of a database that has other hosts; without series if there is none.
 void expose_replicas(Exposition& page, const std::vector<ReplicaUse>& replicas) {
-  if (replicas.empty())
-    return;
   page.family("kinship_replica_readings_total", Type::Counter,
               "Readings of fits by host; what a standby did not answer the primary did.");
   for (const ReplicaUse& replica : replicas) {
