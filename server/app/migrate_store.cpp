@@ -69,8 +69,8 @@ class MoveLine {
 void print_tables(const store::MoveResult& result, std::ostream& out) {
   for (const store::moving::VerifiedTable& table : result.verification.tables) {
     out << "  " << std::left << std::setw(24) << table.name << std::right << std::setw(10)
-        << table.source_rows << " rows" << std::setw(10) << table.target_rows << " there"
-        << "  " << std::hex << std::setfill('0') << std::setw(8) << table.target_digest << std::dec
+        << table.source.rows << " rows" << std::setw(10) << table.target.rows << " there  "
+        << std::hex << std::setfill('0') << std::setw(8) << table.target.digest << std::dec
         << std::setfill(' ');
     if (table.differences > 0)
       out << "  " << table.differences << " differ";
@@ -78,8 +78,14 @@ void print_tables(const store::MoveResult& result, std::ostream& out) {
       out << "  " << table.damaged << " damaged";
     out << '\n';
   }
+}
+
+void print_messages(const store::MoveResult& result, std::ostream& out) {
   for (const std::string& message : result.verification.messages)
     out << message << '\n';
+  if (!result.verification.is_equal())
+    out << result.verification.differences
+        << " rows differ: not done; the source may be served on\n";
 }
 
 std::uint64_t rows_written(const store::MoveResult& result) {
@@ -94,21 +100,20 @@ int print(const store::MoveResult& result, std::ostream& out) {
     out << "'" << result.from << "' was moved to '" << result.to << "' already\n";
     return kDone;
   }
-  out << "copied " << rows_written(result) << " rows from '" << result.from << "' to '" << result.to
-      << "'\n";
+  out << std::fixed << std::setprecision(1) << "copied " << rows_written(result) << " rows from '"
+      << result.from << "' to '" << result.to << "' in " << result.copy_s << " s, compared in "
+      << result.verify_s << " s\n";
   if (!result.served_by.empty()) {
+    print_messages(result, out);
     out << "not done yet: " << result.served_by
-        << "\nStop it and run the same command again: what came during "
-        << "the last copy took " << std::fixed << std::setprecision(1) << result.last_copy_s
-        << " s; then each row is compared\n";
+        << "\nStop it and run the same command again. To bring what came meanwhile took "
+        << result.last_copy_s << " s\n";
     return kFailed;
   }
   print_tables(result, out);
-  if (!result.verification.is_equal()) {
-    out << result.verification.differences
-        << " rows differ: not done; the source may be served on\n";
+  print_messages(result, out);
+  if (!result.verification.is_equal())
     return kFailed;
-  }
   out << "all rows are the same\ndone: serve '" << result.to << "' now; '" << result.from
       << "' is closed to servers, and can be removed\n";
   return kDone;

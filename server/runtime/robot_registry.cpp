@@ -61,10 +61,13 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
   reply.solver = inverse::solver_name(*chain);
   if (const auto refusal = refusal_of_known(reply.robot, may_take))
     return refused(*refusal);
-  const Result<RegisterStatus> status = store_.register_robot({.digest = reply.robot,
-                                                               .description = description,
-                                                               .dof = reply.dof,
-                                                               .registered_ms = now_ms});
+  const bool is_in_memory = store_.is_shared() && find_in_memory(reply.robot) != nullptr;
+  const Result<RegisterStatus> status = is_in_memory
+                                            ? RegisterStatus::Known
+                                            : store_.register_robot({.digest = reply.robot,
+                                                                     .description = description,
+                                                                     .dof = reply.dof,
+                                                                     .registered_ms = now_ms});
   if (!status)
     return refused(status.error());
   // Somebody else may have registered it meanwhile.
@@ -72,13 +75,19 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
     if (const auto refusal = refusal_of_known(reply.robot, may_take))
       return refused(*refusal);
   reply.status = *status;
-  reply.same_arms = same_arms(reply.robot, *chain);
+  reply.same_arms =
+      is_in_memory ? same_arms_in_memory(reply.robot, *chain) : same_arms(reply.robot, *chain);
 
   if (reply.status == RegisterStatus::Registered) {
     const std::lock_guard lock(mutex_);
     robots_.erase(reply.robot);  // of a row that was damaged, and is written anew
   } else {
-    take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+    try {
+      take_geometry(robot_of(description, std::move(chain).value()), description, now_ms, reply);
+    } catch (const Failure&) {
+      if (!is_in_memory)
+        throw;  // else it is known all the same, and its geometry is offered again
+    }
   }
   if (const Result<RobotPointer> known = find(reply.robot)) {
     reply.geometry_grade = known.value()->grade;
@@ -212,6 +221,25 @@ std::vector<std::string> RobotRegistry::same_arms(const Digest& robot,
     } while (!page.next_cursor.empty() && !is_over());
   } catch (const Failure&) {  // the robot is registered; whom it is like can be asked again
   }
+  return labels;
+}
+
+std::vector<std::string> RobotRegistry::same_arms_in_memory(const Digest& robot,
+                                                            const kinematics::Chain& chain) const {
+  std::vector<RobotPointer> others;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [digest, other] : robots_)
+      if (digest != robot && other.robot->chain.dof() == chain.dof() &&
+          others.size() < kMaxSameArms)
+        others.push_back(other.robot);
+  }
+  std::vector<std::string> labels;
+  for (const RobotPointer& other : others)
+    if (!is_stopping_ &&
+        kinematics::compare_arms(chain, other->chain) != kinematics::ArmLikeness::Different)
+      labels.push_back(other->label);
+  std::ranges::sort(labels);
   return labels;
 }
 

@@ -67,6 +67,9 @@ class RobotRegistry {
   ///
   /// It is compared with robots of as many joints, the first kMaxSameArms of them; those that are
   /// not in memory are read.
+  ///
+  /// Where other servers share the store, one that is in memory is known without asking the store,
+  /// and compared with what is in memory: it is answered also while the store cannot be reached.
   /// \param now_ms    Unix time, UTC.
   /// \param may_take  asked with the label under which the robot is known, before anything of it
   ///                  is changed or told; empty: whoever registers a known robot may.
@@ -100,6 +103,10 @@ class RobotRegistry {
   /// asks for it next. \return whether it is there. \throws Failure(Storage)
   bool read_again(const Digest& robot);
 
+  /// The store said that it has no such robot (any more): whoever registers it next is not told
+  /// that it is known.
+  void forget(const Digest& robot) { forget(robot, false); }
+
   /// From memory only; null if it is not there.
   RobotPointer find_in_memory(const Digest& robot) const;
   std::size_t in_memory() const;
@@ -126,6 +133,8 @@ class RobotRegistry {
   std::optional<Error> refusal_of_known(const Digest& robot, const LabelRule& may_take);
   std::optional<std::string> listed_label(const Digest& robot) const;
   std::vector<std::string> same_arms(const Digest& robot, const kinematics::Chain& chain);
+  std::vector<std::string> same_arms_in_memory(const Digest& robot,
+                                               const kinematics::Chain& chain) const;
 
   store::Store& store_;
   const Options options_;

@@ -185,6 +185,8 @@ void Ingest::committed(Batch& batch, const std::vector<Receipt>& receipts) {
     const bool is_stored = receipts[i].status == ReceiptStatus::Stored;
     if (is_stored)
       grown.insert(batch.costs[position].task);
+    if (receipts[i].status == ReceiptStatus::UnknownRobot)
+      robots_.forget(batch.costs[position].robot);  // its client registers it, and is to be heard
     if (is_stored || receipts[i].status == ReceiptStatus::Recorded)
       options_.on_kept(batch.client, batch.costs[position].task,
                        is_stored ? batch.path_bytes[position] : 0);

@@ -111,7 +111,7 @@ CarriedReports carry_reports(const Way& way, std::span<const Uuid> reports, std:
     throw_if_stopped(way);
     store::SharedReports read =
         way.from.read_reports(reports.first(std::min(reports.size(), piece.commit)), piece.bytes);
-    // Only now: what is retired by then includes what was retired before any of these came.
+    // Only now: what is retired by then includes what was retired before any of these was listed.
     carry_retirements(way, retired, piece);
     carried.left_out += read.looked_at - read.reports.size();
     count(commit(way, with_robots(way, std::move(read.reports), carried)), carried);

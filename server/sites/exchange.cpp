@@ -58,10 +58,11 @@ TakeGeometry Exchange::take_with_registry(store::Store& store) const {
   };
 }
 
-/// Once a connection: if it is removed meanwhile, its next report says so, and ends the connection.
+/// Over the line once a connection: if it is removed above meanwhile, its next report says so, and
+/// ends the connection.
 std::optional<Error> Exchange::bring_robot(store::Store& from, store::Store& to,
                                            const Digest& robot) {
-  if (robots_of_both_.contains(robot))
+  if (robots_of_both_.contains(robot) && site_.find_robot(robot))
     return std::nullopt;
   if (std::optional<Error> error = carry_robot(from, to, robot))
     return error;

@@ -268,6 +268,9 @@ class Store {
   virtual Result<Retirement> reset_task(std::string_view task, const std::stop_token& stop = {},
                                         const AuditEntry* audit = nullptr) = 0;
 
+  /// Whether other servers may have it open, too: then whoever asks it may have to wait for another
+  /// machine, and changes_since() tells what the others did.
+  virtual bool is_shared() const { return false; }
   /// What was changed since a look, by this server or another of the same store; what is on its way
   /// meanwhile is in the next look. Something may be told twice.
   /// \param cursor  of the look before; empty: from now on, nothing is told.

@@ -26,6 +26,7 @@ NOT_RUN = re.compile(r"not run in the tests: \S+ \S+")
 EXIT_CODE = re.compile(r"exit code (\d+)")
 FIRST_LINE = "the first line of: "
 BESIDE = "in a terminal of its own"
+IN_THAT_TERMINAL = "in that terminal"  # the one before: Control-C
 
 
 class DocumentRun:
@@ -77,7 +78,10 @@ class DocumentRun:
         """:return: false if a command failed."""
         commands = block.commands()
         exit_code = EXIT_CODE.fullmatch(block.mark)
-        if not commands:
+        if block.mark == IN_THAT_TERMINAL and block.lines == ["^C"]:
+            if code := self._terminal.interrupt():
+                self._fail(block.line, f"exit code {code} of what was interrupted")
+        elif not commands:
             self._fail(block.line, "a console block without a command: it begins with '$ '")
         elif block.mark == BESIDE:
             for command in commands:

@@ -48,6 +48,13 @@ class Runs(unittest.TestCase):
         failures = self.failures("<!-- in a terminal of its own -->\n```console\n$ echo no\nready\n```\n")
         self.assertRegex(failures[0], r"-ready\n\+no")
 
+    def test_what_stays_can_be_interrupted(self):
+        beside = "<!-- in a terminal of its own -->\n```console\n$ bash -c 'trap \"touch ended; exit %d\" INT; echo on; while :; do sleep 0.1; done'\non\n```\n"
+        interrupt = "\n<!-- in that terminal -->\n```console\n^C\n```\n\n```console\n$ ls ended\nended\n```\n"
+        self.assertEqual(self.failures(beside % 0 + interrupt), [])
+        (failure,) = self.failures(beside % 4 + interrupt)
+        self.assertRegex(failure, "exit code 4 of what was interrupted")
+
     def test_json_is_compared_as_json(self):
         text = "<!-- the first line of: echo '[1, 2]' -->\n```json\n[1,\n %s]\n```\n"
         self.assertEqual(self.failures(text % 2), [])

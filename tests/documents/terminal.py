@@ -64,14 +64,20 @@ class Terminal:
             self._beside.append((process, rest))
         return lines
 
+    def interrupt(self) -> int:
+        """Control-C in the terminal that was begun last. :return: exit code"""
+        process, rest = self._beside.pop()
+        process.send_signal(signal.SIGINT)
+        code = process.wait()
+        rest.join()
+        process.stdout.close()
+        return code
+
     def close(self) -> "list[int]":
         """Ends everything. :return: exit codes of what was started beside, which Control-C ends."""
         codes = []
-        for process, rest in reversed(self._beside):
-            process.send_signal(signal.SIGINT)
-            codes.append(process.wait())
-            rest.join()
-            process.stdout.close()
+        while self._beside:
+            codes.append(self.interrupt())
         self._shell.stdin.close()
         self._kill()
         self._shell.wait()

@@ -69,10 +69,20 @@ class MigrateStore : public testing::Test {
   Ended move(const std::string& from, const std::string& to) const {
     return run(arguments(from, to));
   }
-  /// What a server says that is to serve it.
+  /// What a server says that is to serve it; it is ended if it does.
   Ended serve(const std::string& store) const {
     const test::ReservedDomain domain;
-    return run({"--store", store, "--domain", std::to_string(domain.number())});
+    const fs::path errors = folder_ / "server_errors";
+    fs::remove(errors);
+    test::Program program("kinshipd",
+                          {"--store", store, "--domain", std::to_string(domain.number())}, errors);
+    Ended ended;
+    ended.out = program.read_line();
+    if (ended.out.starts_with("ready "))
+      program.signal(SIGTERM);
+    ended.code = program.wait();
+    ended.err = test::read_text(errors);
+    return ended;
   }
   /// Kills one move after the other, each once `rows` have grown by some, until one ends by itself.
   Ended move_killed(const std::string& from, const std::string& to,
@@ -212,6 +222,57 @@ TEST_F(MigrateStore, KilledAtAnyTimeItGoesOnAndHalfAStoreIsNotServed) {
   EXPECT_EQ(back.code, 0) << back.out << back.err;
   EXPECT_GE(kills, kills_there + 3);
   EXPECT_EQ(test::differences_of(file_, back_), "");
+}
+
+TEST_F(MigrateStore, KilledWhileItComparesAndClosesTheSourceItGoesOn) {
+  test::make_large_store(file_, 3000);
+  for (const auto& [from, to] : {std::pair(file_, url_), std::pair(url_, back_)}) {
+    test::Program program("kinshipd", arguments(from, to));
+    // The source is closed first; then all is copied, compared, and the target opened.
+    const auto is_closed = [&] {
+      return from == file_
+                 ? test::number_in(file_,
+                                   "SELECT count(*) FROM setting WHERE key ="
+                                   " 'moved_to'") == 1
+                 : number_there("SELECT count(*) FROM setting WHERE key = 'moved_to'") == 1;
+    };
+    while (!is_closed())
+      look_again();
+    program.signal(SIGKILL);
+    ASSERT_EQ(program.wait(), 128 + SIGKILL);
+    EXPECT_TRUE(serve(from).says("was moved to '")) << serve(from).err;
+    const Ended ended = move(from, to);
+    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+    EXPECT_TRUE(move(from, to).says("already"));
+  }
+  EXPECT_EQ(test::differences_of(file_, back_), "");
+}
+
+TEST_F(MigrateStore, ADatabaseThatDiesIsAnErrorToGoOnFrom) {
+  test::make_large_store(file_, 3000);
+  test::PostgresCluster own;
+  const std::string url = own.create_database("own");
+  const auto rows = [&own] {
+    try {
+      return std::stoll(own.query(kAttempts, "own"));
+    } catch (const std::exception&) {
+      return 0LL;
+    }
+  };
+  const fs::path errors = folder_ / "lost";
+  {
+    test::Program program("kinshipd", arguments(file_, url), errors);
+    while (rows() < 500)
+      look_again();
+    own.kill();
+    EXPECT_EQ(program.wait(), 1);
+  }
+  EXPECT_NE(test::read_text(errors), "");
+  EXPECT_EQ(move(file_, url).code, 1);  // it is down
+  own.start();
+  const Ended there = move(file_, url);
+  EXPECT_EQ(there.code, 0) << there.out << there.err;
+  EXPECT_LT(there.out.find("copied "), there.out.find("all rows are the same"));
 }
 
 TEST_F(MigrateStore, HalfAStoreSaysHowToGoOnOrToGiveUp) {

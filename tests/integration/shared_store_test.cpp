@@ -193,6 +193,28 @@ TEST_F(SharedStore, AServerThatJoinsServesWhatOthersMadeAtOnce) {
   EXPECT_LT(joined_s, 20);  // mostly well below 1; the machine may have other work
 }
 
+TEST_F(SharedStore, WithoutItsDatabaseAServerKnowsItsRobotsAndServesWhatIsInMemory) {
+  one_->report(panda_, 1, 8);
+  const FetchReply made = one_->fetch(ur10e_);
+  ASSERT_EQ(made.status, FetchStatus::Ready) << made.message;
+  ASSERT_EQ(one_->register_model("ur10e").status, RegisterStatus::Known);
+  const auto is_served = [&] {
+    const auto began = Clock::now();
+    const RegisterReply known = one_->register_model("ur10e");
+    EXPECT_EQ(known.status, RegisterStatus::Known) << known.message;
+    const FetchReply reply = one_->fetch(ur10e_);
+    EXPECT_EQ(reply.status, FetchStatus::Ready) << reply.message;
+    std::cout << "without the database a robot and its distribution took " << seconds_since(began)
+              << " s\n";
+    EXPECT_LT(seconds_since(began), 4);  // whoever asks the database waits for 10 s
+  };
+  cluster_->freeze();
+  is_served();
+  cluster_->thaw();
+  cluster_->kill();
+  is_served();
+}
+
 TEST_F(SharedStore, ThePasswordOfTheDatabaseIsSaidToNobodyAlsoWhenItCannotBeReached) {
   const std::unique_ptr<test::Cell> third =
       cell("third", url_ + (url_.find('?') == std::string::npos ? "?" : "&") + "password=s3cret");

@@ -14,6 +14,11 @@ namespace kinship::store {
 namespace {
 
 using moving::Side;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 constexpr std::string_view kMovingEpoch = "moving_epoch";  // target: of the source, when it began
 constexpr std::string_view kMovedFrom = "moved_from";      // target: once it is done
@@ -56,6 +61,13 @@ class Move {
     require_or_begin_target();
     if (std::string server = source_.served_by(); !server.empty()) {
       copy_beside_server();
+      compare([this](const moving::RowsDone& rows_done) {
+        return moving::verify_beside_server(source_, target_, rows_done);
+      });
+      if (!result_.verification.is_equal()) {
+        result_.served_by = std::move(server);
+        return std::move(result_);
+      }
       // It may have ended meanwhile.
       if (server = source_.served_by(); !server.empty()) {
         result_.served_by = std::move(server);
@@ -111,15 +123,24 @@ class Move {
   }
 
   void copy() {
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     moving::Copying copying(source_, target_, [&](std::uint64_t rows, std::uint64_t total) {
       options_.progress({MoveStep::Copying, rows, total});
     });
     copying.run();
     for (const auto& [table, rows] : copying.written())
       result_.written[table] += rows;
-    result_.last_copy_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result_.last_copy_s = seconds_since(begin);
+    result_.copy_s += result_.last_copy_s;
+  }
+
+  template <typename Verify>
+  void compare(Verify verify) {
+    const auto begin = Clock::now();
+    result_.verification = verify([&](std::uint64_t rows, std::uint64_t total) {
+      options_.progress({MoveStep::Verifying, rows, total});
+    });
+    result_.verify_s += seconds_since(begin);
   }
 
   /// Nobody serves the source. It is closed first, so that nobody will.
@@ -129,10 +150,9 @@ class Move {
       const std::string writes = source_.writes_seen();
       require_unserved(writes);
       copy();
-      result_.verification =
-          moving::verify(source_, target_, [&](std::uint64_t rows, std::uint64_t total) {
-            options_.progress({MoveStep::Verifying, rows, total});
-          });
+      compare([this](const moving::RowsDone& rows_done) {
+        return moving::verify(source_, target_, rows_done);
+      });
       require_unserved(writes);
     } catch (...) {
       reopen_source();

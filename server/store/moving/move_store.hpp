@@ -30,9 +30,11 @@ struct MoveResult {
   /// Who serves the source: then what it has now was copied, and the move is not done. Empty: all
   /// was compared, and if it is equal the target may be served, the source not any more.
   std::string served_by;
+  double copy_s = 0;       ///< all copies of this call
   double last_copy_s = 0;  ///< how long what came during the copy before took
-  bool was_done = false;   ///< before this call, which did nothing
-  moving::Verification verification;
+  double verify_s = 0;
+  bool was_done = false;              ///< before this call, which did nothing
+  moving::Verification verification;  ///< beside a server: of what did not change meanwhile
 };
 
 /// Brings a store to another place. It may be called again at any time, after whatever ended it:

@@ -62,17 +62,14 @@ class PostgresSide : public Side {
         connection_(primary_.connect()) {}
 
   bool has_store() {
-    return connection_->query("SELECT to_regclass('schema_migration') IS NOT NULL")
-               .front()
-               .column_integer(0) != 0;
+    return run("SELECT to_regclass('schema_migration') IS NOT NULL").front().column_integer(0) != 0;
   }
   void bring_schema() { postgres::migrate(*connection_, postgres::embedded_migrations()); }
 
   const std::string& name() const override { return name_; }
 
   Uuid epoch() override {
-    const postgres::Rows rows =
-        connection_->query("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
+    const postgres::Rows rows = run("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");
     return rows.empty() ? Uuid{} : id_of<Uuid>(rows.front().column_blob(0));
   }
 
@@ -83,34 +80,31 @@ class PostgresSide : public Side {
 
   std::vector<MovedRow> all(const MovedTable& table) override {
     return rows_of(
-        connection_->query("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
-                           (table.postgres_condition.empty() ? "" : " WHERE ") +
-                           table.postgres_condition),
+        run("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
+            (table.postgres_condition.empty() ? "" : " WHERE ") + table.postgres_condition),
         table);
   }
 
   MovedRow experience_of(const Pair& pair) override {
     const MovedTable& table = moved_table("experience");
-    const postgres::Rows rows =
-        connection_->query("SELECT " + listed(table, table.columns.size()) +
-                               " FROM experience WHERE task_id = $1 AND robot_id = $2",
-                           pair.task_id, pair.robot_id);
+    const postgres::Rows rows = run("SELECT " + listed(table, table.columns.size()) +
+                                        " FROM experience WHERE task_id = $1 AND robot_id = $2",
+                                    pair.task_id, pair.robot_id);
     return rows.empty() ? MovedRow() : read_row(rows.front(), table);
   }
 
   std::vector<MovedRow> of_ids(const MovedTable& table,
                                std::span<const std::int64_t> ids) override {
-    return rows_of(connection_->query("SELECT " + listed(table, table.columns.size()) + " FROM " +
-                                          table.name + " WHERE id = ANY($1) ORDER BY id",
-                                      std::vector<std::int64_t>(ids.begin(), ids.end())),
+    return rows_of(run("SELECT " + listed(table, table.columns.size()) + " FROM " + table.name +
+                           " WHERE id = ANY($1) ORDER BY id",
+                       std::vector<std::int64_t>(ids.begin(), ids.end())),
                    table);
   }
 
   std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
-    const postgres::Rows found =
-        table.reading == Reading::ByPair
-            ? connection_->query(table.postgres_light, pair.task_id, pair.robot_id)
-            : connection_->query(table.postgres_light);
+    const postgres::Rows found = table.reading == Reading::ByPair
+                                     ? run(table.postgres_light, pair.task_id, pair.robot_id)
+                                     : run(table.postgres_light);
     std::vector<LightRow> rows;
     rows.reserve(static_cast<std::size_t>(found.size()));
     for (const postgres::Row row : found) {
@@ -122,24 +116,23 @@ class PostgresSide : public Side {
   }
 
   std::string setting(std::string_view key) override {
-    const postgres::Rows rows = connection_->query("SELECT value FROM setting WHERE key = $1", key);
+    const postgres::Rows rows = run("SELECT value FROM setting WHERE key = $1", key);
     return rows.empty() ? "" : std::string(rows.front().column_text(0));
   }
 
   void put_setting(std::string_view key, const std::optional<std::string>& value) override {
     if (value)
-      connection_->query(
-          "INSERT INTO setting VALUES ($1, $2)"
+      run("INSERT INTO setting VALUES ($1, $2)"
           " ON CONFLICT (key) DO UPDATE SET value = excluded.value",
           key, *value);
     else
-      connection_->query("DELETE FROM setting WHERE key = $1", key);
+      run("DELETE FROM setting WHERE key = $1", key);
   }
 
   std::string served_by() override {
     std::string servers;
-    for (const postgres::Row row : connection_->query(
-             "SELECT name, ceil(extract(epoch FROM alive_until - now()))::bigint FROM server"
+    for (const postgres::Row row :
+         run("SELECT name, ceil(extract(epoch FROM alive_until - now()))::bigint FROM server"
              " WHERE alive_until > now() ORDER BY name, run"))
       servers += (servers.empty() ? "" : ", ") + std::string(row.column_text(0)) +
                  " (unless it ended less than 6 s ago: then it counts for another " +
@@ -150,19 +143,15 @@ class PostgresSide : public Side {
 
   /// Each transaction of reports raises the position of a run.
   std::string writes_seen() override {
-    return std::string(
-        connection_
-            ->query("SELECT count(*)::text || ' ' || coalesce(sum(position), 0)::text"
-                    " FROM run")
-            .front()
-            .column_text(0));
+    return std::string(run("SELECT count(*)::text || ' ' || coalesce(sum(position), 0)::text"
+                           " FROM run")
+                           .front()
+                           .column_text(0));
   }
 
   bool has_content() override {
-    return connection_
-               ->query(
-                   "SELECT EXISTS (SELECT FROM robot) OR EXISTS (SELECT FROM attempt) OR"
-                   " EXISTS (SELECT FROM audit) OR EXISTS (SELECT FROM retired_report)")
+    return run("SELECT EXISTS (SELECT FROM robot) OR EXISTS (SELECT FROM attempt) OR"
+               " EXISTS (SELECT FROM audit) OR EXISTS (SELECT FROM retired_report)")
                .front()
                .column_integer(0) != 0;
   }
@@ -181,10 +170,8 @@ class PostgresSide : public Side {
     in_transaction([&] {
       put_setting(kClaim, mine);
       if (setting(kArrival).empty())
-        put_setting(
-            kArrival,
-            std::string(
-                connection_->query("SELECT pg_current_xact_id()::text").front().column_text(0)));
+        put_setting(kArrival,
+                    std::string(run("SELECT pg_current_xact_id()::text").front().column_text(0)));
     });
     claim_ = mine;
     arrival_ = setting(kArrival);
@@ -196,7 +183,7 @@ class PostgresSide : public Side {
       add_column(parameters, rows, column, table.columns[column].type);
     if (table.is_in_arrival)
       parameters.add(arrival_);
-    connection_->query(upsert_sql(table), parameters);
+    run(upsert_sql(table), parameters);
   }
 
   void erase(const MovedTable& table, std::span<const MovedRow> rows) override {
@@ -204,18 +191,19 @@ class PostgresSide : public Side {
     for (std::size_t column = 0; column < table.keys; ++column)
       add_column(parameters, rows, column, table.columns[column].type);
     const std::string keys = listed(table, table.keys);
-    connection_->query("DELETE FROM " + table.name + " WHERE (" + keys + ") IN (SELECT * FROM " +
-                           unnested(table, table.keys) + ")",
-                       parameters);
+    run("DELETE FROM " + table.name + " WHERE (" + keys + ") IN (SELECT * FROM " +
+            unnested(table, table.keys) + ")",
+        parameters);
   }
 
   /// What servers add next comes behind what was moved.
   void complete() override {
     for (const MovedTable& table : moved_tables())
       if (table.columns.front().name == "id" && table.name != "distribution_use")
-        connection_->query("SELECT setval(pg_get_serial_sequence('" + table.name +
-                           "', 'id'), greatest((SELECT max(id) FROM " + table.name +
-                           "), 1), EXISTS (SELECT FROM " + table.name + "))");
+        run("SELECT setval(pg_get_serial_sequence('" + table.name +
+            "', 'id'), greatest((SELECT max(id) FROM " + table.name +
+            "), 1), EXISTS (SELECT FROM " + table.name + "))");
+    run("DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) + "%'");
     put_setting(kClaim, std::nullopt);
     put_setting(kArrival, std::nullopt);
   }
@@ -235,6 +223,16 @@ class PostgresSide : public Side {
   }
 
  private:
+  /// What fails says in which store.
+  template <typename... Values>
+  postgres::Rows run(std::string_view sql, const Values&... values) {
+    try {
+      return connection_->query(sql, values...);
+    } catch (const postgres::PostgresError& error) {
+      throw Failure(error.code(), "store '" + name_ + "': " + error.what());
+    }
+  }
+
   static std::vector<MovedRow> rows_of(const postgres::Rows& found, const MovedTable& table) {
     std::vector<MovedRow> rows;
     rows.reserve(static_cast<std::size_t>(found.size()));
@@ -254,8 +252,7 @@ class PostgresSide : public Side {
   }
 
   void require_claim() {
-    const postgres::Rows rows =
-        connection_->query("SELECT value FROM setting WHERE key = $1 FOR SHARE", kClaim);
+    const postgres::Rows rows = run("SELECT value FROM setting WHERE key = $1 FOR SHARE", kClaim);
     if (rows.empty() || rows.front().column_text(0) != claim_)
       throw Failure(ErrorCode::Unavailable,
                     "store '" + name_ + "': another migrate-store fills it now");

@@ -14,6 +14,9 @@
 
 namespace kinship::store::moving {
 
+/// Settings of a target that begin so are gone once the move is done.
+inline constexpr std::string_view kPairRecord = "moving_pair.";
+
 /// A store that is read from, or filled, row by row, past the interface that servers have. Used by
 /// one thread. What is written is in a transaction. Methods throw Failure(Storage).
 class Side {

@@ -126,7 +126,7 @@ class SqliteSide : public Side {
   Uuid epoch() override { return Uuid::parse(setting("epoch")).value_or(Uuid{}); }
 
   void in_snapshot(const std::function<void()>& read) override {
-    naming_damage([&] {
+    naming_store([&] {
       const Transaction snapshot(*database_, Transaction::Kind::Read);
       read();
     });
@@ -136,7 +136,7 @@ class SqliteSide : public Side {
     const std::string from = table.sqlite_from.empty() ? table.name : table.sqlite_from;
     const std::string condition = table.sqlite_condition.empty() ? "TRUE" : table.sqlite_condition;
     std::vector<MovedRow> rows;
-    naming_damage([&] {
+    naming_store([&] {
       const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " + from +
                                            " WHERE " + condition);
       while (query->step())
@@ -148,7 +148,7 @@ class SqliteSide : public Side {
   MovedRow experience_of(const Pair& pair) override {
     const MovedTable& table = moved_table("experience");
     MovedRow row;
-    naming_damage([&] {
+    naming_store([&] {
       const auto query = database_->cached("SELECT " + selected_columns(table) +
                                            " FROM experience WHERE task_id = ? AND robot_id = ?");
       if (query->bind_all(pair.task_id, pair.robot_id).step())
@@ -160,7 +160,7 @@ class SqliteSide : public Side {
   std::vector<MovedRow> of_ids(const MovedTable& table,
                                std::span<const std::int64_t> ids) override {
     std::vector<MovedRow> rows;
-    naming_damage([&] {
+    naming_store([&] {
       const SqliteScenes scenes(*database_);
       const bool is_scene = table.name == "scene";
       const auto query = database_->cached("SELECT " + selected_columns(table) + " FROM " +
@@ -181,7 +181,7 @@ class SqliteSide : public Side {
 
   std::vector<LightRow> light(const MovedTable& table, const Pair& pair) override {
     std::vector<LightRow> rows;
-    naming_damage([&] {
+    naming_store([&] {
       const SqliteScenes scenes(*database_);
       const auto query = database_->cached(table.sqlite_light);
       if (table.reading == Reading::ByPair)
@@ -243,7 +243,7 @@ class SqliteSide : public Side {
 
   void in_transaction(const std::function<void()>& write) override {
     if (is_target_)
-      return in_transaction_of(*database_, write);
+      return naming_store([&] { in_transaction_of(*database_, write); });
     // Of a source only its mark is written, and only while nobody has it open.
     if (!lock_)
       throw Failure(ErrorCode::Unavailable, "store '" + name_ + "': a server has it open");
@@ -297,6 +297,8 @@ class SqliteSide : public Side {
   void complete() override {
     static_cast<void>(write_new_epoch(*database_, file_));
     database_->execute(
+        "DELETE FROM setting WHERE key LIKE '" + std::string(kPairRecord) +
+        "%';"
         "DELETE FROM same_content;"
         "INSERT INTO same_content SELECT path_id, report_uuid FROM attempt"
         " WHERE status = 2 AND path_id IS NOT NULL;"
@@ -331,7 +333,7 @@ class SqliteSide : public Side {
   }
 
   template <typename Read>
-  void naming_damage(Read read) const {
+  void naming_store(Read read) const {
     try {
       read();
     } catch (const SqliteError& error) {

@@ -15,23 +15,6 @@ namespace {
 constexpr std::size_t kRowsCompared = 128;  // at once; of 4 MB at most
 constexpr std::size_t kMaxMessages = 10;    // of a table
 
-std::uint32_t add_to_digest(std::uint32_t digest, const MovedRow& row) {
-  const auto add = [&](const void* bytes, std::size_t size) {
-    digest = crc32c({static_cast<const std::uint8_t*>(bytes), size}, digest);
-  };
-  for (const Cell& cell : row) {
-    const std::uint64_t kind = cell.index();
-    add(&kind, sizeof kind);
-    if (const auto* const text = std::get_if<std::string>(&cell))
-      add(text->data(), text->size());
-    else if (const auto* const real = std::get_if<double>(&cell))
-      add(real, sizeof *real);
-    else if (const auto* const integer = std::get_if<std::int64_t>(&cell))
-      add(integer, sizeof *integer);
-  }
-  return digest;
-}
-
 /// The names of the columns that are not the same; empty: it is one row. Numbers by their bits.
 std::string differing_columns(const MovedTable& table, const MovedRow& source,
                               const MovedRow& target) {
@@ -70,13 +53,21 @@ class Comparison {
       else
         compare(*one, *other);
       if (order <= 0)
-        count(*one++, found_.source_rows, found_.source_digest);
+        count(*one++, found_.source);
       if (order >= 0)
-        count(*other++, found_.target_rows, found_.target_digest);
+        count(*other++, found_.target);
     }
   }
 
-  void end() { verification_.tables.push_back(found_); }
+  /// Rows of which ids and states alone are compared.
+  void add_light(const std::vector<LightRow>& source, const std::vector<LightRow>& target) {
+    if (source == target)
+      return;
+    differ(table_.name + ": of " + std::to_string(source.size()) +
+           " rows that were the same when they were compared first, some are not now");
+  }
+
+  const VerifiedTable& found() const noexcept { return found_; }
 
  private:
   int order_of(const MovedRow& one, const MovedRow& other) const {
@@ -86,9 +77,9 @@ class Comparison {
     return 0;
   }
 
-  static void count(const MovedRow& row, std::uint64_t& rows, std::uint32_t& digest) {
-    ++rows;
-    digest = add_to_digest(digest, row);
+  static void count(const MovedRow& row, RowsSum& sum) {
+    ++sum.rows;
+    sum.digest = digest_of(row, sum.digest);
   }
 
   void compare(const MovedRow& source, const MovedRow& target) {
@@ -122,24 +113,54 @@ std::vector<std::int64_t> ids_of_either(const std::vector<LightRow>& one,
   return ids;
 }
 
+RowsSum& operator+=(RowsSum& sum, const RowsSum& more) {
+  sum.rows += more.rows;
+  sum.digest =
+      crc32c({reinterpret_cast<const std::uint8_t*>(&more.digest), sizeof more.digest}, sum.digest);
+  return sum;
+}
+
 /// The comparison of all tables, under way.
 class Verifier {
  public:
   Verifier(Side& source, Side& target, const RowsDone& rows_done)
-      : source_(source), target_(target), rows_done_(rows_done) {}
+      : source_(source), target_(target), rows_done_(rows_done), records_(target) {
+    for (const MovedTable& table : moved_tables())
+      verification_.tables.push_back({.name = table.name});
+    list_pairs();
+  }
 
   Verification run() {
-    const std::vector<Pair> pairs = pairs_of_either();
     for (const MovedTable& table : moved_tables()) {
-      Comparison comparison(table, verification_);
+      if (table.reading == Reading::ByPair)
+        continue;
+      Verification found;
+      Comparison comparison(table, found);
       if (table.reading == Reading::Whole)
         comparison.add(in_order(source_.all(table), table), in_order(target_.all(table), table));
-      else if (table.reading == Reading::ById)
-        compare_ids_of(table, {}, comparison);
       else
-        for (const Pair& pair : pairs)
-          compare_ids_of(table, pair, comparison);
-      comparison.end();
+        compare_ids_of(table, {}, comparison);
+      found.tables.push_back(comparison.found());
+      take(std::move(found));
+    }
+    for (const Pair& pair : pairs_)
+      take(compare_pair(pair, true));
+    return std::move(verification_);
+  }
+
+  /// What changed while it was compared is neither equal nor different.
+  Verification run_beside_server() {
+    for (const Pair& pair : pairs_) {
+      const MovedRow experience = source_.experience_of(pair);
+      if (experience.empty() || experience != target_.experience_of(pair) ||
+          records_.find(experience))
+        continue;
+      Verification found = compare_pair(pair, false);
+      if (source_.experience_of(pair) != experience)
+        continue;
+      if (found.is_equal() && found.messages.empty())
+        records_.put(experience, {found.tables[0].source, found.tables[1].source});
+      take(std::move(found));
     }
     return std::move(verification_);
   }
@@ -154,7 +175,8 @@ class Verifier {
     return rows;
   }
 
-  std::vector<Pair> pairs_of_either() {
+  /// Of both stores.
+  void list_pairs() {
     const MovedTable& experience = moved_table("experience");
     std::set<std::pair<std::int64_t, std::int64_t>> keys;
     for (Side* const side : {&source_, &target_})
@@ -164,10 +186,30 @@ class Verifier {
                                              integer_of(row, experience.column("attempts")));
       }
     total_ /= 2;
-    std::vector<Pair> pairs;
     for (const auto& [task, robot] : keys)
-      pairs.push_back({task, robot});
-    return pairs;
+      pairs_.push_back({task, robot});
+  }
+
+  /// \return of the tables of paths and of attempts.
+  Verification compare_pair(const Pair& pair, bool may_know) {
+    Verification found;
+    const MovedRow experience = may_know ? source_.experience_of(pair) : MovedRow();
+    const std::optional<PairRecord> known =
+        experience.empty() ? std::nullopt : records_.find(experience);
+    for (const char* const name : {"path", "attempt"}) {
+      const MovedTable& table = moved_table(name);
+      Comparison comparison(table, found);
+      if (known)
+        comparison.add_light(source_.light(table, pair), target_.light(table, pair));
+      else
+        compare_ids_of(table, pair, comparison);
+      found.tables.push_back(comparison.found());
+    }
+    if (known) {
+      found.tables[0].source = found.tables[0].target = known->paths;
+      found.tables[1].source = found.tables[1].target = known->attempts;
+    }
+    return found;
   }
 
   void compare_ids_of(const MovedTable& table, const Pair& pair, Comparison& comparison) {
@@ -182,9 +224,27 @@ class Verifier {
     }
   }
 
+  void take(Verification found) {
+    for (const VerifiedTable& table : found.tables) {
+      VerifiedTable& sum =
+          *std::ranges::find(verification_.tables, table.name, &VerifiedTable::name);
+      sum.source += table.source;
+      sum.target += table.target;
+      sum.differences += table.differences;
+      sum.damaged += table.damaged;
+    }
+    verification_.differences += found.differences;
+    constexpr std::size_t kMaxMessagesOfAll = 100;
+    for (std::string& message : found.messages)
+      if (verification_.messages.size() < kMaxMessagesOfAll)
+        verification_.messages.push_back(std::move(message));
+  }
+
   Side& source_;
   Side& target_;
   const RowsDone& rows_done_;
+  PairRecords records_;
+  std::vector<Pair> pairs_;
   Verification verification_;
   std::uint64_t done_ = 0, total_ = 0;
 };
@@ -193,6 +253,10 @@ class Verifier {
 
 Verification verify(Side& source, Side& target, const RowsDone& rows_done) {
   return Verifier(source, target, rows_done).run();
+}
+
+Verification verify_beside_server(Side& source, Side& target, const RowsDone& rows_done) {
+  return Verifier(source, target, rows_done).run_beside_server();
 }
 
 }  // namespace kinship::store::moving

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/store/moving/copying.hpp"
+#include "server/store/moving/pair_records.hpp"
 #include "server/store/moving/side.hpp"
 
 namespace kinship::store::moving {
@@ -12,10 +13,9 @@ namespace kinship::store::moving {
 /// What a comparison of a table of two stores found.
 struct VerifiedTable {
   std::string name;
-  std::uint64_t source_rows = 0, target_rows = 0;
-  std::uint32_t source_digest = 0, target_digest = 0;  ///< CRC-32C of all cells, in order
-  std::uint64_t differences = 0;                       ///< rows missing, added or not the same
-  std::uint64_t damaged = 0;  ///< rows that are the same, and damaged in both
+  RowsSum source, target;
+  std::uint64_t differences = 0;  ///< rows missing, added or not the same
+  std::uint64_t damaged = 0;      ///< rows that are the same, and damaged in both
 };
 
 struct Verification {
@@ -26,7 +26,12 @@ struct Verification {
   bool is_equal() const noexcept { return differences == 0; }
 };
 
-/// Compares each row of two stores that nobody writes to, cell by cell.
+/// Compares each row of two stores that nobody writes to, cell by cell. Of a robot and task that
+/// was compared before and has not changed since, ids and what may change beside them are.
 Verification verify(Side& source, Side& target, const RowsDone& rows_done);
+
+/// Compares the paths and attempts of each robot and task that was not compared before, while the
+/// source may be written to; what changes meanwhile is left for verify().
+Verification verify_beside_server(Side& source, Side& target, const RowsDone& rows_done);
 
 }  // namespace kinship::store::moving

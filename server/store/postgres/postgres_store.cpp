@@ -108,8 +108,8 @@ class PostgresStore : public Store {
   }
 
   Result<RegisterStatus> register_robot(const RobotRecord& robot) override {
-    if (writes_.write(
-            [&](Connection& connection) { return confirm_robot(connection, robot.digest); }))
+    if (readers_.read_snapshot(
+            [&](Connection& connection) { return is_registered(connection, robot.digest); }))
       return RegisterStatus::Known;
     Result<RegisterStatus> result =
         writes_.write([&](Connection& connection) { return insert_robot(connection, robot); });
@@ -284,6 +284,7 @@ class PostgresStore : public Store {
         [&](Connection& connection) { return totals_of(connection, robot, task); });
   }
 
+  bool is_shared() const override { return true; }
   std::optional<StoreChanges> changes_since(std::string_view cursor) const override {
     return presence_.changes_since(cursor);
   }

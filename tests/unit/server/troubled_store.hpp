@@ -80,6 +80,8 @@ class TroubledStore final : public store::Store {
     });
   }
 
+  bool has_others = false;  ///< servers
+  bool is_shared() const override { return has_others; }
   /// What other servers did, and whether one of them fits; empty: there is no other one.
   std::function<std::optional<store::StoreChanges>(std::string_view cursor)> on_changes;
   std::optional<store::StoreChanges> changes_since(std::string_view cursor) const override {
@@ -102,7 +104,10 @@ class TroubledStore final : public store::Store {
     return store_.begin_epoch_if_lost(mark);
   }
   store::StoreStatus status() const override { return store_.status(); }
+  /// Called before a robot is registered; may throw.
+  std::function<void()> on_register = [] {};
   Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
+    on_register();
     return store_.register_robot(robot);
   }
   /// Called when better geometry of a robot is written, before whoever writes it goes on.

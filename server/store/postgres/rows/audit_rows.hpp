@@ -1,6 +1,7 @@
 #pragma once
 
 #include "proto/types/audit.hpp"
+#include "proto/types/digest.hpp"
 #include "server/store/postgres/database/connection.hpp"
 
 /// The audit log: rows are added, never changed (triggers of the schema see to it).

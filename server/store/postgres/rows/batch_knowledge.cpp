@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "server/store/postgres/rows/shared_rows.hpp"
 #include "server/store/values/columns.hpp"
 #include "server/store/values/path_content.hpp"
 #include "server/store/values/robot_columns.hpp"
@@ -165,14 +166,15 @@ WantedContents contents_of(PreparedAttempts attempts, const BatchKnowledge& know
 
 /// What decides which pairs are to be locked.
 void learn_robots(Connection& connection, PreparedAttempts attempts, BatchKnowledge& known) {
-  const std::array<Request, 2> requests = {Request{kRobots, Parameters(robots_of(attempts))},
+  const std::array<Request, 3> requests = {Request{kBeforeReports},
+                                           Request{kRobots, Parameters(robots_of(attempts))},
                                            Request{kBodies, Parameters(uuids_of(attempts))}};
   const std::vector<Rows> rows = connection.query_all(requests);
-  for (const Row row : rows[0])
+  for (const Row row : rows[1])
     if (!is_removed_label(row.column_text(3)))
       known.robots[id_of<Digest>(row.column_blob(0))] = {row.column_integer(1),
                                                          row.column_integer(2)};
-  for (const Row row : rows[1])
+  for (const Row row : rows[2])
     known.reports[id_of<Uuid>(row.column_blob(0))] = {.body = id_of<Digest>(row.column_blob(1)),
                                                       .machine = std::string(row.column_text(2))};
 }

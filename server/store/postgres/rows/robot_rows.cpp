@@ -138,13 +138,10 @@ std::optional<std::int64_t> lock_robot(Connection& connection, const Digest& rob
   return rows.front().column_integer(0);
 }
 
-bool confirm_robot(Connection& connection, const Digest& robot) {
-  const Rows rows = connection.query(
-      std::string(kRobotColumns) + "WHERE digest = $1 FOR KEY SHARE OF robot", Bytes(robot.bytes));
-  if (rows.empty())
-    return false;
-  RobotRow row = read_row(rows.front());
-  return !is_removed_label(row.robot.description.label) && completed(connection, std::move(row));
+bool is_registered(Connection& connection, const Digest& robot) {
+  std::optional<RobotRow> row = find_row(connection, robot);
+  return row && !is_removed_label(row->robot.description.label) &&
+         completed(connection, *std::move(row));
 }
 
 Result<RegisterStatus> insert_robot(Connection& connection, const RobotRecord& robot) {
@@ -153,7 +150,7 @@ Result<RegisterStatus> insert_robot(Connection& connection, const RobotRecord& r
   const std::optional<RobotRow> before = find_row(connection, robot.digest);
   if (before && !is_removed_label(before->robot.description.label) &&
       completed(connection, *before))
-    return RegisterStatus::Known;  // by another server just now; its lock is in the log, too
+    return RegisterStatus::Known;  // by another server just now
   if (auto conflict = check_free(connection, description.label, robot.digest))
     return *conflict;
   if (auto fault = find_pose_fault(description))

@@ -15,10 +15,8 @@
 /// row before anything of its pairs.
 namespace kinship::store::postgres {
 
-/// Whether a robot is registered and whole, in a transaction whose COMMIT waits for a synchronous
-/// standby: the lock of its row is a write. Cheap, for clients register at each start: others
-/// register and report meanwhile, and the row is not written anew.
-bool confirm_robot(Connection& connection, const Digest& robot);
+/// Whether a robot is registered, and its row whole.
+bool is_registered(Connection& connection, const Digest& robot);
 
 /// As Store::register_robot(), replace_geometry() and rename_robot() say.
 Result<RegisterStatus> insert_robot(Connection& connection, const RobotRecord& robot);

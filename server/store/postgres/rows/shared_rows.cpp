@@ -187,6 +187,14 @@ std::int64_t retire_paths_of(Connection& connection, const ExperienceKey& key,
   return retired;
 }
 
+/// Where some of these are not there: waits for whoever is writing reports (kBeforeReports), and
+/// keeps others from it. Of two that look for what the other one writes neither would find it.
+void wait_for_arrivals(Connection& connection, std::span<const Uuid> reports) {
+  const std::set<Uuid> asked(reports.begin(), reports.end());
+  if (select_known(connection, reports).size() < asked.size())
+    connection.query("SELECT pg_advisory_xact_lock(20261126) IS NULL");
+}
+
 /// Settings of the store have no colon in their names.
 constexpr std::string_view kNotePrefix = "note:";
 
@@ -279,6 +287,7 @@ SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
 
 std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports) {
   const std::vector<Bytes> uuids = bytes_of(reports);
+  wait_for_arrivals(connection, reports);
   std::map<std::string, Retirement> retired;  // by task
   // Locked before anything is written, in the order of the key as everybody does.
   const Rows pairs = connection.query(

@@ -34,6 +34,11 @@ struct SharedRead {
 SharedRead select_shared(Connection& connection, std::span<const Uuid> reports,
                          std::size_t max_bytes);
 
+/// Asked by whoever writes reports, before it looks which of them are retired and before it locks
+/// anything else: until its commit nobody retires reports that are not there yet.
+inline constexpr std::string_view kBeforeReports =
+    "SELECT pg_advisory_xact_lock_shared(20261126) IS NULL";
+
 /// In a writing transaction. Locks rows of `experience` in the order of the key.
 std::vector<Retirement> retire_reports(Connection& connection, std::span<const Uuid> reports);
 

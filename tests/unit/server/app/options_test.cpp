@@ -97,6 +97,24 @@ TEST_F(Options, MetricsAreServedWhereSomebodySaysSo) {
   }
 }
 
+TEST_F(Options, AMoveIsFromOnePlaceToAnother) {
+  const auto move = [this](std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "migrate-store");
+    return parse(std::move(arguments));
+  };
+  const app::Options moved = move({"--from", "a.db", "--to", "postgresql://h/d"});
+  ASSERT_TRUE(std::holds_alternative<MigrateStoreOptions>(moved)) << err_.str();
+  EXPECT_EQ(std::get<MigrateStoreOptions>(moved).from, "a.db");
+  EXPECT_EQ(std::get<MigrateStoreOptions>(moved).to, "postgresql://h/d");
+  EXPECT_TRUE(std::get<MigrateStoreOptions>(move({"--give-up", "--to", "a.db"})).give_up);
+  for (const std::vector<const char*>& wrong : std::vector<std::vector<const char*>>{
+           {}, {"--from", "a.db"}, {"--to", "a.db"}, {"--give-up"}, {"a.db", "b.db"}})
+    EXPECT_EQ(std::get<int>(move(wrong)), kWrongUsage) << err_.str();
+  EXPECT_EQ(std::get<int>(move({"--help"})), kDone);
+  EXPECT_NE(out_.str().find("Examples:\n  kinshipd migrate-store --from fleet.db"),
+            std::string::npos);
+}
+
 TEST_F(Options, ASecurityFolderMustBeThere) {
   EXPECT_TRUE(good({}).security.empty());
   const test::TemporaryDirectory directory;

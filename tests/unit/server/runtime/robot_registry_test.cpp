@@ -39,6 +39,37 @@ TEST_F(Registry, TheSameRobotIsKnownByItsFirstLabel) {
   EXPECT_EQ(reply.message, "known already, as 'teacher'");
 }
 
+TEST_F(Registry, ARobotInMemoryIsKnownAlsoWhileASharedStoreCannotBeReached) {
+  store::TroubledStore shared(*store_);
+  shared.has_others = true;
+  RobotRegistry registry(shared);
+  const auto cut = [] { throw Failure(ErrorCode::Storage, "the database does not answer"); };
+  registry.register_robot(fleet::teacher(), 1);
+  shared.on_register = shared.on_robot_read = cut;
+  const RegisterReply reply = registry.register_robot(fleet::teacher(), 2);
+  EXPECT_EQ(reply.status, RegisterStatus::Known);
+  EXPECT_FALSE(reply.geometry.empty());
+  EXPECT_THROW(registry.register_robot(fleet::pupil(), 3), Failure) << "nobody can vouch for it";
+
+  // Until the store says that it does not have it.
+  registry.forget(reply.robot);
+  EXPECT_THROW(registry.register_robot(fleet::teacher(), 4), Failure);
+}
+
+TEST_F(Registry, ARobotInMemoryIsComparedWithThoseInMemoryWhereTheStoreIsShared) {
+  store::TroubledStore shared(*store_);
+  shared.has_others = true;
+  RobotRegistry registry(shared);
+  RobotDescription twin = fleet::teacher();
+  twin.label = "twin";
+  twin.task_axes.matters = {true, true, true, false, false, true};
+  registry.register_robot(fleet::teacher(), 1);
+  const RegisterReply first = registry.register_robot(twin, 2);
+  ASSERT_EQ(first.same_arms, std::vector<std::string>{"teacher"});
+  shared.on_register = [] { throw Failure(ErrorCode::Storage, "the database does not answer"); };
+  EXPECT_EQ(registry.register_robot(twin, 3).same_arms, first.same_arms);
+}
+
 TEST_F(Registry, ALabelBelongsToOneRobot) {
   registry_.register_robot(fleet::teacher(), 1);
   RobotDescription other = fleet::pupil();

@@ -49,6 +49,17 @@ TEST_F(ChangesElsewhere, NothingIsServedForARobotThatWasRemoved) {
   EXPECT_EQ(fetch(request_for(teacher_)).status, FetchStatus::UnknownRobot);
 }
 
+TEST_F(ChangesElsewhere, ARobotThatTheStoreHasLostIsRegisteredAnewByWhoReportsForIt) {
+  troubled_->has_others = true;
+  ASSERT_EQ(register_robot(fleet::teacher()).status, RegisterStatus::Known);
+  ASSERT_TRUE(real_store_->remove_robot(teacher_.digest, {}, nullptr));  // nobody is told of it
+  ASSERT_EQ(register_robot(fleet::teacher()).status, RegisterStatus::Known) << "of memory";
+  const std::vector<Attempt> attempts = fleet::solved(teacher_, "shelf", 1, 1);
+  EXPECT_EQ(report(attempts).receipts.at(0).status, ReceiptStatus::UnknownRobot);
+  EXPECT_EQ(register_robot(fleet::teacher()).status, RegisterStatus::Registered);
+  EXPECT_EQ(report(attempts).receipts.at(0).status, ReceiptStatus::Stored);
+}
+
 TEST_F(ChangesElsewhere, WhoWaitsForAGenerationGetsItAlsoIfAnotherServerWasToldOfIt) {
   teach(6);
   fetch(request_for(teacher_));

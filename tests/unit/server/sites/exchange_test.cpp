@@ -204,6 +204,10 @@ TEST_F(ExchangeTest, ARemovalOfARobotRetiresItsPathsAbove) {
   EXPECT_TRUE(memory_->find_robot(panda_.digest)) << "other sites may have it";
   EXPECT_FALSE(site_->find_robot(panda_.digest)) << "what it did does not bring it back";
   EXPECT_EQ(reports_of(*memory_).size(), 2U);
+  test::report(*memory_, {solved(3)});
+  exchange();
+  EXPECT_TRUE(site_->find_robot(panda_.digest)) << "what it did since at another site does";
+  EXPECT_EQ(paths_of(*site_), 1U);
 }
 
 TEST_F(ExchangeTest, RestsBetweenTwoTransactionsAtTheSite) {

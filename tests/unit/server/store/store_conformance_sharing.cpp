@@ -143,14 +143,19 @@ TEST_P(StoreSharing, ARetirementIsListedOnceWithAllReportsOfItsContent) {
 TEST_P(StoreSharing, TheRemovalOfARobotRetiresItsPathsForOthersToo) {
   report(solved(1));
   report(test::make_attempt(iiwa_.digest, "shelf", 2));
+  report(test::make_unsolved(panda_.digest, "shelf", 3));
   ASSERT_TRUE(store_->remove_robot(panda_.digest));
   EXPECT_TRUE(is_listed_as_retired(*store_, solved(1).report_uuid));
   EXPECT_FALSE(is_listed_as_retired(*store_, test::id_from<Uuid>(2)));
-  EXPECT_TRUE(store_->read_reports(std::vector{solved(1).report_uuid}, kManyBytes).reports.empty());
+  const std::vector<Uuid> of_panda = {solved(1).report_uuid, test::id_from<Uuid>(3)};
+  EXPECT_TRUE(store_->read_reports(of_panda, kManyBytes).reports.empty());
 }
 
 TEST_P(StoreSharing, WhatAnotherStoreRetiredIsRetiredHere) {
   report(solved(1));
+  Attempt same = solved(1);
+  same.report_uuid = test::id_from<Uuid>(77);
+  EXPECT_EQ(report(same), ReceiptStatus::Duplicate);
   report(solved(2));
   report(test::make_attempt(iiwa_.digest, "table", 3));
   const std::uint64_t generation = store_->generation(panda_.digest, "shelf");
@@ -164,6 +169,7 @@ TEST_P(StoreSharing, WhatAnotherStoreRetiredIsRetiredHere) {
   EXPECT_GT(store_->generation(panda_.digest, "shelf"), generation);
   EXPECT_TRUE(store_->retire_reports(reports).empty()) << "again";
   EXPECT_TRUE(is_listed_as_retired(*store_, solved(1).report_uuid));
+  EXPECT_TRUE(is_listed_as_retired(*store_, same.report_uuid)) << "of the same content";
 }
 
 TEST_P(StoreSharing, WhatIsRetiredBeforeItComesIsRetiredWhenItComes) {

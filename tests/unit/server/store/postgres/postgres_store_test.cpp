@@ -5,6 +5,7 @@
 #include <future>
 
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/locked_table.hpp"
 #include "tests/support/postgres_programs.hpp"
 #include "tests/unit/server/store/postgres/fresh_database.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
@@ -219,6 +220,41 @@ TEST_F(PostgresStoreTest, GoesOnWhenItsConnectionsAreCut) {
   EXPECT_EQ(status, ReceiptStatus::Stored);
   EXPECT_EQ(store_->status().rollbacks, 0U);
   EXPECT_TRUE(store_->status().writable);
+}
+
+TEST_F(PostgresStoreTest, AReportThatComesWhileOthersRetireItIsRetired) {
+  const std::unique_ptr<Store> other = another();
+  Attempt report = attempt(1);
+  report.scene = RecordedScene{{{"table", BoxShape{{1, 2, 0.1}}}}, {}, {}};
+  std::future<std::vector<Receipt>> reported;
+  std::future<std::vector<Retirement>> retired;
+  {
+    FreshDatabases& databases = FreshDatabases::of_program();
+    const test::LockedTable scenes(databases.url(folder_.path()), "scene");
+    reported = std::async(std::launch::async, [&] { return test::report(*store_, {report}); });
+    // It has looked by now which of its reports are retired.
+    scenes.wait_until_wanted_by(1);
+    retired = std::async(std::launch::async,
+                         [&] { return other->retire_reports(std::vector{report.report_uuid}); });
+    const std::string waits =
+        "SELECT EXISTS (SELECT FROM pg_locks WHERE locktype = 'advisory' AND NOT granted)";
+    while (retired.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready &&
+           sql(waits) != "t")
+      continue;
+  }
+  EXPECT_EQ(reported.get().at(0).status, ReceiptStatus::Stored);
+  EXPECT_EQ(retired.get().size(), 1U);
+  EXPECT_TRUE(other->read_paths(robot_.digest, "shelf", {.limit = 10}).empty());
+}
+
+TEST_F(PostgresStoreTest, ARetirementIsListedAlsoIfItIsOfBeforeThereWasAList) {
+  test::report(*store_, {attempt(1), attempt(2)});
+  ASSERT_TRUE(store_->retire_path(attempt(1).report_uuid));
+  sql("DELETE FROM retired_report");  // as of a store of an older server that was migrated
+  const Feed<ArrivedReport> feed = store_->list_arrivals("", "", 10);
+  ASSERT_EQ(feed.rows.size(), 2U);
+  EXPECT_TRUE(feed.rows[0].is_retired);
+  EXPECT_FALSE(feed.rows[1].is_retired);
 }
 
 TEST_F(PostgresStoreTest, WhoStopsDoesNotWaitForADatabaseThatDoesNotAnswer) {
