@@ -204,6 +204,24 @@ TEST_F(PostgresReceipt, ARobotIsKnownAlsoWhileNothingCanBeCommittedAndNewAgainOn
   EXPECT_EQ(store->register_robot(robot).value_or_throw(), RegisterStatus::Registered);
 }
 
+TEST_F(PostgresReceipt, WhatComesAfterAFailoverIsToldToServersThatLookedBefore) {
+  make_pair("");
+  const std::unique_ptr<store::Store> one = open(false), other = open(false);
+  wait_until_replayed(*primary_, *standby_);
+  standby_->freeze_receiver();
+  primary_->query(  // numbers of transactions that the standby never hears of, and gives anew
+      "DO $$ BEGIN FOR i IN 1..100 LOOP PERFORM pg_current_xact_id(); COMMIT; END LOOP; END $$",
+      kDatabase);
+  const std::string cursor = other->changes_since("").value().cursor;
+  lose_primary(*primary_, *standby_);
+  standby_->promote();
+  ASSERT_EQ(PendingReport(*one, 0).wait(), ReceiptStatus::Stored);
+  const store::StoreChanges changes = other->changes_since(cursor).value();
+  EXPECT_EQ(std::ranges::count(changes.experience, numbered_report(0).task,
+                               &store::ChangedExperience::task),
+            1);
+}
+
 /// What the ledger of the other tests would see if the engine did not wait.
 TEST_F(PostgresReceipt, AnAsynchronousStandbyLosesReceiptsAndTheHistoryFindsThem) {
   make_pair("");

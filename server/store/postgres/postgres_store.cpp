@@ -11,6 +11,7 @@
 #include "server/store/postgres/copying/sqlite_copy.hpp"
 #include "server/store/postgres/database/connection_pool.hpp"
 #include "server/store/postgres/durable_writes.hpp"
+#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/fit_reads.hpp"
 #include "server/store/postgres/opening/begin_store.hpp"
 #include "server/store/postgres/opening/history.hpp"

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/database/transaction.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/values/clock.hpp"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/store/postgres/database/postgres_error.hpp"
+#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/postgres/opening/opening.hpp"
 
 namespace kinship::store::postgres {
@@ -11,16 +12,6 @@ namespace {
 constexpr std::string_view kReadOnly = "25006";
 
 }  // namespace
-
-/// It is in the name of the file that is being written; the control file tells it later.
-std::int64_t timeline_of(Connection& connection) {
-  return connection
-      .query(
-          "SELECT ('x' || substr(pg_walfile_name(pg_current_wal_insert_lsn()), 1, 8))"
-          "::bit(32)::bigint")
-      .front()
-      .column_integer(0);
-}
 
 StandbyState standby_state(Connection& connection, const Uuid& run) {
   const Rows rows = connection.query(

@@ -14,9 +14,6 @@
 
 namespace kinship::store::postgres {
 
-/// How often a standby was promoted before a server that takes writes.
-std::int64_t timeline_of(Connection& connection);
-
 /// Whether a server is a standby, and has the row of a run.
 struct StandbyState {
   bool is_standby = false;

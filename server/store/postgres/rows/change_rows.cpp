@@ -4,6 +4,7 @@
 #include <string>
 
 #include "proto/types/failure.hpp"
+#include "server/store/postgres/database/timeline.hpp"
 #include "server/store/values/codes.hpp"
 
 namespace kinship::store::postgres {
@@ -32,27 +33,43 @@ std::vector<ChangedExperience> changed_experience(Connection& connection, std::s
   return changed;
 }
 
+bool is_number(std::string_view text) {
+  return !text.empty() &&
+         std::ranges::all_of(text, [](char letter) { return letter >= '0' && letter <= '9'; });
+}
+
+/// Since which transaction to look. Those of another primary have the numbers of some that this one
+/// never had: everything is told then.
+std::string transaction_of(std::string_view cursor, std::string_view timeline) {
+  const std::size_t point = std::min(cursor.find('.'), cursor.size());
+  const std::string_view transaction = cursor.substr(std::min(point + 1, cursor.size()));
+  if (!is_number(cursor.substr(0, point)) || !is_number(transaction))
+    throw Failure(ErrorCode::InvalidInput, "cursor of another listing");
+  return cursor.substr(0, point) == timeline ? std::string(transaction) : "0";
+}
+
 }  // namespace
 
 StoreChanges changes_since(Connection& connection, std::string_view cursor) {
+  const std::string timeline = std::to_string(timeline_of(connection));
   StoreChanges changes;
-  changes.cursor = connection.query("SELECT pg_snapshot_xmin(pg_current_snapshot())::text")
-                       .front()
-                       .column_text(0);
+  changes.cursor =
+      timeline + '.' +
+      std::string(connection.query("SELECT pg_snapshot_xmin(pg_current_snapshot())::text")
+                      .front()
+                      .column_text(0));
   if (cursor.empty())
     return changes;
-  const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
-  if (!std::ranges::all_of(cursor, is_digit))
-    throw Failure(ErrorCode::InvalidInput, "cursor of another listing");
-  changes.experience = changed_experience(connection, cursor);
+  const std::string since = transaction_of(cursor, timeline);
+  changes.experience = changed_experience(connection, since);
   changes.robots =
       digests(connection,
               "SELECT digest FROM robot WHERE changed_in >= $1::text::xid8"
               " UNION SELECT digest FROM gone_robot WHERE changed_in >= $1::text::xid8",
-              cursor);
+              since);
   changes.evicted =
       digests(connection,
-              "SELECT digest FROM evicted_distribution WHERE evicted_in >= $1::text::xid8", cursor);
+              "SELECT digest FROM evicted_distribution WHERE evicted_in >= $1::text::xid8", since);
   return changes;
 }
 

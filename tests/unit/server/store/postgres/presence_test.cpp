@@ -100,7 +100,17 @@ TEST_F(PostgresPresence, WhatBeganSoonerAndIsCommittedLaterIsTold) {
 }
 
 TEST_F(PostgresPresence, ACursorOfSomethingElseIsRefused) {
-  EXPECT_THROW(static_cast<void>(other_->changes_since("1; DROP")), Failure);
+  for (const char* const cursor : {"1; DROP", "1", ".", "1.", ".1", "1.1.1", "1.-1"})
+    EXPECT_THROW(static_cast<void>(other_->changes_since(cursor)), Failure) << cursor;
+}
+
+TEST_F(PostgresPresence, WhoLookedAtAnotherPrimaryIsToldEverything) {
+  report(1);
+  const std::string cursor = look().cursor;
+  ASSERT_TRUE(cursor.starts_with("1."));
+  const StoreChanges changes = other_->changes_since("2" + cursor.substr(1)).value();
+  EXPECT_EQ(tasks_of(changes), std::set<std::string>{"shelf"});
+  EXPECT_EQ(changes.robots.size(), 2U);
 }
 
 TEST_F(PostgresPresence, OneServerAtATimeMayFitADistribution) {
