@@ -133,8 +133,9 @@ Ended MigrateStore::move_killed(const std::string& from, const std::string& to,
     program.signal(SIGKILL);
     if (const int code = program.wait(); code != 128 + SIGKILL)
       return {code, program.read_all(), test::read_text(errors)};
-    if (kills++ % 3 == 0)
+    if (kills++ % 3 == 0) {
       EXPECT_TRUE(serve(to).says("is half a store"));
+    }
   }
 }
 

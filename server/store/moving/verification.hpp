@@ -13,7 +13,7 @@ namespace kinship::store::moving {
 /// What a comparison of a table of two stores found.
 struct VerifiedTable {
   std::string name;
-  RowsSum source, target;
+  RowsSum source = {}, target = {};
   std::uint64_t differences = 0;  ///< rows missing, added or not the same
   std::uint64_t damaged = 0;      ///< rows that are the same, and damaged in both
 };
