@@ -19,9 +19,9 @@ struct Migration {
 std::span<const Migration> embedded_migrations();
 
 /// Applies those of `migrations` that a database lacks, all in one transaction, while no other
-/// server does; that of a store that was there has an entry in the audit log. Where nothing is to be
-/// done nothing is written.
-/// \throws Failure(Storage) if the database is newer than `migrations`, or was made by a migration
+/// server does; that of a store that was there has an entry in the audit log. Where nothing is to
+/// be done nothing is written. \throws Failure(Storage) if the database is newer than `migrations`,
+/// or was made by a migration
 ///         of another text, or has tables of our names that are not ours.
 void migrate(Connection& connection, std::span<const Migration> migrations);
 
