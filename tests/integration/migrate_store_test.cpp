@@ -230,12 +230,9 @@ TEST_F(MigrateStore, KilledWhileItComparesAndClosesTheSourceItGoesOn) {
   for (const auto& [from, to] : {std::pair(file_, url_), std::pair(url_, back_)}) {
     test::Program program("kinshipd", arguments(from, to));
     // The source is closed first; then all is copied, compared, and the target opened.
-    const auto is_closed = [&] {
-      return from == file_
-                 ? test::number_in(file_,
-                                   "SELECT count(*) FROM setting WHERE key ="
-                                   " 'moved_to'") == 1
-                 : number_there("SELECT count(*) FROM setting WHERE key = 'moved_to'") == 1;
+    const auto is_closed = [this, is_file = from == file_] {
+      const std::string marks = "SELECT count(*) FROM setting WHERE key = 'moved_to'";
+      return (is_file ? test::number_in(file_, marks) : number_there(marks)) == 1;
     };
     while (!is_closed())
       look_again();

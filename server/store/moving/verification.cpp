@@ -1,8 +1,8 @@
 #include "server/store/moving/verification.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
+#include <bit>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -22,9 +22,10 @@ std::string differing_columns(const MovedTable& table, const MovedRow& source,
   for (std::size_t i = 0; i < source.size(); ++i) {
     const auto* const one = std::get_if<double>(&source[i]);
     const auto* const other = std::get_if<double>(&target[i]);
-    const bool is_same = one != nullptr && other != nullptr
-                             ? std::memcmp(one, other, sizeof *one) == 0
-                             : source[i] == target[i];
+    const bool is_same =
+        one != nullptr && other != nullptr
+            ? std::bit_cast<std::uint64_t>(*one) == std::bit_cast<std::uint64_t>(*other)
+            : source[i] == target[i];
     if (!is_same)
       names += (names.empty() ? "" : ", ") + table.columns[i].name;
   }
