@@ -9,6 +9,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ double reports_per_s(const std::vector<std::unique_ptr<Server>>& servers, std::s
   std::vector<std::future<double>> reports;
   for (std::size_t i = 0; i < count; ++i)
     reports.push_back(std::async(std::launch::async, [&, i] {
-      const std::string task = shares_task ? "shared" : "of server " + std::to_string(i);
+      const std::string task = shares_task ? "shared" : "of_server_" + std::to_string(i);
       return std::stod(
           start_role("reports", servers[i]->domain(), robot, {"0", std::to_string(kRound_s), task})
               .read_line());
@@ -62,6 +63,8 @@ double reports_per_s(const std::vector<std::unique_ptr<Server>>& servers, std::s
   double all = 0;
   for (std::future<double>& of_one : reports)
     all += of_one.get();
+  if (all == 0)
+    throw std::runtime_error("no report was stored");
   return all / kRound_s;
 }
 

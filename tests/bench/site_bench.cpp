@@ -91,7 +91,7 @@ class Site {
   /// Of several tasks: of one it would be more than a robot may have.
   Attempt next_report() {
     constexpr std::uint64_t kTasks = 4;
-    Attempt attempt = bench::report_of_8_kb(panda_, next_seed_);
+    Attempt attempt = bench::report_of_8_kb(panda_, "beside", next_seed_);
     attempt.task += std::to_string(next_seed_++ % kTasks);
     return attempt;
   }
