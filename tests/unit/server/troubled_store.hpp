@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/store.hpp"
@@ -91,9 +93,16 @@ class TroubledStore final : public store::Store {
   std::optional<store::FitRight> take_fit_right(const Digest& id) override {
     return on_fit_right ? on_fit_right() : store_.take_fit_right(id);
   }
-  std::vector<std::pair<Digest, std::uint64_t>> given_back;  ///< rights: of which, and the fence
+  /// Rights: of which, and the fence.
+  std::vector<std::pair<Digest, std::uint64_t>> given_back() const {
+    const std::lock_guard lock(given_back_mutex_);
+    return given_back_;
+  }
   void give_back_fit_right(const Digest& id, const store::FitRight& right) noexcept override {
-    given_back.emplace_back(id, right.fence);
+    {
+      const std::lock_guard lock(given_back_mutex_);
+      given_back_.emplace_back(id, right.fence);
+    }
     store_.give_back_fit_right(id, right);
   }
 
@@ -248,6 +257,8 @@ class TroubledStore final : public store::Store {
     return result;
   }
 
+  mutable std::mutex given_back_mutex_;
+  std::vector<std::pair<Digest, std::uint64_t>> given_back_;  // guarded by given_back_mutex_
   Store& store_;
   const std::function<void()> on_paths_read_;
 };

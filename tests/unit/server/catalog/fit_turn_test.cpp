@@ -59,10 +59,10 @@ TEST_F(FitTurnTest, WaitsForAnotherServerAndGivesBackWhatItHas) {
     EXPECT_EQ(looks_, 4);
     EXPECT_TRUE(turn.has_others());
     EXPECT_EQ(turn.right().fence, 7U);
-    EXPECT_TRUE(store_.given_back.empty());
+    EXPECT_TRUE(store_.given_back().empty());
   }
-  ASSERT_EQ(store_.given_back.size(), 1U);
-  EXPECT_EQ(store_.given_back[0], (std::pair{id_, std::uint64_t{7}}));
+  ASSERT_EQ(store_.given_back().size(), 1U);
+  EXPECT_EQ(store_.given_back()[0], (std::pair{id_, std::uint64_t{7}}));
 }
 
 TEST_F(FitTurnTest, WhoStopsWhileItWaitsHasNothingToGiveBack) {
@@ -74,7 +74,7 @@ TEST_F(FitTurnTest, WhoStopsWhileItWaitsHasNothingToGiveBack) {
   EXPECT_EQ(code_of([&] { const FitTurn turn(store_, id_, stop_.get_token(), kQuick); }),
             ErrorCode::Unavailable);
   EXPECT_EQ(looks_, 2);
-  EXPECT_TRUE(store_.given_back.empty());
+  EXPECT_TRUE(store_.given_back().empty());
 }
 
 TEST_F(FitTurnTest, AStopEndsTheWaitBeforeTheNextLook) {
@@ -97,7 +97,7 @@ TEST_F(FitTurnTest, AnotherServerThatTakesTooLongIsWaitedForLater) {
                                   .between_looks = std::chrono::milliseconds(1)});
             }),
             ErrorCode::Unavailable);
-  EXPECT_TRUE(store_.given_back.empty());
+  EXPECT_TRUE(store_.given_back().empty());
 }
 
 TEST_F(FitTurnTest, AnErrorOfTheStoreEndsTheWait) {
@@ -108,7 +108,7 @@ TEST_F(FitTurnTest, AnErrorOfTheStoreEndsTheWait) {
   };
   EXPECT_EQ(code_of([&] { const FitTurn turn(store_, id_, stop_.get_token(), kQuick); }),
             ErrorCode::Storage);
-  EXPECT_TRUE(store_.given_back.empty());
+  EXPECT_TRUE(store_.given_back().empty());
 }
 
 }  // namespace

@@ -199,7 +199,7 @@ TEST_F(FitsElsewhere, AFitThatLostItsRightIsBusyAndThenThatOfTheOtherServer) {
   ASSERT_EQ(reply.status, FetchStatus::Ready) << reply.message;
   EXPECT_EQ(reply.distribution->revision, 2U);
   EXPECT_EQ(gate_.calls(), 2);
-  EXPECT_EQ(troubled_->given_back.size(), 2U) << "also of the one that failed";
+  EXPECT_EQ(troubled_->given_back().size(), 2U) << "also of the one that failed";
 }
 
 }  // namespace
