@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -55,6 +57,22 @@ struct FillPlan {
 
   std::uint64_t paths_of_pair() const { return paths / pairs; }
 };
+
+/// \param arguments  of a program: PATHS PAIRS. \return nothing, and says how it is used, if they
+///                   are too few.
+inline std::optional<FillPlan> plan_from(int count, char** arguments) {
+  constexpr std::uint64_t kLeastPathsOfPair = 500;
+  FillPlan plan;
+  if (count >= 3) {
+    plan.paths = std::strtoull(arguments[1], nullptr, 10);
+    plan.pairs = std::strtoull(arguments[2], nullptr, 10);
+  }
+  if (plan.pairs >= 2 && plan.paths_of_pair() >= kLeastPathsOfPair)
+    return plan;
+  std::cerr << "usage: " << arguments[0] << " PATHS PAIRS, at least 2 pairs of "
+            << kLeastPathsOfPair << " paths\n";
+  return std::nullopt;
+}
 
 /// One (robot, task) pair of a fleet. The first is alone with its robot and its task, so that what
 /// is listed of it is the same whatever the others have; the others share robots and tasks.

@@ -5,7 +5,6 @@
 //
 //   large_postgres_bench PATHS PAIRS      10000000 1000: 15 GB, half an hour
 
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -178,20 +177,12 @@ void run(const FillPlan& plan) {
 }  // namespace kinship::bench
 
 int main(int count, char** arguments) {
-  kinship::bench::FillPlan plan;
-  if (count >= 3) {
-    plan.paths = std::strtoull(arguments[1], nullptr, 10);
-    plan.pairs = std::strtoull(arguments[2], nullptr, 10);
-  }
-  constexpr std::uint64_t kLeastPathsOfPair = 500;
-  if (plan.pairs < 2 || plan.paths_of_pair() < kLeastPathsOfPair) {
-    std::cerr << "usage: large_postgres_bench PATHS PAIRS, at least 2 pairs of "
-              << kLeastPathsOfPair << " paths\n";
+  const auto plan = kinship::bench::plan_from(count, arguments);
+  if (!plan)
     return 2;
-  }
   if (const std::string missing = kinship::test::missing_postgres(); !missing.empty()) {
     std::cerr << "large_postgres_bench: " << missing << '\n';
     return 1;
   }
-  kinship::bench::run(plan);
+  kinship::bench::run(*plan);
 }

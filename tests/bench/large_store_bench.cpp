@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -229,16 +228,8 @@ void run(const FillPlan& plan) {
 }  // namespace kinship::bench
 
 int main(int count, char** arguments) {
-  kinship::bench::FillPlan plan;
-  if (count >= 3) {
-    plan.paths = std::strtoull(arguments[1], nullptr, 10);
-    plan.pairs = std::strtoull(arguments[2], nullptr, 10);
-  }
-  constexpr std::uint64_t kLeastPathsOfPair = 500;
-  if (plan.pairs < 2 || plan.paths_of_pair() < kLeastPathsOfPair) {
-    std::cerr << "usage: large_store_bench PATHS PAIRS, at least 2 pairs of " << kLeastPathsOfPair
-              << " paths\n";
+  const auto plan = kinship::bench::plan_from(count, arguments);
+  if (!plan)
     return 2;
-  }
-  kinship::bench::run(plan);
+  kinship::bench::run(*plan);
 }

@@ -54,6 +54,13 @@ std::uint64_t rows_of_pair(const MovedTable& experience, const MovedRow& row) {
                                     integer_of(row, experience.column("paths")));
 }
 
+std::map<MovedRow, MovedRow> by_key(const MovedTable& table, std::vector<MovedRow> rows) {
+  std::map<MovedRow, MovedRow> found;
+  for (MovedRow& row : rows)
+    found.emplace(key_of(table, row), std::move(row));
+  return found;
+}
+
 }  // namespace
 
 Copying::Copying(Side& source, Side& target, RowsDone rows_done)
@@ -90,9 +97,7 @@ void Copying::copy_names() {
 
 void Copying::copy_robots(const std::vector<MovedRow>& robots) {
   const MovedTable& table = moved_table("robot");
-  std::map<MovedRow, MovedRow> present;
-  for (MovedRow& row : target_.all(table))
-    present.emplace(key_of(table, row), std::move(row));
+  std::map<MovedRow, MovedRow> present = by_key(table, target_.all(table));
   std::vector<MovedRow> passing, wanted;
   for (const MovedRow& row : robots) {
     const auto found = present.find(key_of(table, row));
@@ -119,9 +124,7 @@ void Copying::erase_removed_robots() {
 }
 
 void Copying::copy_whole(const MovedTable& table, const std::vector<MovedRow>& rows) {
-  std::map<MovedRow, MovedRow> present;
-  for (MovedRow& row : target_.all(table))
-    present.emplace(key_of(table, row), std::move(row));
+  std::map<MovedRow, MovedRow> present = by_key(table, target_.all(table));
   std::vector<MovedRow> wanted, extra;
   for (const MovedRow& row : rows) {
     const auto found = present.find(key_of(table, row));
@@ -140,9 +143,7 @@ void Copying::copy_whole(const MovedTable& table, const std::vector<MovedRow>& r
 
 void Copying::copy_pairs() {
   const MovedTable& table = moved_table("experience");
-  std::map<MovedRow, MovedRow> present;
-  for (MovedRow& row : target_.all(table))
-    present.emplace(key_of(table, row), std::move(row));
+  std::map<MovedRow, MovedRow> present = by_key(table, target_.all(table));
   std::vector<Pair> pairs;
   for (const MovedRow& row : experience_) {
     const auto found = present.find(key_of(table, row));

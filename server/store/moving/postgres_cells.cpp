@@ -4,25 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "server/store/moving/read_cell.hpp"
+
 namespace kinship::store::moving {
 namespace {
-
-Cell cell_of(const postgres::Row& row, int column, CellType type) {
-  if (row.column_is_null(column))
-    return {};
-  switch (type) {
-    case CellType::Integer:
-      return row.column_integer(column);
-    case CellType::Real:
-      return row.column_real(column);
-    case CellType::Text:
-      return std::string(row.column_text(column));
-    case CellType::Blob:
-      break;
-  }
-  const Bytes bytes = row.column_blob(column);
-  return std::string(bytes.begin(), bytes.end());
-}
 
 /// What one type of array is made of. Texts and reals are never NULL in these tables.
 template <typename Element, typename Make>
@@ -52,7 +37,7 @@ MovedRow read_row(const postgres::Row& row, const MovedTable& table) {
   MovedRow cells;
   cells.reserve(table.columns.size());
   for (int column = 0; column < std::ssize(table.columns); ++column)
-    cells.push_back(cell_of(row, column, table.columns[static_cast<std::size_t>(column)].type));
+    cells.push_back(read_cell(row, column, table.columns[static_cast<std::size_t>(column)].type));
   return cells;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/store/moving/read_cell.hpp"
 #include "server/store/moving/sqlite_scenes.hpp"
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
@@ -37,23 +38,6 @@ std::string selected_columns(const MovedTable& table) {
   for (const MovedColumn& column : table.columns)
     columns.push_back(column.sqlite.empty() ? column.name : column.sqlite);
   return joined_with_commas(columns);
-}
-
-Cell read_cell(const Statement& row, int column, CellType type) {
-  if (row.column_is_null(column))
-    return {};
-  switch (type) {
-    case CellType::Integer:
-      return row.column_integer(column);
-    case CellType::Real:
-      return row.column_real(column);
-    case CellType::Text:
-      return std::string(row.column_text(column));
-    case CellType::Blob:
-      break;
-  }
-  const Bytes bytes = row.column_blob(column);
-  return std::string(bytes.begin(), bytes.end());
 }
 
 MovedRow read_row(const Statement& row, const MovedTable& table) {
