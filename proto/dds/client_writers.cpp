@@ -37,7 +37,8 @@ ClientWriters::ClientWriters(const Participant& participant, WaitLoop& loop, con
       readers_(
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
           "reader of readers") {
-  loop.attach(readers_, [this] { return notice_readers(); });
+  loop.attach(readers_,
+              [this] { return notice_readers() ? WaitLoop::kAgain : WaitLoop::kWithSamples; });
   loop.every(kBetweenLooks, [this] { look_again(); });
 }
 
