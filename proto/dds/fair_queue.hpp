@@ -51,7 +51,7 @@ class FairQueue {
   }
 
   /// \param opening  of this queue, to which nothing was done since.
-  void push(const Opening& opening, Request request, Time held_until = kNow) {
+  void push(const Opening& opening, Request&& request, Time held_until = kNow) {
     if (opening.gives_way_ != waiting_.end()) {
       release(opening.gives_way_->second.back());
       opening.gives_way_->second.pop_back();
@@ -60,7 +60,7 @@ class FairQueue {
     auto& mine = waiting_[opening.client_];
     if (mine.empty())
       turns_.push_back(opening.client_);
-    mine.push_back({opening.head_, std::move(request), held_until});
+    mine.emplace_back(opening.head_, std::move(request), held_until);
     ++size_;
     if (held_until != kNow)
       ++held_;
@@ -76,7 +76,8 @@ class FairQueue {
         continue;
       turns_.erase(turn);
       release(*next);
-      std::pair<codec::Head, Request> request(next->head, std::move(next->request));
+      std::optional<std::pair<codec::Head, Request>> request(std::in_place, next->head,
+                                                             std::move(next->request));
       mine->second.erase(next);
       --size_;
       if (mine->second.empty())
@@ -120,6 +121,9 @@ class FairQueue {
 
  private:
   struct Entry {
+    Entry(const codec::Head& of, Request&& waiting, Time until)
+        : head(of), request(std::move(waiting)), held_until(until) {}
+
     codec::Head head;
     Request request;
     Time held_until;

@@ -14,7 +14,7 @@ namespace kinship::dds {
 Hearers::Hearers(const Participant& participant)
     : guard_(dds_create_guardcondition(participant.get()), "guard condition") {}
 
-Entity Hearers::make_writer(const Entity& publisher, const Entity& topic, const dds_qos* qos,
+Entity Hearers::make_writer(const Entity& publisher, Handle topic, const dds_qos* qos,
                             std::string_view what) {
   const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(
       dds_create_listener(this), &dds_delete_listener);
@@ -27,7 +27,7 @@ Entity Hearers::make_writer(const Entity& publisher, const Entity& topic, const 
         else
           static_cast<Hearers*>(self)->come(reader);
       });
-  Entity writer(dds_create_writer(publisher.get(), topic.get(), qos, listener.get()), what);
+  Entity writer(dds_create_writer(publisher.get(), topic, qos, listener.get()), what);
   // Of those that it matched while it was made the listener could be told nothing.
   std::array<std::uint64_t, 256> readers{};
   const dds_return_t count =

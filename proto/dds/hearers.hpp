@@ -27,7 +27,7 @@ class Hearers {
 
   /// A writer whose readers are noticed; it must not outlive this.
   /// \throws Failure(Internal) if it cannot be made.
-  Entity make_writer(const Entity& publisher, const Entity& topic, const dds_qos* qos,
+  Entity make_writer(const Entity& publisher, Handle topic, const dds_qos* qos,
                      std::string_view what);
 
   /// \param participant  its instance handle.

@@ -96,11 +96,11 @@ class Replier<Conversation>::Implementation {
   using Queue = FairQueue<Waiting>;
 
   /// \return when the next one may be served of those that wait.
-  Queue::Time serve_some() {
+  typename Queue::Time serve_some() {
     constexpr int kInTurn = 4;  // then the other conversations
     if (waiting_.holds_some())
       waiting_.release_if([this](const codec::Head& head, const Waiting& each) {
-        return line_->reaches(each.sender.participant, head);
+        return line_->reaches(each.sender, head);
       });
     for (int served = 0; served < kInTurn; ++served) {
       take_requests();
@@ -155,10 +155,10 @@ class Replier<Conversation>::Implementation {
 
   /// A reply to whom no reader is known of would be lost. Whose reader is no part of its own
   /// participant is held up once, not with each request.
-  Queue::Time hold(Sender& sender, const codec::Head& head) const {
+  typename Queue::Time hold(Sender& sender, const codec::Head& head) const {
     if (sender.hearing != Hearing::Unknown)
       return Queue::kNow;
-    const bool is_heard = line_->reaches(sender.participant, head);
+    const bool is_heard = line_->reaches(sender, head);
     sender.hearing = is_heard ? Hearing::Heard : Hearing::Awaited;
     return is_heard ? Queue::kNow : WaitLoop::Clock::now() + kMaxHold;
   }

@@ -27,15 +27,16 @@ ReplyLine::ReplyLine(const Participant& participant, WaitLoop& loop, const Topic
       senders_(participant),
       hearers_(participant) {
   if (participant.credentials()) {
-    client_writers_.emplace(participant, loop, reply_topic_, topics.reply_topic(), reply_qos());
+    client_writers_.emplace(participant, loop, reply_topic_, topics.reply_topic(), reply_qos(),
+                            &hearers_);
     return;
   }
   for (unsigned number = 0; number < kReplyPartitions; ++number) {
     const Qos partition = partition_qos(reply_partition(number));
     publishers_.emplace_back(dds_create_publisher(participant.get(), partition.get(), nullptr),
                              "publisher " + reply_partition(number));
-    writers_.push_back(hearers_.make_writer(publishers_.back(), reply_topic_, reply_qos().get(),
-                                            "writer " + topics.reply_topic()));
+    writers_.push_back(hearers_.make_writer(publishers_.back(), reply_topic_.get(),
+                                            reply_qos().get(), "writer " + topics.reply_topic()));
   }
 }
 
@@ -51,9 +52,11 @@ const Entity& ReplyLine::writer_of(const codec::Head& head) const {
   return writers_[reply_partition_of(head.client_id)];
 }
 
-bool ReplyLine::reaches(std::uint64_t participant, const codec::Head& head) const {
-  // With security a client asks once it has matched the server's writer.
-  return client_writers_ || hearers_.has(writer_of(head), participant);
+bool ReplyLine::reaches(const Sender& sender, const codec::Head& head) {
+  if (!client_writers_)
+    return hearers_.has(writer_of(head), sender.participant);
+  const auto writer = client_writers_->find(sender.name);
+  return writer && hearers_.has(*writer, sender.participant);
 }
 
 std::size_t ReplyLine::clients() const {

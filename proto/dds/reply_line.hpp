@@ -39,8 +39,8 @@ class ReplyLine {
   /// \param writer  of the sample. Of one thread only.
   Sender* sender(std::uint64_t writer);
 
-  /// Whether a reply would reach a reader of the participant by now.
-  bool reaches(std::uint64_t participant, const codec::Head& head) const;
+  /// Whether a reply would reach a reader of the sender's participant by now.
+  bool reaches(const Sender& sender, const codec::Head& head);
 
   const Entity& hearer_came() const noexcept { return hearers_.guard(); }  ///< a guard condition
 

@@ -145,8 +145,9 @@ TEST_F(FirstRequest, IsServedOnceItsSenderHearsTheReply) {
     const auto handled = server_.handled(number, 10s);
     ASSERT_TRUE(handled);
     was_quick = *handled - asked < kHold;
-    if (was_quick)
+    if (was_quick) {
       EXPECT_EQ(client.count_replies(), 1U);
+    }
     EXPECT_FALSE(server_.handled(number + 1, 2 * kHold)) << "served twice";
   }
   EXPECT_TRUE(was_quick);
