@@ -28,16 +28,18 @@ bool has_same_rights(const Caller& one, const Caller& other) {
 }  // namespace
 
 ClientWriters::ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
-                             std::string name, Qos qos)
+                             std::string name, Qos qos, Hearers* hearers)
     : participant_(participant.get()),
       directory_(participant.options().directory),
       topic_(topic.get()),
       name_(std::move(name)),
       qos_(std::move(qos)),
+      hearers_(hearers),
       readers_(
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
           "reader of readers") {
-  loop.attach(readers_, [this] { return notice_readers(); });
+  loop.attach(readers_,
+              [this] { return notice_readers() ? WaitLoop::kAgain : WaitLoop::kWithSamples; });
   loop.every(kBetweenLooks, [this] { look_again(); });
 }
 
@@ -66,8 +68,9 @@ std::shared_ptr<const Entity> ClientWriters::make(const std::string& name, const
       dds_create_publisher(participant_, partition_qos(partition).get(), nullptr),
       "publisher " + partition);
   const std::shared_ptr<const Entity> writer(
-      new Entity(dds_create_writer(publisher->get(), topic_, qos_.get(), nullptr),
-                 "writer " + name_),
+      new Entity(hearers_ ? hearers_->make_writer(*publisher, topic_, qos_.get(), "writer " + name_)
+                          : Entity(dds_create_writer(publisher->get(), topic_, qos_.get(), nullptr),
+                                   "writer " + name_)),
       [publisher](const Entity* each) { delete each; });  // before its publisher
   free_unread(Clock::now());
   const std::lock_guard lock(mutex_);

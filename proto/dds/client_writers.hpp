@@ -9,6 +9,7 @@
 #include <string>
 
 #include "proto/dds/entity.hpp"
+#include "proto/dds/hearers.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/dds/wait_loop.hpp"
@@ -32,8 +33,9 @@ class ClientWriters {
   /// \param topic   of these writers; outlives them.
   /// \param name    of the topic.
   /// \param loop    on whose thread readers are noticed.
+  /// \param hearers  that the writers are made with, if any; outlive them.
   ClientWriters(const Participant& participant, WaitLoop& loop, const Entity& topic,
-                std::string name, Qos qos);
+                std::string name, Qos qos, Hearers* hearers = nullptr);
   ClientWriters(const ClientWriters&) = delete;
   ClientWriters& operator=(const ClientWriters&) = delete;
 
@@ -44,6 +46,9 @@ class ClientWriters {
   /// something is written.
   /// \throws Failure(Internal) if it cannot be made.
   std::shared_ptr<const Entity> of(const std::string& name);
+
+  /// Null if there is none.
+  std::shared_ptr<const Entity> find(const std::string& name);
 
   /// Calls `use` for every client's writer, not under a lock.
   void for_each(
@@ -57,7 +62,6 @@ class ClientWriters {
     Caller rights = {};                    // for which it was made, if for a reader
   };
 
-  std::shared_ptr<const Entity> find(const std::string& name);
   /// Null if there is one.
   std::shared_ptr<const Entity> make(const std::string& name, const Caller& rights);
   bool notice_readers();
@@ -71,6 +75,7 @@ class ClientWriters {
   Handle topic_;
   std::string name_;
   Qos qos_;
+  Hearers* hearers_;  // null: nobody asks
   OnNew on_new_;
   Entity readers_;                 // reader of what DDS knows of readers
   std::set<std::string> unknown_;  // who has a reader and is not let in; of the loop's thread

@@ -71,6 +71,7 @@ std::string cyclone_configuration(const ParticipantOptions& options) {
          discovery(options) +
          "<SPDPInterval>1s</SPDPInterval><LeaseDuration>5s</LeaseDuration></Discovery><Internal>"
          "<SocketReceiveBufferSize max=\"4MB\"/><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
+         "<HeartbeatInterval>10ms</HeartbeatInterval><NackDelay>10ms</NackDelay>"
          "<MaxSampleSize>2MB</MaxSampleSize></Internal></Domain></CycloneDDS>";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -13,10 +14,15 @@
 namespace kinship::dds {
 
 /// Requests that wait for the server: those of one client in order, clients in turn, so that who
-/// sends many waits for his own. For sources of proto/dds only.
+/// sends many waits for his own. A request may be held: it waits like all others, and is passed
+/// over until its time has come or it is released. For sources of proto/dds only.
 template <typename Request>
 class FairQueue {
  public:
+  using Time = std::chrono::steady_clock::time_point;
+  static constexpr Time kNow = Time::min();  ///< as a time to be held until: not held
+  static constexpr Time kNever = Time::max();
+
   explicit FairQueue(std::size_t capacity) : capacity_(capacity) {}
 
   std::size_t size() const noexcept { return size_; }
@@ -39,44 +45,100 @@ class FairQueue {
         return std::nullopt;
     }
     if (count > 0 &&
-        std::ranges::any_of(mine->second, [&](const auto& waits) { return waits.first == head; }))
+        std::ranges::any_of(mine->second, [&](const Entry& waits) { return waits.head == head; }))
       return std::nullopt;
     return Opening(client, head, longest);
   }
 
   /// \param opening  of this queue, to which nothing was done since.
-  void push(const Opening& opening, Request request) {
+  void push(const Opening& opening, Request&& request, Time held_until = kNow) {
     if (opening.gives_way_ != waiting_.end()) {
+      release(opening.gives_way_->second.back());
       opening.gives_way_->second.pop_back();
       --size_;
     }
     auto& mine = waiting_[opening.client_];
     if (mine.empty())
       turns_.push_back(opening.client_);
-    mine.emplace_back(opening.head_, std::move(request));
+    mine.emplace_back(opening.head_, std::move(request), held_until);
     ++size_;
+    if (held_until != kNow)
+      ++held_;
   }
 
-  std::optional<std::pair<codec::Head, Request>> pop() {
-    if (turns_.empty())
-      return std::nullopt;
-    const auto next = waiting_.find(turns_.front());
-    turns_.pop_front();
-    std::optional<std::pair<codec::Head, Request>> request = std::move(next->second.front());
-    next->second.pop_front();
-    --size_;
-    if (next->second.empty())
-      waiting_.erase(next);
-    else
-      turns_.push_back(next->first);
-    return request;
+  /// The next one that is not held any more.
+  std::optional<std::pair<codec::Head, Request>> pop(Time now) {
+    for (auto turn = turns_.begin(); turn != turns_.end(); ++turn) {
+      const auto mine = waiting_.find(*turn);
+      const auto next = std::ranges::find_if(
+          mine->second, [&](const Entry& each) { return each.held_until <= now; });
+      if (next == mine->second.end())
+        continue;
+      turns_.erase(turn);
+      release(*next);
+      std::optional<std::pair<codec::Head, Request>> request(std::in_place, next->head,
+                                                             std::move(next->request));
+      mine->second.erase(next);
+      --size_;
+      if (mine->second.empty())
+        waiting_.erase(mine);
+      else
+        turns_.push_back(mine->first);
+      return request;
+    }
+    return std::nullopt;
+  }
+
+  bool holds_some() const noexcept { return held_ > 0; }
+
+  /// If it is held.
+  void release(const std::string& client, const codec::Head& head) {
+    if (const auto mine = waiting_.find(client); held_ > 0 && mine != waiting_.end())
+      for (Entry& each : mine->second)
+        if (each.head == head)
+          release(each);
+  }
+
+  /// Those that are held and of which `is_free` says so.
+  template <typename IsFree>
+  void release_if(const IsFree& is_free) {
+    for (auto& [client, entries] : waiting_)
+      for (Entry& each : entries)
+        if (each.held_until != kNow && is_free(each.head, each.request))
+          release(each);
+  }
+
+  /// When there will be something to pop, as long as nothing is pushed or released.
+  Time next() const {
+    if (size_ == 0 || held_ < size_)
+      return size_ == 0 ? kNever : kNow;
+    Time next = kNever;
+    for (const auto& [client, entries] : waiting_)
+      for (const Entry& each : entries)
+        next = std::min(next, each.held_until);
+    return next;
   }
 
  private:
-  using Waiting = std::map<std::string, std::deque<std::pair<codec::Head, Request>>>;
+  struct Entry {
+    Entry(const codec::Head& of, Request&& waiting, Time until)
+        : head(of), request(std::move(waiting)), held_until(until) {}
+
+    codec::Head head;
+    Request request;
+    Time held_until;
+  };
+  using Waiting = std::map<std::string, std::deque<Entry>>;
+
+  void release(Entry& entry) {
+    if (entry.held_until != kNow)
+      --held_;
+    entry.held_until = kNow;
+  }
 
   std::size_t capacity_;
   std::size_t size_ = 0;
+  std::size_t held_ = 0;           // of these
   Waiting waiting_;                // none is empty
   std::deque<std::string> turns_;  // each of these once
 };

@@ -1,6 +1,7 @@
 #include "proto/dds/replier.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <string>
 #include <utility>
@@ -78,7 +79,8 @@ class Replier<Conversation>::Implementation {
         directory_(participant.options().directory),
         handler_(std::move(handler)),
         gate_(std::move(gate)) {
-    loop.attach(line_->reader(), [this] { return serve_some(); });
+    loop.attach(
+        line_->reader(), [this] { return serve_some(); }, &line_->hearer_came());
   }
 
   std::size_t clients() const { return line_->clients(); }
@@ -91,17 +93,23 @@ class Replier<Conversation>::Implementation {
     Decoded request;
   };
 
-  /// \return whether more waits.
-  bool serve_some() {
+  using Queue = FairQueue<Waiting>;
+
+  /// \return when the next one may be served of those that wait.
+  typename Queue::Time serve_some() {
     constexpr int kInTurn = 4;  // then the other conversations
+    if (waiting_.holds_some())
+      waiting_.release_if([this](const codec::Head& head, const Waiting& each) {
+        return line_->reaches(each.sender, head);
+      });
     for (int served = 0; served < kInTurn; ++served) {
       take_requests();
-      auto next = waiting_.pop();
+      auto next = waiting_.pop(waiting_.holds_some() ? WaitLoop::Clock::now() : Queue::kNever);
       if (!next)
-        return false;
+        break;
       serve(next->first, std::move(next->second));
     }
-    return waiting_.size() > 0;
+    return waiting_.next();
   }
 
   /// All that the reader holds, before each one that is served: it keeps the newest, whose ever
@@ -120,8 +128,8 @@ class Replier<Conversation>::Implementation {
 
   void take(const WireRequest& wire, std::uint64_t writer) {
     const codec::Head head = codec::head_of(wire);
-    Sender unknown;
-    const Sender* sender = line_->sender(writer);
+    Sender unknown{.client = {}, .hearing = Hearing::Awaited};
+    Sender* sender = line_->sender(writer);
     if (!sender && has_security_)
       return;  // gone, and nobody can say any more who it was
     if (!sender) {
@@ -130,7 +138,7 @@ class Replier<Conversation>::Implementation {
     }
     const auto opening = waiting_.opening_for(sender->client, head);
     if (!opening)
-      return;
+      return waiting_.release(sender->client, head);
     // What is sent again costs its client nothing, and one that is refused pushes nobody out. Who
     // may not ask at all is told so in its turn, and what he sends is not decoded.
     const ReplyLine::Place place{sender->name, head};
@@ -140,7 +148,19 @@ class Replier<Conversation>::Implementation {
     if (caller ? is_refused(place, *caller, wire)
                : !refusals_.take(sender->client, RefusalAllowance::Clock::now()))
       return;
-    waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())});
+    const auto held_until = hold(*sender, head);
+    waiting_.push(*opening, {*sender, caller ? decoded(wire) : Decoded(caller.error())},
+                  held_until);
+  }
+
+  /// A reply to whom no reader is known of would be lost. Whose reader is no part of its own
+  /// participant is held up once, not with each request.
+  typename Queue::Time hold(Sender& sender, const codec::Head& head) const {
+    if (sender.hearing != Hearing::Unknown)
+      return Queue::kNow;
+    const bool is_heard = line_->reaches(sender, head);
+    sender.hearing = is_heard ? Hearing::Heard : Hearing::Awaited;
+    return is_heard ? Queue::kNow : WaitLoop::Clock::now() + kMaxHold;
   }
 
   /// \return why the sender is refused if it is.
@@ -199,6 +219,7 @@ class Replier<Conversation>::Implementation {
   }
 
   static constexpr std::size_t kWaitingRequests = 256;
+  static constexpr std::chrono::milliseconds kMaxHold{100};  // then it is sent again
 
   std::shared_ptr<ReplyLine> line_;  // shared for the moment in which an Answer sends
   const std::string what_ = "requests of " + line_->name();
@@ -206,7 +227,7 @@ class Replier<Conversation>::Implementation {
   const Directory directory_;
   Handler handler_;
   Gate gate_;
-  FairQueue<Waiting> waiting_{kWaitingRequests};
+  Queue waiting_{kWaitingRequests};
   RefusalAllowance refusals_;
 };
 

@@ -24,19 +24,39 @@ ReplyLine::ReplyLine(const Participant& participant, WaitLoop& loop, const Topic
       reader_(dds_create_reader(subscriber_.get(), request_topic_.get(),
                                 request_reader_qos(topics.held_requests).get(), nullptr),
               "reader " + topics.request_topic()),
-      senders_(participant) {
+      senders_(participant),
+      hearers_(participant) {
   if (participant.credentials()) {
-    client_writers_.emplace(participant, loop, reply_topic_, topics.reply_topic(), reply_qos());
+    client_writers_.emplace(participant, loop, reply_topic_, topics.reply_topic(), reply_qos(),
+                            &hearers_);
     return;
   }
   for (unsigned number = 0; number < kReplyPartitions; ++number) {
     const Qos partition = partition_qos(reply_partition(number));
     publishers_.emplace_back(dds_create_publisher(participant.get(), partition.get(), nullptr),
                              "publisher " + reply_partition(number));
-    writers_.emplace_back(
-        dds_create_writer(publishers_.back().get(), reply_topic_.get(), reply_qos().get(), nullptr),
-        "writer " + topics.reply_topic());
+    writers_.push_back(hearers_.make_writer(publishers_.back(), reply_topic_.get(),
+                                            reply_qos().get(), "writer " + topics.reply_topic()));
   }
+}
+
+Sender* ReplyLine::sender(std::uint64_t writer) {
+  if (const std::uint64_t departures = hearers_.departures(); departures != departures_) {
+    departures_ = departures;
+    senders_.forget_heard();
+  }
+  return senders_.find(reader_, writer);
+}
+
+const Entity& ReplyLine::writer_of(const codec::Head& head) const {
+  return writers_[reply_partition_of(head.client_id)];
+}
+
+bool ReplyLine::reaches(const Sender& sender, const codec::Head& head) {
+  if (!client_writers_)
+    return hearers_.has(writer_of(head), sender.participant);
+  const auto writer = client_writers_->find(sender.name);
+  return writer && hearers_.has(*writer, sender.participant);
 }
 
 std::size_t ReplyLine::clients() const {
@@ -62,7 +82,7 @@ void ReplyLine::end(const Place& place) {
 void ReplyLine::send(const Place& place, const void* reply) noexcept {
   // Whatever keeps the reply from leaving, the client asks again.
   if (!client_writers_) {
-    dds_write(writers_[reply_partition_of(place.head.client_id)].get(), reply);
+    dds_write(writer_of(place.head).get(), reply);
     return;
   }
   try {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proto/dds/client_writers.hpp"
+#include "proto/dds/hearers.hpp"
 #include "proto/dds/participant.hpp"
 #include "proto/dds/senders.hpp"
 #include "proto/dds/wait_loop.hpp"
@@ -36,7 +37,12 @@ class ReplyLine {
 
   /// Who sent a request; null if nobody can say any more. Valid until the next call.
   /// \param writer  of the sample. Of one thread only.
-  const Sender* sender(std::uint64_t writer) { return senders_.find(reader_, writer); }
+  Sender* sender(std::uint64_t writer);
+
+  /// Whether a reply would reach a reader of the sender's participant by now.
+  bool reaches(const Sender& sender, const codec::Head& head);
+
+  const Entity& hearer_came() const noexcept { return hearers_.guard(); }  ///< a guard condition
 
   bool is_being_answered(const Place& place) const;
   bool begin(const Place& place);  ///< false: it is being answered already
@@ -48,12 +54,16 @@ class ReplyLine {
   void send(const Place& place, const void* reply) noexcept;
 
  private:
+  const Entity& writer_of(const codec::Head& head) const;
+
   std::string name_;
   Entity request_topic_;
   Entity reply_topic_;
   Entity subscriber_;
   Entity reader_;
   Senders senders_;
+  std::uint64_t departures_ = 0;  // that senders_ knows of
+  Hearers hearers_;
   std::optional<ClientWriters> client_writers_;  // with security
   std::vector<Entity> publishers_;               // without: one per partition
   std::vector<Entity> writers_;                  // one per partition

@@ -165,8 +165,12 @@ bool RequestLine::notice_servers() {
   dds_publication_matched_status_t status{};
   require(dds_get_publication_matched_status(writer_.get(), &status), "writer " + name_);
   if (status.current_count_change != 0 || status.total_count_change != 0) {
-    if (status.total_count_change > 0)
+    if (status.total_count_change > 0) {
       ++servers_seen_;
+      // Sends a heartbeat. Cyclone DDS drops what comes from a writer of which it had none, and
+      // asks for it again, in vain if that comes before the write that it is about has returned.
+      dds_assert_liveliness(writer_.get());
+    }
     wake_all();  // reading the status took it from the other callers
   }
   dds_subscription_matched_status_t replies{};

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <regex>
 #include <utility>
 #include <vector>
 
+#include "proto/dds/endpoint.hpp"
 #include "proto/dds/network_interface.hpp"
 #include "proto/security/certificate_name.hpp"
 #include "proto/security/permissions.hpp"
@@ -18,13 +18,6 @@ namespace kinship::dds {
 namespace {
 
 constexpr std::size_t kMaxKnown = 4096;  // then all are looked up anew
-
-struct FreeEndpoint {
-  void operator()(dds_builtintopic_endpoint_t* endpoint) const noexcept {
-    dds_builtintopic_free_endpoint(endpoint);
-  }
-};
-using Endpoint = std::unique_ptr<dds_builtintopic_endpoint_t, FreeEndpoint>;
 
 std::string text_of(const dds_guid_t& guid) {
   Uuid uuid;
@@ -75,7 +68,7 @@ Senders::Senders(const Participant& participant)
           dds_create_reader(participant.get(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
           "reader of participants") {}
 
-const Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
+Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
   if (const auto known = known_.find(writer); known != known_.end())
     return &known->second;
   std::optional<Sender> sender = look_up(reader, writer);
@@ -86,17 +79,28 @@ const Sender* Senders::find(const Entity& reader, std::uint64_t writer) {
   return &known_.emplace(writer, *std::move(sender)).first->second;
 }
 
+void Senders::forget_heard() {
+  for (auto& [writer, sender] : known_)
+    if (sender.hearing == Hearing::Heard)
+      sender.hearing = Hearing::Unknown;
+}
+
 std::optional<Sender> Senders::look_up(const Entity& reader, std::uint64_t writer) const {
   const Endpoint endpoint(dds_get_matched_publication_data(reader.get(), writer));
   if (!endpoint)
     return std::nullopt;
   const bool is_here = is_local(endpoint->participant_instance_handle);
   if (!has_security_)
-    return Sender{.client = text_of(endpoint->participant_key), .is_local = is_here};
+    return Sender{.client = text_of(endpoint->participant_key),
+                  .is_local = is_here,
+                  .participant = endpoint->participant_instance_handle};
   const std::optional<std::string> name = client_of_partitions(endpoint->qos);
   if (!name)
     return std::nullopt;
-  return Sender{.client = security::client_of(*name), .name = *name, .is_local = is_here};
+  return Sender{.client = security::client_of(*name),
+                .name = *name,
+                .is_local = is_here,
+                .participant = endpoint->participant_instance_handle};
 }
 
 bool Senders::is_local(std::uint64_t participant) const {

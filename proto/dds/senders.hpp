@@ -12,6 +12,13 @@ struct dds_qos;
 
 namespace kinship::dds {
 
+/// Whether a sender hears the replies to its requests.
+enum class Hearing {
+  Unknown,
+  Heard,    ///< a reader of its participant was there
+  Awaited,  ///< was waited for once, and is not again
+};
+
 /// Who writes requests, as far as DDS knows it and not the request.
 struct Sender {
   /// The client's name; without security the identifier of its participant, which is another
@@ -20,6 +27,8 @@ struct Sender {
   std::string name = {};  ///< common name of its certificate; empty without security
   /// All of its participant's addresses are of this machine. Without security it says them itself.
   bool is_local = false;
+  std::uint64_t participant = 0;  ///< its instance handle
+  Hearing hearing = Hearing::Unknown;
 };
 
 /// Finds senders by the writers of samples, and remembers them. For sources of proto/dds only; not
@@ -32,7 +41,9 @@ class Senders {
   /// \param writer  its publication handle.
   /// \return null if the writer is gone, or is in no partition of one client (with security); valid
   ///         until the next call.
-  const Sender* find(const Entity& reader, std::uint64_t writer);
+  Sender* find(const Entity& reader, std::uint64_t writer);
+
+  void forget_heard();  ///< some reader has gone
 
  private:
   std::optional<Sender> look_up(const Entity& reader, std::uint64_t writer) const;

@@ -11,7 +11,9 @@
 namespace kinship::dds {
 namespace {
 
-constexpr dds_attach_t kWakeUp = -1;  // attachments of readers count from 0
+// Attachments: of sources' readers from 0, of their guards from kGuards.
+constexpr dds_attach_t kWakeUp = -1;
+constexpr dds_attach_t kGuards = 1 << 16;
 
 dds_duration_t time_until(WaitLoop::Clock::time_point when) {
   constexpr std::chrono::nanoseconds kLongest = std::chrono::hours(1);
@@ -31,12 +33,15 @@ class WaitLoop::Implementation {
     require(dds_waitset_attach(waitset_.get(), wake_up_.get(), kWakeUp), "waitset");
   }
 
-  void attach(const Entity& reader, std::function<bool()> on_data) {
+  void attach(const Entity& reader, std::function<Clock::time_point()> on_data,
+              const Entity* guard) {
+    const auto number = static_cast<dds_attach_t>(sources_.size());
     Entity condition(dds_create_readcondition(reader.get(), DDS_ANY_STATE), "read condition");
-    require(dds_waitset_attach(waitset_.get(), condition.get(),
-                               static_cast<dds_attach_t>(sources_.size())),
-            "waitset");
-    sources_.push_back({std::move(condition), std::move(on_data), false});
+    require(dds_waitset_attach(waitset_.get(), condition.get(), number), "waitset");
+    if (guard)
+      require(dds_waitset_attach(waitset_.get(), guard->get(), kGuards + number), "waitset");
+    sources_.push_back(
+        {std::move(condition), guard ? guard->get() : Handle{}, std::move(on_data), kWithSamples});
   }
 
   void every(Clock::duration period, std::function<void()> on_time) {
@@ -45,15 +50,15 @@ class WaitLoop::Implementation {
 
   void run(const std::function<Clock::time_point()>& on_wake) {
     while (!stopped_) {
-      const Clock::time_point next = std::min(on_wake(), call_timers());
+      Clock::time_point next = std::min(on_wake(), call_timers());
       if (stopped_)
         return;
-      const bool has_more =
-          std::ranges::any_of(sources_, [](const Source& source) { return source.has_more; });
-      wait(has_more ? 0 : time_until(next));
+      for (const Source& source : sources_)
+        next = std::min(next, source.due);
+      wait(next == kAgain ? 0 : time_until(next));
       for (Source& source : sources_)
-        if (source.has_more && !stopped_)
-          source.has_more = source.on_data();
+        if (source.is_due() && !stopped_)
+          source.due = source.on_data();
     }
   }
 
@@ -65,7 +70,7 @@ class WaitLoop::Implementation {
   }
 
  private:
-  /// Notes who has samples.
+  /// Notes who has samples, and whose guard was set.
   void wait(dds_duration_t time) {
     std::array<dds_attach_t, 16> ready{};
     const std::int32_t count =
@@ -73,9 +78,15 @@ class WaitLoop::Implementation {
     bool ignored = false;
     require(dds_take_guardcondition(wake_up_.get(), &ignored), "guard condition");
     const auto end = std::min(static_cast<std::size_t>(count), ready.size());
-    for (std::size_t i = 0; i < end; ++i)
-      if (ready[i] != kWakeUp)
-        sources_[static_cast<std::size_t>(ready[i])].has_more = true;
+    for (std::size_t i = 0; i < end; ++i) {
+      if (ready[i] == kWakeUp)
+        continue;
+      const bool is_guard = ready[i] >= kGuards;
+      Source& source = sources_[static_cast<std::size_t>(is_guard ? ready[i] - kGuards : ready[i])];
+      if (is_guard)
+        require(dds_take_guardcondition(source.guard, &ignored), "guard condition");
+      source.due = kAgain;
+    }
   }
 
   /// \return when the next one is due.
@@ -99,8 +110,11 @@ class WaitLoop::Implementation {
 
   struct Source {
     Entity condition;
-    std::function<bool()> on_data;
-    bool has_more = false;
+    Handle guard;  // 0: none
+    std::function<Clock::time_point()> on_data;
+    Clock::time_point due;
+
+    bool is_due() const { return due == kAgain || (due != kWithSamples && due <= Clock::now()); }
   };
 
   Entity waitset_;
@@ -127,8 +141,9 @@ void WaitLoop::every(Clock::duration period, std::function<void()> on_time) {
   implementation_->every(period, std::move(on_time));
 }
 
-void WaitLoop::attach(const Entity& reader, std::function<bool()> on_data) {
-  implementation_->attach(reader, std::move(on_data));
+void WaitLoop::attach(const Entity& reader, std::function<Clock::time_point()> on_data,
+                      const Entity* guard) {
+  implementation_->attach(reader, std::move(on_data), guard);
 }
 
 }  // namespace kinship::dds

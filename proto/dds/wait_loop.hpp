@@ -29,10 +29,15 @@ class WaitLoop {
   void wake();  ///< has on_wake called soon
   void stop();  ///< run() returns after the handler it is in; also if called before run()
 
-  /// For repliers: `on_data` is called on the loop's thread when `reader` has samples, and, as long
-  /// as it returns true, again after the others' turn. Call before run(); the reader must live as
-  /// long as the loop runs.
-  void attach(const Entity& reader, std::function<bool()> on_data);
+  /// What on_data returns besides times: again after the others' turn; when there are samples.
+  static constexpr Clock::time_point kAgain = Clock::time_point::min();
+  static constexpr Clock::time_point kWithSamples = Clock::time_point::max();
+
+  /// For repliers: `on_data` is called on the loop's thread when `reader` has samples, at the time
+  /// that it returned last, and when `guard`, a guard condition, is set, if there is one. Call
+  /// before run(); both must live as long as the loop runs.
+  void attach(const Entity& reader, std::function<Clock::time_point()> on_data,
+              const Entity* guard = nullptr);
 
   /// For repliers and publishers: `on_time` is called on the loop's thread about every `period`.
   /// Call before run().

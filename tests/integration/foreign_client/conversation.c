@@ -55,6 +55,7 @@ dds_entity_t join(uint32_t domain) {
            "<SPDPInterval>1s</SPDPInterval><LeaseDuration>5s</LeaseDuration></Discovery>"
            "<Internal><SocketReceiveBufferSize max=\"4MB\"/>"
            "<Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
+           "<HeartbeatInterval>10ms</HeartbeatInterval><NackDelay>10ms</NackDelay>"
            "<MaxSampleSize>2MB</MaxSampleSize></Internal></Domain></CycloneDDS>",
            7400 + 250 * domain + 10);
   checked(dds_create_domain(domain, configuration), "domain");

@@ -39,6 +39,15 @@ TEST(Configuration, LoopbackIsUsedForServersAndForLocalClients) {
                        "name=\"eth0\""));
 }
 
+// A first request or reply that is lost is there before the client sends it again after 100 ms.
+TEST(Configuration, WhatIsLostIsMissedSoonOnBothSides) {
+  for (const Role role : {Role::Server, Role::Client}) {
+    const std::string xml = cyclone_configuration({.role = role});
+    EXPECT_TRUE(contains(xml, "<HeartbeatInterval>10ms</HeartbeatInterval>"));
+    EXPECT_TRUE(contains(xml, "<NackDelay>10ms</NackDelay>"));
+  }
+}
+
 TEST(Configuration, RefusesNamesThatWouldChangeTheXml) {
   EXPECT_THROW(cyclone_configuration({.server = "a\"/><Peer address=\"b"}), Failure);
   EXPECT_THROW(cyclone_configuration({.server = ""}), Failure);
