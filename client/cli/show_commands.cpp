@@ -178,11 +178,12 @@ void print_status(const ServerStatus& status, std::ostream& out) {
       << "under way      " << count_text(status.jobs, "job") << "; "
       << count_text(status.followed, "distribution") << " followed\n"
       << "rehearsals     " << status.rehearsals << " done, " << status.queued_rehearsals
-      << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n"
-      << "scrub          "
-      << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "
-                                 : std::string())
-      << number_text(100 * status.scrub_part, 0) << " % read\n";
+      << " queued, " << number_text(status.rehearsal_time_s, 1) << " s of processor time\n";
+  if (status.scrubbed_ms > 0 || status.scrub_part > 0)  // a database reads its own pages
+    out << "scrub          "
+        << (status.scrubbed_ms > 0 ? "all read at " + time_text(status.scrubbed_ms) + ", then "
+                                   : std::string())
+        << number_text(100 * status.scrub_part, 0) << " % read\n";
   for (const ReplicaUse& replica : status.replicas)
     print_replica(replica, out);
   if (status.upstream)

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -55,6 +56,16 @@ class Descriptor {
     return static_cast<std::size_t>(count);
   }
 
+  /// The system's own marks come from a clock that stands still for up to 10 ms: files written
+  /// meanwhile would have no order.
+  void mark_written_now() const {
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    const timespec accessed_and_written[] = {{0, UTIME_OMIT}, now};
+    if (::futimens(descriptor_, accessed_and_written) != 0)
+      fail(path_, "cannot set its time");
+  }
+
   void sync() const {
     if (::fsync(descriptor_) != 0)
       fail(path_, "cannot fsync");
@@ -93,6 +104,7 @@ void write_file(const std::filesystem::path& path, std::string_view content, Syn
   {
     const Descriptor file(temporary.path(), O_WRONLY | O_CREAT | O_EXCL);
     file.write(content);
+    file.mark_written_now();
     if (sync == Sync::Yes)
       file.sync();
   }

@@ -8,7 +8,8 @@
 namespace kinship::link {
 
 /// Writes a whole file: temporary file beside it, fsync, rename, fsync of the folder. Whoever reads
-/// `path` sees the old content, or none, or all of the new one.
+/// `path` sees the old content, or none, or all of the new one. Files of one process have times of
+/// writing in the order in which they were written.
 /// \throws Failure(Storage) naming the file and what the system said.
 void write_durably(const std::filesystem::path& path, std::string_view content);
 

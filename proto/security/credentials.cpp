@@ -34,6 +34,14 @@ void write_files(const CredentialFiles& files, const CredentialWish& wish, const
   throw Failure(ErrorCode::InvalidInput, file.string() + ": " + reason);
 }
 
+/// A folder of something else is named by mistake, such as the server's security folder.
+void require_key(const std::filesystem::path& key) {
+  if (!std::filesystem::exists(key))
+    throw Failure(ErrorCode::NotFound,
+                  key.parent_path().string() + ": holds no credentials (" + key.string() +
+                      " is not there); they are made by: kinshipd secure add NAME --out FOLDER");
+}
+
 /// Others who can read a key can be whom it is for.
 void require_private(const std::filesystem::path& key) {
   constexpr mode_t kOthers = 077;
@@ -57,6 +65,7 @@ std::string identity_field(const toml::table& table, std::string_view field,
 }
 
 Credentials read_checked(const CredentialFiles& files, std::chrono::sys_seconds now) {
+  require_key(files.key);
   require_private(files.key);
   const Key key = key_from_pem(read_file(files.key), files.key.string());
   const auto certificates =

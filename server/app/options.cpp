@@ -15,9 +15,9 @@
 #include "proto/manual/suggestion.hpp"
 #include "proto/types/nearest_name.hpp"
 #include "server/app/configuration_text.hpp"
+#include "server/app/database_url.hpp"
 #include "server/app/metrics_address.hpp"
 #include "server/app/password.hpp"
-#include "server/app/upstream_url.hpp"
 
 namespace kinship::app {
 namespace {
@@ -82,7 +82,7 @@ CLI::Validator is_metrics_address() {
 
 CLI::Validator is_upstream() {
   return {[](std::string& text) {
-            return is_upstream_url(text) ? std::string()
+            return is_database_url(text) ? std::string()
                                          : "a memory above is a PostgreSQL database: "
                                            "postgresql://HOST/DATABASE";
           },
@@ -219,7 +219,8 @@ void add_server_options(CLI::App& app, ServerOptions& options) {
       ->check(CLI::Range(std::size_t{1}, kMaxWorkers))
       ->capture_default_str();
   app.add_option("--backup-folder", options.backup_folder,
-                 "Folder that 'kinship backup' may write into; default: that of the store")
+                 "Folder that 'kinship backup' may write into; default: that of the store, none of "
+                 "a database")
       ->check(CLI::ExistingDirectory);
   app.add_option("--fit-memory-mb", options.fit_memory_mb,
                  "Memory that all fits together may take; what could need more is refused")
@@ -315,6 +316,18 @@ std::string store_fault(const CLI::App& app, const std::filesystem::path& store)
              : "neither XDG_STATE_HOME nor HOME is set; say where with --store FILE";
 }
 
+/// Which option of a database was given for a file, where it would promise what nothing keeps.
+std::string database_option_fault(const ServerOptions& options) {
+  if (is_database_url(options.store.string()))
+    return {};
+  const char* const option = options.require_synchronous ? "--require-synchronous"
+                             : options.primary_only      ? "--primary-only"
+                                                         : nullptr;
+  return option == nullptr ? std::string()
+                           : std::string(option) + " is for a PostgreSQL database, but --store '" +
+                                 options.store.string() + "' is a file";
+}
+
 }  // namespace
 
 std::string insecurity_of(const ServerOptions& options) {
@@ -400,6 +413,10 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   }
   if (is_offline)
     return offline;
+  if (const std::string fault = database_option_fault(options); !fault.empty()) {
+    err << "kinshipd: " << fault << '\n';
+    return kWrongUsage;
+  }
   if (const std::string insecurity = insecurity_of(options);
       !insecurity.empty() && !options.insecure) {
     err << "kinshipd: " << insecurity

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "proto/types/limits.hpp"
+#include "server/store/open_store.hpp"
 
 namespace kinship::service {
 namespace {
@@ -72,8 +73,14 @@ std::optional<Error> find_name_fault(const std::string& name, const fs::path& st
   return std::nullopt;
 }
 
-fs::path folder_of(const BackupPlace& place, const fs::path& store_file) {
-  return place.folder.empty() ? fs::absolute(store_file).parent_path() : place.folder;
+Result<fs::path> folder_of(const BackupPlace& place, const fs::path& store_file) {
+  if (!place.folder.empty())
+    return place.folder;
+  if (store::kind_of_store(store_file.string()).value_or_throw() ==
+      store::StoreKind::PostgresDatabase)
+    return invalid_input("this server has no folder of backups, as its store is the database '" +
+                         store_file.string() + "'; kinshipd --backup-folder FOLDER names one");
+  return fs::absolute(store_file).parent_path();
 }
 
 std::vector<BackupSummary> find_backups(const fs::path& folder, const fs::path& store_file) {

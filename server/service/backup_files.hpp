@@ -21,7 +21,7 @@ std::uint64_t free_bytes(const std::filesystem::path& folder);
 
 /// Where backups are.
 struct BackupPlace {
-  std::filesystem::path folder;  ///< empty: the folder of the store
+  std::filesystem::path folder;  ///< empty: the folder of the store, if that is a file
   std::function<std::uint64_t(const std::filesystem::path& folder)> free_bytes =
       service::free_bytes;
 };
@@ -32,8 +32,9 @@ struct BackupPlace {
 std::optional<Error> find_name_fault(const std::string& name,
                                      const std::filesystem::path& store_file);
 
-/// The folder that a place means, for a store in this file.
-std::filesystem::path folder_of(const BackupPlace& place, const std::filesystem::path& store_file);
+/// The folder that a place means, for a store of this name; InvalidInput if it means none.
+Result<std::filesystem::path> folder_of(const BackupPlace& place,
+                                        const std::filesystem::path& store_file);
 
 /// Complete copies in the folder, the newest first: plain files of such names that begin as stores
 /// do, not as another program's database, without the store itself and what belongs to it.

@@ -65,7 +65,10 @@ Result<Jobs::Task> backup_job(const store::Store& store, const std::string& name
   const fs::path store_file = store.status().file;
   if (auto fault = find_name_fault(name, store_file))
     return *std::move(fault);
-  const fs::path path = folder_of(place, store_file) / name;
+  const Result<fs::path> folder = folder_of(place, store_file);
+  if (!folder)
+    return folder.error();
+  const fs::path path = *folder / name;
   if (const auto error = check(path, store, place))
     return *error;
   return Jobs::Task{

@@ -42,14 +42,18 @@ AdminPage list_backups(const store::Store& store, const BackupPlace& place,
   if (!first)
     return page_of(first.error());
   const std::filesystem::path store_file = store.status().file;
-  const std::vector<BackupSummary> all = find_backups(folder_of(place, store_file), store_file);
+  const Result<std::filesystem::path> folder = folder_of(place, store_file);
+  if (!folder)
+    return page_of(folder.error());
+  const std::vector<BackupSummary> all = find_backups(*folder, store_file);
   return page_of(all, *first, page_size(request));
 }
 
 Result<BackupFile> open_backup(const store::Store& store, const BackupPlace& place,
                                const std::string& name) {
   const std::filesystem::path store_file = store.status().file;
-  return BackupFile::open(folder_of(place, store_file), name, store_file);
+  const Result<std::filesystem::path> folder = folder_of(place, store_file);
+  return folder ? BackupFile::open(*folder, name, store_file) : folder.error();
 }
 
 Jobs::Task hash_backup_job(BackupFile file, const std::string& request_key) {

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import tempfile
 
 from kinshipd_process import reserve_domain
@@ -29,6 +30,13 @@ BESIDE = "in a terminal of its own"
 IN_THAT_TERMINAL = "in that terminal"  # the one before: Control-C
 
 
+def memory_root() -> "str | None":
+    """A folder in memory, as tests/support/temporary_directory.hpp has it: with 1 GB of room, unless TMPDIR says where to go."""
+    memory = pathlib.Path("/dev/shm")
+    has_room = memory.is_dir() and shutil.disk_usage(memory).free >= 1 << 30 and os.access(memory, os.W_OK)
+    return str(memory) if has_room and "TMPDIR" not in os.environ else None
+
+
 class DocumentRun:
     """Use as a context: at its end everything that it started ends, and its folder goes."""
 
@@ -39,7 +47,7 @@ class DocumentRun:
         self._is_written = is_written
         self._outputs = []  # (command, lines to be written)
         self._domains, self._claims = zip(*(reserve_domain() for _ in range(DOMAINS)))
-        self._home = tempfile.TemporaryDirectory(prefix="kinship-documents-")
+        self._home = tempfile.TemporaryDirectory(prefix="kinship-documents-", dir=memory_root())
         home = pathlib.Path(self._home.name)
         self._folder = home / "kinship"
         self._lay_out()

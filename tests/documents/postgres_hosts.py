@@ -7,7 +7,7 @@ import subprocess
 
 PROGRAMS = pathlib.Path("/usr/lib/postgresql/15/bin")
 NAMES = ["initdb", "pg_basebackup", "pg_ctl", "psql", "openssl"]
-DOCUMENT_PORTS = (5432, 5433)
+DOCUMENT_PORTS = (5433, 5434)
 
 
 class PostgresHosts:
@@ -35,7 +35,7 @@ class PostgresHosts:
         file.chmod(0o755)
 
     def placed(self, text: str) -> str:
-        """With the ports of this run in place of PostgreSQL's usual ones."""
+        """With the ports of this run in place of those of the document."""
         for named, port in zip(DOCUMENT_PORTS, self._ports):
             text = text.replace(str(named), str(port))
         return text

@@ -61,7 +61,9 @@ Connection::Connection(const ConnectionString& where, const ConnectionOptions& o
   if (!connection_)
     throw std::bad_alloc();
   if (PQstatus(connection_.get()) != CONNECTION_OK)
-    throw_lost("connecting");
+    throw_lost(PQconnectionNeedsPassword(connection_.get()) == 0
+                   ? "connecting"
+                   : "connecting without a password (~/.pgpass has none for it)");
   PQsetnonblocking(connection_.get(), 1);
   PQsetNoticeReceiver(connection_.get(), &Connection::notice, this);
 }

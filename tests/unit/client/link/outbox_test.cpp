@@ -111,6 +111,16 @@ TEST_F(OutboxTest, OldestComesFirst) {
             (std::vector{first.report_uuid, second.report_uuid, third.report_uuid}));
 }
 
+TEST_F(OutboxTest, ReportsOfOneMomentStayInTheirOrder) {
+  std::vector<Uuid> added;
+  for (int i = 0; i < 100; ++i) {
+    const Attempt attempt = values.attempt();
+    outbox.add(attempt);
+    added.push_back(attempt.report_uuid);
+  }
+  EXPECT_EQ(outbox.pending(), added);
+}
+
 TEST_F(OutboxTest, RejectedReportIsKeptWithItsReason) {
   const Attempt attempt = values.attempt();
   outbox.add(attempt);

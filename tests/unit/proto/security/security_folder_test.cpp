@@ -153,8 +153,12 @@ TEST_F(SecurityFolderTest, CredentialsThatDoNotBelongTogetherAreNamed) {
                              std::filesystem::copy_options::overwrite_existing);
   std::filesystem::permissions(out_ / "key.pem", std::filesystem::perms(0600));
   EXPECT_NE(message().find("is not the key of certificate.pem"), std::string::npos) << message();
-  EXPECT_NE(read_credentials(scratch_ / "none", now_s()).error().message.find("key.pem"),
-            std::string::npos);
+  for (const std::filesystem::path& other :
+       {scratch_ / "none", folder_}) {  // for example the server's folder
+    const std::string said = read_credentials(other, now_s()).error().message;
+    EXPECT_EQ(said.find(other.string() + ": holds no credentials"), 0U) << said;
+    EXPECT_NE(said.find("kinshipd secure add"), std::string::npos) << said;
+  }
 }
 
 TEST_F(SecurityFolderTest, ThirtyDaysAheadPeopleAreWarned) {

@@ -389,5 +389,16 @@ TEST_F(Options, ASiteNamesTheMemoryAboveIt) {
   EXPECT_EQ(code({"--upstream-tasks", "pick_*"}), kWrongUsage) << "of what memory?";
 }
 
+TEST_F(Options, WhatADatabasePromisesIsNotTakenForAFile) {
+  for (const char* const option : {"--require-synchronous", "--primary-only"}) {
+    EXPECT_EQ(code({"--store", "fleet.db", option}), kWrongUsage);
+    EXPECT_NE(err_.str().find(std::string(option) +
+                              " is for a PostgreSQL database, but --store 'fleet.db' is a file"),
+              std::string::npos)
+        << err_.str();
+    EXPECT_EQ(good({"--store", "postgresql://db1/fleet", option}).store, "postgresql://db1/fleet");
+  }
+}
+
 }  // namespace
 }  // namespace kinship::app::options_test

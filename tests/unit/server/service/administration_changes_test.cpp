@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "proto/types/limits.hpp"
+#include "server/service/backup_files.hpp"
 #include "tests/unit/server/service/service_fixture.hpp"
 
 namespace kinship::service::administration_changes_test {
@@ -170,6 +171,16 @@ TEST_F(AdministrationChanges, ABackupHasABareNameAndStaysInItsFolder) {
   std::filesystem::remove_all(directory_ / "backups");
   EXPECT_NE(ask(AdminVerb::Backup, "monday.db").message.find("there is no folder"),
             std::string::npos);
+}
+
+TEST(BackupFolder, IsThatOfTheStoreIfTheStoreIsAFile) {
+  const std::string database = "postgresql://kinship@db1 (and 1 more)/fleet";
+  EXPECT_EQ(folder_of({}, "/srv/fleet.db").value_or_throw(), "/srv");
+  EXPECT_EQ(folder_of({.folder = "/backups"}, database).value_or_throw(), "/backups");
+  const auto none = folder_of({}, database);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find(database), std::string::npos) << none.error().message;
+  EXPECT_NE(none.error().message.find("--backup-folder"), std::string::npos);
 }
 
 TEST_F(AdministrationChanges, AnotherProgramsDatabaseIsNoBackup) {

@@ -1,8 +1,8 @@
-#include "server/app/upstream_url.hpp"
+#include "server/app/database_url.hpp"
 
 namespace kinship::app {
 
-bool is_upstream_url(std::string_view text) {
+bool is_database_url(std::string_view text) {
   return text.starts_with("postgresql://") || text.starts_with("postgres://");
 }
 
