@@ -83,8 +83,18 @@ std::chrono::nanoseconds Exchange::take_load() {
 void Exchange::rest_before_write(const std::stop_token& stop) {
   if (!std::exchange(has_written_, true))
     return;
-  positions_.save();
+  save_if_due();
   options_.rest(take_load(), stop);
+}
+
+void Exchange::save_positions() {
+  positions_.save();
+  save_due_ = options_.clock.now() + options_.save_every;
+}
+
+void Exchange::save_if_due() {
+  if (save_due_ <= options_.clock.now())
+    save_positions();
 }
 
 Way Exchange::way_up(const std::stop_token& stop) {
@@ -163,7 +173,7 @@ void Exchange::try_refused_again(const std::stop_token& stop) {
       counts_.received += take(
           carry_reports(way_down(stop), reports, positions_.down_retired, options_.down), is_up);
   }
-  positions_.save();
+  save_positions();
 }
 
 void Exchange::want_tasks() {
@@ -197,7 +207,6 @@ bool Exchange::carry_up(const std::stop_token& stop) {
   positions_.passed += page.looked_at;
   if (page.reports.new_there > 0)
     positions_.mark = memory_.point().mark;
-  positions_.save();
   up_due_ = page.has_more ? TimePoint() : look_again();
   return page.looked_at > 0;
 }
@@ -208,7 +217,6 @@ bool Exchange::carry_down(const std::string& task, const std::stop_token& stop) 
       carry_page(way_down(stop), task, position.cursor, positions_.down_retired, options_.down);
   counts_.received += take(page.reports, false);
   position.cursor = page.cursor;
-  positions_.save();
   down_due_[task] = page.has_more ? TimePoint() : look_again();
   return page.looked_at > 0;
 }
@@ -226,7 +234,7 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
     geometry_.compare_changed();
     // Also where no task is wanted: what this site sent may be retired above.
     step.has_worked = carry_retirements(way_down(stop), positions_.down_retired, options_.down) > 0;
-    positions_.save();
+    save_positions();
     tasks_due_ = look_again();
   }
   const auto is_due = [now](const auto& entry) { return entry.second <= now; };
@@ -242,7 +250,10 @@ Exchange::Step Exchange::step(const std::stop_token& stop) {
     step.has_worked |= carry_down(std::string(last_), stop);
   }
   is_ups_turn_ = !is_up;
+  save_if_due();
   step.next = std::min(up_due_, tasks_due_);
+  if (positions_.has_changed())
+    step.next = std::min(step.next, save_due_);
   for (const auto& [task, due] : down_due_)
     step.next = std::min(step.next, due);
   step.load = take_load();

@@ -41,6 +41,9 @@ struct ExchangeOptions {
   Piece down = {.reports = 256, .commit = 32, .bytes = std::size_t{1} << 20U, .retirements = 64};
   std::vector<std::string> task_patterns;      ///< of tasks that are always brought down
   std::chrono::milliseconds look_every{5000};  ///< at a stream that had nothing
+  /// How far it came is written no more often: each time is a write of the site's store, for which
+  /// robots wait that report just then.
+  std::chrono::milliseconds save_every{1000};
   /// A task that nobody here asked for is not brought down any more.
   std::chrono::hours task_use{std::chrono::days(30)};
   /// Called between two transactions of a step, with what was taken of this machine since the last
@@ -79,6 +82,10 @@ class Exchange {
   /// Carries one piece of the stream whose turn it is. \throws Failure of either store.
   Step step(const std::stop_token& stop = {});
 
+  /// Writes how far it came: for who lets go of the connection. What is not written goes again.
+  /// \throws Failure(Storage)
+  void save_positions();
+
   /// There are new reports of the site.
   void look_up_now() { up_due_ = {}; }
   /// There are new tasks in use.
@@ -93,6 +100,7 @@ class Exchange {
   std::uint64_t take(const CarriedReports& carried, bool is_up);
   std::chrono::nanoseconds take_load();
   void rest_before_write(const std::stop_token& stop);
+  void save_if_due();
   TakeGeometry take_with_registry(store::Store& store) const;
   std::optional<Error> bring_robot(store::Store& from, store::Store& to, const Digest& robot);
   Way way_up(const std::stop_token& stop);
@@ -108,6 +116,7 @@ class Exchange {
   const SiteHooks hooks_;
   const ExchangeOptions options_;
   TimePoint up_due_{}, tasks_due_{};
+  TimePoint save_due_{};
   std::map<std::string, TimePoint> down_due_;  // by task
   std::set<Digest> robots_of_both_;
   GeometryExchange geometry_;

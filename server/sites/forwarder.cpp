@@ -30,6 +30,23 @@ class Forwarder::Connected {
   Forwarder& forwarder_;
 };
 
+/// However an exchange ends, what it came to is written.
+class Forwarder::Saved {
+ public:
+  explicit Saved(Exchange& exchange) : exchange_(exchange) {}
+  Saved(const Saved&) = delete;
+  Saved& operator=(const Saved&) = delete;
+  ~Saved() {
+    try {
+      exchange_.save_positions();
+    } catch (const std::exception&) {  // then it goes again
+    }
+  }
+
+ private:
+  Exchange& exchange_;
+};
+
 Forwarder::Forwarder(store::Store& site, ForwarderOptions options)
     : site_(site),
       options_(std::move(options)),
@@ -134,6 +151,7 @@ void Forwarder::exchange(const std::stop_token& stop) {
     rest(load, stopping);
   };
   Exchange exchange(site_, *memory, positions, counts_, options_.hooks, exchange_options);
+  const Saved saved(exchange);
   tell_line(true, {});
   publish(positions);
   while (!stop.stop_requested()) {

@@ -64,6 +64,7 @@ class Forwarder {
  private:
   /// While it lives, whoever stops can end what waits for the memory.
   class Connected;
+  class Saved;
 
   void run(const std::stop_token& stop);
   void exchange(const std::stop_token& stop);

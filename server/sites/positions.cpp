@@ -121,8 +121,8 @@ std::map<std::string, std::string> Positions::texts() const {
   return texts;
 }
 
-void Positions::save() {
-  std::map<std::string, std::string> now = texts();
+std::map<std::string, std::optional<std::string>> Positions::changes() const {
+  const std::map<std::string, std::string> now = texts();
   std::map<std::string, std::optional<std::string>> changes = refusals_;
   for (const auto& [name, text] : now)
     if (const auto before = saved_.find(name); before == saved_.end() || before->second != text)
@@ -130,10 +130,15 @@ void Positions::save() {
   for (const auto& [name, text] : saved_)
     if (!now.contains(name))
       changes[name] = std::nullopt;
-  if (changes.empty())
+  return changes;
+}
+
+void Positions::save() {
+  const std::map<std::string, std::optional<std::string>> changed = changes();
+  if (changed.empty())
     return;
-  site_->put_notes(changes);
-  saved_ = std::move(now);
+  site_->put_notes(changed);
+  saved_ = texts();
   refusals_.clear();
 }
 

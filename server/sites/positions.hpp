@@ -50,11 +50,13 @@ class Positions {
 
   /// Writes what changed, in one transaction, durable on return.
   void save();
+  bool has_changed() const { return !changes().empty(); }  ///< since it was written
 
   static constexpr std::size_t kMaxRefused = 10'000;
 
  private:
   std::map<std::string, std::string> texts() const;  ///< without refusals
+  std::map<std::string, std::optional<std::string>> changes() const;
 
   store::Store* site_;
   std::string epochs_;

@@ -1,10 +1,13 @@
 // A site that was cut off and has 20 000 reports waiting: what its robots notice while these go up.
 // A receipt and a fetch from memory through Client, at the pace of robots, against the same while
-// the line is down: kinshipd with SQLite, the memory a PostgreSQL on the same disk, which is frozen
-// and thawed in turn. Client, site and memory share a disk and its machine's processors, which is
-// more than a site has to bear: a memory elsewhere takes neither.
+// the line is down: kinshipd with SQLite, the memory a PostgreSQL that is frozen and thawed in turn.
 //
-//   site_bench
+//   site_bench shared   client, site and memory share all processors and the disk, which is more
+//                       than a site has to bear
+//   site_bench apart    as if the memory was on another machine: it has a processor of its own, in
+//                       both halves, and its files are in memory
+
+#include <sched.h>
 
 #include <filesystem>
 #include <iostream>
@@ -33,15 +36,64 @@ using namespace kinship;
 
 constexpr std::uint64_t kWaiting = 20'000;
 constexpr std::uint64_t kSweeps = 100;
-constexpr int kRounds = 3;  // of each, in turn
-constexpr double kRound_s = 2.5;
-constexpr double kPace_s = 0.01;  // of a report and a fetch
+constexpr int kRounds = 14;  // of each, in turn, and short: what else the machine does hits both
+constexpr double kRound_s = 0.7;
+constexpr double kPace_s = 0.005;  // of a report and a fetch
 
 /// What a robot of the site waited for.
 struct Seen {
   std::vector<double> receipts_ms, fetches_ms;
   double seconds = 0;
 };
+
+/// The processors that this program may use: the last one for a memory that is elsewhere, the
+/// others for whatever is at the site.
+class Processors {
+ public:
+  Processors() {
+    CPU_ZERO(&all_);
+    if (sched_getaffinity(0, sizeof(all_), &all_) != 0 || CPU_COUNT(&all_) < 2)
+      throw std::runtime_error("site_bench apart: needs two processors");
+  }
+
+  /// From now on this thread, and the threads and processes that it starts, run there.
+  void use_memorys() const { use([this](int processor) { return processor == last(); }); }
+  void use_sites() const { use([this](int processor) { return processor != last(); }); }
+
+ private:
+  int last() const {
+    int processor = CPU_SETSIZE - 1;
+    while (!CPU_ISSET(static_cast<std::size_t>(processor), &all_))
+      --processor;
+    return processor;
+  }
+
+  template <typename IsWanted>
+  void use(IsWanted is_wanted) const {
+    cpu_set_t wanted;
+    CPU_ZERO(&wanted);
+    for (int processor = 0; processor < CPU_SETSIZE; ++processor)
+      if (CPU_ISSET(static_cast<std::size_t>(processor), &all_) && is_wanted(processor))
+        CPU_SET(static_cast<std::size_t>(processor), &wanted);
+    if (sched_setaffinity(0, sizeof(wanted), &wanted) != 0)
+      throw std::runtime_error("site_bench apart: sched_setaffinity");
+  }
+
+  cpu_set_t all_{};
+};
+
+/// The memory above, and from then on this thread is at the site.
+std::unique_ptr<test::PostgresCluster> start_memory(bool is_apart) {
+  if (!is_apart)
+    return std::make_unique<test::PostgresCluster>(test::PostgresCluster::Options{
+        .settings = {"fsync = on"}, .root = test::disk_root()});
+  const Processors processors;
+  processors.use_memorys();
+  auto memory = std::make_unique<test::PostgresCluster>(
+      test::PostgresCluster::Options{.settings = {"fsync = on"}, .root = test::memory_root()});
+  processors.use_sites();
+  return memory;
+}
 
 /// A site with its robot.
 class Site {
@@ -128,13 +180,13 @@ void print(const std::string& what, const std::vector<double>& busy,
                   .ratio_budget = 1.5});
 }
 
-int run() {
+int run(bool is_apart) {
   if (const std::string missing = test::missing_postgres(); !missing.empty()) {
     std::cerr << "site_bench: " << missing << '\n';
     return 1;
   }
-  const test::PostgresCluster memory({.settings = {"fsync = on"}, .root = test::disk_root()});
-  const std::string url = memory.create_database("memory");
+  const std::unique_ptr<test::PostgresCluster> memory = start_memory(is_apart);
+  const std::string url = memory->create_database("memory");
   Site site(url);
   while (site.upstream().sent == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -142,9 +194,9 @@ int run() {
   std::uint64_t sent = 0;
   // A fast machine may have done with it before.
   for (int round = 0; round < kRounds && site.upstream().waiting > kWaiting / 4; ++round) {
-    memory.freeze();
+    memory->freeze();
     site.run(quiet);
-    memory.thaw();
+    memory->thaw();
     const std::uint64_t before = site.upstream().sent;
     site.run(busy);
     const UpstreamStatus now = site.upstream();
@@ -164,9 +216,14 @@ int run() {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  const std::string where = argc == 2 ? argv[1] : "";
+  if (where != "shared" && where != "apart") {
+    std::cerr << "site_bench shared|apart\n";
+    return 2;
+  }
   try {
-    return run();
+    return run(where == "apart");
   } catch (const std::exception& exception) {
     std::cerr << exception.what() << '\n';
     return 1;

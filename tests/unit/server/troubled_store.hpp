@@ -75,7 +75,9 @@ class TroubledStore final : public store::Store {
   std::map<std::string, std::string> notes(std::string_view prefix) const override {
     return store_.notes(prefix);
   }
+  std::function<void()> on_notes = [] {};
   void put_notes(const std::map<std::string, std::optional<std::string>>& notes) override {
+    on_notes();
     exchange([&] {
       store_.put_notes(notes);
       return true;

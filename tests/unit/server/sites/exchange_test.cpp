@@ -244,6 +244,42 @@ TEST_F(ExchangeTest, RestsBetweenTwoTransactionsAtTheSite) {
   exchange_.reset();
 }
 
+TEST_F(ExchangeTest, HowFarItCameIsWrittenOnceASecond) {
+  auto now = std::chrono::steady_clock::now();
+  options_.clock.now = [&] { return now; };
+  options_.look_every = std::chrono::hours(1);
+  std::size_t written = 0;
+  store::TroubledStore site(*site_);
+  site.on_notes = [&] { ++written; };
+  const auto cursor = [this] { return Positions(*site_).up; };
+  positions_.emplace(site);
+  exchange_.emplace(site, *memory_, *positions_, counts_, hooks_, options_);
+  exchange_->step();
+  written = 0;
+  const std::string before = cursor();
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    test::report(*site_, {solved(number)});
+    exchange_->look_up_now();
+    EXPECT_TRUE(exchange_->step().has_worked);
+  }
+  EXPECT_EQ(reports_of(*memory_).size(), 3U);
+  EXPECT_EQ(written, 0U) << "robots wait for each time";
+  EXPECT_EQ(cursor(), before);
+  const Exchange::Step idle = exchange_->step();
+  EXPECT_LE(idle.next, now + options_.save_every) << "also if nothing more comes";
+  now += options_.save_every;
+  exchange_->step();
+  EXPECT_EQ(written, 1U);
+  EXPECT_EQ(cursor(), positions_->up);
+  EXPECT_NE(cursor(), before);
+  test::report(*site_, {solved(4)});
+  exchange_->look_up_now();
+  exchange_->step();
+  exchange_->save_positions();
+  EXPECT_EQ(cursor(), positions_->up) << "and when the line is lost";
+  exchange_.reset();
+}
+
 TEST_F(ExchangeTest, SendingTakesTurnsWithWhatComesDown) {
   options_.up = {.reports = 1};
   options_.down = {.reports = 1};
