@@ -22,6 +22,7 @@ std::vector<SharedPosePath> PosePathMemory::read(const std::string& task,
                                                  const std::vector<Digest>& sources,
                                                  std::int64_t since_ms,
                                                  const std::stop_token& stop) {
+  forget_other_epochs();
   TaskPaths& known = tasks_[task];
   known.last_used = ++uses_;
   update(known, task, stop);
@@ -39,6 +40,14 @@ std::vector<SharedPosePath> PosePathMemory::read(const std::string& task,
   for (const KnownPath* const path : selected)
     paths.push_back(path->path);
   return paths;
+}
+
+/// What was put back to an earlier state lacks paths that are known here, and nothing tells which.
+void PosePathMemory::forget_other_epochs() {
+  const Uuid epoch = store_.epoch();
+  if (epoch != epoch_)
+    tasks_.clear();
+  epoch_ = epoch;
 }
 
 void PosePathMemory::update(TaskPaths& known, const std::string& task,

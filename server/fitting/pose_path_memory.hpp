@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/types/digest.hpp"
+#include "proto/types/uuid.hpp"
 #include "server/fitting/experience_choice.hpp"
 #include "server/runtime/robot_registry.hpp"
 #include "server/store/store.hpp"
@@ -17,7 +18,8 @@
 namespace kinship::fitting {
 
 /// The stored paths of tasks as pose paths, kept up with the store: what is known already is not
-/// read and computed again, unless paths of its robot were retired. Not shared between threads, but
+/// read and computed again, unless paths of its robot were retired, or the store has begun a new
+/// epoch. Not shared between threads, but
 /// for bytes().
 class PosePathMemory {
  public:
@@ -63,6 +65,7 @@ class PosePathMemory {
     std::uint64_t last_used = 0;
   };
 
+  void forget_other_epochs();
   void update(TaskPaths& known, const std::string& task, const std::stop_token& stop);
   void update(SourcePaths& known, const store::ExperienceSummary& now, const std::string& task,
               std::size_t most, const std::stop_token& stop);
@@ -78,6 +81,7 @@ class PosePathMemory {
   runtime::RobotRegistry& robots_;
   const Limits limits_;
   std::atomic<std::size_t> bytes_ = 0;
+  Uuid epoch_;
   std::map<std::string, TaskPaths, std::less<>> tasks_;
   std::uint64_t uses_ = 0, computed_ = 0;
 };

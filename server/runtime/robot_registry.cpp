@@ -23,6 +23,29 @@ RegisterReply refused(const Error& error) {
   return reply;
 }
 
+Result<kinematics::Chain> read_labelled_chain(const RobotDescription& description) {
+  if (const auto error = check_label(description.label))
+    return *error;
+  return kinematics::read_chain(description);
+}
+
+/// What a description says of its robot by itself.
+RegisterReply reply_about(const kinematics::Chain& chain) {
+  RegisterReply reply;
+  reply.robot = chain.digest();
+  reply.dof = static_cast<std::uint32_t>(chain.dof());
+  reply.solver = inverse::solver_name(chain);
+  return reply;
+}
+
+/// \param label  under which it was registered just now.
+void describe_known(const Robot& known, const std::string& label, RegisterReply& reply) {
+  reply.geometry_grade = known.grade;
+  reply.geometry = known.geometry;
+  if (known.label != label)
+    reply.message = "known already, as '" + known.label + "'";
+}
+
 /// A robot whose geometry cannot be read is a robot all the same: nothing is filtered then.
 Robot robot_of(const RobotDescription& description, kinematics::Chain chain) {
   Robot robot{chain.digest(), description.label, std::move(chain)};
@@ -49,16 +72,11 @@ RobotRegistry::RobotRegistry(store::Store& store, Options options)
 
 RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
                                             std::int64_t now_ms, const LabelRule& may_take) {
-  if (const auto error = check_label(description.label))
-    return refused(*error);
-  Result<kinematics::Chain> chain = kinematics::read_chain(description);
+  Result<kinematics::Chain> chain = read_labelled_chain(description);
   if (!chain)
     return refused(chain.error());
 
-  RegisterReply reply;
-  reply.robot = chain->digest();
-  reply.dof = static_cast<std::uint32_t>(chain->dof());
-  reply.solver = inverse::solver_name(*chain);
+  RegisterReply reply = reply_about(*chain);
   if (const auto refusal = refusal_of_known(reply.robot, may_take))
     return refused(*refusal);
   const bool is_in_memory = store_.is_shared() && find_in_memory(reply.robot) != nullptr;
@@ -89,12 +107,30 @@ RegisterReply RobotRegistry::register_robot(const RobotDescription& description,
         throw;  // else it is known all the same, and its geometry is offered again
     }
   }
-  if (const Result<RobotPointer> known = find(reply.robot)) {
-    reply.geometry_grade = known.value()->grade;
-    reply.geometry = known.value()->geometry;
-    if (known.value()->label != description.label)
-      reply.message = "known already, as '" + known.value()->label + "'";
-  }
+  if (const Result<RobotPointer> known = find(reply.robot))
+    describe_known(*known.value(), description.label, reply);
+  return reply;
+}
+
+std::optional<RegisterReply> RobotRegistry::register_known(const RobotDescription& description,
+                                                           const LabelRule& may_take) const {
+  if (!store_.is_shared())
+    return std::nullopt;  // registering mends a row that is damaged
+  Result<kinematics::Chain> chain = read_labelled_chain(description);
+  if (!chain)
+    return refused(chain.error());
+  RegisterReply reply = reply_about(*chain);
+  const RobotPointer known = find_in_memory(reply.robot);
+  if (!known)
+    return std::nullopt;
+  if (may_take)
+    if (const auto refusal = may_take(known->label))
+      return refused(*refusal);
+  reply.status = RegisterStatus::Known;
+  reply.same_arms = same_arms_in_memory(reply.robot, *chain);
+  if (robot_of(description, std::move(chain).value()).grade > known->grade)
+    return std::nullopt;  // which is to be written
+  describe_known(*known, description.label, reply);
   return reply;
 }
 

@@ -77,6 +77,12 @@ class RobotRegistry {
   RegisterReply register_robot(const RobotDescription& description, std::int64_t now_ms,
                                const LabelRule& may_take = {});
 
+  /// The same if memory can answer it, which asks the store nothing: where other servers share the
+  /// store, for a robot in memory whose geometry is not better than what is known, and for what is
+  /// refused whatever the store has. Nothing: register_robot() is to be asked.
+  std::optional<RegisterReply> register_known(const RobotDescription& description,
+                                              const LabelRule& may_take = {}) const;
+
   /// Takes over the geometry of a known robot that somebody else knows better, as
   /// register_robot() does of who registers it again. \return whether it was better.
   /// \throws Failure(Storage)

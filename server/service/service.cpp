@@ -37,10 +37,19 @@ std::string seconds(double value) {
 
 }  // namespace
 
+/// Of a robot. Shared by the threads that answer it, one after the other.
+struct Service::Registration {
+  RobotDescription description;
+  std::function<void(const RegisterReply&)> done;
+  std::string client;
+  runtime::RobotRegistry::LabelRule may_take;
+};
+
 Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
     : options_(std::move(options)),
       started_(options_.clock.now()),
       store_(std::move(store)),
+      store_status_(*store_, options_.clock, options_.store_patience),
       troubles_(options_.clock, options_.log),
       clients_(options_.clock, options_.client_rates),
       robots_(*store_, {.max_robots = options_.max_robots,
@@ -54,6 +63,14 @@ Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
                         .queue_limit = options_.short_task_queue,
                         .niceness = 0,
                         .client_limit = options_.client_short_tasks}),
+      memory_task_pool_({.threads = 1,
+                         .queue_limit = options_.short_task_queue,
+                         .niceness = 0,
+                         .client_limit = options_.client_short_tasks}),
+      status_pool_({.threads = 1,
+                    .queue_limit = options_.short_task_queue,
+                    .niceness = 0,
+                    .client_limit = options_.client_short_tasks}),
       advice_([this](const Digest& robot,
                      const std::string& task) { return store_->attempt_totals(robot, task); },
               [this](const Digest& id) -> std::optional<catalog::Context> {
@@ -185,53 +202,70 @@ void Service::register_robot(RobotDescription description,
                              std::function<void(const RegisterReply&)> done,
                              const std::string& client,
                              runtime::RobotRegistry::LabelRule may_take) {
-  auto run = [this, description = std::move(description), done, client,
-              may_take = std::move(may_take)] {
-    try {
-      done(registered(description, client, may_take));
-    } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
-      troubles_.add(Trouble::RobotUnanswered, "'" + description.label + "': " + exception.what());
-    }
+  const auto registration = std::make_shared<const Registration>(
+      Registration{std::move(description), std::move(done), client, std::move(may_take)});
+  const auto ask_store = [this, registration] {
+    const Registration& asked = *registration;
+    tell_registered(
+        asked, robots_.register_robot(asked.description, options_.clock.unix_ms(), asked.may_take));
   };
-  if (!short_task_pool_.submit(Priority::Interactive,
-                               {.run = std::move(run), .abandon = {}, .client = client})) {
-    troubles_.add(Trouble::RobotUnanswered, "busy or stopping");
-    if (stop_source_.stop_requested())
-      return;  // another server may come
-    RegisterReply busy;
-    busy.message = is_over_waiting(client) ? "busy: this client has as much waiting as one may have"
-                                           : "the server is busy";
-    busy.retry_after = kRetryAfter;
-    done(busy);
-  }
+  begin(memory_task_pool_, registration, [this, registration, ask_store] {
+    const Registration& asked = *registration;
+    if (const auto known = robots_.register_known(asked.description, asked.may_take))
+      return tell_registered(asked, *known);
+    begin(short_task_pool_, registration, ask_store);
+  });
 }
 
-/// \throws Failure(Storage), std::bad_alloc: a refusal would be final.
-RegisterReply Service::registered(const RobotDescription& description, const std::string& client,
-                                  const runtime::RobotRegistry::LabelRule& may_take) {
-  const RegisterReply reply =
-      robots_.register_robot(description, options_.clock.unix_ms(), may_take);
+/// \param answer  may throw Failure(Storage), std::bad_alloc: a refusal would be final.
+void Service::begin(runtime::WorkerPool& pool, const RegistrationPointer& registration,
+                    std::function<void()> answer) {
+  const std::string& client = registration->client;
+  auto run = [this, registration, answer = std::move(answer)] {
+    try {
+      answer();
+    } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
+      troubles_.add(Trouble::RobotUnanswered,
+                    "'" + registration->description.label + "': " + exception.what());
+    }
+  };
+  if (pool.submit(Priority::Interactive, {.run = std::move(run), .abandon = {}, .client = client}))
+    return;
+  troubles_.add(Trouble::RobotUnanswered, "busy or stopping");
+  if (stop_source_.stop_requested())
+    return;  // another server may come
+  RegisterReply busy;
+  busy.message = is_over_waiting(client) ? "busy: this client has as much waiting as one may have"
+                                         : "the server is busy";
+  busy.retry_after = kRetryAfter;
+  registration->done(busy);
+}
+
+void Service::tell_registered(const Registration& registration, const RegisterReply& reply) {
+  const RobotDescription& description = registration.description;
   if (reply.status == RegisterStatus::Refused) {
     troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);
   } else {
-    clients_.count_robot(client, description.label, reply.status == RegisterStatus::Registered);
+    clients_.count_robot(registration.client, description.label,
+                         reply.status == RegisterStatus::Registered);
     options_.log("register '" + description.label +
                  "': " + (reply.status == RegisterStatus::Known ? "known as robot " : "robot ") +
                  reply.robot.short_hex() + "; geometry" +
                  (reply.took_geometry ? ", better than before: " : ": ") + reply.geometry);
   }
   publish_registered(events_, description, reply);
-  return reply;
+  registration.done(reply);
 }
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done,
                      const std::string& client) {
-  if (!store_->has_lost(request.known_mark))
+  if (!store_->may_have_lost(request.known_mark))
     return take_in(std::move(request), std::move(done), client);
   // No answer if it fails: a newer mark in it would make the client forget the lost one.
   auto run = [this, request = std::move(request), done, client]() mutable {
     try {
-      begin_epoch(request.known_mark);
+      if (store_->has_lost(request.known_mark))
+        begin_epoch(request.known_mark);
     } catch (const std::exception& exception) {
       return options_.log(std::string("store: rolled back, no new epoch yet: ") + exception.what());
     }
@@ -334,7 +368,7 @@ void Service::expire(catalog::Catalog::TimePoint now) {
 }
 
 ServerStatus Service::status() const {
-  const store::StoreStatus store = store_->status();
+  const store::StoreStatus store = store_status_.read();
   ServerStatus status;
   status.version = options_.version;
   status.store_file = store.file;
@@ -385,7 +419,7 @@ std::vector<BoundUse> Service::bounds(const store::StoreStatus& store) const {
       {"fetches that wait", use.waiters, options_.catalog.max_waiters},
       {"leases", use.holds, options_.catalog.max_leases},
       {"clients told apart", clients_.size(), options_.client_rates.max_clients},
-      {"short tasks that wait", short_task_pool_.queued(), options_.short_task_queue},
+      {"short tasks that wait", short_tasks(), options_.short_task_queue},
       {"jobs", jobs_.active(), options_.jobs.queued + 1},
       {"robots in memory", robots_.in_memory(), options_.max_robots},
       {"MB of distributions in memory", use.memory_bytes >> 20U,
@@ -460,9 +494,13 @@ void Service::shutdown() {
   rehearsals_.stop();
   jobs_.stop();
   reset_pool_.stop(WorkerPool::Leftovers::Abandon);
-  short_task_pool_.stop(WorkerPool::Leftovers::Abandon);  // each of them can be asked for again
+  // Each of what waits in these can be asked for again.
+  memory_task_pool_.stop(WorkerPool::Leftovers::Abandon);
+  short_task_pool_.stop(WorkerPool::Leftovers::Abandon);
+  status_pool_.stop(WorkerPool::Leftovers::Abandon);
   fitters_.stop(WorkerPool::Leftovers::Abandon);
   ingest_.drain();
+  store_status_.stop();
 }
 
 }  // namespace kinship::service

@@ -32,6 +32,7 @@
 #include "server/service/ingest.hpp"
 #include "server/service/jobs.hpp"
 #include "server/service/measures.hpp"
+#include "server/service/store_status_reader.hpp"
 #include "server/service/store_watch.hpp"
 #include "server/sites/forwarder.hpp"
 #include "server/sites/used_tasks.hpp"
@@ -57,6 +58,7 @@ struct ServiceOptions {
   double rehearsal_fraction = 0.1;       ///< see RehearsalBookOptions::processor_fraction
   std::size_t short_task_queue = 1024;   ///< short jobs that wait: registering, listing, looking up
   std::size_t client_short_tasks = 128;  ///< of one client that wait
+  std::chrono::milliseconds store_patience{2000};  ///< see StoreStatusReader
   std::size_t max_queued_attempts = 4096;
   std::size_t client_attempts = 1024;  ///< of one client, taken in and not yet answered
   quotas::ClientRates client_rates;    ///< what one client may take in the course of time
@@ -105,8 +107,8 @@ class Service {
   /// The same of a registration.
   std::optional<quotas::Refusal> admit_robot(const std::string& client, std::size_t bytes);
 
-  /// `done` is not called if the server is stopping or the store cannot take it: the client asks
-  /// again.
+  /// What memory can answer does not wait for the store. `done` is not called if the server is
+  /// stopping or the store cannot take it: the client asks again.
   /// \param may_take  see RobotRegistry::register_robot.
   void register_robot(RobotDescription description, std::function<void(const RegisterReply&)> done,
                       const std::string& client = {},
@@ -163,8 +165,13 @@ class Service {
   void begin_epoch(const HistoryMark& lost);
   catalog::FetchDone of_this_epoch(catalog::FetchDone done) const;
   void answered(std::span<const catalog::AttemptCost> costs, std::span<const Receipt> receipts);
-  RegisterReply registered(const RobotDescription& description, const std::string& client,
-                           const runtime::RobotRegistry::LabelRule& may_take);
+  struct Registration;
+  using RegistrationPointer = std::shared_ptr<const Registration>;
+  void begin(runtime::WorkerPool& pool, const RegistrationPointer& registration,
+             std::function<void()> answer);
+  void tell_registered(const Registration& registration, const RegisterReply& reply);
+  runtime::WorkerPool& pool_for(const AdminRequest& request);
+  std::size_t short_tasks() const;
   std::optional<Error> refusal_of(const Caller& caller, const AdminRequest& request) const;
   void count_refused(const std::vector<Receipt>& receipts);
   void count_fetch(const FetchReply& reply);
@@ -191,6 +198,7 @@ class Service {
   const ServiceOptions options_;
   const catalog::Catalog::TimePoint started_;
   const std::unique_ptr<store::Store> store_;
+  mutable StoreStatusReader store_status_;
   runtime::TroubleBook troubles_;
   Measures measures_;
   quotas::ClientBook clients_;
@@ -201,6 +209,8 @@ class Service {
   std::atomic<std::uint64_t> refused_before_{0};  // attempts that never reached ingest_
   EventFeed events_;
   runtime::WorkerPool short_task_pool_;
+  runtime::WorkerPool memory_task_pool_;  // asks the store nothing
+  runtime::WorkerPool status_pool_;
   catalog::AdviceBook advice_;
   fitting::MemoryCeiling memory_;
   runtime::WorkerPool fitters_;

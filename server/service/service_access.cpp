@@ -8,6 +8,16 @@
 #include "server/service/service.hpp"
 
 namespace kinship::service {
+namespace {
+
+/// Whether memory answers it; one that is narrowed down by a name may have to ask for that.
+bool is_of_memory(const AdminRequest& request) {
+  const bool is_verb = request.verb == AdminVerb::ListJobs || request.verb == AdminVerb::JobRows ||
+                       request.verb == AdminVerb::ListClients;
+  return is_verb && request.robot.empty() && request.task.empty();
+}
+
+}  // namespace
 
 std::optional<Error> Service::refusal_of(const Caller& caller, const AdminRequest& request) const {
   if (auto refusal = access::refusal_of(caller, request.verb))
@@ -19,6 +29,15 @@ std::optional<Error> Service::refusal_of(const Caller& caller, const AdminReques
   if (!owner || *owner == caller.client)
     return std::nullopt;
   return access::refusal_of_job(caller, request.verb, request.argument);
+}
+
+/// Where it waits for nobody who may take long, and nobody for it.
+runtime::WorkerPool& Service::pool_for(const AdminRequest& request) {
+  if (request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot)
+    return reset_pool_;
+  if (request.verb == AdminVerb::Status)
+    return status_pool_;
+  return is_of_memory(request) ? memory_task_pool_ : short_task_pool_;
 }
 
 void Service::administer(AdminRequest request, const std::string& request_key,
@@ -33,10 +52,7 @@ void Service::administer(AdminRequest request, const std::string& request_key,
   if (request.verb == AdminVerb::ShowJob)
     return jobs_.wait(request.argument, options_.clock.now() + request.deadline,
                       [done](const Result<Job>& job) { done(page_of(job)); });
-  // These may take long, and nobody else's request waits for them.
-  const bool is_long =
-      !refusal && (request.verb == AdminVerb::ResetTask || request.verb == AdminVerb::RemoveRobot);
-  runtime::WorkerPool& pool = is_long ? reset_pool_ : short_task_pool_;
+  runtime::WorkerPool& pool = refusal ? short_task_pool_ : pool_for(request);
   const std::string client(catalog::client_of(request_key));
   auto run = [this, request = std::move(request), request_key, client, done, caller, refusal] {
     const AdminPage page = refusal ? administration_.refuse(request, caller, *refusal)

@@ -70,13 +70,18 @@ std::optional<Refusal> Service::may_begin_task(const std::string& client, const 
   return std::nullopt;
 }
 
-/// Whether a client itself filled its place in the queue; then that is counted.
+/// Whether a client itself filled its place in a queue; then that is counted.
 bool Service::is_over_waiting(const std::string& client) {
   if (client.empty() || options_.client_short_tasks == 0 ||
-      short_task_pool_.queued_of(client) < options_.client_short_tasks)
+      std::max({short_task_pool_.queued_of(client), memory_task_pool_.queued_of(client),
+                status_pool_.queued_of(client)}) < options_.client_short_tasks)
     return false;
   clients_.count_refusal(client, Quota::Waiting);
   return true;
+}
+
+std::size_t Service::short_tasks() const {
+  return short_task_pool_.queued() + memory_task_pool_.queued() + status_pool_.queued();
 }
 
 Ingest::Options Service::ingest_options() {

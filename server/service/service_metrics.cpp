@@ -161,7 +161,7 @@ void Service::expose(Exposition& page) const {
   expose_guidance(page);
   std::optional<store::StoreStatus> store;
   try {
-    store = store_->status();
+    store = store_status_.read();
   } catch (const std::exception&) {  // a scrape is most wanted when the store is ill
   }
   page.gauge("kinship_store_readable", "1 if the store tells its status, else 0.",
@@ -193,7 +193,7 @@ void Service::expose_use(Exposition& page) const {
          {{"reports", ingest_.queued(), options_.max_queued_attempts},
           {"fits", fitters_.queued(), options_.fit_queue},
           {"fetches", use.waiters, options_.catalog.max_waiters},
-          {"short_tasks", short_task_pool_.queued(), options_.short_task_queue},
+          {"short_tasks", short_tasks(), options_.short_task_queue},
           {"jobs", jobs_.active(), options_.jobs.queued + 1},
           {"rehearsals", rehearsals.queued, rehearsal_options().max_rehearsals}});
   expose("kinship_memory_bytes", "kinship_memory_limit_bytes", "use", "Memory, about.",

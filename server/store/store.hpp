@@ -174,8 +174,11 @@ class Store {
   virtual StorePoint point() const = 0;
 
   /// Whether a mark that a client was given is one of this epoch and what was there then is not any
-  /// more. Marks that this store never made are not lost. From memory.
+  /// more. Marks that this store never made are not lost. A shared store may have to be read for
+  /// it; what cannot be read counts as not lost.
   virtual bool has_lost(const HistoryMark& mark) const = 0;
+  /// Whether has_lost() is worth asking. From memory.
+  virtual bool may_have_lost(const HistoryMark& mark) const { return has_lost(mark); }
   /// A new epoch if a mark is lost, durable on return. \return whether it began.
   virtual bool begin_epoch_if_lost(const HistoryMark& mark) = 0;
   virtual StoreStatus status() const = 0;

@@ -71,6 +71,10 @@ class PostgresStore : public Store {
     }
   }
 
+  bool may_have_lost(const HistoryMark& mark) const override {
+    return history_.find_doubtful(mark).has_value();
+  }
+
   bool begin_epoch_if_lost(const HistoryMark& mark) override {
     const auto begun = writes_.write(
         [&](Connection& connection) { return history_.begin_epoch_if_lost(connection, mark); });

@@ -110,11 +110,24 @@ class TroubledStore final : public store::Store {
 
   Uuid epoch() const override { return store_.epoch(); }
   store::StorePoint point() const override { return store_.point(); }
-  bool has_lost(const HistoryMark& mark) const override { return store_.has_lost(mark); }
+  /// Called when a mark is looked for in the store; may block.
+  std::function<void()> on_lost = [] {};
+  bool has_lost(const HistoryMark& mark) const override {
+    on_lost();
+    return store_.has_lost(mark);
+  }
+  bool may_have_lost(const HistoryMark& mark) const override {
+    return has_others || store_.may_have_lost(mark);
+  }
   bool begin_epoch_if_lost(const HistoryMark& mark) override {
     return store_.begin_epoch_if_lost(mark);
   }
-  store::StoreStatus status() const override { return store_.status(); }
+  /// Called before the store tells its status; may block, and throw.
+  std::function<void()> on_status = [] {};
+  store::StoreStatus status() const override {
+    on_status();
+    return store_.status();
+  }
   /// Called before a robot is registered; may throw.
   std::function<void()> on_register = [] {};
   Result<RegisterStatus> register_robot(const store::RobotRecord& robot) override {
@@ -179,7 +192,10 @@ class TroubledStore final : public store::Store {
     on_reset(task);
     return store_.reset_task(task, stop, audit);
   }
+  /// Called before the sums of attempts are read; may block.
+  std::function<void()> on_totals = [] {};
   store::AttemptTotals attempt_totals(const Digest& robot, std::string_view task) const override {
+    on_totals();
     return store_.attempt_totals(robot, task);
   }
   mutable std::atomic<int> uses_noted = 0;

@@ -49,11 +49,40 @@ TEST_F(Registry, ARobotInMemoryIsKnownAlsoWhileASharedStoreCannotBeReached) {
   const RegisterReply reply = registry.register_robot(fleet::teacher(), 2);
   EXPECT_EQ(reply.status, RegisterStatus::Known);
   EXPECT_FALSE(reply.geometry.empty());
+  const auto of_memory = registry.register_known(fleet::teacher());
+  ASSERT_TRUE(of_memory);
+  EXPECT_EQ(of_memory->status, RegisterStatus::Known);
+  EXPECT_EQ(of_memory->robot, reply.robot);
+  EXPECT_EQ(of_memory->dof, reply.dof);
+  EXPECT_EQ(of_memory->solver, reply.solver);
+  EXPECT_EQ(of_memory->geometry, reply.geometry);
+  EXPECT_EQ(of_memory->geometry_grade, reply.geometry_grade);
   EXPECT_THROW(registry.register_robot(fleet::pupil(), 3), Failure) << "nobody can vouch for it";
 
   // Until the store says that it does not have it.
   registry.forget(reply.robot);
   EXPECT_THROW(registry.register_robot(fleet::teacher(), 4), Failure);
+}
+
+TEST_F(Registry, MemoryAloneAnswersForRobotsItHasAndRefusesWhatIsNoRobot) {
+  store::TroubledStore shared(*store_);
+  RobotRegistry registry(shared);
+  registry.register_robot(fleet::teacher(), 1);
+  EXPECT_FALSE(registry.register_known(fleet::teacher()))
+      << "of one server: its row may be damaged";
+  shared.has_others = true;
+  EXPECT_FALSE(registry.register_known(fleet::pupil()));
+  RobotDescription other = fleet::teacher();
+  other.label = "other";
+  EXPECT_EQ(registry.register_known(other)->message, "known already, as 'teacher'");
+  other.label = "two words";
+  EXPECT_EQ(registry.register_known(other)->status, RegisterStatus::Refused);
+  const auto of_nobody = [](const std::string& label) {
+    return std::optional(Error{ErrorCode::InvalidInput, label + " is not yours"});
+  };
+  EXPECT_EQ(registry.register_known(fleet::teacher(), of_nobody)->message, "teacher is not yours");
+  const RobotDescription better = fleet::with_shape(fleet::teacher(), "<sphere radius='0.1'/>");
+  EXPECT_FALSE(registry.register_known(better)) << "its geometry is to be written";
 }
 
 TEST_F(Registry, ARobotInMemoryIsComparedWithThoseInMemoryWhereTheStoreIsShared) {

@@ -27,7 +27,7 @@ class CatalogTest : public ServiceFixture {
     return request;
   }
   /// Returns when the short task pool has done what it was given before.
-  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::Status)); }
+  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::ListTasks)); }
 };
 
 }  // namespace kinship::service

@@ -405,11 +405,11 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
 
   std::promise<void> release;
   const std::shared_future<void> released = release.get_future().share();
-  const auto status = fleet::question(AdminVerb::Status);
+  const auto question = fleet::question(AdminVerb::ListTasks);
   for (bool is_held = false; !is_held;) {  // refused ones are answered on this thread
     std::promise<bool> begun;
     service_->administer(
-        status, "",
+        question, "",
         [&begun, released](const AdminPage& page) {
           const bool is_short_task = page.status == AdminStatus::Ok;
           begun.set_value(is_short_task);
@@ -422,7 +422,8 @@ TEST_F(CatalogTest, ALookThatTheDeskHadNoRoomForIsTakenLater) {
   for (bool is_full = false; !is_full;) {
     const auto refused = std::make_shared<std::atomic<bool>>(false);
     service_->administer(
-        status, "", [refused](const AdminPage& page) { *refused = page.status != AdminStatus::Ok; },
+        question, "",
+        [refused](const AdminPage& page) { *refused = page.status != AdminStatus::Ok; },
         fleet::caller_here());
     is_full = *refused;
   }

@@ -66,7 +66,7 @@ class Following : public ServiceFixture {
     service_->expire(clock_.now());
   }
   /// Returns when the short task pool has done what it was given before.
-  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::Status)); }
+  void wait_for_short_tasks() { administer(fleet::question(AdminVerb::ListTasks)); }
   /// A waiter's fetch with a deadline may be among the deadlines: it must be gone first.
   bool is_anything_due() { return service_->next_deadline().has_value(); }
 

@@ -108,7 +108,7 @@ TEST_F(Quota, ARegistrationThatFindsNoRoomIsToldWhenToComeAgain) {
   std::promise<void> go_on;
   const std::shared_future<void> gate = go_on.get_future().share();
   service_->administer(
-      fleet::question(AdminVerb::Status), "other 1",
+      fleet::question(AdminVerb::ListTasks), "other 1",
       [gate](const AdminPage&) { gate.wait(); },  // holds the only thread
       fleet::caller_here());
   const auto ask_again = [this] {

@@ -129,7 +129,7 @@ TEST_F(RobotUpkeep, WhoFollowsADistributionOfARemovedRobotFollowsNothingMore) {
   advance(std::chrono::ceil<std::chrono::milliseconds>(
       std::max(*next - clock_.now(), std::chrono::steady_clock::duration())));
   service_->expire(clock_.now());
-  administer(fleet::question(AdminVerb::Status));  // behind the look-up
+  administer(fleet::question(AdminVerb::ListTasks));  // behind the look-up
   EXPECT_EQ(service_->status().followed, 0U);
 }
 
