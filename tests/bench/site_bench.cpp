@@ -1,6 +1,7 @@
 // A site that was cut off and has 20 000 reports waiting: what its robots notice while these go up.
 // A receipt and a fetch from memory through Client, at the pace of robots, against the same while
-// the line is down: kinshipd with SQLite, the memory a PostgreSQL that is frozen and thawed in turn.
+// the line is down: kinshipd with SQLite, the memory a PostgreSQL that is frozen and thawed in
+// turn.
 //
 //   site_bench shared   client, site and memory share all processors and the disk, which is more
 //                       than a site has to bear
@@ -57,8 +58,12 @@ class Processors {
   }
 
   /// From now on this thread, and the threads and processes that it starts, run there.
-  void use_memorys() const { use([this](int processor) { return processor == last(); }); }
-  void use_sites() const { use([this](int processor) { return processor != last(); }); }
+  void use_memorys() const {
+    use([this](int processor) { return processor == last(); });
+  }
+  void use_sites() const {
+    use([this](int processor) { return processor != last(); });
+  }
 
  private:
   int last() const {
@@ -85,8 +90,8 @@ class Processors {
 /// The memory above, and from then on this thread is at the site.
 std::unique_ptr<test::PostgresCluster> start_memory(bool is_apart) {
   if (!is_apart)
-    return std::make_unique<test::PostgresCluster>(test::PostgresCluster::Options{
-        .settings = {"fsync = on"}, .root = test::disk_root()});
+    return std::make_unique<test::PostgresCluster>(
+        test::PostgresCluster::Options{.settings = {"fsync = on"}, .root = test::disk_root()});
   const Processors processors;
   processors.use_memorys();
   auto memory = std::make_unique<test::PostgresCluster>(

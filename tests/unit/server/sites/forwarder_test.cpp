@@ -130,10 +130,14 @@ TEST_F(ForwarderTest, GoesOnWhereItWasAfterARestart) {
   {
     Forwarder forwarder(*site_, options_);
     ASSERT_TRUE(comes_true([&] { return status(forwarder).sent == 1; }));
+    test::report(*site_, {solved(2)});
+    forwarder.wake();
+    ASSERT_TRUE(comes_true([&] { return status(forwarder).sent == 2; }));
   }
-  test::report(*site_, {solved(2)});
+  EXPECT_EQ(Positions(*site_).passed, 2U) << "written as it stops, though it is not time yet";
+  test::report(*site_, {solved(3)});
   Forwarder forwarder(*site_, options_);
-  ASSERT_TRUE(comes_true([&] { return reports_of(*memory_).size() == 2; }));
+  ASSERT_TRUE(comes_true([&] { return reports_of(*memory_).size() == 3; }));
   ASSERT_TRUE(comes_true([&] { return status(forwarder).sent == 1; })) << "the first is not sent";
 }
 
