@@ -10,6 +10,7 @@
 #include "server/store/sqlite/database/online_backup.hpp"
 #include "server/store/sqlite/database/transaction.hpp"
 #include "server/store/sqlite/files/new_file.hpp"
+#include "server/store/sqlite/opening/history.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
 
 namespace kinship::store::postgres {
@@ -173,13 +174,16 @@ class RowCopy {
   std::int64_t copied_ = 0;
 };
 
+/// \param file  that the store is going to be.
 /// \return false if the progress ended it.
-bool fill(Connection& source, Database& target, const std::function<bool(double)>& progress) {
+bool fill(Connection& source, Database& target, const std::filesystem::path& file,
+          const std::function<bool(double)>& progress) {
   target.execute("PRAGMA synchronous = OFF");  // it has no name yet
   const Transaction snapshot(source, Transaction::Kind::Snapshot);
   store::Transaction all(target, store::Transaction::Kind::Write);
   if (!RowCopy(source, target, progress).copy_all())
     return false;
+  write_new_epoch(target, file);
   all.commit();
   return true;
 }
@@ -194,7 +198,7 @@ Result<bool> copy_to_sqlite(Connection& connection, const std::filesystem::path&
     {
       const std::unique_ptr<Database> database =
           open_migrated(rows.part(), store::embedded_migrations(), Keep::Nothing);
-      if (!fill(connection, *database, progress))
+      if (!fill(connection, *database, target.part(), progress))
         return false;
       copy_database(*database, target.part(), [](double) {});
     }

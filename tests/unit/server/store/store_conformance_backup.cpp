@@ -1,6 +1,7 @@
 #include <fstream>
 #include <thread>
 
+#include "server/store/maintenance.hpp"
 #include "tests/unit/server/store/store_conformance.hpp"
 
 namespace kinship::store {
@@ -48,6 +49,9 @@ TEST_P(StoreBackup, ABackupIsAStoreWithAllThatWasThere) {
   EXPECT_TRUE(*done);
   EXPECT_EQ(last, 1);
   EXPECT_EQ(files_in(elsewhere), 1U);
+  const StoreCheck check = check_store(copy_in(elsewhere), [](double) {});
+  EXPECT_EQ(check.problems, 0U) << check.messages.front();
+  EXPECT_NE(check.epoch, Uuid{});
   report(solved(4));  // not in the copy
   const std::unique_ptr<Store> copy = GetParam().open(elsewhere.path(), {});
   EXPECT_EQ(copy->status().paths, 2U);
