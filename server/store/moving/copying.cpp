@@ -61,6 +61,28 @@ std::map<MovedRow, MovedRow> by_key(const MovedTable& table, std::vector<MovedRo
   return found;
 }
 
+/// Rows that a target is to get; those it has in their place; those of keys that are gone.
+struct DifferingRows {
+  std::vector<MovedRow> wanted, replaced, extra;
+};
+
+DifferingRows compare_rows(const MovedTable& table, const std::vector<MovedRow>& rows,
+                           std::vector<MovedRow> present) {
+  std::map<MovedRow, MovedRow> left = by_key(table, std::move(present));
+  DifferingRows differing;
+  for (const MovedRow& row : rows) {
+    const auto node = left.extract(key_of(table, row));
+    if (!node.empty() && node.mapped() == row)
+      continue;
+    differing.wanted.push_back(row);
+    if (!node.empty())
+      differing.replaced.push_back(node.mapped());
+  }
+  for (auto& [key, row] : left)
+    differing.extra.push_back(std::move(row));
+  return differing;
+}
+
 }  // namespace
 
 Copying::Copying(Side& source, Side& target, RowsDone rows_done)
@@ -97,25 +119,15 @@ void Copying::copy_names() {
 
 void Copying::copy_robots(const std::vector<MovedRow>& robots) {
   const MovedTable& table = moved_table("robot");
-  std::map<MovedRow, MovedRow> present = by_key(table, target_.all(table));
-  std::vector<MovedRow> passing, wanted;
-  for (const MovedRow& row : robots) {
-    const auto found = present.find(key_of(table, row));
-    if (found == present.end() || found->second != row)
-      wanted.push_back(row);
-    if (found != present.end()) {
-      if (found->second != row)
-        passing.push_back(with_passing_label(table, found->second));
-      present.erase(found);
-    }
-  }
-  for (const auto& [key, row] : present) {
-    removed_robots_.push_back(row);
-    passing.push_back(with_passing_label(table, row));
-  }
+  const DifferingRows differing = compare_rows(table, robots, target_.all(table));
+  std::vector<MovedRow> passing;
+  for (const std::vector<MovedRow>* const rows : {&differing.replaced, &differing.extra})
+    for (const MovedRow& row : *rows)
+      passing.push_back(with_passing_label(table, row));
+  removed_robots_.insert(removed_robots_.end(), differing.extra.begin(), differing.extra.end());
   target_.in_transaction([&] {
     target_.write(table, passing);
-    write(table, wanted);
+    write(table, differing.wanted);
   });
 }
 
@@ -124,20 +136,10 @@ void Copying::erase_removed_robots() {
 }
 
 void Copying::copy_whole(const MovedTable& table, const std::vector<MovedRow>& rows) {
-  std::map<MovedRow, MovedRow> present = by_key(table, target_.all(table));
-  std::vector<MovedRow> wanted, extra;
-  for (const MovedRow& row : rows) {
-    const auto found = present.find(key_of(table, row));
-    if (found == present.end() || found->second != row)
-      wanted.push_back(row);
-    if (found != present.end())
-      present.erase(found);
-  }
-  for (auto& [key, row] : present)
-    extra.push_back(std::move(row));
+  const DifferingRows differing = compare_rows(table, rows, target_.all(table));
   target_.in_transaction([&] {
-    target_.erase(table, extra);
-    write(table, wanted);
+    target_.erase(table, differing.extra);
+    write(table, differing.wanted);
   });
 }
 

@@ -22,6 +22,7 @@ double seconds_since(Clock::time_point begin) {
 
 constexpr std::string_view kMovingEpoch = "moving_epoch";  // target: of the source, when it began
 constexpr std::string_view kMovedFrom = "moved_from";      // target: once it is done
+constexpr std::string_view kMovedToStore = "moved_to_store";  // source: which one, beside its name
 
 bool is_database(const std::string& name) {
   return kind_of_store(name).value_or_throw() == StoreKind::PostgresDatabase;
@@ -42,6 +43,21 @@ std::unique_ptr<Side> open_source(const std::string& name) {
 
 std::unique_ptr<Side> open_target(const std::string& name) {
   return is_database(name) ? moving::open_postgres_target(name) : moving::open_sqlite_target(name);
+}
+
+/// In one transaction.
+void mark_moved(Side& source, Side& target) {
+  source.in_last_transaction([&] {
+    source.put_setting(kMovedTo, target.name());
+    source.put_setting(kMovedToStore, target.identity());
+  });
+}
+
+void unmark_moved(Side& source) {
+  source.in_last_transaction([&] {
+    source.put_setting(kMovedTo, std::nullopt);
+    source.put_setting(kMovedToStore, std::nullopt);
+  });
 }
 
 /// A move under way, from one opened store to another.
@@ -80,8 +96,14 @@ class Move {
 
  private:
   bool is_done_already() {
-    return source_.setting(kMovedTo) == target_.name() && target_.setting(kMovingFrom).empty() &&
-           target_.setting(kMovedFrom) == origin();
+    return !source_.setting(kMovedTo).empty() && !was_moved_elsewhere() &&
+           target_.setting(kMovingFrom).empty() && target_.setting(kMovedFrom) == origin();
+  }
+
+  /// A target has many names: a database can be asked for by each host, with any parameters.
+  bool was_moved_elsewhere() {
+    return !source_.setting(kMovedTo).empty() &&
+           source_.setting(kMovedToStore) != target_.identity();
   }
 
   /// Names the source, also if it is at another place by now.
@@ -89,10 +111,9 @@ class Move {
 
   void require_or_begin_target() {
     const std::string to = "store '" + target_.name() + "'";
-    if (const std::string other = source_.setting(kMovedTo);
-        !other.empty() && other != target_.name())
-      throw Failure(ErrorCode::Conflict,
-                    "store '" + source_.name() + "' was moved to '" + other + "' already");
+    if (was_moved_elsewhere())
+      throw Failure(ErrorCode::Conflict, "store '" + source_.name() + "' was moved to '" +
+                                             source_.setting(kMovedTo) + "' already");
     if (const std::string server = target_.served_by(); !server.empty())
       throw Failure(ErrorCode::Unavailable, server + "; a move fills a store that nobody serves");
     const std::string from = target_.setting(kMovingFrom);
@@ -145,7 +166,7 @@ class Move {
 
   /// Nobody serves the source. It is closed first, so that nobody will.
   void finish() {
-    source_.in_last_transaction([&] { source_.put_setting(kMovedTo, target_.name()); });
+    mark_moved(source_, target_);
     try {
       const std::string writes = source_.writes_seen();
       require_unserved(writes);
@@ -188,7 +209,7 @@ class Move {
 
   void reopen_source() noexcept {
     try {
-      source_.in_last_transaction([&] { source_.put_setting(kMovedTo, std::nullopt); });
+      unmark_moved(source_);
     } catch (const std::exception&) {
       // Whoever opens it is told what to do.
     }
@@ -218,7 +239,7 @@ std::string give_up_source(const std::string& name) {
     throw Failure(ErrorCode::InvalidInput, "store '" + source->name() + "' was not moved");
   if (const std::string server = source->served_by(); !server.empty())
     throw Failure(ErrorCode::Unavailable, server);
-  source->in_last_transaction([&] { source->put_setting(kMovedTo, std::nullopt); });
+  unmark_moved(*source);
   return "store '" + source->name() + "': may be served again; it had been moved to '" + to +
          "', which must not be served too\n";
 }

@@ -6,6 +6,7 @@
 #include "server/store/moving/postgres_cells.hpp"
 #include "server/store/postgres/database/postgres_error.hpp"
 #include "server/store/postgres/database/transaction.hpp"
+#include "server/store/postgres/opening/history.hpp"
 #include "server/store/postgres/opening/migrations.hpp"
 #include "server/store/postgres/opening/primary.hpp"
 #include "server/store/postgres/rows/audit_rows.hpp"
@@ -67,6 +68,12 @@ class PostgresSide : public Side {
   void bring_schema() { postgres::migrate(*connection_, postgres::embedded_migrations()); }
 
   const std::string& name() const override { return name_; }
+
+  /// Tables lie in the schema that `search_path` names first.
+  std::string identity() override {
+    return "database " + postgres::identity_of(*connection_) + "/" +
+           std::string(run("SELECT current_schema()").front().column_text(0));
+  }
 
   Uuid epoch() override {
     const postgres::Rows rows = run("SELECT epoch FROM epoch ORDER BY number DESC LIMIT 1");

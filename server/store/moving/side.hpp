@@ -27,7 +27,9 @@ class Side {
   virtual ~Side() = default;
 
   virtual const std::string& name() const = 0;  ///< without a password
-  virtual Uuid epoch() = 0;                     ///< the newest; zero: no server had it open
+  /// The same for each way to name it, and another one's for no other.
+  virtual std::string identity() = 0;
+  virtual Uuid epoch() = 0;  ///< the newest; zero: no server had it open
 
   /// Runs readings that see one state of it. Short: a server may wait for their end.
   virtual void in_snapshot(const std::function<void()>& read) = 0;

@@ -99,14 +99,17 @@ class SqliteSide : public Side {
   void open_target() {
     lock_.emplace(file_);
     make_for_owner(file_);
-    make_wal_durable(file_);
-    database_ = open_migrated(file_, embedded_migrations());
-    // What a power cut takes of the last seconds is copied again.
-    database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
+    naming_store([&] {
+      make_wal_durable(file_);
+      database_ = open_migrated(file_, embedded_migrations());
+      // What a power cut takes of the last seconds is copied again.
+      database_->execute("PRAGMA synchronous = NORMAL; PRAGMA secure_delete = ON");
+    });
     sync_directory_of(file_);
   }
 
   const std::string& name() const override { return name_; }
+  std::string identity() override { return name_; }  // canonical
   Uuid epoch() override { return Uuid::parse(setting("epoch")).value_or(Uuid{}); }
 
   void in_snapshot(const std::function<void()>& read) override {
@@ -242,9 +245,11 @@ class SqliteSide : public Side {
   void in_last_transaction(const std::function<void()>& write) override {
     if (!is_target_)
       return in_transaction(write);
-    database_->execute("PRAGMA synchronous = FULL");
+    naming_store([&] { database_->execute("PRAGMA synchronous = FULL"); });
     in_transaction(write);
-    if (!checkpoint(*database_, CheckpointKind::Whole))
+    bool is_whole = false;
+    naming_store([&] { is_whole = checkpoint(*database_, CheckpointKind::Whole); });
+    if (!is_whole)
       throw Failure(ErrorCode::Storage,
                     "store '" + name_ + "': another program reads it and keeps its WAL");
   }

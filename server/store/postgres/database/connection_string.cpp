@@ -14,13 +14,6 @@ struct FreeOptions {
   void operator()(PQconninfoOption* options) const noexcept { PQconninfoFree(options); }
 };
 
-/// The first of several, and how many more there are.
-std::string first_of(const std::string& list) {
-  const auto others = std::ranges::count(list, ',');
-  const std::string first = list.substr(0, list.find(','));
-  return others == 0 ? first : first + " (and " + std::to_string(others) + " more)";
-}
-
 std::vector<std::string> parts_of(const std::string& list) {
   std::vector<std::string> parts(1);
   for (const char each : list) {
@@ -30,6 +23,20 @@ std::vector<std::string> parts_of(const std::string& list) {
       parts.back() += each;
   }
   return parts;
+}
+
+/// As a URL has them: "a:5432,b:5433"; one port is that of all.
+std::string hosts_and_ports(const std::string& hosts, const std::string& ports) {
+  const std::vector<std::string> all_ports = parts_of(ports);
+  std::string text;
+  std::size_t number = 0;
+  for (const std::string& host : parts_of(hosts)) {
+    const std::string& port = all_ports[std::min(number, all_ports.size() - 1)];
+    const bool is_ipv6 = host.find(':') != std::string::npos;
+    text += (number++ == 0 ? "" : ",") + (is_ipv6 ? "[" + host + "]" : host) +
+            (port.empty() ? "" : ":" + port);
+  }
+  return text;
 }
 
 }  // namespace
@@ -66,11 +73,10 @@ ConnectionString::ConnectionString(const std::string& text) {
 }
 
 void ConnectionString::describe() {
-  const std::string user = value_of("user"), port = value_of("port");
+  const std::string user = value_of("user");
   const std::string host = value_of("host").empty() ? value_of("hostaddr") : value_of("host");
-  description_ = "postgresql://" + (user.empty() ? "" : user + "@") + first_of(host) +
-                 (port.empty() ? "" : ":" + port.substr(0, port.find(','))) + "/" +
-                 value_of("dbname");
+  description_ = "postgresql://" + (user.empty() ? "" : user + "@") +
+                 hosts_and_ports(host, value_of("port")) + "/" + value_of("dbname");
 }
 
 std::vector<ConnectionString> ConnectionString::each_host() const {

@@ -17,8 +17,8 @@ class ConnectionString {
   /// \throws Failure(InvalidInput), which does not repeat the text, if libpq cannot read it.
   explicit ConnectionString(const std::string& text);
 
-  /// "postgresql://user@host:port/database", of the first host and how many more there are; never
-  /// a password, nor other parameters.
+  /// "postgresql://user@host:port,other:port/database", each host with the port that the string
+  /// gives it; never a password, nor other parameters.
   const std::string& description() const noexcept { return description_; }
 
   /// libpq's keywords and values, ours where the string says nothing: time limits for a connection

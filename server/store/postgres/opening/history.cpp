@@ -41,15 +41,6 @@ Digest ensure_key(Connection& connection) {
   return key;
 }
 
-/// Of the cluster and the database: a standby has the same, a copy that was restored has not.
-std::string identity_of(Connection& connection) {
-  const Rows rows = connection.query(
-      "SELECT system_identifier::text || '/' ||"
-      " (SELECT oid::text FROM pg_database WHERE datname = current_database())"
-      " FROM pg_control_system()");
-  return std::string(rows.front().column_text(0));
-}
-
 struct NewestEpoch {
   std::int64_t number = 0;  // 0: there is none
   Uuid epoch;
@@ -129,6 +120,14 @@ void forget_old_runs(Connection& connection) {
 }
 
 }  // namespace
+
+std::string identity_of(Connection& connection) {
+  const Rows rows = connection.query(
+      "SELECT system_identifier::text || '/' ||"
+      " (SELECT oid::text FROM pg_database WHERE datname = current_database())"
+      " FROM pg_control_system()");
+  return std::string(rows.front().column_text(0));
+}
 
 /// \return why what was committed before cannot be there; empty: it is, or another server began an
 ///         epoch because of it.

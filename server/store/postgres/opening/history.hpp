@@ -12,6 +12,9 @@
 
 namespace kinship::store::postgres {
 
+/// Of the cluster and the database: a standby has the same, a copy that was restored has not.
+std::string identity_of(Connection& connection);
+
 /// Which epoch a store is in, how far this server's commits have come, and whether a point that
 /// somebody was told of is still there. Several servers write; each connection that writes reports
 /// is a run, whose position its transactions raise by one in a row of their own. A mark names a run

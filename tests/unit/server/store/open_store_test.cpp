@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "server/store/postgres/database/connection_string.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -54,12 +56,25 @@ TEST(OpenStore, APasswordIsInNoMessage) {
 
 TEST(ConnectionString, EachHostHasItsPort) {
   const postgres::ConnectionString both("postgresql://kinship@a:1,b:2/fleet");
-  EXPECT_EQ(both.description(), "postgresql://kinship@a (and 1 more):1/fleet");
+  EXPECT_EQ(both.description(), "postgresql://kinship@a:1,b:2/fleet");
   ASSERT_EQ(both.each_host().size(), 2U);
   EXPECT_EQ(both.each_host()[0].description(), "postgresql://kinship@a:1/fleet");
   EXPECT_EQ(both.each_host()[1].description(), "postgresql://kinship@b:2/fleet");
   const postgres::ConnectionString sockets("postgresql://kinship@/fleet?host=/a,/b&port=5432");
+  EXPECT_EQ(sockets.description(), "postgresql://kinship@/a:5432,/b:5432/fleet");
   EXPECT_EQ(sockets.each_host()[1].description(), "postgresql://kinship@/b:5432/fleet");
+}
+
+TEST(ConnectionString, IsShownWithAllHostsAsAUrlHasThem) {
+  for (const auto& [url, shown] : std::map<std::string, std::string>{
+           {"postgres://a/fleet", "postgresql://a/fleet"},
+           {"postgresql://k:secret@a,b:5433,c/fleet?sslmode=disable",
+            "postgresql://k@a,b:5433,c/fleet"},
+           {"postgresql://a,b/fleet?port=5433&password=secret", "postgresql://a:5433,b:5433/fleet"},
+           {"postgresql://[::1]:1,[fe80::2]/fleet", "postgresql://[::1]:1,[fe80::2]/fleet"},
+           {"postgresql:///fleet?hostaddr=10.0.0.1,10.0.0.2",
+            "postgresql://10.0.0.1,10.0.0.2/fleet"}})
+    EXPECT_EQ(displayed_store(url), shown);
 }
 
 }  // namespace
