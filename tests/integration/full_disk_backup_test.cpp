@@ -2,16 +2,13 @@
 // a small file system of its own.
 
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string>
 
 #include "tests/integration/admin_commands.hpp"
 #include "tests/integration/incompressible_paths.hpp"
+#include "tests/support/small_file_system.hpp"
 
 namespace kinship::full_disk_backup_test {
 namespace {
@@ -19,45 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using admin_commands_test::Answer;
 using admin_commands_test::Server;
-
-/// In a mount namespace that this thread and the processes it starts share: nobody else sees it,
-/// and it goes with them.
-class SmallFileSystem {
- public:
-  SmallFileSystem(fs::path folder, const std::string& size) : folder_(std::move(folder)) {
-    if (unshare(CLONE_NEWNS) == 0 &&
-        mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-        mount("tmpfs", folder_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0)
-      is_mounted_ = true;
-    else
-      why_ = std::strerror(errno);
-  }
-  SmallFileSystem(const SmallFileSystem&) = delete;
-  SmallFileSystem& operator=(const SmallFileSystem&) = delete;
-  ~SmallFileSystem() {
-    if (is_mounted_)
-      umount2(folder_.c_str(), MNT_DETACH);
-  }
-
-  bool is_mounted() const { return is_mounted_; }
-  const std::string& why() const { return why_; }  ///< it is not
-
-  void resize(const std::string& size) const {
-    ASSERT_EQ(mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()), 0);
-  }
-  /// Names of all that is there, each after a space.
-  std::string names() const {
-    std::string names;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      names += ' ' + entry.path().filename().string();
-    return names;
-  }
-
- private:
-  fs::path folder_;
-  bool is_mounted_ = false;
-  std::string why_;
-};
+using test::SmallFileSystem;
 
 class FullDiskBackup : public testing::Test {
  protected:

@@ -25,6 +25,7 @@
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
+#include "tests/support/small_file_system.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::migrate_store_test {
@@ -299,6 +300,31 @@ TEST_F(MigrateStore, HalfAStoreSaysHowToGoOnOrToGiveUp) {
   EXPECT_EQ(full.code, 1);
   EXPECT_TRUE(full.says("holds a store already")) << full.err;
   EXPECT_TRUE(store::open_sqlite_store(file_)->status().writable);
+}
+
+TEST_F(MigrateStore, WhereverTheDiskIsFullItSaysSoAndGoesOnOnceThereIsRoom) {
+  test::make_large_store(file_, 2000);
+  ASSERT_EQ(move(file_, url_).code, 0);
+  fs::create_directory(folder_ / "small");
+  const test::SmallFileSystem disk(folder_ / "small", "64k");
+  if (!disk.is_mounted())
+    GTEST_SKIP() << "no file system may be mounted here: " << disk.why();
+  const std::string target = (folder_ / "small" / "back.db").string();
+  Ended ended = move(url_, target);
+  int failed = 0;
+  for (int size_kb = 64; ended.code != 0; ++failed) {
+    EXPECT_EQ(ended.code, 1);
+    EXPECT_TRUE(ended.says("'" + target + "'")) << ended.err;
+    EXPECT_TRUE(ended.says("full") || ended.says("No space left")) << ended.err;
+    EXPECT_EQ(number_there("SELECT count(*) FROM setting WHERE key LIKE 'moved_to%'"), 0);
+    size_kb += size_kb / 4;
+    ASSERT_LT(size_kb, 65536) << ended.err;
+    disk.resize(std::to_string(size_kb) + "k");
+    ended = move(url_, target);
+  }
+  EXPECT_GT(failed, 5);
+  EXPECT_TRUE(ended.says("all rows are the same")) << ended.out;
+  EXPECT_EQ(test::differences_of(file_, target), "");
 }
 
 /// The same database, with another host before it, and with parameters in another order.

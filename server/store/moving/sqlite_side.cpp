@@ -98,7 +98,8 @@ class SqliteSide : public Side {
 
   void open_target() {
     lock_.emplace(file_);
-    make_for_owner(file_);
+    if (!fs::exists(file_))
+      make_empty_store();
     naming_store([&] {
       make_wal_durable(file_);
       database_ = open_migrated(file_, embedded_migrations());
@@ -333,6 +334,15 @@ class SqliteSide : public Side {
                                                  name_ + "', then go on"
                                            : ""));
     }
+  }
+
+  /// Whole or not at all: who goes on after a full disk finds no half of a schema.
+  void make_empty_store() const {
+    naming_store([&] {
+      NewFile file(file_);
+      checkpoint(*open_migrated(file.part(), embedded_migrations()), CheckpointKind::Whole);
+      file.publish();
+    });
   }
 
   static void name_first_scene(const MovedTable& table, MovedRow& row, const SqliteScenes& scenes) {
