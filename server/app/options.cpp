@@ -316,10 +316,13 @@ std::string store_fault(const CLI::App& app, const std::filesystem::path& store)
              : "neither XDG_STATE_HOME nor HOME is set; say where with --store FILE";
 }
 
-/// Which option of a database was given for a file, where it would promise what nothing keeps.
-std::string database_option_fault(const ServerOptions& options) {
+/// What options say of a store that cannot be: a file promises nothing of a database's, and a
+/// memory is not above itself.
+std::string store_option_fault(const ServerOptions& options) {
   if (is_database_url(options.store.string()))
-    return {};
+    return options.upstream != options.store.string()
+               ? std::string()
+               : "--upstream names the same database as --store; a site has a store of its own";
   const char* const option = options.require_synchronous ? "--require-synchronous"
                              : options.primary_only      ? "--primary-only"
                                                          : nullptr;
@@ -413,7 +416,7 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   }
   if (is_offline)
     return offline;
-  if (const std::string fault = database_option_fault(options); !fault.empty()) {
+  if (const std::string fault = store_option_fault(options); !fault.empty()) {
     err << "kinshipd: " << fault << '\n';
     return kWrongUsage;
   }

@@ -37,14 +37,6 @@ std::string seconds(double value) {
 
 }  // namespace
 
-/// Of a robot. Shared by the threads that answer it, one after the other.
-struct Service::Registration {
-  RobotDescription description;
-  std::function<void(const RegisterReply&)> done;
-  std::string client;
-  runtime::RobotRegistry::LabelRule may_take;
-};
-
 Service::Service(std::unique_ptr<store::Store> store, ServiceOptions options)
     : options_(std::move(options)),
       started_(options_.clock.now()),
@@ -196,65 +188,6 @@ void Service::answered(std::span<const catalog::AttemptCost> costs,
   publish_report(events_, robots_, costs, receipts);
   if (forwarder_)
     forwarder_->wake();
-}
-
-void Service::register_robot(RobotDescription description,
-                             std::function<void(const RegisterReply&)> done,
-                             const std::string& client,
-                             runtime::RobotRegistry::LabelRule may_take) {
-  const auto registration = std::make_shared<const Registration>(
-      Registration{std::move(description), std::move(done), client, std::move(may_take)});
-  const auto ask_store = [this, registration] {
-    const Registration& asked = *registration;
-    tell_registered(
-        asked, robots_.register_robot(asked.description, options_.clock.unix_ms(), asked.may_take));
-  };
-  begin(memory_task_pool_, registration, [this, registration, ask_store] {
-    const Registration& asked = *registration;
-    if (const auto known = robots_.register_known(asked.description, asked.may_take))
-      return tell_registered(asked, *known);
-    begin(short_task_pool_, registration, ask_store);
-  });
-}
-
-/// \param answer  may throw Failure(Storage), std::bad_alloc: a refusal would be final.
-void Service::begin(runtime::WorkerPool& pool, const RegistrationPointer& registration,
-                    std::function<void()> answer) {
-  const std::string& client = registration->client;
-  auto run = [this, registration, answer = std::move(answer)] {
-    try {
-      answer();
-    } catch (const std::exception& exception) {  // a fault of ours, which may pass: it asks again
-      troubles_.add(Trouble::RobotUnanswered,
-                    "'" + registration->description.label + "': " + exception.what());
-    }
-  };
-  if (pool.submit(Priority::Interactive, {.run = std::move(run), .abandon = {}, .client = client}))
-    return;
-  troubles_.add(Trouble::RobotUnanswered, "busy or stopping");
-  if (stop_source_.stop_requested())
-    return;  // another server may come
-  RegisterReply busy;
-  busy.message = is_over_waiting(client) ? "busy: this client has as much waiting as one may have"
-                                         : "the server is busy";
-  busy.retry_after = kRetryAfter;
-  registration->done(busy);
-}
-
-void Service::tell_registered(const Registration& registration, const RegisterReply& reply) {
-  const RobotDescription& description = registration.description;
-  if (reply.status == RegisterStatus::Refused) {
-    troubles_.add(Trouble::RobotRefused, "'" + description.label + "': " + reply.message);
-  } else {
-    clients_.count_robot(registration.client, description.label,
-                         reply.status == RegisterStatus::Registered);
-    options_.log("register '" + description.label +
-                 "': " + (reply.status == RegisterStatus::Known ? "known as robot " : "robot ") +
-                 reply.robot.short_hex() + "; geometry" +
-                 (reply.took_geometry ? ", better than before: " : ": ") + reply.geometry);
-  }
-  publish_registered(events_, description, reply);
-  registration.done(reply);
 }
 
 void Service::report(ReportRequest request, std::function<void(const ReportReply&)> done,

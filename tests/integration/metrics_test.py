@@ -1,4 +1,5 @@
 """What a real kinshipd tells Prometheus, read with Prometheus's own parser; what deploy/ makes of it."""
+import contextlib
 import json
 import math
 import os
@@ -36,7 +37,8 @@ def listening_sockets(pid: int) -> "list[str]":
     """TCP sockets of a process that somebody could connect to."""
     mine = set()
     for file in pathlib.Path(f"/proc/{pid}/fd").iterdir():
-        mine.update(re.findall(r"socket:\[(\d+)\]", os.readlink(file)))
+        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+            mine.update(re.findall(r"socket:\[(\d+)\]", os.readlink(file)))
     rows = [row.split() for table in ("tcp", "tcp6") if pathlib.Path(f"/proc/net/{table}").exists()
             for row in pathlib.Path(f"/proc/net/{table}").read_text().splitlines()[1:]]
     return [row[1] for row in rows if row[3] == "0A" and row[9] in mine]

@@ -387,6 +387,9 @@ TEST_F(Options, ASiteNamesTheMemoryAboveIt) {
   EXPECT_EQ(code({"--upstream", "fleet.db"}), kWrongUsage);
   EXPECT_NE(err_.str().find("postgresql://HOST/DATABASE"), std::string::npos) << err_.str();
   EXPECT_EQ(code({"--upstream-tasks", "pick_*"}), kWrongUsage) << "of what memory?";
+  const char* const memory = "postgresql://memory/kinship";
+  EXPECT_EQ(code({"--store", memory, "--upstream", memory}), kWrongUsage);
+  EXPECT_NE(err_.str().find("same database as --store"), std::string::npos) << err_.str();
 }
 
 TEST_F(Options, WhatADatabasePromisesIsNotTakenForAFile) {
