@@ -365,6 +365,18 @@ std::filesystem::path default_store() {
 
 namespace {
 
+/// Why nobody serves with these options; empty if somebody may.
+std::string serving_fault(const ServerOptions& options) {
+  if (std::string fault = store_option_fault(options); !fault.empty())
+    return fault;
+  const std::string insecurity = insecurity_of(options);
+  if (insecurity.empty() || options.insecure)
+    return {};
+  return insecurity +
+         ". Make certificates ('kinshipd secure init FOLDER') and say --security FOLDER; or say "
+         "--insecure if that is what you want";
+}
+
 Options parse_words(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   ServerOptions options;
   options.store = default_store();
@@ -416,15 +428,8 @@ Options parse_words(int argc, const char* const* argv, std::ostream& out, std::o
   }
   if (is_offline)
     return offline;
-  if (const std::string fault = store_option_fault(options); !fault.empty()) {
+  if (const std::string fault = serving_fault(options); !fault.empty()) {
     err << "kinshipd: " << fault << '\n';
-    return kWrongUsage;
-  }
-  if (const std::string insecurity = insecurity_of(options);
-      !insecurity.empty() && !options.insecure) {
-    err << "kinshipd: " << insecurity
-        << ". Make certificates ('kinshipd secure init FOLDER') and say --security FOLDER; or say "
-           "--insecure if that is what you want\n";
     return kWrongUsage;
   }
   return options;
