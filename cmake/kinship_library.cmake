@@ -18,6 +18,13 @@ endif()
 
 # What also its users are compiled with.
 add_library(kinship_options INTERFACE)
+# The compiler's own memory: collecting its garbage early costs a tenth of a build.
+target_compile_options(kinship_options INTERFACE
+  $<BUILD_INTERFACE:$<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=524288>>)
+if(KINSHIP_CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # So that the cache sees which precompiled header a preprocessed text goes with.
+  target_compile_options(kinship_options INTERFACE $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>>)
+endif()
 target_include_directories(kinship_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                            $<INSTALL_INTERFACE:${KINSHIP_INCLUDEDIR}>)
 # Threads touch Eigen only through values; its own OpenMP pool would break "same bytes for any number of threads".
@@ -27,14 +34,20 @@ if(KINSHIP_SANITIZE)
   target_compile_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(kinship_options INTERFACE -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/ubsan_ignore.txt)
+    # GCC's names of what is on, which Clang lacks.
+    target_compile_definitions(kinship_options INTERFACE
+      $<IF:$<STREQUAL:${KINSHIP_SANITIZE},thread>,__SANITIZE_THREAD__,__SANITIZE_ADDRESS__>)
+  endif()
   # Under AddressSanitizer Eigen aligns memory by itself, and OMPL's library, which does not, then frees it.
   target_compile_definitions(kinship_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # A quarter of all lines are includes, and most of a compilation is reading them: several sources of a target compile as
-# one. So names in the anonymous namespaces of a library must differ. Sources with options of their own (kernels) compile
-# alone. Who edits one file all day turns it off, and sees there what a source forgot to include.
-option(KINSHIP_UNITY "Compile the sources of a target together" ON)
+# one, behind one precompiled header. So names in the anonymous namespaces of a library must differ. Sources with options of
+# their own (kernels) compile alone. Turned off, each source compiles by itself and shows what it forgot to include.
+option(KINSHIP_UNITY "Compile the sources of a target together, behind a precompiled header" ON)
 function(kinship_unite target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${KINSHIP_UNITY} UNITY_BUILD_BATCH_SIZE 16)
   if(KINSHIP_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -43,24 +56,60 @@ function(kinship_unite target)
   endif()
 endfunction()
 
+# kinship_precompile(TARGET OWNER): TARGET reads what nearly every source includes from the precompiled header of OWNER, which
+# is compiled with the same options; the owner itself is given further HEADERS.
+function(kinship_precompile target owner)
+  get_target_property(sources ${target} SOURCES)
+  if(NOT KINSHIP_UNITY OR CMAKE_BUILD_TYPE STREQUAL "Debug" OR sources MATCHES "[.]c(;|$)")
+    return()  # in a debug build some libraries are optimized and others not; a header of C++ is none of C
+  elseif(NOT target STREQUAL owner)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE
+    <Eigen/Cholesky> <Eigen/Geometry>
+    <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <filesystem> <fstream> <functional> <iostream> <map>
+    <memory> <mutex> <numbers> <optional> <random> <set> <span> <sstream> <string> <thread> <unordered_map> <variant> <vector>
+    <proto/types/conversations.hpp> <proto/types/problem.hpp> ${ARGN})
+endfunction()
+
+# kinship_kernels(SOURCES a.cpp ... OPTIONS -mavx2 ...): sources that are compiled with options of their own, each by itself:
+# code with wider registers must meet no other (alignment).
+function(kinship_kernels)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "SOURCES;OPTIONS")
+  if(KINSHIP_SANITIZE)
+    list(TRANSFORM arg_OPTIONS REPLACE "^-O3$" -O1)  # takes minutes where every access is checked
+  endif()
+  set_source_files_properties(${arg_SOURCES} PROPERTIES COMPILE_OPTIONS "${arg_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # Archives go into shared libraries too, ours (C, Python) and others' (plug-ins), and are not seen through them.
 function(kinship_hide target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden
                         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
-# kinship_library(NAME SOURCES a.cpp ... DEPENDS kinship::types ... PRIVATE_DEPENDS Some::Library ...)
+# kinship_library(NAME [COMPUTES] SOURCES a.cpp ... DEPENDS kinship::types ... PRIVATE_DEPENDS Some::Library ...)
 #
 # One static library per folder, alias kinship::NAME. DEPENDS are seen by users of the headers,
-# PRIVATE_DEPENDS only by the sources. Without SOURCES the library consists of headers.
+# PRIVATE_DEPENDS only by the sources. Without SOURCES the library consists of headers. A release optimizes what COMPUTES
+# fully, sanitizers a little; what waits for disks, networks and people is compiled in half the time at -O1, or not optimized.
 function(kinship_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPUTES" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
   if(arg_SOURCES)
     add_library(kinship_${name} STATIC ${arg_SOURCES})
     target_link_libraries(kinship_${name} PRIVATE $<BUILD_INTERFACE:kinship_warnings>
                           PUBLIC kinship_options ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
     kinship_hide(kinship_${name})
     kinship_unite(kinship_${name})
+    if(KINSHIP_SANITIZE AND arg_COMPUTES AND NOT name STREQUAL "types")
+      target_compile_options(kinship_${name} PRIVATE -O1)  # unlike the precompiled header
+    else()
+      kinship_precompile(kinship_${name} kinship_types)
+    endif()
+    if(NOT arg_COMPUTES)
+      target_compile_options(kinship_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
   else()
     add_library(kinship_${name} INTERFACE)
     target_link_libraries(kinship_${name} INTERFACE kinship_options ${arg_DEPENDS})
@@ -89,18 +138,8 @@ function(kinship_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE kinship_warnings kinship_options ${arg_DEPENDS})
-endfunction()
-
-# Defines KINSHIP_SOURCE_DIR and KINSHIP_BIN_DIR for those of the sources that name them. The others compile to the same
-# bytes in every folder, so that a compiler cache serves other clones too. Who names them anew runs CMake again.
-function(kinship_tell_places)
-  foreach(source IN LISTS ARGN)
-    file(STRINGS ${source} mentions REGEX "KINSHIP_(SOURCE|BIN)_DIR" LIMIT_COUNT 1)
-    if(mentions)
-      set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS
-        KINSHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KINSHIP_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-    endif()
-  endforeach()
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  kinship_unite(${name})
 endfunction()
 
 # Tells CTest the suites of a GoogleTest program, one test each, or that the program is not built (NAME_NOT_BUILT).
@@ -131,11 +170,16 @@ function(kinship_test name)
     math(EXPR arg_TIMEOUT "5 * ${arg_TIMEOUT}")
   endif()
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE kinship_warnings kinship_options ${arg_DEPENDS} GTest::gtest GTest::gtest_main)
-  kinship_tell_places(${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE kinship_warnings kinship_options ${arg_DEPENDS} kinship::test_places
+                        GTest::gtest GTest::gtest_main)
   # What is tested is fully optimized, the tests themselves need not be: a third of their build time.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   kinship_unite(${name})
+  if(KINSHIP_SANITIZE AND arg_LABEL STREQUAL "property")
+    target_compile_options(${name} PRIVATE -O1)  # they compute for long; unlike the precompiled header
+  else()
+    kinship_precompile(${name} kinship_test_places)
+  endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   if(NOT TARGET tests_${arg_LABEL})
     add_custom_target(tests_${arg_LABEL})

@@ -12,7 +12,7 @@ std::string bash_action(const ValueUsage& value) {
       std::string words;
       for (const std::string& word : value.words)
         words += (words.empty() ? "" : " ") + word;
-      return "words " + quoted(words);
+      return "words " + shell_quoted(words);
     }
     case ValueKind::File:
       return "files";
@@ -67,7 +67,7 @@ void write_values(const CommandUsage& program, const std::string& name, std::ost
     for (const OptionUsage* const option : options_of(*command)) {
       std::string patterns;
       for (const std::string& dashed : option->names)
-        patterns += (patterns.empty() ? "" : "|") + quoted(command->path + " " + dashed);
+        patterns += (patterns.empty() ? "" : "|") + shell_quoted(command->path + " " + dashed);
       if (option->takes_value && !patterns.empty())
         out << "    " << patterns << ") _" << name << "_" << bash_action(option->value)
             << "; return ;;\n";
@@ -83,8 +83,8 @@ void write_words(const CommandUsage& program, const std::string& name, std::ostr
     for (const OptionUsage* const option : options_of(*command))
       for (const std::string& dashed : option->names)
         options += (options.empty() ? "" : " ") + dashed;
-    out << "      " << quoted(command->path) << ") _" << name << "_words " << quoted(options)
-        << " ;;\n";
+    out << "      " << shell_quoted(command->path) << ") _" << name << "_words "
+        << shell_quoted(options) << " ;;\n";
   }
   out << "    esac\n    return\n  fi\n  case \"$path $arguments\" in\n";
   for (const CommandUsage* const command : with_all_below(program)) {
@@ -92,10 +92,10 @@ void write_words(const CommandUsage& program, const std::string& name, std::ostr
     for (const CommandUsage& below : command->commands)
       verbs += (verbs.empty() ? "" : " ") + below.name;
     if (!verbs.empty())
-      out << "    " << quoted(command->path + " 0") << ") _" << name << "_words " << quoted(verbs)
-          << " ;;\n";
+      out << "    " << shell_quoted(command->path + " 0") << ") _" << name << "_words "
+          << shell_quoted(verbs) << " ;;\n";
     for (std::size_t i = 0; i < command->arguments.size(); ++i)
-      out << "    " << quoted(command->path + " " + std::to_string(i)) << ") _" << name << "_"
+      out << "    " << shell_quoted(command->path + " " + std::to_string(i)) << ") _" << name << "_"
           << bash_action(command->arguments[i].value) << " ;;\n";
   }
   out << "  esac\n";

@@ -47,7 +47,7 @@ std::string function_name(const CommandUsage& program) {
   return name;
 }
 
-std::string quoted(const std::string& text) {
+std::string shell_quoted(const std::string& text) {
   std::string in_quotes = "'";
   for (const char c : text)
     in_quotes += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -69,7 +69,7 @@ std::string value_patterns(const CommandUsage& program) {
     for (const OptionUsage* const option : options_of(*command))
       for (const std::string& name : option->names)
         if (option->takes_value)
-          patterns += (patterns.empty() ? "" : "|") + quoted(command->path + " " + name);
+          patterns += (patterns.empty() ? "" : "|") + shell_quoted(command->path + " " + name);
   return patterns.empty() ? kNeverMatches : patterns;
 }
 
@@ -77,7 +77,7 @@ std::string verb_patterns(const CommandUsage& program) {
   std::string patterns;
   for (const CommandUsage* const command : with_all_below(program))
     if (!command->path.empty())
-      patterns += (patterns.empty() ? "" : "|") + quoted(command->path);
+      patterns += (patterns.empty() ? "" : "|") + shell_quoted(command->path);
   return patterns.empty() ? kNeverMatches : patterns;
 }
 

@@ -27,7 +27,7 @@ std::vector<const OptionUsage*> options_of(const CommandUsage& command);
 std::string function_name(const CommandUsage& program);
 
 /// Within single quotes of a shell.
-std::string quoted(const std::string& text);
+std::string shell_quoted(const std::string& text);
 
 /// The first sentence or clause of a description, on one line: what fits beside a candidate.
 std::string short_description(const std::string& description);

@@ -24,7 +24,7 @@ std::string fish_action(const ValueUsage& value, const std::string& name) {
       std::string words;
       for (const std::string& word : value.words)
         words += (words.empty() ? "" : " ") + word;
-      return " -x -a " + quoted(words);
+      return " -x -a " + shell_quoted(words);
     }
     case ValueKind::File:
       return " -r -F";
@@ -42,19 +42,19 @@ void write_command(const CommandUsage& program, const CommandUsage& command, std
   const std::string name = function_name(program);
   const std::string begin = "complete -c " + program.name + " -n ";
   for (const OptionUsage* const option : options_of(command)) {
-    out << begin << quoted("__" + name + "_at \"" + command.path + "\"");
+    out << begin << shell_quoted("__" + name + "_at \"" + command.path + "\"");
     for (const std::string& dashed : option->names)
       out << (dashed.starts_with("--") ? " -l " + dashed.substr(2) : " -s " + dashed.substr(1));
     if (option->takes_value)
       out << fish_action(option->value, name);
-    out << " -d " << quoted(short_description(option->description)) << '\n';
+    out << " -d " << shell_quoted(short_description(option->description)) << '\n';
   }
   const auto condition = [&](std::size_t arguments) {
-    return quoted("__" + name + "_at \"" + command.path + "\" " + std::to_string(arguments));
+    return shell_quoted("__" + name + "_at \"" + command.path + "\" " + std::to_string(arguments));
   };
   for (const CommandUsage& below : command.commands)
-    out << begin << condition(0) << " -f -a " << quoted(below.name) << " -d "
-        << quoted(short_description(below.description)) << '\n';
+    out << begin << condition(0) << " -f -a " << shell_quoted(below.name) << " -d "
+        << shell_quoted(short_description(below.description)) << '\n';
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     const std::string action = fish_action(command.arguments[i].value, name);
     out << begin << condition(i)

@@ -10,7 +10,7 @@ std::string zsh_action(const ValueUsage& value, const std::string& name) {
     case ValueKind::Words: {
       std::string words;
       for (const std::string& word : value.words)
-        words += " " + quoted(word);
+        words += " " + shell_quoted(word);
       return "compadd --" + words;
     }
     case ValueKind::File:
@@ -27,7 +27,7 @@ std::string zsh_action(const ValueUsage& value, const std::string& name) {
 
 /// "name:description" of _describe.
 std::string described(const std::string& name, const std::string& description) {
-  return quoted(name + ":" + short_description(description));
+  return shell_quoted(name + ":" + short_description(description));
 }
 
 void write_values_of_zsh(const CommandUsage& program, const std::string& name, std::ostream& out) {
@@ -36,7 +36,7 @@ void write_values_of_zsh(const CommandUsage& program, const std::string& name, s
     for (const OptionUsage* const option : options_of(*command)) {
       std::string patterns;
       for (const std::string& dashed : option->names)
-        patterns += (patterns.empty() ? "" : "|") + quoted(command->path + " " + dashed);
+        patterns += (patterns.empty() ? "" : "|") + shell_quoted(command->path + " " + dashed);
       if (option->takes_value && !patterns.empty())
         out << "    " << patterns << ") " << zsh_action(option->value, name) << "; return ;;\n";
     }
@@ -46,7 +46,7 @@ void write_values_of_zsh(const CommandUsage& program, const std::string& name, s
 void write_words_of_zsh(const CommandUsage& program, const std::string& name, std::ostream& out) {
   out << "  local -a found\n  if [[ $current == -* ]]; then\n    case $at in\n";
   for (const CommandUsage* const command : with_all_below(program)) {
-    out << "      " << quoted(command->path) << ") found=(";
+    out << "      " << shell_quoted(command->path) << ") found=(";
     for (const OptionUsage* const option : options_of(*command))
       for (const std::string& dashed : option->names)
         out << " " << described(dashed, option->description);
@@ -56,13 +56,13 @@ void write_words_of_zsh(const CommandUsage& program, const std::string& name, st
       << "  case \"$at $arguments\" in\n";
   for (const CommandUsage* const command : with_all_below(program)) {
     if (!command->commands.empty()) {
-      out << "    " << quoted(command->path + " 0") << ") found=(";
+      out << "    " << shell_quoted(command->path + " 0") << ") found=(";
       for (const CommandUsage& below : command->commands)
         out << " " << described(below.name, below.description);
       out << " ); _describe command found ;;\n";
     }
     for (std::size_t i = 0; i < command->arguments.size(); ++i)
-      out << "    " << quoted(command->path + " " + std::to_string(i)) << ") "
+      out << "    " << shell_quoted(command->path + " " + std::to_string(i)) << ") "
           << zsh_action(command->arguments[i].value, name) << " ;;\n";
   }
   out << "  esac\n";

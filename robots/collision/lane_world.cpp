@@ -97,8 +97,7 @@ inline Pair load(const double* from) {
 
 Eigen::Isometry3d turned_to(const Eigen::Vector3d& axis) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  T.linear() = kinematics::rotation_of_z_to(axis);
   return T;
 }
 

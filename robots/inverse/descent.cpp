@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "proto/types/turn.hpp"
+#include "robots/kinematics/axis_turns.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
 namespace kinship::inverse {
@@ -50,8 +51,7 @@ Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
   Eigen::Isometry3d T_turned_moving = Eigen::Isometry3d::Identity();  // of the joint before
   for (const kinematics::Joint& joint : chain.joints()) {
     Eigen::Isometry3d T_joint_turned = Eigen::Isometry3d::Identity();
-    T_joint_turned.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+    T_joint_turned.linear() = kinematics::rotation_of_z_to(joint.axis);
     const Eigen::Isometry3d T_previous_turned =
         T_turned_moving * joint.T_previous_joint * T_joint_turned;
     Step step;

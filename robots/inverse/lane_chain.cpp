@@ -7,6 +7,7 @@
 #include "proto/types/limits.hpp"
 #include "proto/types/turn.hpp"
 #include "robots/inverse/simd_sets.hpp"
+#include "robots/kinematics/axis_turns.hpp"
 
 namespace kinship::inverse {
 namespace {
@@ -15,7 +16,7 @@ using kinematics::JointType;
 
 static_assert(kLaneJoints == kMaxDof);
 
-constexpr double kParallel = 1e-12;        // sine between axes
+constexpr double kParallelAxes = 1e-12;    // sine between axes
 constexpr double kRightAngle = 1e-15;      // rounding of a zero
 constexpr double kShortestReach_m = 1e-3;  // an arm without lengths still has a unit
 
@@ -30,13 +31,13 @@ void write(const Eigen::Vector3d& vector, double (&values)[3]) {
 }
 
 /// A rotation as turns about z, then x, then z.
-struct Turns {
+struct AngleTurns {
   double first_z, x, second_z;
 };
 
-Turns turns_of(const Eigen::Matrix3d& R) {
-  Turns turns{0, std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)), 0};
-  if (std::hypot(R(0, 2), R(1, 2)) > kParallel)
+AngleTurns turns_of(const Eigen::Matrix3d& R) {
+  AngleTurns turns{0, std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)), 0};
+  if (std::hypot(R(0, 2), R(1, 2)) > kParallelAxes)
     turns.first_z = std::atan2(R(0, 2), -R(1, 2));
   // What is left, not what the third row says: for nearly parallel axes only the sum of the two
   // turns about z is well known.
@@ -56,7 +57,7 @@ void twist(double angle_rad, LaneJoint& joint) {
 
 /// \param T  of a joint's frame in the moving frame of the one before, both with z along the axis.
 void link(const Eigen::Isometry3d& T, double length_m, LaneJoint& before, LaneJoint& joint) {
-  const Turns turns = turns_of(T.linear());
+  const AngleTurns turns = turns_of(T.linear());
   twist(turns.first_z, before);
   twist(turns.second_z, joint);
   joint.tilt_sine = std::sin(turns.x);
@@ -123,8 +124,7 @@ LaneChain lane_chain(const kinematics::Chain& chain) {
   for (std::size_t j = 0; j < chain.joints().size(); ++j) {
     const kinematics::Joint& joint = chain.joints()[j];
     Eigen::Isometry3d T_joint_turned = Eigen::Isometry3d::Identity();
-    T_joint_turned.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+    T_joint_turned.linear() = kinematics::rotation_of_z_to(joint.axis);
     const Eigen::Isometry3d T = T_turned_moving * joint.T_previous_joint * T_joint_turned;
     LaneJoint& lane = lanes.joints[j];
     lane.slides = joint.type == JointType::Prismatic;

@@ -19,4 +19,8 @@ AxisTurns axis_turns(const Eigen::Matrix3d& R) {
   return turns;
 }
 
+Eigen::Matrix3d rotation_of_z_to(const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+}
+
 }  // namespace kinship::kinematics

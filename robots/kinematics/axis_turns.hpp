@@ -15,4 +15,8 @@ struct AxisTurns {
 /// \param R  a rotation; where it leaves the z-axis as it is, all of it is `after`, or turned over.
 AxisTurns axis_turns(const Eigen::Matrix3d& R);
 
+/// A rotation that takes the z-axis to `axis`, by the smallest angle.
+/// \param axis  any length but zero.
+Eigen::Matrix3d rotation_of_z_to(const Eigen::Vector3d& axis);
+
 }  // namespace kinship::kinematics

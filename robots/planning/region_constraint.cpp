@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "proto/types/turn.hpp"
+#include "robots/kinematics/axis_turns.hpp"
 #include "robots/planning/region_angles.hpp"
 #include "robots/planning/region_tilt.hpp"
 
@@ -35,11 +36,6 @@ double beyond(double value, double lower, double upper) {
   return value > upper ? value - upper : std::min(value - lower, 0.0);
 }
 
-/// A rotation that takes the z-axis to a unit vector.
-Eigen::Isometry3d z_to(const Eigen::Vector3d& axis) {
-  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
-}
-
 }  // namespace
 
 TaskSpaceRegion upright_region(double tilt_rad) {
@@ -63,7 +59,7 @@ RegionConstraint::RegionConstraint(const kinematics::Chain& chain, const TaskSpa
   margin_ = (kMarginOfWidth * widths).cwiseMin(kMaxMargin);
   Eigen::Isometry3d T = region.T_task_region.inverse() * T_task_base;  // before the next joint
   for (const kinematics::Joint& joint : chain.joints()) {
-    const Eigen::Isometry3d T_joint_z = z_to(joint.axis);
+    const Eigen::Isometry3d T_joint_z(kinematics::rotation_of_z_to(joint.axis));
     T = T * joint.T_previous_joint * T_joint_z;
     segments_.push_back(
         {T.linear(), T.translation(), joint.type == kinematics::JointType::Prismatic});

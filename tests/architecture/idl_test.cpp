@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/places.hpp"
+
 namespace kinship::architecture::idl_test {
 namespace {
 
@@ -45,7 +47,7 @@ TEST(Idl, PlainStructuresAreSeen) {
 
 TEST(Idl, NoStructureIsAPlainMemberOfAnother) {
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(KINSHIP_SOURCE_DIR) / "proto/idl"))
+  for (const auto& entry : fs::directory_iterator(fs::path(test::source_dir()) / "proto/idl"))
     if (entry.path().extension() == ".idl") {
       ++files;
       for (const std::string& member : plain_structures(read_idl(entry.path())))

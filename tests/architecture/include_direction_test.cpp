@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "tests/architecture/edges.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::architecture::include_direction_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = KINSHIP_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 const std::vector<std::string> kRoofs = {"proto", "robots", "server", "client"};
 
 struct Include {

@@ -25,6 +25,7 @@
 #include "tests/bench/figure.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/reference.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::bench {
@@ -57,7 +58,7 @@ class Case {
   /// \return CPU ms and mean log-likelihood.
   std::vector<double> scikit_learn(const std::string& what, Eigen::Index components) const {
     return run_reference(
-        {"/usr/bin/python3", KINSHIP_SOURCE_DIR "/tests/bench/reference_sklearn.py", what,
+        {"/usr/bin/python3", test::source_dir() + "/tests/bench/reference_sklearn.py", what,
          folder_.path().string(), std::to_string(kDof), std::to_string(components)},
         2);
   }

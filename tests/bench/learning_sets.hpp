@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proto/json/experience_line.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::bench {
 
@@ -26,8 +27,8 @@ inline const std::vector<std::string>& cobots() {
 /// Reads the learning set of a robot of client/experiments/results with the program zstd.
 /// \throws std::runtime_error if it is not there or not what it should be.
 inline LearningSet read_learning_set(const std::string& robot) {
-  const std::string file =
-      KINSHIP_SOURCE_DIR "/client/experiments/results/cobots/learning/" + robot + ".jsonl.zst";
+  const std::string file = kinship::test::source_dir() +
+                           "/client/experiments/results/cobots/learning/" + robot + ".jsonl.zst";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(
       popen(("zstd -dcq '" + file + "'").c_str(), "r"), pclose);
   if (!pipe)

@@ -8,6 +8,7 @@
 #include "server/store/maintenance.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/faults/kill_point.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -159,7 +160,7 @@ TEST_F(StoreMaintenanceKill, AMigrationHappensWhollyOrNotAtAll) {
   for (; killed; ++change) {
     SCOPED_TRACE("killed before change " + std::to_string(change));
     begin_anew();
-    fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", old);
+    fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", old);
     killed = test::killed_before_change(change, [&] { migrate_store(old); });
     const StoreCheck check = check_store(old, ignore);
     ASSERT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);

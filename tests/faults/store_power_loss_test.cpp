@@ -6,6 +6,7 @@
 
 #include "server/store/maintenance.hpp"
 #include "tests/faults/store_session.hpp"
+#include "tests/support/places.hpp"
 
 /// A power cut at any change of the disk: every acknowledged report is there afterwards, once, and
 /// readable; a backup has its name when it is whole. KINSHIP_LONG=1 cuts twelve times as often.
@@ -24,8 +25,7 @@ std::uint64_t rounds(std::uint64_t short_run) {
 }
 
 std::string golden(std::uint64_t number) {
-  return std::string(KINSHIP_SOURCE_DIR) + "/tests/golden/store-" + std::to_string(1 + number % 5) +
-         ".db";
+  return test::source_dir() + "/tests/golden/store-" + std::to_string(1 + number % 5) + ".db";
 }
 
 /// What the cuts of some sessions lost.

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::golden_store_test {
@@ -20,7 +21,7 @@ class GoldenStore : public testing::TestWithParam<int> {
  protected:
   GoldenStore() {
     const std::string name = "store-" + std::to_string(GetParam()) + ".db";
-    std::filesystem::copy_file(std::filesystem::path(KINSHIP_SOURCE_DIR "/tests/golden") / name,
+    std::filesystem::copy_file(std::filesystem::path(test::source_dir() + "/tests/golden") / name,
                                directory_ / "store.db");
     store_ = store::open_sqlite_store(directory_ / "store.db");
   }

@@ -9,12 +9,13 @@
 #include <iterator>
 
 #include "proto/types/hex.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::test {
 namespace {
 
 std::filesystem::path path_of(const std::string& name) {
-  return std::filesystem::path(KINSHIP_SOURCE_DIR "/tests/golden/pins") / name;
+  return std::filesystem::path(test::source_dir() + "/tests/golden/pins") / name;
 }
 
 /// The line at which two texts part, of each.

@@ -13,6 +13,7 @@
 #include "proto/json/summaries_json.hpp"
 #include "tests/integration/admin_commands.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
@@ -342,7 +343,7 @@ TEST_F(AdminCommands, AServerBelowItsWatermarkOfFreeSpaceSaysSo) {
 }
 
 TEST_F(AdminCommands, ARobotThatBreaksARuleIsWrongUsage) {
-  const std::string model = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/ur10e/robot.urdf";
+  const std::string model = test::source_dir() + "/robots/models/ur10e/robot.urdf";
   const Answer answer = server_.kinship(
       {"robots", "register", model, "--base", "nowhere", "--tip", "tool0", "--label", "arm"});
   EXPECT_EQ(answer.code, 2) << answer.err;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/support/child_process.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -42,11 +43,11 @@ Ended run_in_shell(const std::string& command) {
   return run({"/bin/sh", "-c", "{ " + command + "; } 2>&1 | sed 's/^$/ /'"});
 }
 
-const fs::path kBuild = fs::path(KINSHIP_BIN_DIR).parent_path();
+const fs::path kBuild = fs::path(test::bin_dir()).parent_path();
 // Always the same one, so that a compiler cache knows the examples.
 const fs::path kFolder = kBuild / "tests" / "installed_library";
 const fs::path kPrefix = kFolder / "prefix";
-const std::string kExamples = KINSHIP_SOURCE_DIR "/client/examples/";
+const std::string kExamples = test::source_dir() + "/client/examples/";
 
 /// Every file that a header names in quotes is installed with it, so none needs our source tree.
 void expect_headers_are_complete(const fs::path& root) {
@@ -106,7 +107,7 @@ class InstalledLibrary : public testing::Test {
     EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in: " << run.output;
   }
   static void build_examples() {
-    const std::string source = std::string(KINSHIP_SOURCE_DIR) + "/client/examples";
+    const std::string source = test::source_dir() + "/client/examples";
     const std::string build = (kFolder / "build").string();
     const std::string flags =
         " -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_FLAGS='-O0 -Wall -Wextra -Werror'"
@@ -197,7 +198,7 @@ TEST_F(InstalledLibrary, ExamplesAreBuiltAgainstItAndRunBesideAServer) {
 }
 
 TEST(CLibrary, ExportsWhatItsHeaderDeclaresAndNothingElse) {
-  const std::string header = test::read_text(KINSHIP_SOURCE_DIR "/client/c/kinship.h");
+  const std::string header = test::read_text(test::source_dir() + "/client/c/kinship.h");
   static const std::regex kDeclared(R"(KINSHIP_API [^;(]*?(kinship_\w+)\()");
   std::vector<std::string> declared;
   for (std::sregex_iterator it(header.begin(), header.end(), kDeclared), end; it != end; ++it)
@@ -262,7 +263,7 @@ TEST(AddSubdirectory, OffersTheSameTargetsWithoutTests) {
   fs::create_directories(folder);
   std::ofstream(folder / "CMakeLists.txt")
       << "cmake_minimum_required(VERSION 3.25)\nproject(theirs LANGUAGES C CXX)\n"
-      << "add_subdirectory([[" KINSHIP_SOURCE_DIR "]] kinship EXCLUDE_FROM_ALL)\n"
+      << "add_subdirectory([[" << test::source_dir() << "]] kinship EXCLUDE_FROM_ALL)\n"
       << "foreach(name IN ITEMS client planning c)\n"
       << "  add_executable(uses_${name} main.cpp)\n"
       << "  target_link_libraries(uses_${name} PRIVATE Kinship::${name})\nendforeach()\n"

@@ -16,6 +16,7 @@
 
 #include "client/link/client.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
@@ -24,8 +25,8 @@
 namespace kinship::manual_test {
 namespace {
 
-const std::string kBin = KINSHIP_BIN_DIR;
-const std::string kDrivers = std::string(KINSHIP_SOURCE_DIR) + "/tests/integration/completion/";
+const std::string kBin = test::bin_dir();
+const std::string kDrivers = test::source_dir() + "/tests/integration/completion/";
 const std::map<std::string, int> kPrograms = {
     {"kinship", 1}, {"kinship-plan", 1}, {"kinship-experiments", 1}, {"kinshipd", 8}};
 

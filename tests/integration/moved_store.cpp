@@ -8,6 +8,7 @@
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 #include "tests/golden/golden_store.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::test {
 namespace {
@@ -51,7 +52,7 @@ std::vector<Attempt> attempts_of_full_store() {
 }
 
 void make_full_store(const std::filesystem::path& file) {
-  std::filesystem::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-7.db", file);
+  std::filesystem::copy_file(test::source_dir() + "/tests/golden/store-7.db", file);
   const AuditEntry audit = golden_audit_entry();
   {
     const auto store = store::open_sqlite_store(file);

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -15,7 +16,7 @@
 namespace kinship::operations_test {
 namespace {
 
-const std::filesystem::path kDeploy = std::filesystem::path(KINSHIP_SOURCE_DIR) / "deploy";
+const std::filesystem::path kDeploy = std::filesystem::path(test::source_dir()) / "deploy";
 
 std::set<std::string> names_in(const std::filesystem::path& folder) {
   std::set<std::string> names;
@@ -29,7 +30,7 @@ class BackupScript : public testing::Test {
   BackupScript() {
     std::filesystem::create_directory(backups_);
     const char* const path = std::getenv("PATH");
-    setenv("PATH", (std::string(KINSHIP_BIN_DIR) + ":" + (path == nullptr ? "" : path)).c_str(), 1);
+    setenv("PATH", (test::bin_dir() + ":" + (path == nullptr ? "" : path)).c_str(), 1);
     setenv("KINSHIP_DOMAIN", std::to_string(domain_.number()).c_str(), 1);
     setenv("KINSHIP_BACKUPS", "2", 1);
   }

@@ -14,6 +14,7 @@
 #include "proto/json/problem_json.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/panda_experience.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
@@ -61,7 +62,7 @@ class RecordedScenes : public testing::Test {
   void plan_and_report(const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {(directory_ / "problems.jsonl").string(),
                                           "--model",
-                                          std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda",
+                                          test::source_dir() + "/robots/models/panda",
                                           "--label",
                                           "panda",
                                           "--task",

@@ -8,6 +8,7 @@
 
 #include "proto/json/problem_json.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -15,7 +16,7 @@
 namespace kinship::robots_from_files_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+const std::string kModels = test::source_dir() + "/robots/models/";
 
 struct Answer {
   int code = 0;

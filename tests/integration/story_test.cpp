@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proto/json/problem_json.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -27,8 +28,8 @@ std::vector<ProblemResult> read_results(const fs::path& file) {
 
 /// Runs deploy/quickstart with these options besides. \return its exit code.
 int tell_story(const fs::path& folder, std::uint32_t domain, const std::string& options) {
-  const std::string command = std::string("KINSHIP_BIN='") + KINSHIP_BIN_DIR + "' '" +
-                              KINSHIP_SOURCE_DIR + "/deploy/quickstart' --no-build " + options +
+  const std::string command = std::string("KINSHIP_BIN='") + test::bin_dir() + "' '" +
+                              test::source_dir() + "/deploy/quickstart' --no-build " + options +
                               " --folder '" + folder.string() + "' --domain " +
                               std::to_string(domain) + " > '" + folder.string() + ".txt' 2>&1";
   const int status = std::system(command.c_str());  // NOLINT: its arguments are ours

@@ -19,6 +19,7 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -26,8 +27,8 @@
 namespace kinship::study_cell_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models";
-const std::string kAnalysis = std::string(KINSHIP_SOURCE_DIR) + "/client/experiments/analyse.py";
+const std::string kModels = test::source_dir() + "/robots/models";
+const std::string kAnalysis = test::source_dir() + "/client/experiments/analyse.py";
 const std::string kTarget = "planar_7r_c";
 const std::string kSource = "planar_5r_b";
 
@@ -51,12 +52,10 @@ struct RepeatedCell {
 class StudyCell : public testing::Test {
  protected:
   std::vector<std::string> study_arguments(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {"open_table", "--quick",
-                                          "--out",      out_,
-                                          "--models",   kModels,
-                                          "--domain",   domain(),
-                                          "--kinshipd", std::string(KINSHIP_BIN_DIR) + "/kinshipd",
-                                          "--analysis", kAnalysis};
+    std::vector<std::string> arguments = {
+        "open_table", "--quick",  "--out",  out_,         "--models",
+        kModels,      "--domain", domain(), "--kinshipd", test::bin_dir() + "/kinshipd",
+        "--analysis", kAnalysis};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -144,7 +143,7 @@ TEST_F(StudyCell, UnderAConstraintCanBeRepeatedByHand) {
   experiments::RunOptions options;
   options.folder = out_;
   options.models = kModels;
-  options.kinshipd = KINSHIP_BIN_DIR "/kinshipd";
+  options.kinshipd = test::bin_dir() + "/kinshipd";
   options.domain = domain_.number();
   options.quick = true;
   options.analysis = directory_ / "missing.py";
@@ -180,7 +179,7 @@ TEST_F(StudyCell, TuningAndCalibrationEndWithTheirTables) {
 }
 
 TEST_F(StudyCell, ARunThatIsKilledTakesItsServerAlong) {
-  const experiments::ServerProcess::Options options{KINSHIP_BIN_DIR "/kinshipd",
+  const experiments::ServerProcess::Options options{test::bin_dir() + "/kinshipd",
                                                     directory_ / "killed.db", domain_.number(), 1};
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);

@@ -13,6 +13,7 @@
 #include "client/link/client.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/json/summaries_json.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -60,7 +61,7 @@ class UnsentReports : public testing::Test {
 
   test::ReservedDomain domain_;
   test::TemporaryDirectory directory_;
-  const std::string model_ = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda";
+  const std::string model_ = test::source_dir() + "/robots/models/panda";
   const std::string problems_ = directory_ / "problems.jsonl";
   const std::string outbox_ = directory_ / "outbox";
 };

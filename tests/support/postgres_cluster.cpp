@@ -1,4 +1,5 @@
 #include "tests/support/postgres_cluster.hpp"
+#include "tests/support/places.hpp"
 
 #include <sys/ipc.h>
 #include <sys/shm.h>
@@ -37,7 +38,7 @@ jit = off
 /// initdb, which takes longer than all that most tests do: so its outcome is kept beside the tests'
 /// programs, and copied. All clusters have one system identifier then.
 void make_cluster(const std::filesystem::path& data, const std::filesystem::path& log) {
-  const std::filesystem::path pattern = KINSHIP_BIN_DIR "/../tests/postgresql-15-cluster";
+  const std::filesystem::path pattern = test::bin_dir() + "/../tests/postgresql-15-cluster";
   const auto copy = [&](const std::filesystem::path& from, const std::filesystem::path& to) {
     run_to_end({"/bin/cp", "--archive", "--reflink=auto", from, to}, log);
   };

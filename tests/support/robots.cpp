@@ -4,11 +4,12 @@
 
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/model_folder.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::test {
 
 RobotDescription model_description(const std::string& name) {
-  const auto folder = std::filesystem::path(KINSHIP_SOURCE_DIR) / "robots" / "models" / name;
+  const auto folder = std::filesystem::path(test::source_dir()) / "robots" / "models" / name;
   return models::read_model_folder(folder).value_or_throw();
 }
 

@@ -1,4 +1,5 @@
 #include "tests/support/server_process.hpp"
+#include "tests/support/places.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -82,8 +83,7 @@ Program::Program(const std::string& name, const std::vector<std::string>& argume
     throw std::system_error(errno, std::system_category(), "pipe");
   output_ = pipe_ends[0];
   try {
-    pid_ = SpawnSettings(pipe_ends[1], error_file)
-               .spawn(std::string(KINSHIP_BIN_DIR) + "/" + name, arguments);
+    pid_ = SpawnSettings(pipe_ends[1], error_file).spawn(test::bin_dir() + "/" + name, arguments);
   } catch (...) {
     close(pipe_ends[0]);
     close(pipe_ends[1]);

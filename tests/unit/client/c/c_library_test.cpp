@@ -14,6 +14,7 @@
 #include "proto/security/security_folder.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/server_process.hpp"
@@ -178,7 +179,7 @@ TEST_F(CLibraryOffline, HeldJointsAndAxesArePartOfARobot) {
 TEST_F(CLibraryOffline, ARobotInFilesIsTheOneThatACommandLineNames) {
   kinship_robot_file file{};
   file.size = sizeof file;
-  const std::string folder = KINSHIP_SOURCE_DIR "/robots/models/ur10e";
+  const std::string folder = test::source_dir() + "/robots/models/ur10e";
   file.source = folder.c_str();
   size_t dof = 0;
   EXPECT_EQ(kinship_register_file(client_, &file, &robot_, &dof), KINSHIP_UNAVAILABLE);
@@ -283,7 +284,7 @@ TEST_F(CLibraryOffline, ObjectsOfANewerCallerAreSteppedOverByTheirSize) {
 
 /// The line that kinship.h shows, for this robot.
 std::string line_of_the_header(const std::string& digest) {
-  const std::string header = test::read_text(KINSHIP_SOURCE_DIR "/client/c/kinship.h");
+  const std::string header = test::read_text(test::source_dir() + "/client/c/kinship.h");
   const std::size_t begin = header.find("{\"report_uuid\"");
   std::string line = header.substr(begin, header.find("*/", begin) - begin);
   std::erase(line, '*');

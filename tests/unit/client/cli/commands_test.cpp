@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "proto/types/exit_code.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/reserved_domain.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::cli::commands_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+const std::string kModels = test::source_dir() + "/robots/models/";
 
 struct Answer {
   int code = -1;

@@ -11,13 +11,14 @@
 #include "proto/types/exit_code.hpp"
 #include "robots/geometry/srdf.hpp"
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 /// The commands that help to bring a robot along, without a server.
 namespace kinship::cli::link_commands_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+const std::string kModels = test::source_dir() + "/robots/models/";
 
 struct Answer {
   int code = -1;

@@ -12,6 +12,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/planning_bounds.hpp"
 #include "robots/planning/region_constraint.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::carrying_scene_test {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::uint64_t kSeed = 77;  // of no set of instances
 constexpr std::uint32_t kInstances = 2;
 
 models::LoadedRobot robot_named(const std::string& name) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  const std::string folder = test::source_dir() + "/robots/models/" + name;
   return models::load_robot({.source = folder}).value_or_throw();
 }
 

@@ -13,6 +13,7 @@
 #include "robots/collision/collision_world.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/planning_bounds.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::furniture_scene_test {
 namespace {
@@ -23,7 +24,7 @@ constexpr FurnitureKind kKinds[] = {FurnitureKind::Shelf, FurnitureKind::TallShe
                                     FurnitureKind::Box, FurnitureKind::Cage, FurnitureKind::Table};
 
 models::LoadedRobot robot_named(const std::string& name) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  const std::string folder = test::source_dir() + "/robots/models/" + name;
   return models::load_robot({.source = folder}).value_or_throw();
 }
 

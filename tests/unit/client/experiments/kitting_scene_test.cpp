@@ -12,6 +12,7 @@
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/planning/goal_configurations.hpp"
 #include "robots/planning/planning_bounds.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::kitting_scene_test {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 constexpr std::uint64_t kSeed = 77;  // of no set of instances
 
 models::LoadedRobot robot_named(const std::string& name) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  const std::string folder = test::source_dir() + "/robots/models/" + name;
   return models::load_robot({.source = folder}).value_or_throw();
 }
 

@@ -15,12 +15,13 @@
 #include "proto/json/distribution_json.hpp"
 #include "proto/json/problem_json.hpp"
 #include "proto/types/failure.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::experiments::page_test {
 namespace {
 
-constexpr const char* kModels = KINSHIP_SOURCE_DIR "/robots/models";
+const std::string kModels = test::source_dir() + "/robots/models";
 
 models::LoadedRobot load(const std::string& name) {
   models::RobotArguments arguments;

@@ -9,6 +9,7 @@
 #include "proto/types/failure.hpp"
 #include "robots/collision/collision_world.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::planar_scene_test {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::uint64_t kSeed = 77;  // of no set of instances
 constexpr std::uint32_t kInstances = 5;
 
 models::LoadedRobot robot_named(const std::string& name) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  const std::string folder = test::source_dir() + "/robots/models/" + name;
   return models::load_robot({.source = folder}).value_or_throw();
 }
 

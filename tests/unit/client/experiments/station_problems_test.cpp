@@ -10,6 +10,7 @@
 #include "robots/inverse/inverse.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::station_problems_test {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::uint64_t kSeed = 3;
 constexpr std::uint32_t kInstances = 6;
 
 models::LoadedRobot robot_named(const std::string& name) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/" + name;
+  const std::string folder = test::source_dir() + "/robots/models/" + name;
   return models::load_robot({.source = folder}).value_or_throw();
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/experiments/pipeline/study_session.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::experiments::study_description_test {
 namespace {
@@ -14,7 +15,7 @@ TEST(StudyDescription, AQuickRunSaysTheInstancesThatItLearnsFrom) {
   const Study& study = *find_studies("planar").front();
   ASSERT_GT(study.learning_instances, kQuickLearning);
   RunOptions options;
-  options.models = std::string(KINSHIP_SOURCE_DIR) + "/robots/models";
+  options.models = test::source_dir() + "/robots/models";
   const auto fleet = load_fleet(study, options.models);
   const auto said = [&] {
     const std::string text = describe_study(study, fleet, learning_instances(study, options));

@@ -4,13 +4,14 @@
 
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/models/robot_arguments.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::page::bones_test {
 namespace {
 
 models::LoadedRobot load(const std::string& name) {
   models::RobotArguments arguments;
-  arguments.source = std::filesystem::path(KINSHIP_SOURCE_DIR "/robots/models") / name;
+  arguments.source = std::filesystem::path(test::source_dir() + "/robots/models") / name;
   return models::load_robot(arguments).value_or_throw();
 }
 

@@ -6,6 +6,7 @@
 #include "client/page/document.hpp"
 #include "client/page/json_text.hpp"
 #include "robots/models/loaded_robot.hpp"
+#include "tests/support/places.hpp"
 
 namespace {
 
@@ -28,7 +29,7 @@ kinshipCharts.show(byId("chart"), "One bar", (width) => ({
 
 int main() {
   kinship::models::RobotArguments arguments;
-  arguments.source = KINSHIP_SOURCE_DIR "/robots/models/panda";
+  arguments.source = kinship::test::source_dir() + "/robots/models/panda";
   const auto robot = kinship::models::load_robot(arguments).value_or_throw();
   const Eigen::VectorXd q = 0.5 * (robot.chain.lower() + robot.chain.upper());
   const kinship::Scene scene{{{"post", kinship::BoxShape{{0.1, 0.1, 1}},

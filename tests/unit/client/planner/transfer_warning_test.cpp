@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robots/models/robot_arguments.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::planner::transfer_warning_test {
 namespace {
@@ -44,7 +45,7 @@ TEST(TransferWarning, IsSilentWhereOnlyJointsAreGiven) {
 }
 
 TEST(TransferWarning, AFolderOrAnOptionSaysTheTransferFrame) {
-  const std::string folder = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/panda";
+  const std::string folder = kinship::test::source_dir() + "/robots/models/panda";
   EXPECT_TRUE(models::says_transfer({.source = folder}));
   EXPECT_FALSE(models::says_transfer({.source = folder + "/robot.urdf"}));
   EXPECT_TRUE(

@@ -11,13 +11,14 @@
 
 #include "proto/types/distribution.hpp"
 #include "proto/types/rehearsal.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::codec::fields_test {
 namespace {
 
 /// "uint64 paths" and so on: the members of a structure.
 std::vector<std::string> members_of(const std::string& file, const std::string& structure) {
-  std::ifstream stream(KINSHIP_SOURCE_DIR "/proto/idl/" + file);
+  std::ifstream stream(test::source_dir() + "/proto/idl/" + file);
   std::stringstream text;
   text << stream.rdbuf();
   const std::string idl =

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/dds/wire.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::dds::message_guard_test {
 namespace {
@@ -19,7 +20,7 @@ constexpr std::uint32_t kXcdr2 = 2;
 
 /// The bytes of a pinned message (tests/golden).
 std::vector<std::uint8_t> pinned(const std::string& name) {
-  std::ifstream file(std::string(KINSHIP_SOURCE_DIR) + "/tests/golden/pins/wire/" + name + ".hex");
+  std::ifstream file(test::source_dir() + "/tests/golden/pins/wire/" + name + ".hex");
   std::string digits((std::istreambuf_iterator<char>(file)), {});
   std::erase_if(digits, [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) == 0; });
   std::vector<std::uint8_t> bytes;

@@ -5,12 +5,13 @@
 #include <fstream>
 
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::models::loaded_robot_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+const std::string kModels = test::source_dir() + "/robots/models/";
 
 /// A URDF file of one joint whose arm is a mesh, and an SRDF beside it.
 class MeshRobot : public testing::Test {

@@ -5,12 +5,13 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::models::robot_arguments_test {
 namespace {
 
-const std::string kModels = std::string(KINSHIP_SOURCE_DIR) + "/robots/models/";
+const std::string kModels = test::source_dir() + "/robots/models/";
 
 TEST(ParsePose, TakesSevenNumbers) {
   const auto pose = parse_pose("0.1 -2, 3e-1  0 0 0 1");

@@ -7,12 +7,13 @@
 #include <string>
 
 #include "robots/models/robot_arguments.hpp"
+#include "tests/support/places.hpp"
 
 namespace kinship::models::suggested_ends_test {
 namespace {
 
 std::filesystem::path urdf_of(const std::string& model) {
-  return std::filesystem::path(KINSHIP_SOURCE_DIR) / "robots/models" / model / "robot.urdf";
+  return std::filesystem::path(test::source_dir()) / "robots/models" / model / "robot.urdf";
 }
 
 TEST(SuggestedEnds, OfEachArmThatComesAlongAreOnesThatMoveAllItsJoints) {

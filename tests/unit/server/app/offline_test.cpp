@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::app::offline_test {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 class Offline : public testing::Test {
  protected:
-  Offline() { fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", store_); }
+  Offline() { fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", store_); }
 
   int run(OfflineVerb verb, const fs::path& store, const fs::path& file = {}, bool json = false) {
     out_.str("");

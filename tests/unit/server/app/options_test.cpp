@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::app::options_test {
@@ -345,7 +346,7 @@ TEST_F(Options, ThePrintedConfigurationIsAFileThatSaysTheSame) {
 
 TEST_F(Options, TheSampleConfigurationIsThatOfTheDefaults) {
   const std::filesystem::path sample =
-      std::filesystem::path(KINSHIP_SOURCE_DIR) / "deploy/etc/kinshipd.toml";
+      std::filesystem::path(test::source_dir()) / "deploy/etc/kinshipd.toml";
   good({"--config", sample.c_str()});
   std::ifstream stream(sample);
   std::ostringstream lines;

@@ -18,6 +18,7 @@
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/connection.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::checked_vfs_test {
@@ -210,7 +211,7 @@ TEST_F(CheckedWal, IsReadAfterARecovery) {
 TEST(SealStore, AnOlderStoreIsSealedWhenItIsMigrated) {
   const test::TemporaryDirectory directory;
   const fs::path file = directory / "a%b?c#d.db";
-  fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-3.db", file);
+  fs::copy_file(test::source_dir() + "/tests/golden/store-3.db", file);
   fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
   const fs::perms before = fs::status(file).permissions();
   {

@@ -8,6 +8,7 @@
 #include "server/store/sqlite/database/database.hpp"
 #include "server/store/sqlite/opening/migrations.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/store_values.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -182,7 +183,7 @@ TEST_F(Maintenance, AStoreOfAKilledServerIsCheckedWithItsWal) {
 
 TEST_F(Maintenance, AnOlderStoreIsCheckedAsItIs) {
   const fs::path old = directory_ / "old.db";
-  fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", old);
+  fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", old);
   const StoreCheck check = check_store(old, ignore);
   EXPECT_EQ(check.schema_version, 1U);
   EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
@@ -299,7 +300,7 @@ TEST_F(Maintenance, TwoRestoresInOneSecondKeepBothStoresAndNameThem) {
 }
 
 TEST_F(Maintenance, AnOlderBackupIsMigratedOnItsWay) {
-  restore_store(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", file_, ignore);
+  restore_store(test::source_dir() + "/tests/golden/store-1.db", file_, ignore);
   const StoreCheck check = check_store(file_, ignore);
   EXPECT_EQ(check.schema_version, embedded_migrations().size());
   EXPECT_EQ(check.problems, 0U) << testing::PrintToString(check.messages);
@@ -307,7 +308,7 @@ TEST_F(Maintenance, AnOlderBackupIsMigratedOnItsWay) {
 
 TEST_F(Maintenance, AMigrationKeepsTheStoreAsItWas) {
   const fs::path old = directory_ / "old.db";
-  fs::copy_file(KINSHIP_SOURCE_DIR "/tests/golden/store-1.db", old);
+  fs::copy_file(test::source_dir() + "/tests/golden/store-1.db", old);
   const Migrated migrated = migrate_store(old);
   EXPECT_EQ(migrated.from, 1U);
   EXPECT_EQ(migrated.to, embedded_migrations().size());

@@ -11,6 +11,7 @@
 #include "server/store/sqlite/database/sqlite_error.hpp"
 #include "server/store/sqlite/files/store_file.hpp"
 #include "server/store/sqlite/opening/seal_store.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace kinship::store::migrations_test {
@@ -56,7 +57,7 @@ TEST_F(Migrations, AreNumberedFromOneWithoutGaps) {
 
 TEST_F(Migrations, CarryTheTextOfTheSchemaFolder) {
   for (const Migration& migration : embedded_migrations()) {
-    const std::filesystem::path folder = KINSHIP_SOURCE_DIR "/schema/sqlite";
+    const std::filesystem::path folder = test::source_dir() + "/schema/sqlite";
     EXPECT_EQ(migration.text, contents(folder / (std::string(migration.name) + ".sql")));
   }
 }
