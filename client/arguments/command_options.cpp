@@ -50,6 +50,12 @@ void add_robot_options(CLI::App& app, models::RobotArguments& arguments) {
   app.add_option("--package", arguments.packages,
                  "NAME=DIR, where meshes named package://NAME/... are; may be repeated")
       ->allow_extra_args(false);
+  app.add_flag("--collision-from-visual", arguments.collision_from_visual,
+               "links that are drawn and have no collision solids: what is drawn is taken for "
+               "solid");
+  app.add_option("--without-collision", arguments.without_collision,
+                 "LINK that is drawn and needs no collision solid; may be repeated")
+      ->allow_extra_args(false);
 }
 
 void add_selection_options(CLI::App& app, SelectionArguments& arguments) {

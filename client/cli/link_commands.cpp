@@ -14,6 +14,7 @@
 #include "proto/tables/table.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/gripping_joint.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/suggested_ends.hpp"
 
@@ -24,6 +25,30 @@ using tables::Table;
 
 constexpr const char* kLinks = "robots links";
 constexpr const char* kFrames = "robots frames";
+
+/// What of a row the URDF alone says.
+RobotLink row_of(const std::vector<kinematics::TreeLink>& tree, std::size_t index) {
+  const kinematics::TreeLink& source = tree[index];
+  RobotLink row;
+  row.link = source.name;
+  row.joint = source.joint.name;
+  row.joint_type = source.joint.type;
+  row.lower = source.joint.lower;
+  row.upper = source.joint.upper;
+  row.mimics = source.joint.mimics;
+  row.fault = source.joint.fault;
+  row.collision = source.collision;
+  if (source.parent >= 0)
+    row.parent = tree[static_cast<std::size_t>(source.parent)].name;
+  return row;
+}
+
+std::vector<PossibleEnds> possible_ends(const std::vector<kinematics::ChainEnds>& all) {
+  std::vector<PossibleEnds> possible;
+  for (const kinematics::ChainEnds& ends : all)
+    possible.push_back({ends.bases, ends.tips, ends.joints});
+  return possible;
+}
 
 /// A robot whose base and tip may be suggested ones.
 struct LookedAt {
@@ -47,18 +72,8 @@ std::optional<LookedAt> look_at(const char* command, models::RobotArguments argu
 
 RobotLink row_of(const LookedAt& looked_at, std::size_t index,
                  const std::map<std::string, double>& held) {
-  const kinematics::TreeLink& source = looked_at.links.tree[index];
   const kinematics::Chain& chain = looked_at.robot.chain;
-  RobotLink row;
-  row.link = source.name;
-  row.joint = source.joint.name;
-  row.joint_type = source.joint.type;
-  row.lower = source.joint.lower;
-  row.upper = source.joint.upper;
-  row.mimics = source.joint.mimics;
-  row.collision = source.collision;
-  if (source.parent >= 0)
-    row.parent = looked_at.links.tree[static_cast<std::size_t>(source.parent)].name;
+  RobotLink row = row_of(looked_at.links.tree, index);
   for (std::size_t i = 0; i < chain.joints().size(); ++i)
     if (const kinematics::Joint& joint = chain.joints()[i]; joint.name == row.joint) {
       row.chain_joint = i + 1;
@@ -100,12 +115,11 @@ RobotLinks describe_links(const LookedAt& looked_at,
   RobotLinks links{.base_link = chain.base_link(),
                    .tip_link = chain.tip_link(),
                    .is_suggested = looked_at.links.is_suggested,
-                   .possible_ends = {},
+                   .possible_ends = possible_ends(looked_at.links.ends),
                    .links = {},
                    .has_geometry = geometry.has_value(),
-                   .unchecked = {}};
-  for (const kinematics::ChainEnds& ends : looked_at.links.ends)
-    links.possible_ends.push_back({ends.bases, ends.tips, ends.joints});
+                   .unchecked = {},
+                   .mobile_base = kinematics::describe_mobile_base(looked_at.links.tree)};
   const auto held = kinematics::held_values(looked_at.robot.description).value_or_throw();
   for (std::size_t i = 0; i < looked_at.links.tree.size(); ++i)
     links.links.push_back(row_of(looked_at, i, held));
@@ -135,6 +149,8 @@ std::string motion_text(const RobotLink& row) {
     text += ", as " + row.mimics;
   if (row.held)
     text += ", held " + number_text(*row.held, kDigits);
+  if (!row.fault.empty())
+    text += ", WRONG: " + row.fault;
   return text;
 }
 
@@ -202,7 +218,8 @@ void print_unchecked(const RobotLinks& links, std::ostream& out) {
   }
 }
 
-void print_links(const RobotLinks& links, const RobotDescription& description, std::ostream& out) {
+/// Base and tip, and what they could be.
+void print_ends(const RobotLinks& links, std::ostream& out) {
   out << "chain       " << links.base_link << " -> " << links.tip_link;
   if (links.is_suggested)
     out << " (suggested: --base " << links.base_link << " --tip " << links.tip_link << ')';
@@ -210,11 +227,21 @@ void print_links(const RobotLinks& links, const RobotDescription& description, s
   for (const PossibleEnds& ends : links.possible_ends)
     out << "possible    --base " << listed(ends.bases) << "; --tip " << listed(ends.tips) << ": "
         << count_text(ends.joints, "joint") << '\n';
-  print_transfer(description, out);
+  for (const std::string& sentence : links.mobile_base)
+    out << "mobile base " << sentence << '\n';
+}
+
+void print_tree(const RobotLinks& links, std::ostream& out) {
   out << '\n';
   Table table({"LINK", "JOINT", "MOVES", "SOLIDS"});
   add_rows(links, "", 0, table);
   table.print(out);
+}
+
+void print_links(const RobotLinks& links, const RobotDescription& description, std::ostream& out) {
+  print_ends(links, out);
+  print_transfer(description, out);
+  print_tree(links, out);
   std::uint64_t approximated = 0;
   for (const RobotLink& row : links.links)
     approximated += row.approximated;
@@ -223,6 +250,32 @@ void print_links(const RobotLinks& links, const RobotDescription& description, s
         << " of them; planning uses the triangles.\n";
   out << "\nnever checked against each other: links that no joint moves apart, and\n";
   print_unchecked(links, out);
+}
+
+bool has_faults(const models::LinksOfFile& links) {
+  return std::ranges::any_of(
+      links.tree, [](const kinematics::TreeLink& link) { return !link.joint.fault.empty(); });
+}
+
+/// The links of a URDF that is no robot yet, because a joint in it is wrong.
+void list_faulty(const models::RobotArguments& arguments, const models::LinksOfFile& links,
+                 bool json, std::ostream& out) {
+  RobotLinks listing{.base_link = arguments.base_link,
+                     .tip_link = arguments.tip_link,
+                     .is_suggested = links.is_suggested,
+                     .possible_ends = possible_ends(links.ends),
+                     .links = {},
+                     .has_geometry = false,
+                     .unchecked = {},
+                     .mobile_base = kinematics::describe_mobile_base(links.tree)};
+  for (std::size_t i = 0; i < links.tree.size(); ++i)
+    listing.links.push_back(row_of(links.tree, i));
+  if (json) {
+    out << json::to_json(listing) << '\n';
+    return;
+  }
+  print_ends(listing, out);
+  print_tree(listing, out);
 }
 
 RobotFrames describe_frames(const LookedAt& looked_at, const Eigen::VectorXd& q,
@@ -269,17 +322,26 @@ void print_frames(const RobotFrames& frames, const RobotDescription& description
 }  // namespace
 
 int list_links(const LinksOptions& options, std::ostream& out, std::ostream& err) {
+  models::RobotArguments arguments = options.robot;
+  auto tree = models::complete_ends(arguments);
+  if (!tree)
+    return refuse(kLinks, tree.error(), err);
   int code = kDone;
-  const auto looked_at = look_at(kLinks, options.robot, err, code);
-  if (!looked_at)
+  auto robot = read_robot(kLinks, arguments, err, code);
+  if (!robot && !has_faults(*tree))
     return code;
+  if (!robot) {
+    list_faulty(arguments, *tree, options.json, out);
+    return kDone;
+  }
+  const LookedAt looked_at{std::move(arguments), *std::move(tree), *std::move(robot)};
   const auto geometry =
-      read_geometry(kLinks, looked_at->arguments, looked_at->robot.description, err);
-  const RobotLinks links = describe_links(*looked_at, geometry);
+      read_geometry(kLinks, looked_at.arguments, looked_at.robot.description, err);
+  const RobotLinks links = describe_links(looked_at, geometry);
   if (options.json)
     out << json::to_json(links) << '\n';
   else
-    print_links(links, looked_at->robot.description, out);
+    print_links(links, looked_at.robot.description, out);
   return kDone;
 }
 

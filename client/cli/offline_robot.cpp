@@ -36,14 +36,22 @@ const char* reason_text(inverse::NoSolution reason) {
 
 }  // namespace
 
+void print_warnings(const char* command, const std::vector<std::string>& warnings,
+                    std::ostream& err) {
+  for (const std::string& warning : warnings)
+    err << command << ": warning: " << warning << '\n';
+}
+
 std::optional<DescribedRobot> read_robot(const char* command,
                                          const models::RobotArguments& arguments, std::ostream& err,
                                          int& code) {
-  auto description = models::describe_robot(arguments);
+  std::vector<std::string> warnings;
+  auto description = models::describe_robot(arguments, &warnings);
   if (!description) {
     code = refuse(command, description.error(), err);
     return std::nullopt;
   }
+  print_warnings(command, warnings, err);
   auto chain = kinematics::read_chain(*description);
   if (!chain) {
     refuse(command, chain.error(), err);

@@ -4,6 +4,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/types/result.hpp"
 #include "proto/types/robot_check.hpp"
@@ -22,8 +23,13 @@ struct DescribedRobot {
   kinematics::Chain chain;
 };
 
-/// The robot that the arguments describe. Empty with an exit code in `code` if there is none:
-/// wrong usage if the arguments are wrong, failed if the robot is none that Kinship can use.
+/// What reading a robot's files says of them, a line each.
+void print_warnings(const char* command, const std::vector<std::string>& warnings,
+                    std::ostream& err);
+
+/// The robot that the arguments describe, its warnings on `err`. Empty with an exit code in `code`
+/// if there is none: wrong usage if the arguments are wrong, failed if the robot is none that
+/// Kinship can use.
 std::optional<DescribedRobot> read_robot(const char* command,
                                          const models::RobotArguments& arguments, std::ostream& err,
                                          int& code);

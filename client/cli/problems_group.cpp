@@ -34,7 +34,8 @@ void add_problems(CLI::App& app, Session& session) {
   files->require_option(1);
   command
       ->add_option("--scene", options->scenes,
-                   "moveit_msgs/PlanningScene as YAML, for all requests or one for each; of "
+                   "moveit_msgs/PlanningScene as YAML, or RViz's .scene file, for all requests or "
+                   "one for each; of "
                    "several documents one for each of the requests' file")
       ->check(CLI::ExistingFile)
       ->needs(requests);

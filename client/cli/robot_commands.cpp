@@ -16,6 +16,7 @@
 #include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/collision/robot_solids.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/closed_form.hpp"
 #include "robots/inverse/solver.hpp"
@@ -29,14 +30,22 @@ using tables::Table;
 
 constexpr int kJointDigits = 4;
 
+/// Says what is missing among the solids, or cannot be meant.
+void warn_of_geometry(const char* command, const kinematics::Chain& chain,
+                      const geometry::RobotShapes& shapes, std::ostream& err) {
+  for (const std::string& doubt : geometry::find_doubts(chain, shapes))
+    err << command << ": warning: " << doubt << '\n';
+}
+
 /// Tells the server of the meshes that are here, or `err` why not.
 void add_mesh_solids(const char* command, const models::RobotArguments& arguments,
                      RobotDescription& description, std::ostream& err) {
   const auto geometry = read_geometry(command, arguments, description, err);
   if (!geometry)
     return;
-  auto fitted =
-      collision::fit_robot(kinematics::read_chain(description).value_or_throw(), *geometry);
+  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  warn_of_geometry(command, chain, *geometry, err);
+  auto fitted = collision::fit_robot(chain, *geometry);
   if (fitted)
     description.mesh_solids = std::move(fitted).value().mesh_solids;
   else
@@ -99,6 +108,31 @@ void print_filter(const collision::FittedRobot& fitted, std::ostream& out) {
       << count_text(fitted.mesh_solids.unfiltered.size(), "pair") << " of links not compared\n";
 }
 
+std::vector<CheckedLink> checked_links(const kinematics::Chain& chain,
+                                       const geometry::RobotShapes& shapes) {
+  std::vector<CheckedLink> links;
+  for (const geometry::LinkExtent& extent : geometry::link_extents(chain, shapes))
+    links.push_back({extent.link, extent.solids, extent.size_m.x(), extent.size_m.y(),
+                     extent.size_m.z(), geometry::to_text(extent.from)});
+  return links;
+}
+
+/// The box around a link's solids.
+std::string extent_text(const CheckedLink& link) {
+  constexpr int kDigits = 3;
+  if (link.solids == 0)
+    return "-";
+  return number_text(link.size_x_m, kDigits) + " x " + number_text(link.size_y_m, kDigits) + " x " +
+         number_text(link.size_z_m, kDigits);
+}
+
+void print_checked_links(const std::vector<CheckedLink>& links, std::ostream& out) {
+  Table table({"LINK", "SOLIDS", "EXTENT M", "FROM"});
+  for (const CheckedLink& link : links)
+    table.add_row({link.link, std::to_string(link.solids), extent_text(link), link.from});
+  table.print(out);
+}
+
 void print_check(const RobotCheck& check, const RobotDescription& description,
                  const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
   out << "robot       " << check.robot.hex() << '\n'
@@ -116,6 +150,10 @@ void print_check(const RobotCheck& check, const RobotDescription& description,
     table.add_row({joint.name, joint.type, number_text(joint.lower, kJointDigits),
                    number_text(joint.upper, kJointDigits)});
   table.print(out);
+  if (!check.links.empty()) {
+    out << '\n';
+    print_checked_links(check.links, out);
+  }
 }
 
 /// Of a bare URDF: where nobody says otherwise poses are those of the tip link itself.
@@ -162,9 +200,12 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   const kinematics::Chain& chain = robot->chain;
   const auto geometry = read_geometry(kCommand, options.robot, robot->description, err);
   warn_without_transfer(kCommand, options.robot, robot->description, err);
-  if (geometry)
-    warn_of_touching(kCommand, chain, *geometry, err);
   RobotCheck check;
+  if (geometry) {
+    warn_of_geometry(kCommand, chain, *geometry, err);
+    warn_of_touching(kCommand, chain, *geometry, err);
+    check.links = checked_links(chain, *geometry);
+  }
   check.robot = chain.digest();
   check.base_link = chain.base_link();
   check.tip_link = chain.tip_link();
@@ -189,9 +230,11 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
 int register_robot(link::Client& server, const models::RobotArguments& arguments, bool json,
                    std::ostream& out, std::ostream& err) {
   constexpr const char* kCommand = "robots register";
-  auto described = models::describe_robot(arguments);
+  std::vector<std::string> warnings;
+  auto described = models::describe_robot(arguments, &warnings);
   if (!described)
     return refuse(kCommand, described.error(), err);
+  print_warnings(kCommand, warnings, err);
   RobotDescription description = *std::move(described);
   warn_without_transfer(kCommand, arguments, description, err);
   add_mesh_solids(kCommand, arguments, description, err);

@@ -145,6 +145,7 @@ class Planning {
   void run(const PlannerChoice& planner, const Guidance* guidance, PlannedProblem& planned) {
     if (!find_start(planned.result))
       return;
+    planned.enclosed = world_.find_enclosed(start_);
     bounds_ = planning::planning_bounds(robot_.chain, start_);
     if (problem_.constraint)
       constraint_.emplace(robot_.chain, *problem_.constraint, T_task_base_, bounds_);
@@ -324,10 +325,13 @@ class Planning {
 
 }  // namespace
 
-PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& problem,
+PlannedProblem plan_problem(const PlannedRobot& robot, const Problem& given,
                             const QueryGuidance& query, const PlanSettings& settings,
                             const std::function<bool()>& stop, planning::SearchRecorder* recorder) {
+  const WithinLimits within(robot.chain, given, settings.limit_slack);
+  const Problem& problem = within.problem();
   PlannedProblem planned;
+  planned.moved = within.said();
   planned.result.name = problem.name;
   planned.result.time_limit_s = problem.time_limit_s;
   if (query.guidance != nullptr) {

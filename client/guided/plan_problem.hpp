@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/guided/plan_settings.hpp"
 #include "client/guided/query_sampler.hpp"
@@ -12,6 +13,7 @@
 #include "proto/types/digest.hpp"
 #include "proto/types/mixture.hpp"
 #include "proto/types/problem.hpp"
+#include "robots/collision/collision_world.hpp"
 #include "robots/collision/robot_solids.hpp"
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/inverse/solver.hpp"
@@ -35,8 +37,11 @@ struct PlannedProblem {
   ProblemResult result;
   std::string planner;  ///< its name; what else is to be said of it stands in the result only
   Outcome outcome = Outcome::Failed;
+  std::vector<std::string> moved;  ///< starts and goals that were moved onto a limit, in words
   bool attempted = false;    ///< false if the problem does not fit the robot: nothing was planned
   bool interrupted = false;  ///< given up because `stop` said so; the rest is then not meaningful
+  /// What lies within a closed mesh at the start, where no check notices it.
+  std::vector<collision::CollisionWorld::Enclosed> enclosed = {};
 };
 
 /// Plans one problem: goal configurations by inverse kinematics (all that are free, up to

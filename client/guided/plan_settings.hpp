@@ -13,7 +13,9 @@ struct PlanSettings {
   double overshoot = 1.5;               ///< see planning::BirrtOptions
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
   std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
-  int max_goals = 20;                   ///< goal configurations found for a goal pose
+  /// A start or goal beyond a limit by less is moved onto it, joint units; 0: refused.
+  double limit_slack = 1e-4;
+  int max_goals = 20;  ///< goal configurations found for a goal pose
   /// Beyond it a mixture gives fewer of its samples, none far beyond (planning::query_distance).
   double gate_distance = planning::kGateDistance;
   planning::TrackOptions tracks = {};  ///< of guided queries, where there is experience

@@ -1,21 +1,49 @@
 #include "client/guided/problem_mismatch.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "proto/types/number_text.hpp"
 
 namespace kinship::planner {
 namespace {
 
+/// Six digits behind the point, or as many as tell a value from a limit that it hardly exceeds.
+std::string value_text(double value) {
+  constexpr double kSixDigits = 1e6;
+  return std::abs(std::round(kSixDigits * value) / kSixDigits - value) < 1e-12
+             ? std::to_string(value)
+             : number_text(value);
+}
+
+/// Moves the joints of `q` that are beyond a limit by less than the slack, and says so of each.
+/// \param of  what `q` is, e.g. "goal 2".
+void move_onto_limits(const kinematics::Chain& chain, double slack, const std::string& of,
+                      Eigen::Ref<Eigen::VectorXd> q, std::vector<std::string>& said) {
+  for (Eigen::Index i = 0; i < chain.dof(); ++i) {
+    const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    const double nearest = std::clamp(q[i], joint.lower, joint.upper);
+    const double excess = std::abs(q[i] - nearest);
+    if (joint.type == kinematics::JointType::Continuous || excess == 0 || !(excess < slack))
+      continue;
+    said.push_back(of + ": joint '" + joint.name + "' at " + number_text(q[i]) +
+                   " is moved onto its limit " + number_text(nearest));
+    q[i] = nearest;
+  }
+}
+
 /// The first joint of a configuration that is beyond its limits, with its value and the limits.
 std::optional<std::string> beyond_limits(const kinematics::Chain& chain,
                                          const Eigen::Ref<const Eigen::VectorXd>& q) {
-  constexpr double kRounding = 1e-6;  // of a limit written with few digits
   for (Eigen::Index i = 0; i < chain.dof(); ++i) {
     const kinematics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
     if (joint.type == kinematics::JointType::Continuous)
       continue;
-    if (q[i] < joint.lower - kRounding || q[i] > joint.upper + kRounding)
-      return "joint '" + joint.name + "' at " + std::to_string(q[i]) + " is outside " +
-             std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
+    if (q[i] < joint.lower || q[i] > joint.upper)
+      return "joint '" + joint.name + "' at " + value_text(q[i]) + " is outside " +
+             value_text(joint.lower) + " to " + value_text(joint.upper);
   }
   return std::nullopt;
 }
@@ -28,6 +56,21 @@ std::string joint_names(const kinematics::Chain& chain) {
 }
 
 }  // namespace
+
+WithinLimits::WithinLimits(const kinematics::Chain& chain, const Problem& problem, double slack)
+    : problem_(problem) {
+  Eigen::VectorXd start = problem.start;
+  Eigen::MatrixXd goals = problem.goal_configurations;
+  if (start.size() == chain.dof())
+    move_onto_limits(chain, slack, "start", start, said_);
+  for (Eigen::Index i = 0; goals.rows() == chain.dof() && i < goals.cols(); ++i)
+    move_onto_limits(chain, slack, "goal " + std::to_string(i + 1), goals.col(i), said_);
+  if (said_.empty())
+    return;
+  moved_ = problem;
+  moved_->start = std::move(start);
+  moved_->goal_configurations = std::move(goals);
+}
 
 std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem) {
   const auto joints = [](Eigen::Index count) { return std::to_string(count) + " joints"; };

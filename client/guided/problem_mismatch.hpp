@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/types/problem.hpp"
 #include "robots/kinematics/chain.hpp"
@@ -14,7 +15,26 @@ struct Mismatch {
   std::string text;  ///< for people
 };
 
-/// Other joints, a start or goal beyond a limit. Limits hold to the rounding of a few digits.
+/// Starts and goals that are beyond a limit by less than the slack, as a limit of a few digits
+/// makes them, moved onto it. Continuous joints have none.
+class WithinLimits {
+ public:
+  /// \param slack    joint units; 0: nothing is moved.
+  /// \param problem  outlives the object; one of another number of joints is left as it is.
+  WithinLimits(const kinematics::Chain& chain, const Problem& problem, double slack);
+
+  const Problem& problem() const noexcept { return moved_ ? *moved_ : problem_; }
+
+  /// "start: joint 'wrist' at 3.141593 is moved onto its limit 3.14159", each in words.
+  const std::vector<std::string>& said() const noexcept { return said_; }
+
+ private:
+  const Problem& problem_;
+  std::optional<Problem> moved_;  // empty: nothing was
+  std::vector<std::string> said_;
+};
+
+/// Other joints, a start or goal beyond a limit.
 std::optional<Mismatch> find_mismatch(const kinematics::Chain& chain, const Problem& problem);
 
 }  // namespace kinship::planner

@@ -11,6 +11,7 @@
 #include "client/link/outbox.hpp"
 #include "client/link/pauses.hpp"
 #include "client/link/report_sender.hpp"
+#include "proto/dds/owning_process.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/security/credentials.hpp"
 #include "robots/kinematics/urdf.hpp"
@@ -88,6 +89,7 @@ struct Client::Line {
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
+  const dds::OwningProcess process;
   const milliseconds timeout;
   const Uuid client_id = Uuid::random();
   std::optional<Outbox> outbox;
@@ -103,6 +105,10 @@ struct Client::Line {
 Client::Client(const ClientOptions& options) : line_(std::make_unique<Line>(options)) {}
 
 Client::~Client() {
+  if (is_forked()) {
+    static_cast<void>(line_.release());  // its threads, which its end waits for, are not here
+    return;
+  }
   cancel();
   line_->reporting.cancel();
 }
@@ -207,7 +213,16 @@ Result<AdminReply> Client::admin(const AdminRequest& request) {
                                      [&] { return line_->administering.call(request, deadline); });
 }
 
+bool Client::is_forked() const { return line_->process.is_forked(); }
+
+void Client::require_own_process() const {
+  if (is_forked())
+    throw Failure(ErrorCode::InvalidInput, dds::forked_process_advice());
+}
+
 void Client::cancel() {
+  if (is_forked())
+    return;
   line_->registering.cancel();
   line_->fetching.cancel();
   line_->administering.cancel();

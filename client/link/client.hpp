@@ -99,6 +99,13 @@ class Client {
   /// Reports are sent as before, and deliver() sends what it has left once.
   void cancel();
 
+  /// Whether this process was forked from the one that made the client: nothing of it works here,
+  /// and its end does nothing.
+  bool is_forked() const;
+
+  /// \throws Failure(InvalidInput) with what to do if is_forked().
+  void require_own_process() const;
+
  private:
   struct Line;
   std::unique_ptr<Line> line_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "proto/codec/fetch_codec.hpp"
+#include "proto/dds/owning_process.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/requester.hpp"
 
@@ -86,6 +87,8 @@ class Follower::Implementation {
         thread_([this] { run(); }) {}
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
+
+  bool is_forked() const { return process_.is_forked(); }
 
   ~Implementation() {
     {
@@ -246,6 +249,7 @@ class Follower::Implementation {
 
   static constexpr milliseconds kPendingPause = 100ms;
 
+  const dds::OwningProcess process_;
   const std::shared_ptr<const dds::Participant> participant_;
   FetchRequest request_;  // but for what is known of the experience it never changes
   const FollowOptions options_;
@@ -270,7 +274,10 @@ Follower::Follower(std::shared_ptr<const dds::Participant> participant, FetchReq
     : implementation_(
           std::make_unique<Implementation>(std::move(participant), std::move(request), options)) {}
 
-Follower::~Follower() = default;
+Follower::~Follower() {
+  if (implementation_->is_forked())
+    static_cast<void>(implementation_.release());  // its threads are not here
+}
 
 std::shared_ptr<const Distribution> Follower::newest() const { return implementation_->newest(); }
 

@@ -235,7 +235,8 @@ fs::path default_outbox_folder(std::uint32_t domain, std::string_view server) {
       return fs::path(value) / below / "kinship" / "outbox" / name;
   }
   throw Failure(ErrorCode::InvalidInput,
-                "outbox: neither XDG_STATE_HOME nor HOME is an absolute path; name a folder");
+                "outbox: neither XDG_STATE_HOME nor HOME is an absolute path; name a folder for "
+                "reports (--outbox FOLDER; in Python Client(outbox=...))");
 }
 
 }  // namespace kinship::link

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "proto/dds/owning_process.hpp"
 #include "proto/dds/publication.hpp"
 
 namespace kinship::link {
@@ -14,7 +15,10 @@ class Watcher::Implementation {
                                 .on_server = std::move(handlers.on_server),
                                 .on_server_gone = std::move(handlers.on_server_gone)}) {}
 
+  bool is_forked() const { return process_.is_forked(); }
+
  private:
+  const dds::OwningProcess process_;
   const std::shared_ptr<const dds::Participant> participant_;
   dds::Subscriber<codec::EventPublication> events_;
 };
@@ -23,6 +27,9 @@ Watcher::Watcher(std::shared_ptr<const dds::Participant> participant, Handlers h
     : implementation_(
           std::make_unique<Implementation>(std::move(participant), std::move(handlers))) {}
 
-Watcher::~Watcher() = default;
+Watcher::~Watcher() {
+  if (implementation_->is_forked())
+    static_cast<void>(implementation_.release());  // its threads are not here
+}
 
 }  // namespace kinship::link

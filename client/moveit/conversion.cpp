@@ -1,21 +1,66 @@
 #include "client/moveit/conversion.hpp"
 
+#include <algorithm>
+
 #include "client/moveit/frames.hpp"
 #include "client/moveit/geometry_messages.hpp"
 #include "client/moveit/goals.hpp"
+#include "client/moveit/message_members.hpp"
 #include "client/moveit/objects.hpp"
+#include "client/moveit/scene_text.hpp"
 #include "client/moveit/yaml_value.hpp"
+#include "proto/types/nearest_name.hpp"
 
 namespace kinship::moveit {
 namespace {
 
 /// The message itself, where a service's answer or an action's goal was written around it.
-YamlValue unwrapped(const YamlValue& document, std::initializer_list<const char*> members) {
+YamlValue unwrapped(const YamlValue& document, const std::vector<std::string>& members) {
+  static const std::vector<std::string> kBeside = {"error_code", "goal_id", "header",
+                                                   "planning_options"};
   YamlValue value = document;
-  for (const char* member : members)
-    if (!value[member].is_missing())
-      value = value[member];
+  for (const std::string& member : members) {
+    if (value[member].is_missing())
+      continue;
+    for (const auto& [name, place] : value.members())
+      if (name != member && std::ranges::count(kBeside, name) == 0)
+        place.refuse("'" + name + "' is not known beside '" + member + "'" +
+                     suggestion(name, kBeside));
+    const YamlValue difference = value["planning_options"]["planning_scene_diff"];
+    if (const YamlValue objects = difference["world"]["collision_objects"];
+        !objects.items().empty())
+      objects.refuse("a change to the scene; ask /get_planning_scene for the whole one");
+    value = value[member];
+  }
   return value;
+}
+
+/// A scene says what stands around the robot, or that nothing does.
+YamlValue checked_scene(const YamlValue& document) {
+  YamlValue scene = unwrapped(document, {"scene"});
+  check_members(scene, "PlanningScene");
+  const YamlValue objects = scene["world"]["collision_objects"];
+  if (objects.is_missing())
+    objects.refuse("is missing; an empty scene says 'world: {collision_objects: []}'");
+  return scene;
+}
+
+YamlValue checked_request(const YamlValue& document) {
+  YamlValue request = unwrapped(document, {"goal", "request", "motion_plan_request"});
+  check_members(request, "MotionPlanRequest");
+  return request;
+}
+
+/// Documents in YAML, or a scene as RViz exports it.
+std::vector<YamlValue> read_scenes(const std::filesystem::path& file) {
+  std::vector<YamlValue> scenes;
+  if (const auto exported = read_scene_text(file))
+    scenes.push_back(YamlValue::of_document(*exported, file));
+  else
+    scenes = YamlValue::read_all(file);
+  for (YamlValue& scene : scenes)
+    scene = checked_scene(scene);
+  return scenes;
 }
 
 void refuse_difference(const YamlValue& scene) {
@@ -68,11 +113,11 @@ std::vector<Conversion> convert_all(const ConversionInput& input, const kinemati
   if (requests.empty())
     throw Failure(ErrorCode::InvalidInput, "'" + input.request.string() + "' holds no request");
   for (YamlValue& request : requests)
-    request = unwrapped(request, {"goal", "request", "motion_plan_request"});
+    request = checked_request(request);
   // Without a scene nothing is asked of one: members of a missing place are missing.
   std::vector<YamlValue> scenes = {requests.front()["scene"]["none"]};
   if (!input.scene.empty())
-    scenes = YamlValue::read_all(input.scene);
+    scenes = read_scenes(input.scene);
   if (scenes.size() != 1 && scenes.size() != requests.size())
     throw Failure(ErrorCode::InvalidInput, "'" + input.scene.string() + "' holds " +
                                                std::to_string(scenes.size()) + " scenes for " +
@@ -81,7 +126,7 @@ std::vector<Conversion> convert_all(const ConversionInput& input, const kinemati
   std::vector<Conversion> conversions;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const YamlValue& scene = scenes[scenes.size() == 1 ? 0 : i];
-    conversions.push_back(convert(unwrapped(scene, {"scene"}), requests[i], input, chain));
+    conversions.push_back(convert(scene, requests[i], input, chain));
     conversions.back().problem.name =
         input.name + (requests.size() == 1 ? "" : "-" + std::to_string(i + 1));
   }

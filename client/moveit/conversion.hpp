@@ -27,8 +27,8 @@ struct Conversion {
 };
 
 struct ConversionInput {
-  /// moveit_msgs/PlanningScene, one for all requests or one for each; empty: nothing is around the
-  /// robot.
+  /// moveit_msgs/PlanningScene, one for all requests or one for each, or what RViz exports as
+  /// `.scene`; empty: nothing is around the robot.
   std::filesystem::path scene;
   std::filesystem::path request;  ///< moveit_msgs/MotionPlanRequest, one a document
   /// The robot's base in the task frame; empty: the task frame is MoveIt's planning frame, that of

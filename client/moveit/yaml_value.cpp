@@ -33,11 +33,11 @@ std::vector<YamlValue> YamlValue::read_all(const std::filesystem::path& file) {
 YamlValue YamlValue::operator[](const std::string& member) const {
   const std::string way = way_.empty() ? member : way_ + "." + member;
   if (!is_map())
-    return {YAML::Node(YAML::NodeType::Null), file_, way};
+    return {YAML::Node(YAML::NodeType::Null), file_, way, line_};
   // Of a constant node: another one would grow the member that is asked for.
   const YAML::Node& map = node_;
   const YAML::Node value = map[member];
-  return {value ? value : YAML::Node(YAML::NodeType::Null), file_, way};
+  return {value ? value : YAML::Node(YAML::NodeType::Null), file_, way, line_};
 }
 
 YamlValue YamlValue::first_of(std::initializer_list<const char*> members) const {
@@ -63,6 +63,20 @@ std::vector<YamlValue> YamlValue::items() const {
   for (std::size_t index = 0; index < node_.size(); ++index)
     items.push_back({node_[index], file_, way_ + "[" + std::to_string(index) + "]"});
   return items;
+}
+
+std::vector<std::pair<std::string, YamlValue>> YamlValue::members() const {
+  std::vector<std::pair<std::string, YamlValue>> members;
+  if (!is_map())
+    return members;
+  for (const auto& member : node_) {
+    if (!member.first.IsScalar())
+      refuse("a member's name is no single word");
+    const std::string& name = member.first.Scalar();
+    members.emplace_back(name,
+                         YamlValue(member.first, file_, way_.empty() ? name : way_ + "." + name));
+  }
+  return members;
 }
 
 double YamlValue::number() const {
@@ -92,8 +106,8 @@ std::string YamlValue::text() const {
 
 void YamlValue::refuse(const std::string& why) const {
   std::string place = "'" + file_ + "'";
-  if (node_ && !node_.Mark().is_null())
-    place += " line " + std::to_string(node_.Mark().line + 1);
+  if (line_ > 0)
+    place += " line " + std::to_string(line_);
   throw Failure(ErrorCode::InvalidInput, place + (way_.empty() ? "" : ", " + way_) + ": " + why);
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinship::moveit {
@@ -17,6 +18,11 @@ class YamlValue {
   /// \throws Failure(NotFound or InvalidInput) that names the file, and the line of a syntax error.
   static std::vector<YamlValue> read_all(const std::filesystem::path& file);
 
+  /// A document that was made of a file in another form.
+  static YamlValue of_document(const YAML::Node& document, const std::filesystem::path& file) {
+    return {document, file.string(), ""};
+  }
+
   /// A member of a map; missing if there is none.
   YamlValue operator[](const std::string& member) const;
 
@@ -25,6 +31,12 @@ class YamlValue {
 
   bool is_missing() const noexcept { return !node_ || node_.IsNull(); }
   bool is_map() const noexcept { return !is_missing() && node_.IsMap(); }
+  bool is_list() const noexcept { return !is_missing() && node_.IsSequence(); }
+
+  /// The members of a map in their order, by name; one that is there twice comes twice. A place
+  /// names the line of the name. None if it is no map.
+  /// \throws Failure(InvalidInput) if a name is no scalar.
+  std::vector<std::pair<std::string, YamlValue>> members() const;
 
   /// The values of a list; none if it is missing.
   /// \throws Failure(InvalidInput) if it is no list.
@@ -44,12 +56,17 @@ class YamlValue {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
-  YamlValue(const YAML::Node& node, std::string file, std::string way)
-      : node_(node), file_(std::move(file)), way_(std::move(way)) {}
+  /// \param line  of what is around it, for a missing place; from 1, 0: not known.
+  YamlValue(const YAML::Node& node, std::string file, std::string way, int line = 0)
+      : node_(node),
+        file_(std::move(file)),
+        way_(std::move(way)),
+        line_(node.Mark().is_null() ? line : node.Mark().line + 1) {}
 
   YAML::Node node_;
   std::string file_;
   std::string way_;  // empty for the document
+  int line_;
 };
 
 }  // namespace kinship::moveit

@@ -102,6 +102,11 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   app.add_option("--max-goals", settings.max_goals, "configurations looked for at a goal pose")
       ->check(between(1, 1000))
       ->capture_default_str();
+  app.add_option("--limit-slack", settings.limit_slack,
+                 "a start or goal beyond a joint limit by less than this is moved onto it, joint "
+                 "units; 0: none is")
+      ->check(between(0.0, 0.1))
+      ->capture_default_str();
   app.add_option("--seed,--seed-offset", options.seed_offset,
                  "added to the seed of every problem (of one without: 0)")
       ->check(between(std::uint64_t{0}, kMax))

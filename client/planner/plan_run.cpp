@@ -11,12 +11,14 @@
 
 #include "client/guided/attempt_record.hpp"
 #include "client/guided/scene_record.hpp"
+#include "client/planner/geometry_warnings.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
 #include "client/planner/server_line.hpp"
 #include "client/planner/transfer_warning.hpp"
 #include "proto/json/problem_json.hpp"
 #include "robots/collision/fitted_links.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/models/loaded_robot.hpp"
 #include "robots/models/scene_meshes.hpp"
 
@@ -128,6 +130,7 @@ class Run {
       const RunStreams& streams)
       : options_(options),
         robot_(robot.chain, robot.shapes),
+        warnings_(robot, streams.messages),
         server_(server),
         streams_(streams),
         reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
@@ -163,9 +166,13 @@ class Run {
     problem.seed += options_.seed_offset;
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
+    warnings_.tell_of(problem);
     PlannedProblem planned =
         plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
                      streams_.searches != nullptr ? &recorder_ : nullptr);
+    warnings_.tell_of(problem, planned.enclosed);
+    for (const std::string& moved : planned.moved)
+      streams_.messages << "warning: problem '" << problem.name << "': " << moved << '\n';
     if (planned.interrupted || !planned.attempted)
       return planned;
     server_.add(planned);
@@ -180,6 +187,7 @@ class Run {
 
   const PlanOptions& options_;
   const PlannedRobot robot_;
+  GeometryWarnings warnings_;
   ServerLine& server_;
   const RunStreams& streams_;
   const Reporter reporter_;
@@ -193,6 +201,10 @@ class Run {
 RunSummary run_plan(const PlanOptions& options, const RunStreams& streams,
                     const std::function<bool()>& stop) {
   const models::LoadedRobot robot = models::load_robot(options.robot).value_or_throw();
+  for (const std::string& doubt : geometry::find_doubts(robot.chain, robot.shapes))
+    streams.messages << "warning: " << doubt << '\n';
+  for (const std::string& warning : robot.warnings)
+    streams.messages << "warning: " << warning << '\n';
   std::vector<ProblemLine> lines = read_problem_lines(streams.problems);
   if (!models::says_transfer(options.robot))
     streams.messages << transfer_warning(lines, robot.chain.tip_link());

@@ -42,6 +42,7 @@ ClientHandle::ClientHandle(const link::ClientOptions& options) {
 std::shared_ptr<link::Client> ClientHandle::line() const {
   if (!client_)
     throw Failure(ErrorCode::InvalidInput, "the client is closed");
+  client_->require_own_process();
   return client_;
 }
 
@@ -49,6 +50,10 @@ void ClientHandle::close() {
   std::shared_ptr<link::Client> client = std::move(client_);
   client_.reset();
   auto abandoned = std::exchange(abandoned_, {});
+  if (client && client->is_forked()) {  // calls under way are those of the other process
+    static_cast<void>(std::make_unique<decltype(abandoned)>(std::move(abandoned)).release());
+    return;
+  }
   const py::gil_scoped_release unlocked;
   if (client)
     client->cancel();

@@ -9,6 +9,7 @@
 #include "client/guided/scene_record.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
+#include "client/python/errors.hpp"
 #include "client/python/guidance_handle.hpp"
 #include "client/python/waiting.hpp"
 #include "proto/types/enum_text.hpp"
@@ -82,6 +83,8 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
   }
   if (made.planned.interrupted)
     throw py::error_already_set();
+  for (const std::string& moved : made.planned.moved)
+    warn("InputChanged", "problem '" + problem.name + "': " + moved);
   if (!made.planned.attempted)
     throw Failure(ErrorCode::InvalidInput,
                   "problem '" + problem.name + "': " + made.planned.result.reason);
@@ -222,12 +225,13 @@ void bind_planning(py::module_& module) {
       [](const std::shared_ptr<Robot>& robot, const Problem& problem,
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
          const std::string& arm, const std::string& planner, std::uint64_t max_checks,
-         double resolution, std::uint64_t shortcut_checks, int max_goals) {
+         double resolution, std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
         planner::PlanSettings settings;
         settings.max_checks = max_checks;
         settings.resolution = resolution;
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
+        settings.limit_slack = limit_slack;
         if (!planner.empty())
           settings.planner = planner::parse_planner(planner).value_or_throw();
         return plan_query(robot, problem, guidance, seed, arm, settings);
@@ -238,6 +242,7 @@ void bind_planning(py::module_& module) {
       py::arg("resolution") = planner::PlanSettings{}.resolution,
       py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
       py::arg("max_goals") = planner::PlanSettings{}.max_goals,
+      py::arg("limit_slack") = planner::PlanSettings{}.limit_slack,
       R"(Plans a problem as kinship-plan does; other threads run meanwhile, and Ctrl-C ends it.
 
 guidance         of Client.guidance(), or a Distribution; None: uniform
@@ -248,6 +253,7 @@ max_checks       collision checks after which it gives up
 resolution       between checked configurations, joint units
 shortcut_checks  spent on shortening the path
 max_goals        goal configurations found for a goal pose
+limit_slack      a start or goal beyond a limit by less is moved onto it, joint units
 
 A problem that has no path is an answer with its reason. Raises InvalidInput if the problem does not
 fit the robot, or the guidance is another robot's.)");

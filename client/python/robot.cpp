@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "robots/collision/fitted_links.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/loaded_robot.hpp"
@@ -27,8 +28,9 @@ int index_of_link(const Robot& robot, const std::string& name) {
 
 }  // namespace
 
-std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments) {
-  RobotDescription description = models::describe_robot(arguments).value_or_throw();
+std::shared_ptr<Robot> Robot::load(const models::RobotArguments& arguments,
+                                   std::vector<std::string>& warnings) {
+  RobotDescription description = models::describe_robot(arguments, &warnings).value_or_throw();
   kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
   auto shapes = models::load_shapes(arguments, description, chain);
   return std::make_shared<Robot>(std::move(description), std::move(chain), std::move(shapes));
@@ -75,6 +77,8 @@ Eigen::MatrixXd Robot::inverse(const Eigen::Isometry3d& T_base_frame, const std:
 std::shared_ptr<const planner::PlannedRobot> Robot::planned() const {
   if (!shapes_)
     throw Failure(shapes_.error());
+  if (const auto error = geometry::find_missing_solids(chain_, *shapes_))
+    throw Failure(*error);
   const std::scoped_lock lock(mutex_);
   if (!planned_)
     planned_ = std::make_shared<const planner::PlannedRobot>(chain_, *shapes_);

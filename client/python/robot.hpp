@@ -23,7 +23,9 @@ class Robot {
   /// With its collision meshes, or with the reason why they cannot be had: kinematics and the
   /// server need none.
   /// \throws Failure as models::describe_robot and kinematics::read_chain say.
-  static std::shared_ptr<Robot> load(const models::RobotArguments& arguments);
+  /// \param warnings  of models::describe_robot.
+  static std::shared_ptr<Robot> load(const models::RobotArguments& arguments,
+                                     std::vector<std::string>& warnings);
 
   /// What a server or a file tells of a robot; it has no files, so its meshes are not known.
   static std::shared_ptr<Robot> of_description(RobotDescription description);

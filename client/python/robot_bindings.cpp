@@ -7,6 +7,7 @@
 
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
+#include "client/python/errors.hpp"
 #include "proto/types/number_text.hpp"
 #include "proto/types/pose.hpp"
 
@@ -72,28 +73,39 @@ Array forward(const Robot& robot, const Array& q, const std::string& frame) {
 }
 
 void bind_loading(RobotClass& robot) {
-  robot.def(py::init([](const std::filesystem::path& source, const std::string& base,
-                        const std::string& tip, const std::string& label,
-                        const std::optional<Array>& transfer, const std::vector<std::string>& axes,
-                        const std::map<std::string, double>& held,
-                        const std::optional<std::filesystem::path>& srdf,
-                        const std::map<std::string, std::string>& packages) {
-              models::RobotArguments arguments{
-                  .source = source,
-                  .base_link = base,
-                  .tip_link = tip,
-                  .label = label,
-                  .transfer = {},
-                  .axes = joined(axes),
-                  .held = pairs_of(held, number_text),
-                  .srdf = srdf.value_or(std::filesystem::path()),
-                  .packages = pairs_of(packages, [](const auto& folder) { return folder; })};
-              if (transfer)
-                arguments.transfer = words_of(read_pose(*transfer, "transfer"));
-              const py::gil_scoped_release unlocked;
-              return Robot::load(arguments);
-            }),
-            R"(Reads a robot.
+  robot.def(
+      py::init([](const std::filesystem::path& source, const std::string& base,
+                  const std::string& tip, const std::string& label,
+                  const std::optional<Array>& transfer, const std::vector<std::string>& axes,
+                  const std::map<std::string, double>& held,
+                  const std::optional<std::filesystem::path>& srdf,
+                  const std::map<std::string, std::string>& packages, bool collision_from_visual,
+                  const std::vector<std::string>& without_collision) {
+        models::RobotArguments arguments{
+            .source = source,
+            .base_link = base,
+            .tip_link = tip,
+            .label = label,
+            .transfer = {},
+            .axes = joined(axes),
+            .held = pairs_of(held, number_text),
+            .srdf = srdf.value_or(std::filesystem::path()),
+            .packages = pairs_of(packages, [](const auto& folder) { return folder; }),
+            .collision_from_visual = collision_from_visual,
+            .without_collision = without_collision};
+        if (transfer)
+          arguments.transfer = words_of(read_pose(*transfer, "transfer"));
+        std::vector<std::string> warnings;
+        std::shared_ptr<Robot> read;
+        {
+          const py::gil_scoped_release unlocked;
+          read = Robot::load(arguments, warnings);
+        }
+        for (const std::string& warning : warnings)
+          warn("InputChanged", warning);
+        return read;
+      }),
+      R"(Reads a robot.
 
 source    a model folder (chain.toml, robot.urdf) or a URDF file
 base, tip names of links; required for a URDF file
@@ -103,13 +115,17 @@ axes      those of x y z roll pitch yaw that matter; by default the folder's, or
 held      positions of joints off the chain
 srdf      its disabled pairs of links are never checked
 packages  folders of the packages that meshes are in, by name
+collision_from_visual  links that are drawn and have no solids: what is drawn is solid
+without_collision      names of links that are drawn and need no solid
 
 Raises NotFound, InvalidInput or TooLarge with the file and the value.)",
-            py::arg("source"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
-            py::arg("label") = "", py::arg("transfer") = py::none(),
-            py::arg("axes") = std::vector<std::string>(),
-            py::arg("held") = std::map<std::string, double>(), py::arg("srdf") = py::none(),
-            py::arg("packages") = std::map<std::string, std::string>());
+      py::arg("source"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
+      py::arg("label") = "", py::arg("transfer") = py::none(),
+      py::arg("axes") = std::vector<std::string>(),
+      py::arg("held") = std::map<std::string, double>(), py::arg("srdf") = py::none(),
+      py::arg("packages") = std::map<std::string, std::string>(),
+      py::arg("collision_from_visual") = false,
+      py::arg("without_collision") = std::vector<std::string>());
 }
 
 void bind_properties(RobotClass& robot) {

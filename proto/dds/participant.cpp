@@ -2,6 +2,7 @@
 
 #include <dds/dds.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -12,6 +13,7 @@
 #include "proto/dds/log.hpp"
 #include "proto/dds/loopback_guard.hpp"
 #include "proto/dds/network_interface.hpp"
+#include "proto/dds/owning_process.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/types/failure.hpp"
 
@@ -26,7 +28,18 @@ std::string describe_failure(const ParticipantOptions& options, Handle code) {
   message += " (" + std::string(dds_strretcode(-code));
   if (const std::string line = last_log_line(); !line.empty())
     message += ": " + line;
-  return message + ")";
+  return message + ")" + note_of_environment();
+}
+
+// The process with the threads of Cyclone DDS, and its domains; the threads end with the last one.
+std::atomic<pid_t> joined_process = 0;
+std::atomic<int> joined_domains = 0;
+
+/// \throws Failure(InvalidInput)
+void require_threads(const ParticipantOptions& options) {
+  if (joined_domains > 0 && joined_process != getpid())
+    throw Failure(ErrorCode::InvalidInput, "domain " + std::to_string(options.domain) +
+                                               ": cannot join: " + forked_process_advice());
 }
 
 void require_usable_interface(const ParticipantOptions& options) {
@@ -44,7 +57,8 @@ class Participant::Domain {
  public:
   /// The domain of this id, made if this process has none yet.
   static std::shared_ptr<Domain> join(const ParticipantOptions& options) {
-    static std::mutex mutex;  // guards domains
+    require_threads(options);  // before the lock, which a thread left behind may have held
+    static std::mutex mutex;   // guards domains
     static std::map<std::uint32_t, std::weak_ptr<Domain>> domains;
     const std::string configuration = cyclone_configuration(options);
     const std::lock_guard lock(mutex);
@@ -69,6 +83,7 @@ class Participant::Domain {
 
   Domain(const ParticipantOptions& options, const std::string& configuration)
       : role_(options.role), security_(options.security), configuration_(configuration) {
+    joined_process = getpid();
     limit_log();
     if (std::getenv("CYCLONEDDS_URI"))
       return;  // the user's configuration, read by Cyclone DDS
@@ -83,9 +98,18 @@ class Participant::Domain {
   }
 
  private:
+  /// Counts as long as the domain lives.
+  struct Counted {
+    Counted() { ++joined_domains; }
+    ~Counted() { --joined_domains; }
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
+  };
+
   Role role_;
   std::filesystem::path security_;
   std::string configuration_;
+  Counted counted_;
   std::optional<Entity> entity_;
 };
 
@@ -133,6 +157,22 @@ Entity create_participant(const ParticipantOptions& options) {
 }
 
 }  // namespace
+
+std::string forked_process_advice() {
+  return "this process was forked from one that has a client, whose threads do not come along; "
+         "start it anew (Python: multiprocessing.set_start_method(\"spawn\") or "
+         "get_context(\"spawn\"); otherwise exec), or open the first client after the fork";
+}
+
+std::string note_of_environment() {
+  const char* const value = std::getenv("CYCLONEDDS_URI");
+  if (value == nullptr)
+    return "";
+  return "; CYCLONEDDS_URI is set ('" + std::string(value) +
+         "') and replaces Kinship's own configuration, which names the server as a peer and the "
+         "network interface: is it readable, well-formed and meant for this? Without it (unset "
+         "CYCLONEDDS_URI) Kinship's own is used";
+}
 
 Participant::Participant(const ParticipantOptions& options)
     : options_(options),

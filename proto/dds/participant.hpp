@@ -57,6 +57,10 @@ std::string chosen_interface(const ParticipantOptions& options);
 /// \throws Failure(InvalidInput) for a domain or host that cannot be.
 std::string cyclone_configuration(const ParticipantOptions& options);
 
+/// Says that CYCLONEDDS_URI is set, with its value and what follows from it, as the end of a
+/// message about what was not found or joined; empty if it is not set.
+std::string note_of_environment();
+
 /// A member of a DDS domain: root of every other entity. May be shared between threads.
 ///
 /// If CYCLONEDDS_URI is set in the environment it replaces the built-in configuration. All
@@ -65,7 +69,8 @@ class Participant {
  public:
   /// \throws Failure(InvalidInput) if the options cannot be, also for credentials with which nobody
   ///         can join; Failure(Unavailable) if the domain cannot be joined, e.g. because its
-  ///         discovery port is taken by another server.
+  ///         discovery port is taken by another server, or this process was forked from one that
+  ///         is in a domain: threads of Cyclone DDS do not come along.
   explicit Participant(const ParticipantOptions& options);
   ~Participant();
   Participant(Participant&&) noexcept;

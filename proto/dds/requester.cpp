@@ -55,7 +55,7 @@ class Requester<Conversation>::Implementation {
                 " within " + std::to_string(waited.count()) + " ms (domain " +
                 std::to_string(options_.domain) + ", " + options_.server +
                 (options_.security.empty() ? "" : ", security " + options_.security.string()) +
-                ")"};
+                ")" + (line_->has_server() ? "" : note_of_environment())};
   }
 
   ParticipantOptions options_;

@@ -57,6 +57,7 @@ std::string to_json(const RobotCheck& check) {
   document["poses_without_solution"] = check.poses_without_solution;
   document["solutions_per_pose"] = check.solutions_per_pose;
   document["time_per_pose_us"] = check.time_per_pose_us;
+  document["links"] = json_of(check.links);
   return write(document);
 }
 

@@ -26,6 +26,20 @@ inline constexpr std::tuple kFieldsOf<CheckedJoint>{
     Field{"name", &CheckedJoint::name}, Field{"type", &CheckedJoint::type},
     Field{"lower", &CheckedJoint::lower}, Field{"upper", &CheckedJoint::upper}};
 
+/// What a collision checker sees of a link.
+struct CheckedLink {
+  std::string link;
+  std::uint64_t solids = 0;
+  double size_x_m = 0, size_y_m = 0, size_z_m = 0;  ///< of the box along the link's axes
+  std::string from;  ///< collision, visual, none, or none (visual only)
+};
+
+template <>
+inline constexpr std::tuple kFieldsOf<CheckedLink>{
+    Field{"link", &CheckedLink::link},         Field{"solids", &CheckedLink::solids},
+    Field{"size_x_m", &CheckedLink::size_x_m}, Field{"size_y_m", &CheckedLink::size_y_m},
+    Field{"size_z_m", &CheckedLink::size_z_m}, Field{"from", &CheckedLink::from}};
+
 /// `robots check`.
 struct RobotCheck {
   Digest robot;
@@ -36,7 +50,8 @@ struct RobotCheck {
   std::uint64_t poses = 0;  ///< reachable ones that were solved
   std::uint64_t poses_without_solution = 0;
   double solutions_per_pose = 0;
-  double time_per_pose_us = 0;  ///< CPU time
+  double time_per_pose_us = 0;          ///< CPU time
+  std::vector<CheckedLink> links = {};  ///< empty if the geometry is not known here
 };
 
 /// `robots ik`.

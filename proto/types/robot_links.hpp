@@ -24,6 +24,7 @@ struct RobotLink {
   std::uint64_t moved_by = 0;          ///< the joint of the chain that moves the link; 0: none
   std::vector<std::string> collision;  ///< box, cylinder, sphere or mesh, one a solid
   std::uint64_t approximated = 0;  ///< solids fitted around meshes, where the meshes can be read
+  std::string fault = {};          ///< why the joint can be none of a robot; empty: nothing
 };
 
 template <>
@@ -33,7 +34,8 @@ inline constexpr std::tuple kFieldsOf<RobotLink>{
     Field{"lower", &RobotLink::lower},         Field{"upper", &RobotLink::upper},
     Field{"mimics", &RobotLink::mimics},       Field{"chain_joint", &RobotLink::chain_joint},
     Field{"held", &RobotLink::held},           Field{"moved_by", &RobotLink::moved_by},
-    Field{"collision", &RobotLink::collision}, Field{"approximated", &RobotLink::approximated}};
+    Field{"collision", &RobotLink::collision}, Field{"approximated", &RobotLink::approximated},
+    Field{"fault", &RobotLink::fault}};
 
 /// Two links that are never checked against each other.
 struct UncheckedLinks {
@@ -61,9 +63,10 @@ struct RobotLinks {
   std::string base_link, tip_link;
   bool is_suggested = false;  ///< nobody said which they are
   std::vector<PossibleEnds> possible_ends;
-  std::vector<RobotLink> links;           ///< parents before their children
-  bool has_geometry = false;              ///< the meshes could be read
-  std::vector<UncheckedLinks> unchecked;  ///< without those that one joint moves together
+  std::vector<RobotLink> links;               ///< parents before their children
+  bool has_geometry = false;                  ///< the meshes could be read
+  std::vector<UncheckedLinks> unchecked;      ///< without those that one joint moves together
+  std::vector<std::string> mobile_base = {};  ///< what carries the robot about, a sentence each
 };
 
 template <>
@@ -74,7 +77,8 @@ inline constexpr std::tuple kFieldsOf<RobotLinks>{
     Field{"possible_ends", &RobotLinks::possible_ends},
     Field{"links", &RobotLinks::links},
     Field{"has_geometry", &RobotLinks::has_geometry},
-    Field{"unchecked", &RobotLinks::unchecked}};
+    Field{"unchecked", &RobotLinks::unchecked},
+    Field{"mobile_base", &RobotLinks::mobile_base}};
 
 /// How often two links touched in random configurations, and what follows from it.
 struct SampledLinks {

@@ -27,8 +27,9 @@ CollisionWorld::CollisionWorld(const RobotSolids& robot, const Surroundings& sur
       bodies_(bodies_among(robot, surroundings)),
       T_base_bodies_(standing_poses(bodies_)),
       pairs_(moving_pairs(bodies_, robot.parts().unchecked, surroundings)),
+      standing_pairs_(standing_pairs(bodies_, surroundings)),
       lanes_(robot.parts().chain, bodies_, pairs_) {
-  for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
+  for (const BodyPair& pair : standing_pairs_)
     if (touching(pair))
       standing_contacts_.push_back(pair);
 }
@@ -103,6 +104,27 @@ std::set<std::pair<std::string, std::string>> CollisionWorld::find_contacts(
   for (const BodyPair& pair : pairs_)
     if (touching(pair))
       found.insert(names(pair));
+  return found;
+}
+
+std::vector<CollisionWorld::Enclosed> CollisionWorld::find_enclosed(
+    const Eigen::Ref<const Eigen::VectorXd>& q) {
+  place(q);
+  std::vector<Enclosed> found;
+  const auto look = [&](std::size_t inner, std::size_t mesh) {
+    const Enclosed names{bodies_[inner].name, bodies_[mesh].name};
+    if (bodies_[mesh].solid.is_hollow() && std::ranges::find(found, names) == found.end() &&
+        encloses(bodies_[mesh].solid, T_base_bodies_[mesh], bodies_[inner].solid,
+                 T_base_bodies_[inner]) &&
+        !touching({inner, mesh}))
+      found.push_back(names);
+  };
+  for (const std::vector<BodyPair>* const pairs : {&pairs_, &standing_pairs_})
+    for (const auto& [a, b] : *pairs)
+      if (bodies_[a].kind != BodyKind::Link || bodies_[b].kind != BodyKind::Link) {
+        look(a, b);
+        look(b, a);
+      }
   return found;
 }
 

@@ -55,6 +55,17 @@ class CollisionWorld {
   std::set<std::pair<std::string, std::string>> find_contacts(
       const Eigen::Ref<const Eigen::VectorXd>& q);
 
+  /// Something that lies wholly within a closed mesh, which no check notices.
+  struct Enclosed {
+    std::string inner, mesh;  ///< names of links, attachments, obstacles
+    bool operator==(const Enclosed&) const = default;
+  };
+
+  /// What of the robot lies wholly within an obstacle's mesh at q, and which obstacles within the
+  /// mesh of a link or an attachment; each pair of names once. Of pairs that are checked, but not
+  /// of two links. Counts no check.
+  std::vector<Enclosed> find_enclosed(const Eigen::Ref<const Eigen::VectorXd>& q);
+
   std::uint64_t checks() const noexcept { return checks_; }
 
  private:
@@ -72,6 +83,7 @@ class CollisionWorld {
   std::vector<Body> bodies_;
   std::vector<Eigen::Isometry3d> T_base_bodies_;  // one per body; moving ones change per check
   std::vector<BodyPair> pairs_;
+  std::vector<BodyPair> standing_pairs_;
   std::vector<BodyPair> standing_contacts_;  // each makes every configuration collide
   LaneWorld lanes_;
   std::vector<BodyPair> doubtful_;  // kept, as what follows is, so that asking needs no heap

@@ -7,13 +7,17 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 #include <octomap/OcTree.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <string>
 
 #include "proto/types/failure.hpp"
+#include "robots/collision/convex_distance.hpp"
 #include "robots/geometry/shape_rules.hpp"
 
 namespace kinship::collision {
@@ -87,6 +91,27 @@ Eigen::Vector3d half_extents(const Shape& shape) {
   return {capsule.radius_m, capsule.radius_m, capsule.length_m / 2 + capsule.radius_m};
 }
 
+/// Solid angle of a triangle seen from the origin, signed by its orientation, steradian.
+double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const double length_a = a.norm(), length_b = b.norm(), length_c = c.norm();
+  return 2 * std::atan2(a.dot(b.cross(c)), length_a * length_b * length_c + a.dot(b) * length_c +
+                                               b.dot(c) * length_a + c.dot(a) * length_b);
+}
+
+/// Distance of a point from a shape in whose frame it is given; 0 within it.
+double distance_from(const Shape& shape, const Eigen::Vector3d& p) {
+  if (const auto* box = std::get_if<BoxShape>(&shape))
+    return (p.cwiseAbs() - box->size / 2).cwiseMax(0).norm();
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
+    return std::hypot(std::max(p.head<2>().norm() - cylinder->radius_m, 0.0),
+                      std::max(std::abs(p.z()) - cylinder->length_m / 2, 0.0));
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return std::max(p.norm() - sphere->radius_m, 0.0);
+  const auto& capsule = std::get<CapsuleShape>(shape);
+  const double beyond = std::max(std::abs(p.z()) - capsule.length_m / 2, 0.0);
+  return std::max(std::hypot(p.head<2>().norm(), beyond) - capsule.radius_m, 0.0);
+}
+
 /// Radius of the cross-section perpendicular to the longest axis `axis`.
 double cross_radius(const Shape& shape, const Eigen::Vector3d& half, Eigen::Index axis) {
   if (std::holds_alternative<BoxShape>(shape) || axis != 2) {
@@ -107,6 +132,8 @@ Solid::Solid(const Shape& shape, const Eigen::Matrix3Xd* triangles)
   cover_ = std::make_shared<const std::vector<CoverSphere>>(
       is_hollow_ ? cover_triangles(*triangles, kMostOfASurface)
                  : cover_shape(shape, kMostOfAShape));
+  if (triangles != nullptr)
+    p_point_ = triangles->col(0);
   bound();
 }
 
@@ -115,6 +142,7 @@ Solid::Solid(const geometry::VoxelBlock& block, double voxel_m)
       is_hollow_(true),
       cover_(std::make_shared<const std::vector<CoverSphere>>(cover_voxels(block, voxel_m))),
       geometry_(make_octree(block.voxels.colwise() - block.center, voxel_m)) {
+  p_point_ = block.voxels.col(0) - block.center;
   bound();
 }
 
@@ -149,6 +177,57 @@ bool Solid::cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_o
       });
 }
 
+double Solid::cover_distance_m(const Solid& other, const Eigen::Isometry3d& T_other_this) const {
+  double least2 = std::numeric_limits<double>::max();
+  for (const Eigen::Vector3d& center : cover_centers_m_) {
+    const Eigen::Vector3d p = T_other_this * center;
+    least2 = std::min(least2, (p.cwiseAbs() - other.half_extents_m_).cwiseMax(0).squaredNorm());
+  }
+  return std::sqrt(least2) - cover_radius_m_;
+}
+
+double Solid::close_cover_distance_m(const Solid& other,
+                                     const Eigen::Isometry3d& T_other_this) const {
+  double least = std::numeric_limits<double>::max();
+  for (const CoverSphere& sphere : *cover_)
+    least =
+        std::min(least, distance_from(other.shape_, T_other_this * sphere.center) - sphere.outer_m);
+  return least;
+}
+
+double cheap_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
+                        const Eigen::Isometry3d& T_base_b) {
+  const double apart_m = (T_base_a.translation() - T_base_b.translation()).norm();
+  const double spheres_m = apart_m - a.radius_m_ - b.radius_m_;
+  const Eigen::Isometry3d T_a_b = T_base_a.inverse(Eigen::Isometry) * T_base_b;
+  return std::max({0.0, spheres_m, b.cover_distance_m(a, T_a_b),
+                   a.cover_distance_m(b, T_a_b.inverse(Eigen::Isometry))});
+}
+
+double close_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
+                        const Eigen::Isometry3d& T_base_b, double enough_m) {
+  if (!a.is_hollow_ && !b.is_hollow_)
+    return convex_distance_m(a.shape_, T_base_a, b.shape_, T_base_b, enough_m);
+  const Eigen::Isometry3d T_a_b = T_base_a.inverse(Eigen::Isometry) * T_base_b;
+  const double spheres_m =
+      std::max(a.is_hollow_ ? a.close_cover_distance_m(b, T_a_b.inverse(Eigen::Isometry)) : 0.0,
+               b.is_hollow_ ? b.close_cover_distance_m(a, T_a_b) : 0.0);
+  if (spheres_m >= enough_m)
+    return spheres_m;
+  // FCL measures between two points that it found, so the solids may be a little nearer.
+  constexpr double kRelative = 0.01, kAbsolute_m = 1e-4;
+  static const fcl::DistanceRequest<double> kRequest = [] {
+    fcl::DistanceRequest<double> request(/*enable_nearest_points_=*/false);
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    return request;
+  }();
+  if (touch(a, T_base_a, b, T_base_b))
+    return 0;
+  fcl::DistanceResult<double> result;
+  fcl::distance(a.geometry_.get(), T_base_a, b.geometry_.get(), T_base_b, kRequest, result);
+  return std::max((1 - kRelative) * result.min_distance - kAbsolute_m, spheres_m);
+}
+
 bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
            const Eigen::Isometry3d& T_base_b) {
   const double reach = a.radius_m_ + b.radius_m_;
@@ -168,6 +247,24 @@ bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
   fcl::CollisionResult<double> result;
   return fcl::collide(a.geometry_.get(), T_base_a, b.geometry_.get(), T_base_b, kRequest, result) >
          0;
+}
+
+bool encloses(const Solid& mesh, const Eigen::Isometry3d& T_base_mesh, const Solid& inner,
+              const Eigen::Isometry3d& T_base_inner) {
+  const auto* const surface =
+      dynamic_cast<const fcl::BVHModel<fcl::OBBRSS<double>>*>(mesh.geometry_.get());
+  if (surface == nullptr)
+    return false;
+  const Eigen::Vector3d p = T_base_mesh.inverse(Eigen::Isometry) * (T_base_inner * inner.p_point_);
+  if ((p.cwiseAbs() - mesh.half_extents_m_).maxCoeff() > 0)
+    return false;
+  double angle = 0;
+  for (int i = 0; i < surface->num_tris; ++i) {
+    const fcl::Triangle& triangle = surface->tri_indices[i];
+    angle += solid_angle(surface->vertices[triangle[0]] - p, surface->vertices[triangle[1]] - p,
+                         surface->vertices[triangle[2]] - p);
+  }
+  return std::abs(angle) > 2 * std::numbers::pi;  // 4 pi within, 0 without
 }
 
 }  // namespace kinship::collision

@@ -45,8 +45,30 @@ class Solid {
   friend bool touch(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
                     const Eigen::Isometry3d& T_base_b);
 
+  /// Whether the surface of `mesh` is closed around `inner`, which must not touch it; false if
+  /// `mesh` is no mesh. Of several surfaces one in the other the innermost decides.
+  /// Source: van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983), eq. 8; summed
+  /// up it is the winding number of the surface around a point.
+  friend bool encloses(const Solid& mesh, const Eigen::Isometry3d& T_base_mesh, const Solid& inner,
+                       const Eigen::Isometry3d& T_base_inner);
+
+  /// A distance that two solids keep at least, from spheres and boxes that hold them; 0: unknown.
+  friend double cheap_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
+                                 const Eigen::Isometry3d& T_base_b);
+
+  /// How far two solids are apart, from below: at most 1 % and 0.1 mm less than it is; 0 where they
+  /// touch. Of shapes by convex_distance_m, of triangles and cubes by FCL.
+  /// \param enough_m  what reaches this need not be so close to the distance
+  friend double close_distance_m(const Solid& a, const Eigen::Isometry3d& T_base_a, const Solid& b,
+                                 const Eigen::Isometry3d& T_base_b, double enough_m);
+
  private:
   void bound();  ///< by its shape
+  /// How far the spheres that cover this solid stay away from the bounding box of `other`, at
+  /// least.
+  double cover_distance_m(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
+  /// How far the spheres that hold this solid closely stay away from `other`'s shape, at least.
+  double close_cover_distance_m(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
   /// Whether the spheres that cover this solid stay clear of the bounding box of `other`.
   bool cover_misses_box_of(const Solid& other, const Eigen::Isometry3d& T_other_this) const;
 
@@ -54,7 +76,8 @@ class Solid {
   bool is_hollow_ = false;
   double radius_m_ = 0;
   Eigen::Vector3d half_extents_m_ = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> cover_centers_m_;  // along the longest axis
+  Eigen::Vector3d p_point_ = Eigen::Vector3d::Zero();  // one that belongs to the solid
+  std::vector<Eigen::Vector3d> cover_centers_m_;       // along the longest axis
   double cover_radius_m_ = 0;
   std::shared_ptr<const std::vector<CoverSphere>> cover_;
   std::shared_ptr<const fcl::CollisionGeometry<double>> geometry_;  // shared by copies, immutable

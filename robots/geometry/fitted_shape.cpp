@@ -73,6 +73,17 @@ Candidate fit_capsule(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   return {{CapsuleShape{radius_m, length_m}, pose(axes, center)}, volume_m3};
 }
 
+/// Whether all triangles of a mesh are points or lines: there is nothing that could be touched.
+bool has_no_area(const Eigen::Matrix3Xd& corners) {
+  for (Eigen::Index i = 0; i < corners.cols(); i += 3) {
+    const Eigen::Vector3d along = corners.col(i + 1) - corners.col(i);
+    const Eigen::Vector3d across = corners.col(i + 2) - corners.col(i);
+    if (along.cross(across).squaredNorm() > 0)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 FittedShape fit_shape(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
@@ -95,6 +106,8 @@ Result<FittedMesh> fit_mesh(const Eigen::Matrix3Xd& corners) {
                  std::to_string(corners.cols()) + " corners, which are no triangles"};
   if (!corners.allFinite())
     return Error{ErrorCode::InvalidInput, "a corner is not finite"};
+  if (has_no_area(corners))
+    return Error{ErrorCode::InvalidInput, "its triangles have no area"};
   const FittedShape fitted = fit_shape(corners);
   if (const auto why = broken_rule(fitted.shape))
     return Error{ErrorCode::InvalidInput, *why};

@@ -8,6 +8,7 @@
 #include "robots/geometry/capsule_fusion.hpp"
 #include "robots/geometry/fitted_shape.hpp"
 #include "robots/geometry/shape_rules.hpp"
+#include "robots/geometry/visual_solids.hpp"
 #include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::geometry {
@@ -31,6 +32,8 @@ Result<std::optional<FittedMesh>> read_fitted(const urdf::Mesh& mesh, const Mesh
   if (!*corners)
     return std::optional<FittedMesh>();
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
+  if (!(scale.array().abs() > 0).all())
+    return invalid_input("mesh '" + mesh.filename + "': its scale has a 0, which leaves no solid");
   auto fitted = fit_mesh(scale.asDiagonal() * **corners);
   if (!fitted)
     return invalid_input("mesh '" + mesh.filename + "': " + fitted.error().message);
@@ -78,8 +81,26 @@ Result<std::optional<LinkShape>> read_collision(const urdf::Collision& collision
 
 struct LinksRead {
   std::vector<LinkShape> shapes;
-  std::vector<int> left_out;
+  std::vector<int> left_out, visual_only, from_visual;
 };
+
+/// Whether any of these elements has a geometry.
+template <typename Elements>
+bool has_geometry(const Elements& elements) {
+  return std::ranges::any_of(elements, [](const auto& element) {
+    return element != nullptr && element->geometry != nullptr;
+  });
+}
+
+/// Notes whether a link is only drawn, or has what is drawn for its solids.
+void note_visuals(const urdf::Link& link, int index, LinksRead& read) {
+  if (!has_geometry(link.collision_array) && has_geometry(link.visual_array))
+    read.visual_only.push_back(index);
+  if (std::ranges::any_of(link.collision_array, [](const auto& collision) {
+        return collision != nullptr && collision->name == kFromVisual;
+      }))
+    read.from_visual.push_back(index);
+}
 
 Result<LinksRead> read_links(const urdf::ModelInterface& model, const kinematics::Chain& chain,
                              const MeshSource& meshes) {
@@ -89,6 +110,7 @@ Result<LinksRead> read_links(const urdf::ModelInterface& model, const kinematics
     const int index = chain.find_link(name);
     if (index < 0)
       return invalid_input("link '" + name + "' of the URDF is not a link of the chain");
+    note_visuals(*link, index, read);
     for (const auto& collision : link->collision_array) {
       if (!collision)
         continue;
@@ -103,7 +125,9 @@ Result<LinksRead> read_links(const urdf::ModelInterface& model, const kinematics
   }
   std::stable_sort(shapes.begin(), shapes.end(),
                    [](const LinkShape& a, const LinkShape& b) { return a.link < b.link; });
-  std::sort(read.left_out.begin(), read.left_out.end());
+  std::ranges::sort(read.left_out);
+  std::ranges::sort(read.visual_only);
+  std::ranges::sort(read.from_visual);
   read.left_out.erase(std::unique(read.left_out.begin(), read.left_out.end()), read.left_out.end());
   return read;
 }
@@ -154,7 +178,8 @@ Result<RobotShapes> read_shapes(const RobotDescription& description, const kinem
   auto pairs = read_pairs(description, chain);
   if (!pairs)
     return pairs.error();
-  return RobotShapes{fuse_capsules(links->shapes), *std::move(pairs), links->left_out};
+  return RobotShapes{fuse_capsules(links->shapes), *std::move(pairs), links->left_out,
+                     links->visual_only, links->from_visual};
 }
 
 }  // namespace kinship::geometry

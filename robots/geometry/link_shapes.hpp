@@ -30,7 +30,9 @@ struct LinkShape {
 struct RobotShapes {
   std::vector<LinkShape> shapes;
   std::vector<std::pair<int, int>> never_colliding;  ///< link indices, first < second
-  std::vector<int> left_out = {};  ///< links of which a mesh was left out, ascending, distinct
+  std::vector<int> left_out = {};     ///< links of which a mesh was left out, ascending, distinct
+  std::vector<int> visual_only = {};  ///< links that are drawn and have no solid, ascending
+  std::vector<int> from_visual = {};  ///< links whose solids are their visuals, ascending
 };
 
 /// Where the corners of a mesh come from, by the URI or file name that the URDF gives.
@@ -51,9 +53,9 @@ Result<std::optional<Eigen::Matrix3Xd>> leave_out_mesh(const std::string& uri);
 /// a mesh keeps its triangles, scaled as the URDF says, in the box or capsule that fit_shape puts
 /// around them.
 /// Shapes come in the order of the links; a link paired with itself is left out.
-/// \return InvalidInput with the link named for a size that is not finite and positive, or a pair
-///         that names no link; what parse_urdf says of the text; what `meshes` says of a mesh,
-///         with the link named.
+/// \return InvalidInput with the link named for a size that is not finite and positive, a mesh
+///         scaled by 0 or without area, or a pair that names no link; what parse_urdf says of the
+///         text; what `meshes` says of a mesh, with the link named.
 Result<RobotShapes> read_shapes(const RobotDescription& description, const kinematics::Chain& chain,
                                 const MeshSource& meshes = refuse_mesh);
 

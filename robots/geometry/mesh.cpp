@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "robots/geometry/stl_file.hpp"
+
 namespace kinship::geometry {
 namespace {
 
@@ -70,17 +72,8 @@ class Corners {
   std::vector<double> values_;
 };
 
-}  // namespace
-
-Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view format) {
-  std::string ending(format);
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (std::find(kFormats.begin(), kFormats.end(), ending) == kFormats.end())
-    return invalid_input("format '" + std::string(format) + "' is not one of stl, obj, dae");
-  if (bytes.size() > kMaxMeshBytes)
-    return Error{ErrorCode::TooLarge,
-                 std::to_string(bytes.size()) + " bytes exceed " + std::to_string(kMaxMeshBytes)};
+/// The corners of an OBJ or DAE file.
+Result<Eigen::Matrix3Xd> read_with_assimp(std::string_view bytes, const std::string& ending) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* const scene =
@@ -93,12 +86,29 @@ Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view form
     return Error{ErrorCode::TooLarge, std::to_string(corners.triangles()) +
                                           " triangles or more exceed " +
                                           std::to_string(kMaxMeshTriangles)};
-  if (corners.triangles() == 0)
+  return corners.matrix();
+}
+
+}  // namespace
+
+Result<Eigen::Matrix3Xd> read_mesh(std::string_view bytes, std::string_view format) {
+  std::string ending(format);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(kFormats.begin(), kFormats.end(), ending) == kFormats.end())
+    return invalid_input("format '" + std::string(format) + "' is not one of stl, obj, dae");
+  if (bytes.size() > kMaxMeshBytes)
+    return Error{ErrorCode::TooLarge,
+                 std::to_string(bytes.size()) + " bytes exceed " + std::to_string(kMaxMeshBytes)};
+  Result<Eigen::Matrix3Xd> corners =
+      ending == "stl" ? read_stl(bytes) : read_with_assimp(bytes, ending);
+  if (!corners)
+    return corners;
+  if (corners->cols() == 0)
     return invalid_input("holds no triangles");
-  Eigen::Matrix3Xd matrix = corners.matrix();
-  if (!matrix.allFinite())
+  if (!corners->allFinite())
     return invalid_input("holds a coordinate that is not finite");
-  return matrix;
+  return corners;
 }
 
 }  // namespace kinship::geometry

@@ -17,7 +17,7 @@
 namespace kinship::geometry {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r,;";
+constexpr std::string_view kBlanks = " \t\r";
 
 [[noreturn]] void refuse(const std::string& what) { throw Failure(ErrorCode::InvalidInput, what); }
 
@@ -53,6 +53,13 @@ std::optional<Number> number_of(std::string_view word) {
   if (error != std::errc() || end != word.data() + word.size())
     return std::nullopt;
   return number;
+}
+
+[[noreturn]] void refuse_word(std::size_t line_number, std::string_view word) {
+  const bool has_comma = word.find(',') != std::string_view::npos;
+  refuse("line " + std::to_string(line_number) + ": '" + std::string(word.substr(0, 40)) +
+         "' is no number" +
+         (has_comma ? "; decimal commas are not read, and only blanks and tabs part numbers" : ""));
 }
 
 /// Collects points, but not those that a sensor did not see.
@@ -93,8 +100,7 @@ Points read_lines(std::string_view text, const std::array<std::size_t, 3>& colum
       if (word.empty())
         refuse("line " + std::to_string(line_number) + ": has too few numbers");
       if (axis < 3 && !number)
-        refuse("line " + std::to_string(line_number) + ": '" + std::string(word.substr(0, 40)) +
-               "' is no number");
+        refuse_word(line_number, word);
       if (axis < 3)
         point[axis] = *number;
       if (column == last)

@@ -20,9 +20,9 @@ struct FilePoints {
 };
 
 /// The points of a file, without those that are not finite.
-/// \param ending  "xyz" or "txt": a point a line, three numbers between blanks or commas, whatever
-///                follows them; "pcd": of the Point Cloud Library, ascii or binary; "bt" or "ot":
-///                an OctoMap, of which the occupied cubes are taken.
+/// \param ending  "xyz" or "txt": a point a line, three numbers between blanks or tabs, whatever
+///                follows them, and no decimal commas; "pcd": of the Point Cloud Library, ascii or
+///                binary; "bt" or "ot": an OctoMap, of which the occupied cubes are taken.
 /// \return InvalidInput with the line or the member of the header that is wrong; TooLarge above
 ///         kMaxPoints.
 Result<FilePoints> read_points(std::string_view file, std::string_view ending);

@@ -13,16 +13,25 @@ namespace kinship::geometry {
 
 inline constexpr std::size_t kMaxSrdfBytes = 1'000'000;
 
+/// A link that an SRDF names and its robot does not have.
+struct SrdfStranger {
+  std::string link;
+  int line = 0;           ///< where it is named first
+  std::size_t pairs = 0;  ///< left out because they name it
+};
+
 /// The pairs of links that an SRDF excepts from collision checking: its `disable_collisions`
 /// elements, in their order, whatever their reason. The rest of the document is not looked at;
 /// entities are not expanded.
 /// \param text   untrusted.
 /// \param chain  of the robot that the document is about; its links are those of the URDF.
-/// \return       the pairs; TooLarge above kMaxSrdfBytes or kMaxCollisionPairs; InvalidInput with
-///               the line for what is no XML, no <robot>, a pair without link1 or link2, or a link
-///               that the robot does not have.
-Result<std::vector<std::pair<std::string, std::string>>> read_srdf(std::string_view text,
-                                                                   const kinematics::Chain& chain);
+/// \param strangers  if not null: the links that pairs name and the robot does not have, each once.
+/// \return       the pairs of the robot's links; TooLarge above kMaxSrdfBytes or
+///               kMaxCollisionPairs; InvalidInput with the line for what is no XML, no <robot>, or
+///               a pair without link1 or link2.
+Result<std::vector<std::pair<std::string, std::string>>> read_srdf(
+    std::string_view text, const kinematics::Chain& chain,
+    std::vector<SrdfStranger>* strangers = nullptr);
 
 /// Two links that an SRDF excepts, and why in a word, as MoveIt has it: Adjacent, Always, Default,
 /// Never, User.

@@ -6,12 +6,14 @@
 #include <array>
 #include <functional>
 
+#include "robots/kinematics/gripping_joint.hpp"
 #include "robots/kinematics/urdf_model.hpp"
 
 namespace kinship::kinematics {
 namespace {
 
-constexpr std::size_t kArmJoints = 3;  // of a branch that is more than a finger
+constexpr std::size_t kArmJoints = 3;   // of a branch that is more than a finger
+constexpr std::size_t kHandBeyond = 5;  // joints of an arm, and more than those of a torso
 constexpr std::array<std::string_view, 4> kPlaces = {"world", "map", "odom", "base_footprint"};
 constexpr std::array<std::string_view, 5> kToolNames = {"tool0", "tcp", "tool", "ee_link",
                                                         "flange"};
@@ -55,6 +57,8 @@ TreeJoint read_joint_of(const urdf::Joint& source) {
   }
   if (source.mimic != nullptr)
     joint.mimics = source.mimic->joint_name;
+  if (joint.type != "fixed")
+    joint.fault = find_joint_fault(source);
   return joint;
 }
 
@@ -94,7 +98,7 @@ class Branches {
   const std::vector<std::size_t>& children(std::size_t link) const { return children_[link]; }
 
   /// Links at which arms end, below `link`.
-  void find_ends(std::size_t link, std::vector<std::size_t>& ends) const {
+  void find_ends(std::size_t link, std::vector<std::size_t>& ends, std::size_t before = 0) const {
     std::vector<std::size_t> moving, arms;
     std::size_t branches = 0;  // with whatever moves: a finger may follow another one
     for (const std::size_t child : children_[link]) {
@@ -104,11 +108,12 @@ class Branches {
       if (joints_of(child) >= kArmJoints)
         arms.push_back(child);
     }
-    if (moving.empty() || (branches > 1 && arms.empty()))
+    const bool is_hand = before >= kHandBeyond && branches > 1 && below_[link] < before;
+    if (moving.empty() || (branches > 1 && arms.empty()) || is_hand)
       ends.push_back(link);
     else
       for (const std::size_t child : branches == 1 ? moving : arms)
-        find_ends(child, ends);
+        find_ends(child, ends, before + (tree_[child].joint.moves() ? 1 : 0));
   }
 
   /// The links without a moving joint between them and `link`, in the tree's order.
@@ -129,6 +134,20 @@ class Branches {
   std::vector<std::size_t> below_;
   std::vector<bool> turns_or_slides_;  // the link, or one below it
 };
+
+/// Where an arm ends without the joints of a gripper; `end` itself if there are none, or too few
+/// others.
+std::size_t before_gripper(const std::vector<TreeLink>& tree, std::size_t end) {
+  std::vector<std::size_t> moved;  // by joints of their own, from the tip on
+  for (int at = static_cast<int>(end); at >= 0; at = tree[static_cast<std::size_t>(at)].parent)
+    if (tree[static_cast<std::size_t>(at)].joint.moves())
+      moved.push_back(static_cast<std::size_t>(at));
+  std::size_t gripping = 0;
+  while (moved.size() - gripping > kArmJoints &&
+         is_gripping_joint(tree, moved[gripping], moved.size() - gripping - 1))
+    ++gripping;
+  return gripping == 0 ? end : static_cast<std::size_t>(tree[moved[gripping - 1]].parent);
+}
 
 std::size_t rank_of_tool(const std::string& name) {
   std::size_t rank = 0;
@@ -200,10 +219,16 @@ std::vector<ChainEnds> suggest_ends(const std::vector<TreeLink>& tree) {
     return {};
   std::vector<std::size_t> links;
   branches.find_ends(0, links);
-  std::vector<ChainEnds> all;
-  for (const std::size_t link : links)
-    all.push_back(ends_of(tree, branches, link));
+  std::vector<ChainEnds> all, with_gripper;
+  for (const std::size_t link : links) {
+    const std::size_t end = before_gripper(tree, link);
+    all.push_back(ends_of(tree, branches, end));
+    if (end != link)
+      with_gripper.push_back(ends_of(tree, branches, link));
+  }
+  std::erase_if(all, [](const ChainEnds& ends) { return ends.joints == 0; });
   std::ranges::stable_sort(all, std::greater<>(), &ChainEnds::joints);
+  all.insert(all.end(), with_gripper.begin(), with_gripper.end());
   return all;
 }
 

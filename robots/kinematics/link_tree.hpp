@@ -17,6 +17,7 @@ struct TreeJoint {
   std::string type;                    ///< revolute, continuous, prismatic, fixed, floating, planar
   std::optional<double> lower, upper;  ///< joint units; hard limits of what has them
   std::string mimics = {};             ///< the joint that it follows; empty: none
+  std::string fault = {};              ///< why it can be no joint of a robot; empty: nothing
 
   /// Whether it can be a joint of a chain: it has one value of its own.
   bool moves() const {
@@ -47,7 +48,9 @@ struct ChainEnds {
 
 /// The arms of a tree, those with most joints first. An arm ends where no joint moves beyond, or
 /// where several do (the fingers of a gripper) and none of these branches has three joints; a
-/// branch that has begins an arm of its own from the same base. The likeliest base is the root
+/// branch that has begins an arm of its own from the same base, unless what leads to it is a whole
+/// arm (the fingers of a hand). The joints of a gripper at an arm's end (is_gripping_joint) are no
+/// part of it; the ends with these joints come after all others. The likeliest base is the root
 /// link, or the first link below it where the root is a mere place (`world`, `map`, `odom`,
 /// `base_footprint`); the likeliest tip the last link that is fixed to the last joint, with
 /// `tool0`, `tcp` and the like before others.

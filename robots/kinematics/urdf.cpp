@@ -314,6 +314,17 @@ ChainParts read_parts(const RobotDescription& description) {
 
 }  // namespace
 
+std::string find_joint_fault(const urdf::Joint& joint) {
+  if (!has_one_value(joint))
+    return "";
+  try {
+    read_joint(joint);
+    return "";
+  } catch (const Failure& failure) {
+    return failure.error().message.substr(words(joint).size() + 2);  // after "joint 'j': "
+  }
+}
+
 Result<std::map<std::string, double>> held_values(const RobotDescription& description) {
   try {
     check_description(description);

@@ -155,4 +155,28 @@ std::optional<Error> check_markup(std::string_view text) {
   return Scanner(text).scan();
 }
 
+std::string normalize_attributes(std::string text) {
+  const auto end_of = [&text](std::size_t at, std::string_view end) {
+    return std::min(text.find(end, at), text.size());
+  };
+  for (std::size_t at = text.find('<'); at < text.size(); at = end_of(at, "<")) {
+    if (text.compare(at, 4, "<!--") == 0) {
+      at = end_of(at, "-->");
+    } else if (text.compare(at, 9, "<![CDATA[") == 0) {
+      at = end_of(at, "]]>");
+    } else {
+      char quote = 0;
+      for (; at < text.size() && (quote != 0 || text[at] != '>'); ++at) {
+        if (quote != 0 && is_space(text[at]))
+          text[at] = ' ';
+        else if (text[at] == quote)
+          quote = 0;
+        else if (quote == 0 && (text[at] == '"' || text[at] == '\''))
+          quote = text[at];
+      }
+    }
+  }
+  return text;
+}
+
 }  // namespace kinship::kinematics

@@ -96,7 +96,7 @@ Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints) {
   urdf::ModelInterfaceSharedPtr model;
   try {
     const CollectErrors collect(errors);
-    model = urdf::parseURDF(text);
+    model = urdf::parseURDF(normalize_attributes(text));
   } catch (const std::exception& exception) {
     errors += errors.empty() ? exception.what() : std::string("; ") + exception.what();
   }

@@ -6,8 +6,9 @@
 #include "proto/types/result.hpp"
 
 namespace urdf {
+class Joint;
 class ModelInterface;
-}
+}  // namespace urdf
 
 namespace kinship::kinematics {
 
@@ -21,5 +22,8 @@ using UrdfModel = std::shared_ptr<const urdf::ModelInterface>;
 /// \return a model whose links form one tree and whose names have at most kMaxLinkNameBytes;
 ///         InvalidInput or TooLarge with the parser's own message otherwise.
 Result<UrdfModel> parse_urdf(const std::string& text, std::string* complaints = nullptr);
+
+/// Why a joint that moves can be no joint of a robot, e.g. crossed limits; empty if it can.
+std::string find_joint_fault(const urdf::Joint& joint);
 
 }  // namespace kinship::kinematics

@@ -1,13 +1,34 @@
 #include "robots/models/loaded_robot.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "robots/geometry/geometry_doubts.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/mesh_files.hpp"
 
 namespace kinship::models {
+namespace {
+
+/// Takes the links that need no solid from those whose solids are missed.
+std::optional<Error> excuse(const std::vector<std::string>& links, const kinematics::Chain& chain,
+                            geometry::RobotShapes& shapes) {
+  for (const std::string& link : links) {
+    const int index = chain.find_link(link);
+    if (index < 0)
+      return invalid_input("--without-collision '" + link + "': the robot has no such link");
+    if (std::ranges::find(shapes.shapes, index, &geometry::LinkShape::link) != shapes.shapes.end())
+      return invalid_input("--without-collision '" + link +
+                           "': the link has solids, and these are checked; it is for links that "
+                           "have none");
+    std::erase(shapes.visual_only, index);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const RobotDescription& description,
@@ -19,12 +40,19 @@ Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   const MeshFiles files(is_folder ? arguments.source : arguments.source.parent_path(),
                         *std::move(packages));
-  return geometry::read_shapes(description, chain,
-                               [&](const std::string& uri) { return files.read(uri); });
+  auto read = geometry::read_shapes(description, chain,
+                                    [&](const std::string& uri) { return files.read(uri); });
+  if (!read)
+    return read.error();
+  geometry::RobotShapes shapes = *std::move(read);
+  if (const auto error = excuse(arguments.without_collision, chain, shapes))
+    return *error;
+  return shapes;
 }
 
 Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
-  auto description = describe_robot(arguments);
+  std::vector<std::string> warnings;
+  auto description = describe_robot(arguments, &warnings);
   if (!description)
     return description.error();
   auto chain = kinematics::read_chain(*description);
@@ -33,7 +61,10 @@ Result<LoadedRobot> load_robot(const RobotArguments& arguments) {
   auto shapes = load_shapes(arguments, *description, *chain);
   if (!shapes)
     return shapes.error();
-  return LoadedRobot{*std::move(description), *std::move(chain), *std::move(shapes)};
+  if (const auto error = geometry::find_missing_solids(*chain, *shapes))
+    return *error;
+  return LoadedRobot{*std::move(description), *std::move(chain), *std::move(shapes),
+                     std::move(warnings)};
 }
 
 }  // namespace kinship::models

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "proto/types/result.hpp"
 #include "proto/types/robot_description.hpp"
 #include "robots/geometry/link_shapes.hpp"
@@ -13,14 +16,18 @@ struct LoadedRobot {
   RobotDescription description;
   kinematics::Chain chain;
   geometry::RobotShapes shapes;
+  std::vector<std::string> warnings = {};  ///< of describe_robot
 };
 
-/// A robot as a command line names it, with its collision meshes.
-/// \return what describe_robot, kinematics::read_chain, geometry::read_shapes and MeshFiles say.
+/// A robot as a command line names it, with its collision meshes, to plan for.
+/// \return what describe_robot, kinematics::read_chain, geometry::read_shapes, MeshFiles and
+///         geometry::find_missing_solids say.
 Result<LoadedRobot> load_robot(const RobotArguments& arguments);
 
-/// The shapes of a robot that these arguments describe.
+/// The shapes of a robot that these arguments describe. Links that are named as needing no solid
+/// are not among its `visual_only` ones.
 /// \param description, chain  made of the arguments.
+/// \return also InvalidInput if such a link is not there or has solids.
 Result<geometry::RobotShapes> load_shapes(const RobotArguments& arguments,
                                           const RobotDescription& description,
                                           const kinematics::Chain& chain);

@@ -10,6 +10,7 @@
 #include "proto/types/names.hpp"
 #include "proto/types/pose.hpp"
 #include "robots/geometry/srdf.hpp"
+#include "robots/geometry/visual_solids.hpp"
 #include "robots/kinematics/urdf.hpp"
 #include "robots/models/mesh_files.hpp"
 #include "robots/models/model_folder.hpp"
@@ -78,20 +79,34 @@ void replace_frame_and_axes(const RobotArguments& arguments, RobotDescription& d
   }
 }
 
+/// "arm.srdf: the robot has no link 'camera' (line 2): 3 pairs that name it are left out"
+std::string stranger_warning(const std::filesystem::path& srdf,
+                             const geometry::SrdfStranger& stranger) {
+  return srdf.string() + ": the robot has no link '" + on_one_line(stranger.link) + "' (line " +
+         std::to_string(stranger.line) + "): " +
+         (stranger.pairs == 1 ? "a pair that names it is"
+                              : std::to_string(stranger.pairs) + " pairs that name it are") +
+         " left out";
+}
+
 /// \throws Failure with what is wrong.
-void add_pairs(const std::filesystem::path& srdf, RobotDescription& description) {
+void add_pairs(const std::filesystem::path& srdf, RobotDescription& description,
+               std::vector<std::string>& warnings) {
   const std::string text = read_text(srdf, geometry::kMaxSrdfBytes);
   if (const auto error = check_expanded(srdf, text, ".srdf"))
     throw Failure(*error);
   const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
-  const auto pairs = geometry::read_srdf(text, chain);
+  std::vector<geometry::SrdfStranger> strangers;
+  const auto pairs = geometry::read_srdf(text, chain, &strangers);
   if (!pairs)
     throw Failure(pairs.error().code, srdf.string() + ": " + pairs.error().message);
-  if (pairs->empty())
+  if (pairs->empty() && strangers.empty())
     throw Failure(ErrorCode::InvalidInput,
                   srdf.string() +
                       ": has no disable_collisions element, so it says nothing of this robot; "
                       "'kinship robots suggest-srdf' makes one that does");
+  for (const geometry::SrdfStranger& stranger : strangers)
+    warnings.push_back(stranger_warning(srdf, stranger));
   auto& all = description.never_colliding;
   all.insert(all.end(), pairs->begin(), pairs->end());
   if (all.size() > kMaxCollisionPairs)
@@ -101,7 +116,7 @@ void add_pairs(const std::filesystem::path& srdf, RobotDescription& description)
 }
 
 /// \throws Failure with what is wrong.
-RobotDescription put_together(const RobotArguments& arguments) {
+RobotDescription put_together(const RobotArguments& arguments, std::vector<std::string>& warnings) {
   std::error_code unreadable;  // is for read_urdf_file to tell
   const bool is_folder = std::filesystem::is_directory(arguments.source, unreadable);
   RobotDescription description = is_folder ? read_model_folder(arguments.source).value_or_throw()
@@ -123,11 +138,13 @@ RobotDescription put_together(const RobotArguments& arguments) {
     throw Failure(error->code, "the robot's name is that of its file, and " + error->message +
                                    "; give another one with --label");
   parse_packages(arguments.packages).value_or_throw();
+  if (arguments.collision_from_visual)
+    description.urdf = geometry::with_visual_solids(description.urdf).value_or_throw();
   replace_frame_and_axes(arguments, description);
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);
   if (!arguments.srdf.empty())
-    add_pairs(arguments.srdf, description);
+    add_pairs(arguments.srdf, description, warnings);
   return description;
 }
 
@@ -154,9 +171,14 @@ bool says_transfer(const RobotArguments& arguments) {
   return !arguments.transfer.empty() || std::filesystem::is_directory(arguments.source, unreadable);
 }
 
-Result<RobotDescription> describe_robot(const RobotArguments& arguments) {
+Result<RobotDescription> describe_robot(const RobotArguments& arguments,
+                                        std::vector<std::string>* warnings) {
   try {
-    return put_together(arguments);
+    std::vector<std::string> said;
+    RobotDescription description = put_together(arguments, said);
+    if (warnings != nullptr)
+      *warnings = std::move(said);
+    return description;
   } catch (const Failure& failure) {
     return failure.error();
   }

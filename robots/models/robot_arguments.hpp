@@ -23,12 +23,17 @@ struct RobotArguments {
   std::vector<std::string> held = {};      ///< "JOINT=VALUE" each
   std::filesystem::path srdf = {};         ///< its disabled pairs are added to the folder's
   std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
+  bool collision_from_visual = false;      ///< links without collision elements get their visuals
+  std::vector<std::string> without_collision = {};  ///< links that may be drawn and have no solid
 };
 
 /// Reads the files and puts the description together. The URDF is taken as text, unless an SRDF
 /// asks for its links.
+/// \param warnings  if not null: what the files say and the robot cannot have, in words: links that
+///                  an SRDF names and the URDF does not.
 /// \return InvalidInput, NotFound or TooLarge with the argument or file named.
-Result<RobotDescription> describe_robot(const RobotArguments& arguments);
+Result<RobotDescription> describe_robot(const RobotArguments& arguments,
+                                        std::vector<std::string>* warnings = nullptr);
 
 /// Whether it is said where the transfer frame lies: by `transfer`, or by a model folder, whose
 /// chain.toml must say it. Otherwise it is the tip link's.

@@ -422,6 +422,14 @@ RobotCheck every_robot_check() {
   check.poses_without_solution = next.count();
   check.solutions_per_pose = next.real();
   check.time_per_pose_us = next.real();
+  CheckedLink link;
+  link.link = next.name("link");
+  link.solids = next.count();
+  link.size_x_m = next.real();
+  link.size_y_m = next.real();
+  link.size_z_m = next.real();
+  link.from = next.text("from");
+  check.links.push_back(link);
   return check;
 }
 

@@ -12,13 +12,15 @@
 
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
 (4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.
-Credentials that end within 30 days are told by `warnings` (CredentialsExpire).
+Credentials that end within 30 days are told by `warnings` (CredentialsExpire), and so is
+what is not taken as it is given (InputChanged).
 """
 from .errors import (
     Conflict,
     CredentialsExpire,
     Error,
     FitFailed,
+    InputChanged,
     InternalError,
     InvalidInput,
     NoExperience,
@@ -63,6 +65,7 @@ __all__ = [
     "FitFailed",
     "Follower",
     "Guidance",
+    "InputChanged",
     "InternalError",
     "InvalidInput",
     "NoExperience",

@@ -22,6 +22,8 @@ class Robot:
         held: Mapping[str, float] = ...,
         srdf: Optional[_Path] = None,
         packages: Mapping[str, str] = ...,
+        collision_from_visual: bool = ...,
+        without_collision: Sequence[str] = ...,
     ) -> None: ...
     @property
     def label(self) -> str: ...
@@ -412,6 +414,7 @@ def plan(
     resolution: float = 0.05,
     shortcut_checks: int = 300,
     max_goals: int = 20,
+    limit_slack: float = 0.0001,
 ) -> Plan: ...
 def read_experience(file: _Path) -> Tuple[List[Robot], List[Attempt]]: ...
 def write_experience(

@@ -53,5 +53,9 @@ class InternalError(Error, RuntimeError):
     """A bug of Kinship, or an unexpected answer of a library."""
 
 
+class InputChanged(UserWarning):
+    """Told by `warnings` when not all that was given is taken as it is: pairs of an SRDF with links that the robot does not have, a start or goal moved onto a joint's limit."""
+
+
 class CredentialsExpire(UserWarning):
     """Told by `warnings` when a Client is opened: its credentials are valid for less than 30 days."""

@@ -40,6 +40,34 @@ class WithServer(unittest.TestCase):
         self.assertEqual((state.pending, state.refused), (0, 0), state.problem)
 
 
+class Forked(WithServer):
+    def test_a_forked_process_says_at_once_what_to_use_and_ends(self):
+        begin = time.monotonic()
+        child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                with self.open_client(has_outbox=False):
+                    pass
+            except kinship.errors.InvalidInput as error:
+                code = 0 if "spawn" in str(error) else 2
+            try:
+                self.client.status()
+            except kinship.errors.InvalidInput as error:
+                code += 0 if "spawn" in str(error) else 4
+            self.client.close()  # waits for none of the threads that did not come along
+            os._exit(code)
+        while time.monotonic() - begin < 10:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                self.assertEqual(os.waitstatus_to_exitcode(status), 0)
+                return
+            time.sleep(0.02)
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        self.fail("the forked process hangs")
+
+
 class RoundTrip(WithServer):
     def test_what_one_robot_reports_another_fetches(self):
         self.report_sweeps(TASK, range(6))

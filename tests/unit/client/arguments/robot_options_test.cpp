@@ -17,7 +17,8 @@ TEST(RobotOptions, FillTheArguments) {
   app.add_option("rest", rest);
   app.parse(
       "--base b --tip t --label l --transfer \"0 0 1 0 0 0 1\" --axes x,y --hold a=1 --hold b=2 "
-      "--srdf s.srdf --package p=/p --package q=/q more");
+      "--srdf s.srdf --package p=/p --package q=/q "
+      "--collision-from-visual --without-collision c --without-collision d more");
   EXPECT_EQ(robot.base_link, "b");
   EXPECT_EQ(robot.tip_link, "t");
   EXPECT_EQ(robot.label, "l");
@@ -26,6 +27,8 @@ TEST(RobotOptions, FillTheArguments) {
   EXPECT_EQ(robot.held, (Words{"a=1", "b=2"}));
   EXPECT_EQ(robot.srdf, "s.srdf");
   EXPECT_EQ(robot.packages, (Words{"p=/p", "q=/q"}));
+  EXPECT_TRUE(robot.collision_from_visual);
+  EXPECT_EQ(robot.without_collision, (Words{"c", "d"}));
   EXPECT_EQ(robot.source, "");
   EXPECT_EQ(rest, "more");  // a repeatable option takes one word at a time
 }

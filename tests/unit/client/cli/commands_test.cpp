@@ -405,5 +405,21 @@ TEST(RobotsIk, LeavesOutWhatTouchesTheScene) {
   EXPECT_NE(with({"--collision-free", "--scene", file + "x"}).code, kDone);
 }
 
+TEST(RobotsCheck, ShowsSolidsOfEachLinkWithTheirExtentAndWarnsOfWhatIsOnlyDrawn) {
+  const test::TemporaryDirectory folder;
+  std::ofstream(folder / "arm.urdf") << R"(<robot name="arm"><link name="base">
+      <collision><geometry><box size="0.1 0.2 0.3"/></geometry></collision></link>
+      <link name="arm"><visual><geometry><box size="0.1 0.1 0.5"/></geometry></visual></link>
+      <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+        <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)";
+  const Answer answer = run_command({"robots", "check", (folder / "arm.urdf").string(), "--base",
+                                     "base", "--tip", "arm", "--poses", "1"});
+  EXPECT_NE(answer.out.find("0.100 x 0.200 x 0.300"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("none (visual only)"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.err.find("warning: link 'arm' has <visual> and no <collision>"),
+            std::string::npos)
+      << answer.err;
+}
+
 }  // namespace
 }  // namespace kinship::cli::commands_test

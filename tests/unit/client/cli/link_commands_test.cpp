@@ -79,6 +79,22 @@ TEST(RobotsLinks, OfABareUrdfSayWhatBaseAndTipCouldBe) {
   EXPECT_NE(answer.out.find("\n.panda_link1 "), std::string::npos) << answer.out;
 }
 
+TEST(RobotsLinks, ListWhatThereIsWhereAJointIsWrongAndMarkTheJoint) {
+  std::string text = hooked_arm();
+  text.insert(text.find("</robot>"),
+              "<link name='finger'/><joint name='grip' type='prismatic'><parent link='three'/>"
+              "<child link='finger'/><axis xyz='0 1 0'/>"
+              "<limit lower='0.045' upper='0' effort='1' velocity='1'/></joint>");
+  const UrdfFile urdf(text);
+  const Answer answer = answer_of(list_links, LinksOptions{.robot = {.source = urdf.file}});
+  EXPECT_EQ(answer.code, kDone);
+  EXPECT_NE(answer.err.find("joint 'grip': lower limit 0.045 exceeds upper limit 0"),
+            std::string::npos)
+      << answer.err;
+  EXPECT_NE(answer.out.find("--tip three"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("WRONG"), std::string::npos) << answer.out;
+}
+
 TEST(RobotsLinks, TellsHeldJointsSolidsAndUncheckedPairs) {
   const Answer answer =
       answer_of(list_links, LinksOptions{.robot = {.source = kModels + "panda"}, .json = true});

@@ -44,11 +44,20 @@ TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
 }
 
 TEST(PlanOptions, TakesEverythingByName) {
-  const Parsed answer = parsed(
-      {"--robot",  "arm.urdf",   "--base",          "b",         "--tip",   "t",          "--task",
-       "a",        "--problems", "p.jsonl",         "--planner", "cbirrt2", "--guidance", "auto",
-       "--report", "yes",        "--json",          "--server",  "cell3",   "--seed",     "7",
-       "--domain", "9",          "--control-share", "0.1"});
+  const Parsed answer = parsed({"--robot",    "arm.urdf",
+                                "--base",     "b",
+                                "--tip",      "t",
+                                "--task",     "a",
+                                "--problems", "p.jsonl",
+                                "--planner",  "cbirrt2",
+                                "--guidance", "auto",
+                                "--report",   "yes",
+                                "--json",     "--server",
+                                "cell3",      "--seed",
+                                "7",          "--domain",
+                                "9",          "--control-share",
+                                "0.1",        "--limit-slack",
+                                "0"});
   ASSERT_TRUE(std::holds_alternative<PlanOptions>(answer.answer)) << answer.err;
   const PlanOptions& options = answer.options();
   EXPECT_EQ(options.robot.source, "arm.urdf");
@@ -59,6 +68,7 @@ TEST(PlanOptions, TakesEverythingByName) {
   EXPECT_TRUE(options.json);
   EXPECT_EQ(options.server, "cell3");
   EXPECT_EQ(options.seed_offset, 7U);
+  EXPECT_EQ(options.settings.limit_slack, 0);
   EXPECT_EQ(options.sampling.control_fraction, 0.1);
   EXPECT_EQ(answer.err, "");
 }

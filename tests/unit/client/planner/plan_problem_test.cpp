@@ -346,6 +346,30 @@ TEST(PlanProblem, AGoalBeyondALimitNamesGoalJointValueAndLimit) {
             "goal 2: joint 'j2' at 3.500000 is outside -2.800000 to 2.800000");
 }
 
+TEST(PlanProblem, StartsAndGoalsBeyondALimitByLessThanTheSlackAreMovedOntoItAndSaid) {
+  Problem problem = wall_problem();
+  problem.scene.objects.clear();
+  problem.start[2] = -2.80009;
+  problem.goal_configurations.col(0) << 2.80009, 0, 0, 0;
+  PlanSettings settings;
+  const PlannedProblem answer =
+      plan_problem(planar_robot("-2.8", "2.8"), problem, {}, settings, never);
+  ASSERT_TRUE(answer.result.solved) << answer.result.reason;
+  EXPECT_EQ(answer.result.waypoints->leftCols(1)(2), -2.8);
+  EXPECT_EQ(answer.result.waypoints->rightCols(1)(0), 2.8);
+  EXPECT_EQ(answer.moved, (std::vector<std::string>{
+                              "start: joint 'j3' at -2.80009 is moved onto its limit -2.8",
+                              "goal 1: joint 'j1' at 2.80009 is moved onto its limit 2.8"}));
+  settings.limit_slack = 0;
+  const PlannedProblem refused =
+      plan_problem(planar_robot("-2.8", "2.8"), problem, {}, settings, never);
+  EXPECT_EQ(refused.result.not_planned, NotPlanned::StartBeyondLimits);
+  EXPECT_TRUE(refused.moved.empty());
+  problem.goal_configurations(0, 0) = 2.80011;
+  EXPECT_EQ(planned(problem).result.reason,
+            "goal 1: joint 'j1' at 2.800110 is outside -2.800000 to 2.800000");
+}
+
 TEST(PlanProblem, AGoalBeyondALimitByRoundingEndsAtTheLimit) {
   Problem problem = wall_problem();
   problem.scene.objects.clear();

@@ -68,6 +68,22 @@ class PlanRun : public testing::Test {
   std::vector<ProblemResult> results_;
 };
 
+TEST_F(PlanRun, SaysWhichGoalIsMovedOntoALimitAndWhichLinksAnSrdfNamesInVain) {
+  options_.robot.srdf = folder_ / "planar.srdf";
+  std::ofstream(options_.robot.srdf)
+      << "<robot name='planar'><disable_collisions link1='camera' link2='lens'/></robot>";
+  Problem problem = test::wall_problem();
+  problem.name = "near";
+  problem.goal_configurations(3, 0) = 2.80005;
+  EXPECT_EQ(run(json::to_json(problem) + "\n"), kDone);
+  const std::string said = messages_.str();
+  for (const std::string what :
+       {"warning: problem 'near': goal 1: joint 'j4' at 2.80005 is moved onto its limit 2.8\n",
+        "planar.srdf: the robot has no link 'camera' (line 1): a pair that names it is left out\n",
+        "planar.srdf: the robot has no link 'lens' (line 1): a pair that names it is left out\n"})
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+}
+
 TEST_F(PlanRun, AnswersEveryLineInOrderAlsoABrokenOne) {
   EXPECT_EQ(run(line("first") + "{broken\n" + line("third")), kDone);
   ASSERT_EQ(results_.size(), 3U);
@@ -291,6 +307,30 @@ TEST_F(PlanRunWithoutServer, WithoutReportingNoOutboxIsOpened) {
   options_.guidance = GuidanceMode::Auto;
   EXPECT_EQ(run(line("a")), kDone);
   EXPECT_FALSE(std::filesystem::exists(options_.outbox));
+}
+
+TEST_F(PlanRun, AnObstacleOutOfReachIsWarnedOfOnce) {
+  Problem problem = test::wall_problem();
+  SceneObject far{"moon", SphereShape{1}};
+  far.T_task_object.translation().x() = 500;
+  problem.scene.objects.push_back(far);
+  const std::string text = json::to_json(problem) + "\n";
+  run(text + text);
+  const std::string said = messages_.str();
+  const std::size_t first = said.find("'moon' is 499 m away");
+  ASSERT_NE(first, std::string::npos) << said;
+  EXPECT_EQ(said.find("'moon'", first + 1), std::string::npos) << said;
+}
+
+TEST_F(PlanRun, ARobotThatIsOnlyDrawnIsRefusedUnlessToldOtherwise) {
+  std::string urdf = test::planar_description().urdf;
+  for (std::size_t at = 0; (at = urdf.find("collision>", at)) != std::string::npos;)
+    urdf.replace(at, 10, "visual>");
+  std::ofstream(options_.robot.source) << urdf;
+  EXPECT_THROW(run(line("first")), Failure);
+  options_.robot.collision_from_visual = true;
+  EXPECT_EQ(run(line("first")), kDone);
+  EXPECT_TRUE(results_.at(0).solved);
 }
 
 }  // namespace

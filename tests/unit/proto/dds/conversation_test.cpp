@@ -215,6 +215,28 @@ TEST(Conversation, WithoutAServerACallEndsAtItsDeadline) {
       << reply.error().message;
 }
 
+TEST(Conversation, WithoutAServerTheMessageSaysThatCycloneddsUriReplacesTheConfiguration) {
+  const test::ReservedDomain domain;
+  setenv("CYCLONEDDS_URI", "<CycloneDDS/>", 1);  // NOLINT(concurrency-mt-unsafe)
+  std::string message;
+  {
+    const Participant participant({.domain = domain.number()});
+    Requester<Conversation> requester(participant, Uuid::random());
+    message = requester.call(echo("x"), Clock::now() + 100ms).error().message;
+  }
+  setenv("CYCLONEDDS_URI", "file:///nowhere/broken.xml", 1);  // NOLINT(concurrency-mt-unsafe)
+  std::string refusal;
+  try {
+    const Participant participant({.domain = domain.number()});
+  } catch (const Failure& failure) {
+    refusal = failure.error().message;
+  }
+  unsetenv("CYCLONEDDS_URI");  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_NE(message.find("CYCLONEDDS_URI is set ('<CycloneDDS/>') and replaces"), std::string::npos)
+      << message;
+  EXPECT_NE(refusal.find("file:///nowhere/broken.xml"), std::string::npos) << refusal;
+}
+
 TEST(Conversation, RequestThatBreaksARuleIsNotSent) {
   const test::ReservedDomain domain;
   const Participant participant({.domain = domain.number()});

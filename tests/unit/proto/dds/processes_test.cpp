@@ -1,12 +1,18 @@
 // Client and server in processes of their own, over loopback.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <future>
+#include <string>
 
 #include "proto/dds/qos.hpp"
 #include "proto/dds/request_line.hpp"
 #include "proto/dds/requester.hpp"
+#include "proto/types/failure.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/reserved_domain.hpp"
 
@@ -147,6 +153,41 @@ TEST(Processes, ReplyThatIsTooLargeBecomesARefusal) {
   ASSERT_TRUE(reply) << reply.error().message;
   EXPECT_EQ(reply->status, AdminStatus::Refused);
   EXPECT_EQ(reply->message, "row: 600000 bytes exceed 524288");
+}
+
+/// What a process forked from this one says of joining a domain; "joined" if it does.
+std::string said_in_a_fork(std::uint32_t domain) {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(pipe(ends.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::string text = "joined";
+    try {
+      const Participant participant({.domain = domain});
+    } catch (const Failure& failure) {
+      text = failure.error().message;
+    }
+    const auto written = write(ends[1], text.data(), text.size());
+    _exit(written == static_cast<ssize_t>(text.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string text(4096, ' ');
+  const auto length = read(ends[0], text.data(), text.size());
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return text.substr(0, static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+}
+
+TEST(Processes, AForkedProcessOfAMemberSaysAtOnceWhatToUse) {
+  const test::ReservedDomain domain;
+  const Participant participant({.domain = domain.number()});
+  EXPECT_NE(said_in_a_fork(domain.number()).find("\"spawn\""), std::string::npos);
+}
+
+TEST(Processes, AForkedProcessOfOneThatHasLeftItsDomainsJoins) {
+  const test::ReservedDomain domain;
+  { const Participant participant({.domain = domain.number()}); }
+  EXPECT_EQ(said_in_a_fork(domain.number()), "joined");
 }
 
 }  // namespace

@@ -343,5 +343,47 @@ TEST(CollisionWorld, RefusesAConfigurationThatIsNone) {
   EXPECT_THROW(world.collides(angles({0, NAN, 0})), std::invalid_argument);
 }
 
+/// A closed mesh of a cube about (x, 0, 0).
+SceneMesh cube_mesh(const std::string& name, double x, double size_m) {
+  SceneMesh mesh;
+  mesh.name = name;
+  mesh.mesh.triangles = std::make_shared<const Eigen::Matrix3Xd>(
+      test::BoxMesh(Eigen::Vector3d::Constant(size_m)).triangles());
+  mesh.T_task_mesh = shift(x - size_m / 2, -size_m / 2, -size_m / 2);
+  return mesh;
+}
+
+using Enclosed = std::vector<CollisionWorld::Enclosed>;
+
+TEST(CollisionWorld, FindsWhatOfTheRobotLiesWhollyWithinAMeshThatNothingTouches) {
+  Surroundings surroundings;
+  surroundings.scene.meshes = {cube_mesh("room", 0.3, 40), cube_mesh("beside", 30, 1)};
+  CollisionWorld world = make_world(surroundings);
+  ASSERT_FALSE(world.collides(kStraight));
+  Enclosed found = world.find_enclosed(kStraight);
+  std::ranges::sort(found, {}, &CollisionWorld::Enclosed::inner);
+  EXPECT_EQ(found, (Enclosed{{"link1", "room"}, {"link2", "room"}, {"link3", "room"}}));
+}
+
+TEST(CollisionWorld, FindsTheObstacleWithinTheMeshOfALinkWhereverTheLinkIs) {
+  geometry::RobotShapes shapes = toy_shapes(kJoints);
+  const Eigen::Matrix3Xd cube = test::BoxMesh(Eigen::Vector3d::Constant(0.4)).triangles();
+  shapes.shapes[2] = {
+      3, BoxShape{Eigen::Vector3d::Constant(0.4)}, shift(0), true,
+      std::make_shared<const Eigen::Matrix3Xd>(cube.colwise() - Eigen::Vector3d::Constant(0.2))};
+  CollisionWorld world(toy_chain(kJoints), shapes, with_object(box_at("post", 1.5, 0)));
+  EXPECT_FALSE(world.collides(kStraight)) << "only the surface of a mesh is touched";
+  EXPECT_EQ(world.find_enclosed(kStraight), (Enclosed{{"post", "link3"}}));
+  EXPECT_EQ(world.find_enclosed(kTurned), Enclosed{});
+}
+
+TEST(CollisionWorld, WhatCrossesAMeshOrStandsBesideItIsNotWithinIt) {
+  Surroundings surroundings;
+  surroundings.scene.meshes = {cube_mesh("crossed", 1.25, 0.2), cube_mesh("beside", 3, 0.5)};
+  CollisionWorld world = make_world(surroundings);
+  EXPECT_TRUE(world.collides(kStraight));
+  EXPECT_EQ(world.find_enclosed(kStraight), Enclosed{});
+}
+
 }  // namespace
 }  // namespace kinship::collision::collision_world_test

@@ -2,7 +2,9 @@
 
 #include <random>
 
+#include "robots/collision/convex_distance.hpp"
 #include "robots/collision/solid.hpp"
+#include "tests/support/box_mesh.hpp"
 #include "tests/unit/robots/collision/nearest_points.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
 
@@ -69,6 +71,49 @@ TEST(Touch, AgreesWithAlternatingProjections) {
         << distance;
   }
   EXPECT_GT(touching, 400);
+  EXPECT_GT(apart, 400);
+}
+
+TEST(ConvexDistance, IsNeverAboveThatOfAlternatingProjectionsAndHardlyBelow) {
+  RandomWorld random;
+  int apart = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Shape a = random.shape(), b = random.shape();
+    const double reach_m = i % 2 == 0 ? 0.3 : 1;
+    const Eigen::Isometry3d T_base_a = random.pose(reach_m), T_base_b = random.pose(reach_m);
+    const double distance = distance_m(a, T_base_a, b, T_base_b);
+    const double bound = convex_distance_m(a, T_base_a, b, T_base_b);
+    const double cheap = cheap_distance_m(Solid(a), T_base_a, Solid(b), T_base_b);
+    ASSERT_LE(bound, distance) << "pair " << i << ", shapes " << a.index() << " and " << b.index();
+    ASSERT_LE(cheap, distance) << "pair " << i;
+    ASSERT_GE(bound, 0.985 * distance - 1e-5)
+        << "pair " << i << ", shapes " << a.index() << " and " << b.index();
+    apart += distance > kApart_m ? 1 : 0;
+  }
+  EXPECT_GT(apart, 800);
+}
+
+TEST(CloseDistance, OfAMeshIsNeverAboveThatOfAlternatingProjections) {
+  RandomWorld random;
+  int apart = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d size(random.number(0.05, 0.5), random.number(0.05, 0.5),
+                               random.number(0.05, 0.5));
+    const Eigen::Matrix3Xd triangles = test::BoxMesh(size).triangles().colwise() - size / 2;
+    const Shape a = BoxShape{size}, b = random.shape();
+    const Eigen::Isometry3d T_base_a = random.pose(0.5), T_base_b = random.pose(0.5);
+    const double distance = distance_m(a, T_base_a, b, T_base_b);
+    if (distance < kApart_m)
+      continue;  // what lies within a mesh does not touch it
+    ++apart;
+    const Solid mesh(a, &triangles), other(b);
+    const double close = close_distance_m(mesh, T_base_a, other, T_base_b, 1e9);
+    const double enough = close_distance_m(mesh, T_base_a, other, T_base_b, distance / 2);
+    ASSERT_LE(enough, distance) << "pair " << i << ", shape " << b.index();
+    ASSERT_GE(enough, 0.49 * distance - 1e-4) << "pair " << i << ", shape " << b.index();
+    ASSERT_LE(close, distance) << "pair " << i << ", shape " << b.index();
+    ASSERT_GE(close, 0.98 * distance - 3e-4) << "pair " << i << ", shape " << b.index();
+  }
   EXPECT_GT(apart, 400);
 }
 

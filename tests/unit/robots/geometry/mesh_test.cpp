@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
 #include <string>
 
 #include "tests/support/box_mesh.hpp"
@@ -65,6 +67,60 @@ TEST(ReadMesh, AppliesTheUnitOfADaeFileButNotItsUpAxis) {
 TEST(ReadMesh, PutsMeshesWhereTheNodesOfADaeFilePutThem) {
   EXPECT_EQ(extents(kBox.dae(1, "Z_UP", "0 -1 0 0 1 0 0 0 0 0 1 5 0 0 0 1"), "dae"),
             "-0.5    0    5 to    0 0.25    7");
+}
+
+std::string in_capitals(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+TEST(ReadMesh, KeywordsOfATextStlMayBeInCapitalsAndBeginLate) {
+  EXPECT_EQ(extents(in_capitals(kBox.text_stl()), "stl"), kExtents);
+  EXPECT_EQ(extents("SOLID" + kBox.text_stl().substr(5), "stl"), kExtents);
+  EXPECT_EQ(extents("\r\n  " + kBox.text_stl(), "stl"), kExtents);
+  EXPECT_EQ(read_mesh(kBox.text_stl() + kBox.text_stl(), "stl").value_or_throw().cols(), 72);
+}
+
+TEST(ReadMesh, ABinaryStlIsOneWhateverItsHeaderSays) {
+  for (const std::string title : {"solid box", "SOLID", "solid\nfacet normal 0 0 0", "solid\n\n"})
+    EXPECT_EQ(extents(kBox.binary_stl().replace(0, title.size(), title), "stl"), kExtents) << title;
+}
+
+TEST(ReadMesh, TextAndBinaryStlAreTheSameTriangles) {
+  const test::BoxMesh box({0.1, 1.0 / 3, 7e-3});
+  EXPECT_EQ(read_mesh(box.text_stl(), "stl").value_or_throw().cols(), 36);
+  EXPECT_TRUE(read_mesh(box.text_stl(), "stl")
+                  .value_or_throw()
+                  .isApprox(read_mesh(box.binary_stl(), "stl").value_or_throw(), 1e-5));
+}
+
+TEST(ReadMesh, BytesBehindTheFacetsOfABinaryStlHideNone) {
+  for (const std::string title : {"box", "solid box"}) {
+    const std::string whole = kBox.binary_stl().replace(0, title.size(), title);
+    EXPECT_EQ(extents(whole + "\n", "stl"), kExtents);
+    EXPECT_EQ(extents(whole + "made by hand", "stl"), kExtents);
+    EXPECT_EQ(extents(whole + std::string(428, '\0'), "stl"), kExtents);
+    EXPECT_EQ(extents(whole + whole.substr(84, 50), "stl"),
+              "announces 12 triangles, and 50 bytes follow them: there may be more");
+    EXPECT_EQ(extents(whole.substr(0, whole.size() - 1), "stl"),
+              "announces 12 triangles and holds 11: it is cut off, or no STL");
+  }
+}
+
+TEST(ReadMesh, NamesTheLineOfATextStlThatIsWrong) {
+  const std::string whole = kBox.text_stl();
+  const auto with = [&](const std::string& what, const std::string& other) {
+    std::string text = whole;
+    return extents(text.replace(text.find(what), what.size(), other), "stl");
+  };
+  EXPECT_EQ(with("vertex 0 0 0", "vertex 0,5 0 0"),
+            "line 4: a number is expected (decimal commas are not read), not '0,5'");
+  EXPECT_EQ(with("vertex 0 0 0", "vertex 0 0"), "line 5: a number is expected, not 'vertex'");
+  EXPECT_EQ(with("endloop", "vertex 0 0 0\nendloop"),
+            "line 7: 'endloop' is expected, not 'vertex'");
+  EXPECT_EQ(extents(whole.substr(0, whole.find("endsolid")), "stl"),
+            "line 86: 'facet' is expected, and the file ends here: is it cut off?");
 }
 
 TEST(ReadMesh, RefusesOtherFormats) {

@@ -24,7 +24,7 @@ const std::string kHeader =
 TEST(PointFile, ReadsLinesOfNumbers) {
   Eigen::Matrix3Xd expected(3, 2);
   expected << 1, -4, 2, 5, 3e-2, +6;
-  EXPECT_EQ(read("# seen at noon\n1 2 3e-2\n\n  -4,\t5;+6 255 0 0 # red\r\nnan 1 2\n", "xyz"),
+  EXPECT_EQ(read("# seen at noon\n1 2 3e-2\n\n  -4\t 5\t+6 255 0 0 # red\r\nnan 1 2\n", "xyz"),
             expected);
 }
 
@@ -46,6 +46,19 @@ TEST(PointFile, ReadsPcdAsTextAndAsBytes) {
   EXPECT_EQ(read(binary, "pcd"), expected);
   binary.pop_back();
   EXPECT_EQ(why(binary, "pcd"), "2 points of 24 bytes are announced, 47 bytes follow");
+}
+
+TEST(PointFile, OnlyBlanksAndTabsPartNumbers) {
+  for (const std::string line : {"0,5 0,25 1", "0, 5 1", "1,2,3", "1, 2, 3", "1 ,2 3", "1 2 0,5"})
+    EXPECT_NE(why("1 2 3\n" + line + "\n", "xyz").find("is no number; decimal commas are not read"),
+              std::string::npos)
+        << line;
+  EXPECT_EQ(why("1 2 3\n0,5 0,25 1\n", "txt").find("line 2: '0,5' is no number"), 0U);
+  for (const std::string line : {"1;2;3", "1; 2; 3", "1|2|3", "1\v2\v3", "1\xc2\xa0 2 3"})
+    EXPECT_EQ(why(line, "xyz").find("line 1: '"), 0U) << line;
+  EXPECT_EQ(why(kHeader + "DATA ascii\n7 8 0,5 0,25 -2\n", "pcd").find("line 12: '0,5' is no"), 0U);
+  EXPECT_EQ(why("FIELDS x,y,z\nSIZE 4,4,4\nTYPE F,F,F\nPOINTS 0\nDATA ascii\n", "pcd"),
+            "header: SIZE is missing, too short or no number");
 }
 
 TEST(PointFile, SaysWhatIsWrong) {

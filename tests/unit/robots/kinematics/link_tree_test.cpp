@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "robots/kinematics/gripping_joint.hpp"
+
 namespace kinship::kinematics::link_tree_test {
 namespace {
 
@@ -110,6 +112,92 @@ TEST(SuggestEnds, TwoArmsOnATorsoAreTwo) {
 }
 
 TEST(SuggestEnds, NothingThatMovesHasNone) { EXPECT_TRUE(suggest_ends(arm(0).tree()).empty()); }
+
+std::string limits(double lower, double upper) {
+  return "<limit lower='" + std::to_string(lower) + "' upper='" + std::to_string(upper) +
+         "' effort='1' velocity='1'/>";
+}
+
+/// An arm of six joints and a palm.
+Urdf with_palm() { return arm(6).joint("link6", "palm", "fixed", ""); }
+
+void expect_palm_first(const std::vector<ChainEnds>& ends, const std::string& finger) {
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_EQ(ends[0].joints, 6U);
+  EXPECT_EQ(ends[0].tips.front(), "palm");
+  EXPECT_EQ(ends[1].tips.front(), finger) << "the other tip is listed after it";
+}
+
+TEST(SuggestEnds, ASingleTurningJawIsNoPartOfAnArm) {
+  expect_palm_first(
+      suggest_ends(with_palm().joint("palm", "jaw", "revolute", limits(-1.5, 0)).tree()), "jaw");
+  expect_palm_first(
+      suggest_ends(with_palm().joint("palm", "mover", "revolute", limits(-1.5, 0)).tree()),
+      "mover");
+  expect_palm_first(
+      suggest_ends(with_palm().joint("palm", "Gripper", "revolute", limits(-0.2, 1.7)).tree()),
+      "Gripper");
+}
+
+TEST(SuggestEnds, ASingleShortSlideIsAFingerAndALongOneAnAxis) {
+  expect_palm_first(
+      suggest_ends(with_palm().joint("palm", "slide", "prismatic", limits(0, 0.04)).tree()),
+      "slide");
+  const auto scara =
+      suggest_ends(arm(3).joint("link3", "quill", "prismatic", limits(-0.2, 0)).tree());
+  ASSERT_EQ(scara.size(), 1U);
+  EXPECT_EQ(scara[0].joints, 4U);
+}
+
+TEST(SuggestEnds, AFingerThatAnotherOneFollowsElsewhereIsNoPartOfAnArm) {
+  expect_palm_first(suggest_ends(with_palm()
+                                     .joint("palm", "driver", "revolute", limits(-1, 2))
+                                     .joint("base_link", "follower", "revolute",
+                                            "<mimic joint='to_driver'/>" + limits(-1, 2))
+                                     .tree()),
+                    "driver");
+}
+
+TEST(SuggestEnds, AWristIsPartOfAnArmWhateverItIsNamed) {
+  const auto ends = suggest_ends(arm(6).joint("link6", "gripper_roll", "continuous", "").tree());
+  ASSERT_EQ(ends.size(), 1U);
+  EXPECT_EQ(ends[0].joints, 7U);
+}
+
+TEST(SuggestEnds, FingersOfManyJointsAreAHandAndNoArms) {
+  Urdf urdf = with_palm();
+  for (const std::string finger : {"index", "middle", "thumb"}) {
+    std::string last = "palm";
+    for (int i = 0; i < 4; ++i) {
+      const std::string link = finger + std::to_string(i);
+      urdf.joint(last, link, "revolute");
+      last = link;
+    }
+  }
+  const auto ends = suggest_ends(urdf.tree());
+  ASSERT_EQ(ends.size(), 1U);
+  EXPECT_EQ(ends[0].joints, 6U);
+  EXPECT_EQ(ends[0].tips.front(), "palm");
+}
+
+TEST(LinkTree, GoesOnWhereAJointIsWrongAndSaysWhy) {
+  const auto tree = arm(2).joint("link2", "finger", "prismatic", limits(0.5, 0.25)).tree();
+  EXPECT_EQ(tree.back().joint.fault, "lower limit 0.5 exceeds upper limit 0.25");
+  EXPECT_EQ(tree[2].joint.fault, "");
+}
+
+TEST(MobileBase, IsToldByWheelsAndByPlanarOrFloatingJoints) {
+  EXPECT_TRUE(describe_mobile_base(with_palm().tree()).empty());
+  Urdf urdf;
+  urdf.link("odom").joint("odom", "base_link", "planar", "");
+  for (const std::string wheel : {"left_wheel", "right_wheel"})
+    urdf.joint("base_link", wheel, "continuous", "");
+  const auto said = describe_mobile_base(urdf.tree());
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_NE(said[0].find("'to_base_link' (planar)"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("'to_left_wheel', 'to_right_wheel'"), std::string::npos) << said[1];
+  EXPECT_TRUE(suggest_ends(urdf.tree()).empty()) << "wheels make no arm";
+}
 
 }  // namespace
 }  // namespace kinship::kinematics::link_tree_test

@@ -72,5 +72,13 @@ TEST(UrdfMarkup, RefusesControlCharacters) {
   EXPECT_EQ(message(std::string("<a\0/>", 5)), "URDF: byte 3 is a control character");
 }
 
+TEST(UrdfMarkup, OnlyBlanksWithinQuotesOfTagsAreNormalized) {
+  EXPECT_EQ(normalize_attributes("<a\n b='1\t2\n3' c=\"'\t'\">\t'\n'</a>"),
+            "<a\n b='1 2 3' c=\"' '\">\t'\n'</a>");
+  EXPECT_EQ(normalize_attributes("<!-- b='1\t2' --><a b='>\t'/>"), "<!-- b='1\t2' --><a b='> '/>");
+  EXPECT_EQ(normalize_attributes("<![CDATA[<a b='1\t2'/>]]>\n<c d='\n'/>"),
+            "<![CDATA[<a b='1\t2'/>]]>\n<c d=' '/>");
+}
+
 }  // namespace
 }  // namespace kinship::kinematics::urdf_markup_test

@@ -37,6 +37,38 @@ TEST(UrdfModel, RefusesNumbersThatAreNotFiniteDecimals) {
   EXPECT_EQ(message(with_lower_limit("0.5")), "fine");
 }
 
+/// Every attribute of several numbers, with `between` between them.
+std::string with_numbers_parted_by(const std::string& between) {
+  const auto numbers = [&](const std::string& a, const std::string& b, const std::string& c) {
+    return "'" + a + between + b + between + c + "'";
+  };
+  const std::string box = "<geometry><box size=" + numbers("1", "2", "3") + "/></geometry>";
+  const std::string mesh =
+      "<geometry><mesh filename='a.stl' scale=" + numbers("2", "3", "4") + "/></geometry>";
+  return "<robot name='r'><!-- it's one --><link name='base'><collision><origin xyz=" +
+         numbers("1", "2", "3") + " rpy=" + numbers("0", "0", "0.5") + "/>" + box +
+         "</collision></link><link name='tip'><collision>" + mesh +
+         "</collision></link><joint name='j1' type='revolute'><origin xyz=" +
+         numbers("4", "5", "6") + "/><axis xyz=" + numbers("0", "1", "0") +
+         "/><parent link='base'/><child link='tip'/>"
+         "<limit lower='0' upper='1' effort='1' velocity='1'/></joint></robot>";
+}
+
+TEST(UrdfModel, TabsAndLineBreaksBetweenNumbersAreBlanks) {
+  for (const std::string between : {" ", "\t", "\n", "\r\n", " \t ", "\n      "}) {
+    const auto model = parse_urdf(with_numbers_parted_by(between));
+    ASSERT_TRUE(model) << model.error().message;
+    const auto& joint = *(*model)->getJoint("j1");
+    EXPECT_EQ(joint.axis.y, 1);
+    EXPECT_EQ(joint.parent_to_joint_origin_transform.position.z, 6);
+    const auto& base = *(*model)->getLink("base")->collision;
+    EXPECT_EQ(base.origin.position.y, 2);
+    EXPECT_EQ(dynamic_cast<const urdf::Box&>(*base.geometry).dim.z, 3);
+    const auto& tip = *(*model)->getLink("tip")->collision;
+    EXPECT_EQ(dynamic_cast<const urdf::Mesh&>(*tip.geometry).scale.x, 2);
+  }
+}
+
 /// Writes and reads numbers as in "1.234,5".
 struct CommaPunctuation : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }

@@ -78,12 +78,22 @@ TEST_F(MeshRobot, TakesPairsFromAnSrdf) {
   EXPECT_EQ(robot.shapes.never_colliding, (std::vector<std::pair<int, int>>{{0, 1}}));
 }
 
+TEST_F(MeshRobot, WarnsOfLinksThatAnSrdfNamesAndGoesOnWithoutThem) {
+  arguments_.srdf = folder_ / "arm.srdf";
+  EXPECT_TRUE(load_robot(arguments_).value_or_throw().warnings.empty());
+  write_srdf("camera");
+  const LoadedRobot robot = load_robot(arguments_).value_or_throw();
+  EXPECT_EQ(robot.warnings,
+            std::vector{arguments_.srdf.string() + ": the robot has no link 'camera' (line 1): a "
+                                                   "pair that names it is left out"});
+  EXPECT_TRUE(robot.description.never_colliding.empty());
+}
+
 TEST_F(MeshRobot, NamesTheSrdfThatIsWrong) {
   const std::string file = (folder_ / "arm.srdf").string();
   arguments_.srdf = file;
-  write_srdf("leg");
-  EXPECT_EQ(message(),
-            file + ": line 1: disable_collisions: link2 'leg' is not a link of the robot");
+  std::ofstream(file) << "<robot><disable_collisions link1='base'/></robot>";
+  EXPECT_EQ(message(), file + ": line 1: disable_collisions has no link2");
   std::filesystem::remove(file);
   EXPECT_EQ(message(), file + ": no such file");
 }
@@ -103,6 +113,51 @@ TEST(LoadRobot, SaysWhatIsWrongWithFilesChainAndShapes) {
   const auto no_link = load_robot({.source = kModels + "panda", .base_link = "nothing"});
   ASSERT_FALSE(no_link);
   EXPECT_NE(no_link.error().message.find("'nothing'"), std::string::npos);
+}
+
+/// A URDF whose arm is drawn and has no collision solid.
+class DrawnRobot : public testing::Test {
+ protected:
+  DrawnRobot() {
+    std::ofstream(folder_ / "arm.urdf") << R"(<robot name="arm"><link name="base"/>
+      <link name="arm"><visual><geometry><box size="0.1 0.1 0.5"/></geometry></visual></link>
+      <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+        <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)";
+    arguments_.source = folder_ / "arm.urdf";
+    arguments_.base_link = "base";
+    arguments_.tip_link = "arm";
+  }
+  std::string message() const {
+    const auto robot = load_robot(arguments_);
+    return robot ? "fine" : robot.error().message;
+  }
+  test::TemporaryDirectory folder_;
+  RobotArguments arguments_;
+};
+
+TEST_F(DrawnRobot, IsRefusedForPlanningAndTheRefusalSaysWhatToDo) {
+  EXPECT_NE(message().find("link 'arm' has <visual> and no <collision>"), std::string::npos)
+      << message();
+  EXPECT_NE(message().find("--without-collision LINK"), std::string::npos);
+}
+
+TEST_F(DrawnRobot, HasWhatIsDrawnForItsSolidsWhereThatIsAskedForAlsoForAServer) {
+  arguments_.collision_from_visual = true;
+  const LoadedRobot robot = load_robot(arguments_).value_or_throw();
+  ASSERT_EQ(robot.shapes.shapes.size(), 1U);
+  EXPECT_EQ(robot.shapes.from_visual, std::vector<int>{1});
+  EXPECT_EQ(geometry::read_shapes(robot.description, robot.chain).value_or_throw().shapes.size(),
+            1U);
+}
+
+TEST_F(DrawnRobot, GoesWithoutSolidsWhereALinkIsSaidToNeedNone) {
+  arguments_.without_collision = {"arm"};
+  EXPECT_EQ(message(), "fine");
+  arguments_.without_collision = {"leg"};
+  EXPECT_EQ(message(), "--without-collision 'leg': the robot has no such link");
+  arguments_.without_collision = {"arm"};
+  arguments_.collision_from_visual = true;
+  EXPECT_NE(message().find("the link has solids"), std::string::npos) << message();
 }
 
 }  // namespace

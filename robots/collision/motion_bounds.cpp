@@ -1,0 +1,92 @@
+#include "robots/collision/motion_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinship::collision {
+namespace {
+
+constexpr double kReachRounding = 1e-9;
+
+/// Corners of a line along z.
+Eigen::Matrix3Xd ends_of(double length_m) {
+  Eigen::Matrix3Xd ends = Eigen::Matrix3Xd::Zero(3, 2);
+  ends.row(2) << -length_m / 2, length_m / 2;
+  return ends;
+}
+
+Eigen::Matrix3Xd corners_of(const Eigen::Vector3d& half) {
+  Eigen::Matrix3Xd corners(3, 8);
+  for (int i = 0; i < 8; ++i)
+    corners.col(i) << (i & 1 ? 1 : -1) * half.x(), (i & 2 ? 1 : -1) * half.y(),
+        (i & 4 ? 1 : -1) * half.z();
+  return corners;
+}
+
+struct Spanned {
+  Eigen::Matrix3Xd corners;
+  double radius_m = 0;
+};
+
+Spanned span_of(const Shape& shape) {
+  if (const auto* box = std::get_if<BoxShape>(&shape))
+    return {corners_of(box->size / 2), 0};
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
+    return {ends_of(cylinder->length_m), cylinder->radius_m};
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return {Eigen::Matrix3Xd::Zero(3, 1), sphere->radius_m};
+  const auto& capsule = std::get<CapsuleShape>(shape);
+  return {ends_of(capsule.length_m), capsule.radius_m};
+}
+
+}  // namespace
+
+MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies) {
+  for (const kinematics::Joint& joint : chain.joints()) {
+    axes_.push_back(joint.axis);
+    slides_.push_back(joint.type == kinematics::JointType::Prismatic);
+  }
+  for (const Body& body : bodies) {
+    Spanned span = span_of(body.solid.shape());
+    hulls_.push_back({body.joint, body.T_joint_body * span.corners, span.radius_m});
+  }
+}
+
+void MotionBounds::measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,
+                           Eigen::Ref<Eigen::VectorXd> reach_m) const {
+  const Hull& hull = hulls_[body];
+  const Eigen::Isometry3d& T_base_body = T_base_joints[static_cast<std::size_t>(hull.joint)];
+  for (int k = 0; k <= hull.joint; ++k) {
+    const auto joint = static_cast<std::size_t>(k);
+    reach_m[k] = 0;
+    if (slides_[joint])
+      continue;
+    const Eigen::Vector3d axis = T_base_joints[joint].linear() * axes_[joint];
+    const Eigen::Vector3d origin = T_base_joints[joint].translation();
+    double farthest2 = 0;
+    for (Eigen::Index i = 0; i < hull.corners.cols(); ++i) {
+      const Eigen::Vector3d corner = T_base_body * hull.corners.col(i);
+      farthest2 = std::max(farthest2, (corner - origin).cross(axis).squaredNorm());
+    }
+    reach_m[k] = std::sqrt(farthest2) + hull.radius_m + kReachRounding;
+  }
+}
+
+void MotionBounds::bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
+                         const Eigen::Ref<const Eigen::VectorXd>& from_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& to_m,
+                         Eigen::Ref<Eigen::VectorXd> motion_m) const {
+  double motion = 0;
+  for (int k = hulls_[body].joint; k >= 0; --k) {
+    motion_m[k + 1] = motion;
+    // On the way the body is at most `motion` away from where it is at one end, as the joint's link
+    // sees it, so its distance from the axis is at most the mean of both ends' and half of that
+    // more.
+    const double reach =
+        slides_[static_cast<std::size_t>(k)] ? 1 : (from_m[k] + to_m[k] + motion) / 2;
+    motion += std::abs(change[k]) * reach * (1 + kReachRounding);
+  }
+  motion_m[0] = motion;
+}
+
+}  // namespace kinship::collision

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "robots/collision/body.hpp"
+#include "robots/kinematics/chain.hpp"
+
+namespace kinship::collision {
+
+/// How far the points of a robot's bodies can move on a straight line between two configurations.
+///
+/// Joint by joint: a prismatic joint moves a point by what it slides, a revolute one by at most its
+/// turn times the point's distance from the joint's axis. That distance is bounded by what it is at
+/// both ends of the line and by how far the joints between axis and body move the body: no limits,
+/// no lengths of links, so a chain with sliding joints needs nothing of its own.
+/// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
+/// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section IV;
+/// the distances at both ends instead of link lengths are ours.
+class MotionBounds {
+ public:
+  MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
+
+  /// Largest distances of a body's points from the axes of the joints that move it, at one
+  /// configuration, m; 0 for prismatic joints.
+  /// \param T_base_joints  poses of the joints' moving frames there, one a joint
+  /// \param reach_m        out: one a joint, those up to the body's own are written
+  void measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,
+               Eigen::Ref<Eigen::VectorXd> reach_m) const;
+
+  /// Bounds of the way of a body's points between two configurations, in the frame of every joint
+  /// before it, m. Of a part of the way they are the same part at most: it is a speed as well.
+  /// \param change    dof, joint units: of the joints from one end to the other
+  /// \param from_m, to_m  what measure() says at both ends
+  /// \param motion_m  out: dof + 1; [0]: in the base's frame, [k]: in the moving frame of the k-th
+  ///                  joint, counted from 1; those beyond the body's joint are not written
+  void bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
+             const Eigen::Ref<const Eigen::VectorXd>& from_m,
+             const Eigen::Ref<const Eigen::VectorXd>& to_m,
+             Eigen::Ref<Eigen::VectorXd> motion_m) const;
+
+ private:
+  struct Hull {
+    int joint = -1;
+    Eigen::Matrix3Xd corners;  // 3 x 1, 2 or 8, in the joint's moving frame
+    double radius_m = 0;       // all of the body lies so near to what the corners span
+  };
+
+  std::vector<Eigen::Vector3d> axes_;  // one a joint, in its frame
+  std::vector<bool> slides_;
+  std::vector<Hull> hulls_;  // one a body
+};
+
+}  // namespace kinship::collision
