@@ -164,7 +164,7 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
     return (place.T_base_bodies[a].translation() - place.T_base_bodies[b].translation()).norm();
   };
   if (motion_m > farthest(from) + farthest(to))
-    return false;  // whatever is measured
+    return false;  // hardly helped by measuring, of shapes not at all
   for (Place* place : {&from, &to}) {
     const double other_m = (place == &from ? to : from).distances[pair].m;
     if (!place->distances[pair].is_close &&

@@ -112,7 +112,7 @@ TEST_F(Stopping, DuringAFitOfAThousandComponents) {
 TEST_F(Stopping, DuringAFitOfKernels) {
   report(3000);
   begin_fit("default,pose_spacing=0.01,max_poses_per_path=600,estimator=kde");
-  expect_end_soon("a fit of kernels", milliseconds(1800));
+  expect_end_soon("a fit of kernels", milliseconds(700));
   expect_no_fit();
 }
 

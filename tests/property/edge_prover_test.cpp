@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -153,9 +154,9 @@ struct Counts {
   double free_proof_us = 0, free_steps_us = 0;  // of those that are free
 
   void print(const std::string& name) const {
-    const double n = edges, f = std::max(free, 1);
+    const double n = std::max(edges, 1), f = std::max(free, 1);
     std::printf(
-        "%-12s edges %5d, proven %5d, missed by steps %3d, refused %d of %5d with 5 mm;"
+        "%-20s edges %5d, proven %5d, missed by steps %3d, refused %d of %5d with 5 mm;"
         " an edge: %5.1f configurations, %6.1f distances, %7.1f us (steps %5.1f, %5.1f us);"
         " a free one: %7.1f us (steps %5.1f us)\n",
         name.c_str(), edges, free, missed_by_steps, refused_with_room, with_room,
@@ -231,14 +232,21 @@ Eigen::VectorXd other_end(const kinematics::Chain& chain, const Eigen::VectorXd&
   return from + std::pow(10, random.number(-1.5, 0)) * change;
 }
 
-void try_in_scenes(const Robot& robot, int edges, Random& random, Counts& all) {
+/// Every second scene is of shapes only. \param all  of scenes with a mesh and a cloud, then
+/// without
+void try_in_scenes(const Robot& robot, int edges, Random& random, std::array<Counts, 2>& all) {
   const RobotSolids solids(robot.chain, robot.shapes), roomy_solids = [&] {
     const Robot roomy = grown(robot, kRoom_m);
     return RobotSolids(roomy.chain, roomy.shapes);
   }();
-  Counts counts;
+  std::array<Counts, 2> robots_counts;
   for (int scene = 0; scene < kScenes; ++scene) {
     Surroundings around = test::random_surroundings(robot.chain, random);
+    const bool shapes_only = scene % 2 == 1;
+    if (shapes_only) {
+      around.scene.meshes.clear();
+      around.scene.clouds.clear();
+    }
     // What stands within the room would make every configuration collide.
     const Surroundings roomy_around = grown(around, kRoom_m);
     std::vector<Body> bodies = roomy_solids.parts().bodies;
@@ -247,6 +255,7 @@ void try_in_scenes(const Robot& robot, int edges, Random& random, Counts& all) {
     Surroundings roomy = grown(around, kRoom_m);
     CollisionWorld world(solids, around), roomy_world(roomy_solids, roomy);
     EdgeProver prover(solids, around);
+    Counts& counts = robots_counts.at(shapes_only ? 1 : 0);
     for (int edge = 0, tries = 0; edge < edges && tries < 100 * edges; ++tries) {
       const Eigen::VectorXd from = test::random_configuration(robot.chain, random.generator());
       if (world.find_contact(from))
@@ -256,18 +265,24 @@ void try_in_scenes(const Robot& robot, int edges, Random& random, Counts& all) {
       ++edge;
     }
   }
-  counts.print(robot.name);
-  all.add(counts);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    robots_counts.at(i).print(robot.name + (i == 0 ? "" : ", shapes"));
+    all.at(i).add(robots_counts.at(i));
+  }
 }
 
 TEST(EdgeProver, AFreeEdgeTouchesNothingAndRoomIsNotRefused) {
   Random random;
   const int edges = test::is_long_run() ? 4000 : 150;
-  Counts all;
+  std::array<Counts, 2> of_scenes;
   for (const Robot& robot : all_robots(random)) {
-    try_in_scenes(robot, edges, random, all);
+    try_in_scenes(robot, edges, random, of_scenes);
     ASSERT_FALSE(HasFatalFailure());
   }
+  of_scenes[0].print("with meshes");
+  of_scenes[1].print("shapes only");
+  Counts all = of_scenes[0];
+  all.add(of_scenes[1]);
   all.print("all");
   EXPECT_GT(all.free, all.edges / 10);
   EXPECT_LT(all.free, all.edges);
