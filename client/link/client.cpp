@@ -11,7 +11,7 @@
 #include "client/link/outbox.hpp"
 #include "client/link/pauses.hpp"
 #include "client/link/report_sender.hpp"
-#include "proto/dds/owning_process.hpp"
+#include "proto/dds/participant.hpp"
 #include "proto/dds/requester.hpp"
 #include "proto/security/credentials.hpp"
 #include "robots/kinematics/urdf.hpp"

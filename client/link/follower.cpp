@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "proto/codec/fetch_codec.hpp"
-#include "proto/dds/owning_process.hpp"
+#include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 #include "proto/dds/requester.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "proto/dds/owning_process.hpp"
+#include "proto/dds/participant.hpp"
 #include "proto/dds/publication.hpp"
 
 namespace kinship::link {

@@ -13,7 +13,6 @@
 #include "proto/dds/log.hpp"
 #include "proto/dds/loopback_guard.hpp"
 #include "proto/dds/network_interface.hpp"
-#include "proto/dds/owning_process.hpp"
 #include "proto/dds/qos.hpp"
 #include "proto/types/failure.hpp"
 
