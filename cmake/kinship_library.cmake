@@ -35,10 +35,12 @@ if(KINSHIP_SANITIZE)
     -fno-sanitize-recover=all -fno-sanitize=null,alignment,vptr,object-size)
   target_link_options(kinship_options INTERFACE -fsanitize=${KINSHIP_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    target_compile_options(kinship_options INTERFACE -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/ubsan_ignore.txt)
+    file(RELATIVE_PATH ignored ${CMAKE_BINARY_DIR} ${PROJECT_SOURCE_DIR}/tests/ubsan_ignore.txt)  # the same in every clone
+    target_compile_options(kinship_options INTERFACE -fsanitize-ignorelist=${ignored})
     # GCC's names of what is on, which Clang lacks.
-    target_compile_definitions(kinship_options INTERFACE
-      $<IF:$<STREQUAL:${KINSHIP_SANITIZE},thread>,__SANITIZE_THREAD__,__SANITIZE_ADDRESS__>)
+    string(REGEX MATCH "address|thread" sanitizer ${KINSHIP_SANITIZE})
+    string(TOUPPER "__SANITIZE_${sanitizer}__" sanitizer)
+    target_compile_definitions(kinship_options INTERFACE ${sanitizer})
   endif()
   # Under AddressSanitizer Eigen aligns memory by itself, and OMPL's library, which does not, then frees it.
   target_compile_definitions(kinship_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)

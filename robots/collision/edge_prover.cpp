@@ -160,7 +160,7 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
       return false;
   if (are_apart())
     return true;
-  const auto farthest = [&](const Place& place) {
+  const auto farthest = [a = a, b = b](const Place& place) {  // Clang 14 captures no binding
     return (place.T_base_bodies[a].translation() - place.T_base_bodies[b].translation()).norm();
   };
   if (motion_m > farthest(from) + farthest(to))
