@@ -210,9 +210,10 @@ Distribution every_kernels() {
   Distinct next(800);
   Distribution kernels = every_distribution();
   kernels.state = DistributionState::Ready;
+  const Eigen::MatrixXd of_all =
+      covariance(next);  // first: compilers differ in the order of arguments
   // f32 is exact for such means, as the wire has them
-  kernels.mixture =
-      Mixture(Eigen::Vector3d(0.25, 0.125, 0.625), next.matrix(kJoints, 3), {covariance(next)});
+  kernels.mixture = Mixture(Eigen::Vector3d(0.25, 0.125, 0.625), next.matrix(kJoints, 3), {of_all});
   return kernels;
 }
 
