@@ -20,6 +20,7 @@ struct Member {
 
 /// The messages by name, with their members in ROS 1 and 2, and those of benchmark sets.
 /// Source: moveit_msgs, shape_msgs, geometry_msgs, sensor_msgs, std_msgs, octomap_msgs.
+// NOLINTNEXTLINE(readability-function-size): a table
 const std::map<std::string, std::vector<Member>, std::less<>>& messages() {
   static const std::map<std::string, std::vector<Member>, std::less<>> kMessages = {
       {"PlanningScene",
