@@ -61,12 +61,14 @@ class StlText {
 
  private:
   [[noreturn]] void refuse(const std::string& what) {
-    const std::string_view word = peek();
+    std::string word(peek().substr(0, 40));
+    std::ranges::replace_if(
+        word, [](char byte) { return byte < ' ' || byte > '~'; }, '?');
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(at_);
-    throw Failure(ErrorCode::InvalidInput,
-                  "line " + std::to_string(1 + std::count(text_.begin(), end, '\n')) + ": " + what +
-                      (word.empty() ? ", and the file ends here: is it cut off?"
-                                    : ", not '" + std::string(word.substr(0, 40)) + "'"));
+    throw Failure(
+        ErrorCode::InvalidInput,
+        "line " + std::to_string(1 + std::count(text_.begin(), end, '\n')) + ": " + what +
+            (word.empty() ? ", and the file ends here: is it cut off?" : ", not '" + word + "'"));
   }
 
   /// The next word; empty at the end.
