@@ -7,9 +7,11 @@ namespace {
 
 std::string describe(const PlanSettings& settings, const ProblemResult& result) {
   std::ostringstream text;
-  text << "step=" << settings.resolution << " overshoot=" << settings.overshoot
-       << " shortcut_checks=" << settings.shortcut_checks << " max_checks=" << settings.max_checks
-       << (result.gate_fired ? " gate=fired" : "");
+  text << "step=" << settings.resolution;
+  if (settings.clearance_m > 0)
+    text << " clearance_m=" << settings.clearance_m;
+  text << " overshoot=" << settings.overshoot << " shortcut_checks=" << settings.shortcut_checks
+       << " max_checks=" << settings.max_checks << (result.gate_fired ? " gate=fired" : "");
   return text.str();
 }
 

@@ -1,9 +1,14 @@
 #include "client/guided/plan_problem.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <exception>
+#include <iomanip>
+#include <limits>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -15,8 +20,10 @@
 #include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/configuration_sampler.hpp"
 #include "robots/planning/goal_configurations.hpp"
+#include "robots/planning/path_vertices.hpp"
 #include "robots/planning/planning_bounds.hpp"
 #include "robots/planning/planning_budget.hpp"
+#include "robots/planning/proven_path.hpp"
 #include "robots/planning/region_constraint.hpp"
 #include "robots/planning/repetition_roadmap.hpp"
 #include "robots/planning/shortcut.hpp"
@@ -55,6 +62,12 @@ std::string described(const planning::RegionConstraint::Vector6& excess) {
       text += (text.empty() ? "" : ", ") + std::string(displacement_name(i)) + " by " +
               std::to_string(excess[i]);
   return text + " outside Bw";
+}
+
+std::string millimetres(double length_m) {
+  std::ostringstream text;
+  text << std::setprecision(3) << 1e3 * length_m << " mm";
+  return text.str();
 }
 
 /// Empty for a query that is to be guided.
@@ -134,11 +147,8 @@ class Planning {
         T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
         world_(robot.solids,
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
-        is_free_(planning::free_in(world_,
-                                   [&stop] {
-                                     if (stop())
-                                       throw Interrupted();
-                                   })),
+        prover_(world_),
+        is_free_(what_is_free(stop)),
         recorder_(recorder),
         generator_(problem.seed) {}
 
@@ -157,6 +167,7 @@ class Planning {
     options.overshoot = settings_.overshoot;
     options.max_checks = settings_.max_checks;
     options.time_limit = std::chrono::duration<double>(problem_.time_limit_s);
+    end_ = std::chrono::steady_clock::now() + options.time_limit;
     options.track_check_fraction = settings_.tracks.check_fraction;
     options.recorder = recorder_;
     const double begin_s = planning::thread_time_s();
@@ -164,25 +175,35 @@ class Planning {
                                             guidance, settings_, planned.result);
     planned.result.planner = planner_text(planner, sampler);
     planned.result.not_planned.reset();
-    const planning::PlanSummary summary = search(planner, goals, sampler, options);
+    planning::PlanSummary summary = search(planner, start_, goals, sampler, options);
+    if (summary.waypoints)
+      shorten(sampler, options, summary, planned.result);
     planned.outcome = outcome_of(summary);
     planned.result.not_planned = not_planned_by(summary.reason);
     planned.result.solved = summary.waypoints.has_value();
     planned.result.collision_checks = summary.collision_checks;
     planned.result.projections = summary.projections;
-    planned.result.planning_time_s = planning::thread_time_s() - begin_s;
+    planned.result.planning_time_s = planning::thread_time_s() - begin_s - shortening_s_;
     planned.result.tracks_followed = summary.tracks_followed;
     planned.result.found_by = summary.found_by;
     planned.result.reason = explain(summary.reason, summary.planner_message);
-    if (summary.waypoints)
-      shorten(*summary.waypoints, planned.result);
   }
 
  private:
-  planning::PlanSummary search(const PlannerChoice& planner, const Eigen::MatrixXd& goals,
+  planning::IsFree what_is_free(const std::function<bool()>& stop) {
+    const auto interrupt = [&stop] {
+      if (stop())
+        throw Interrupted();
+    };
+    if (settings_.clearance_m == 0)
+      return planning::free_in(world_, interrupt);
+    return planning::proven_in(prover_, {settings_.clearance_m}, interrupt);
+  }
+
+  planning::PlanSummary search(const PlannerChoice& planner, const Eigen::VectorXd& start,
+                               const Eigen::MatrixXd& goals,
                                const planning::ConfigurationSampler& sampler,
                                const planning::BirrtOptions& options) {
-    const Eigen::VectorXd& start = start_;
     if (planner.kind == PlannerKind::Roadmap) {
       planning::RoadmapOptions roadmap;
       roadmap.tree = options;
@@ -271,16 +292,61 @@ class Planning {
     result.not_planned = not_planned_by(reason);
   }
 
-  void shorten(const Eigen::MatrixXd& waypoints, ProblemResult& result) {
-    planning::ShortcutOptions options;
-    options.step = settings_.resolution;
-    options.max_checks = settings_.shortcut_checks;
-    const planning::ShortcutSummary shortened =
-        constraint_
-            ? planning::shortcut_constrained(waypoints, is_free_, *constraint_, options, generator_)
-            : planning::shortcut(waypoints, is_free_, options, generator_);
-    result.shortcut_checks = shortened.collision_checks;
-    result.waypoints = shortened.waypoints;
+  /// Shortens and proves what the search found. Where it is refuted it is searched again.
+  void shorten(const planning::ConfigurationSampler& sampler, planning::BirrtOptions tree,
+               planning::PlanSummary& summary, ProblemResult& result) {
+    const double step = settings_.resolution;
+    const planning::ShortcutOptions options{step, settings_.shortcut_checks};
+    const auto shorten = [&](const Eigen::MatrixXd& waypoints, const planning::IsFree& is_free) {
+      const double begin_s = planning::thread_time_s();
+      std::mt19937_64 generator = generator_;  // each time alike
+      planning::ShortcutSummary shortened =
+          constraint_
+              ? planning::shortcut_constrained(waypoints, is_free, *constraint_, options, generator)
+              : planning::shortcut(waypoints, is_free, options, generator);
+      shortening_s_ += planning::thread_time_s() - begin_s;
+      return shortened;
+    };
+    tree.track_check_fraction = 0;
+    tree.recorder = nullptr;
+    std::uint64_t spent = summary.collision_checks;
+    const auto plan = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, double finer) {
+      planning::PlanSummary over;
+      if (!constraint_)
+        over.waypoints =
+            planning::detour(from, to, is_free_, bounds_, generator_, over.collision_checks);
+      spent += over.collision_checks;
+      if (over.waypoints)
+        return over;
+      tree.step = finer;
+      tree.max_checks = settings_.max_checks - std::min(spent, settings_.max_checks);
+      tree.time_limit = end_ - std::chrono::steady_clock::now();
+      planning::PlanSummary between = search({}, from, to, sampler, tree);
+      spent += between.collision_checks;
+      between.collision_checks += over.collision_checks;
+      if (between.waypoints)
+        between.waypoints = vertices(*between.waypoints, finer);
+      return between;
+    };
+    planning::ProvenPath proven = planning::shorten_and_prove(vertices(*summary.waypoints, step),
+                                                              step, is_free_, shorten, plan);
+    summary.collision_checks += proven.collision_checks;
+    summary.projections += proven.projections;
+    summary.reason = proven.reason;
+    result.shortcut_checks = proven.shortcut_checks;
+    result.refuted_edges = proven.refuted_edges;
+    if (proven.reason != NoPath::None) {
+      summary.waypoints.reset();
+      return;
+    }
+    result.waypoints = std::move(proven.waypoints);
+    result.proven = is_free_.proves_edges();
+    if (result.proven && std::isfinite(proven.least_clearance_m))
+      result.least_clearance_m = proven.least_clearance_m;
+  }
+
+  Eigen::MatrixXd vertices(const Eigen::MatrixXd& waypoints, double step) const {
+    return constraint_ ? waypoints : planning::sparse_vertices(waypoints, step);
   }
 
   /// Why there is no path, with what only this problem knows.
@@ -305,8 +371,18 @@ class Planning {
   }
 
   std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
-    const auto contact = world_.find_contact(q);
-    return contact ? before + "'" + contact->first + "' touches '" + contact->second + "'" : "";
+    const auto quoted = [](const std::string& name) { return "'" + name + "'"; };
+    if (const auto contact = world_.find_contact(q))
+      return before + quoted(contact->first) + " touches " + quoted(contact->second);
+    if (!is_free_.proves_edges())
+      return "";
+    const collision::EdgeProof proof = prover_.prove(q, q, {settings_.clearance_m});
+    if (proof.is_free())
+      return "";
+    const collision::EdgeRefutation& near = *proof.refutation;
+    return before + quoted(near.first) + " is " + millimetres(near.clearance_m) + " from " +
+           quoted(near.second) + ", nearer than the clearance of " +
+           millimetres(settings_.clearance_m);
   }
 
   const PlannedRobot& robot_;
@@ -314,6 +390,7 @@ class Planning {
   const PlanSettings& settings_;
   const Eigen::Isometry3d T_task_base_;
   collision::CollisionWorld world_;
+  collision::EdgeProver prover_;
   planning::IsFree is_free_;
   Eigen::VectorXd start_;    // dof; from find_start on
   Eigen::Matrix2Xd bounds_;  // around it
@@ -321,6 +398,8 @@ class Planning {
   std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
   planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
+  double shortening_s_ = 0;
+  std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> end_;
 };
 
 }  // namespace

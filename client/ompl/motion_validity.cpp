@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/ompl/state_space.hpp"
 #include "robots/planning/is_free.hpp"
 
 namespace kinship::planning {
@@ -16,8 +17,11 @@ namespace ob = ompl::base;
 }  // namespace
 
 SeveralStatesValidity::SeveralStatesValidity(const ob::SpaceInformationPtr& information, One one,
-                                             Ahead ahead)
-    : ob::StateValidityChecker(information), one_(std::move(one)), ahead_(std::move(ahead)) {}
+                                             Ahead ahead, Between between)
+    : ob::StateValidityChecker(information),
+      one_(std::move(one)),
+      ahead_(std::move(ahead)),
+      between_(std::move(between)) {}
 
 bool SeveralStatesValidity::are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const {
   for (Eigen::Index first = 0, together = kFewTogether; first < qs.cols();
@@ -37,7 +41,10 @@ bool StraightMotionValidator::checkMotion(const ob::State* from, const ob::State
       dynamic_cast<const SeveralStatesValidity*>(si_->getStateValidityChecker().get());
   if (several == nullptr)
     return ob::DiscreteMotionValidator::checkMotion(from, to);
-  const bool is_valid = several->are_valid(asked(*from, *to));
+  const auto dof = static_cast<Eigen::Index>(si_->getStateDimension());
+  Eigen::MatrixXd ends(dof, 2);
+  ends << to_configuration(*from, dof), to_configuration(*to, dof);
+  const bool is_valid = several->are_valid(asked(*from, *to)) && several->is_valid_between(ends);
   ++(is_valid ? valid_ : invalid_);
   return is_valid;
 }

@@ -16,23 +16,34 @@ class SeveralStatesValidity : public ompl::base::StateValidityChecker {
   using One = std::function<bool(const ompl::base::State& state)>;
   /// \param qs  dof x n. \return how many, from the first on, are valid before one is not; later
   /// ones are not asked for.
+  using Between = std::function<bool(const Eigen::Ref<const Eigen::MatrixXd>& way)>;
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
 
-  SeveralStatesValidity(const ompl::base::SpaceInformationPtr& information, One one, Ahead ahead);
+  /// \param between  says whether the lines between the columns of a way are valid: dof x n
+  SeveralStatesValidity(const ompl::base::SpaceInformationPtr& information, One one, Ahead ahead,
+                        Between between);
 
   bool isValid(const ompl::base::State* state) const override { return one_(*state); }
 
   /// Whether all are valid; asks for a few at a time. \param qs  dof x n.
   bool are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const;
 
+  /// Whether what lies between the columns of a way is valid, where that is proven. \param way  dof
+  /// x n
+  bool is_valid_between(const Eigen::Ref<const Eigen::MatrixXd>& way) const {
+    return between_(way);
+  }
+
  private:
   const One one_;
   const Ahead ahead_;
+  const Between between_;
 };
 
 /// OMPL's validator of straight motions in a space from make_state_space, in its order: the second
 /// state, then the middle, then the middles of the halves, and so on. Asks for the states together
-/// if the checker of `information` is a SeveralStatesValidity.
+/// if the checker of `information` is a SeveralStatesValidity, and then for a proof of the motion
+/// where lines are proven.
 class StraightMotionValidator : public ompl::base::DiscreteMotionValidator {
  public:
   explicit StraightMotionValidator(const ompl::base::SpaceInformationPtr& information);

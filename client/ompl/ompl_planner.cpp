@@ -91,7 +91,10 @@ class OmplQuery {
     space_.information->setStateValidityChecker(std::make_shared<SeveralStatesValidity>(
         space_.information,
         [this](const ob::State& state) { return is_free_at(space_.configuration(state)); },
-        [this](const Eigen::Ref<const Eigen::MatrixXd>& qs) { return free_ahead(qs); }));
+        [this](const Eigen::Ref<const Eigen::MatrixXd>& qs) { return free_ahead(qs); },
+        [&is_free](const Eigen::Ref<const Eigen::MatrixXd>& way) {
+          return is_free.way_is_free(way);
+        }));
     problem_ = std::make_shared<ob::ProblemDefinition>(space_.information);
     const auto first_path =
         std::make_shared<ob::PathLengthOptimizationObjective>(space_.information);

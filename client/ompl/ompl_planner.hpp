@@ -27,7 +27,8 @@ std::vector<std::string> ompl_planner_names();
 /// The query ends at the first path, also with planners that would go on to shorten it.
 ///
 /// Same definitions as plan_birrt: every configuration asked about counts one check and none is
-/// asked beyond the budget; waypoints are at most limits.step apart and each was checked. Start
+/// asked beyond the budget; waypoints are at most limits.step apart and each was checked, and
+/// motions are proven where `is_free` does that. Start
 /// and goals are asked about first, and again by OMPL. Samples are seeded from the generator, but
 /// OMPL's own draws (towards the goal, say) follow its process-wide seed: equal plans only where
 /// that is the same. PRM and PRMstar grow by samples only, without the random walks and the

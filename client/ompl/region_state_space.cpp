@@ -90,7 +90,7 @@ bool RegionMotionValidator::checkMotion(const ob::State* from, const ob::State* 
     return false;
   if (const auto* several =
           dynamic_cast<const SeveralStatesValidity*>(si_->getStateValidityChecker().get()))
-    return several->are_valid(way->rightCols(way->cols() - 1));
+    return several->are_valid(way->rightCols(way->cols() - 1)) && several->is_valid_between(*way);
   ob::State* passed = space_.allocState();
   bool free = true;
   for (Eigen::Index i = 1; free && i < way->cols(); ++i) {

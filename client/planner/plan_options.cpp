@@ -13,6 +13,7 @@
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
+#include "robots/collision/lane_world.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -55,6 +56,7 @@ struct RawOptions {
   std::string guide = "auto";
   double timeout_s = 5;
   double wait_s = 30;
+  double resolution = 0;
   double guided_fraction = 0;
   double control_fraction = 0;
   arguments::SelectionArguments selection;
@@ -84,10 +86,17 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
         const Result<PlannerChoice> planner = parse_planner(text);
         return planner ? std::string() : planner.error().message;
       });
-  app.add_option("--resolution", settings.resolution,
-                 "largest distance between checked configurations, joint units")
+  CLI::Option* const clearance =
+      app.add_option("--clearance", settings.clearance_m,
+                     "what comes nearer counts as touching, m: every edge of a path is proven to "
+                     "touch nothing, by bounds of how far the robot moves")
+          ->check(between(1e-5, collision::kLargestRoom_m))
+          ->capture_default_str();
+  app.add_option("--resolution", raw.resolution,
+                 "prove nothing, but check configurations that are at most so far apart, joint "
+                 "units, as studies do: what is thinner may be missed")
       ->check(between(1e-4, 1.0))
-      ->capture_default_str();
+      ->excludes(clearance);
   app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
       ->check(between(std::uint64_t{1}, kMax))
       ->capture_default_str();
@@ -286,6 +295,10 @@ void complete(const CLI::App& app, const RawOptions& raw, PlanOptions& options,
       arguments::read_selection(raw.selection, std::chrono::system_clock::now()).value_or_throw();
   if (!raw.selection.sources.empty())
     options.sources = arguments::parse_robot_names(raw.selection.sources).value_or_throw();
+  if (app.count("--resolution") > 0) {
+    options.settings.resolution = raw.resolution;
+    options.settings.clearance_m = 0;
+  }
   options.timeout = milliseconds_of(raw.timeout_s);
   options.wait = milliseconds_of(raw.wait_s);
   note_unused(app, options, notes);

@@ -188,6 +188,12 @@ void bind_outcome(py::class_<Plan>& plan) {
                              "Of goal configurations, before planning.")
       .def_property_readonly("shortcut_checks", result(&ProblemResult::shortcut_checks),
                              "Of shortening the path, afterwards.")
+      .def_property_readonly("proven", result(&ProblemResult::proven),
+                             "Whether nothing touches between the waypoints, surely.")
+      .def_property_readonly("least_clearance", result(&ProblemResult::least_clearance_m),
+                             "That was measured on a proven path, m; None: nothing came near.")
+      .def_property_readonly("refuted_edges", result(&ProblemResult::refuted_edges),
+                             "Free where they were checked but not in between: planned again.")
       .def_property_readonly("projections", result(&ProblemResult::projections),
                              "Onto a constraint.")
       .def_property_readonly("planning_time_s", result(&ProblemResult::planning_time_s),
@@ -225,10 +231,12 @@ void bind_planning(py::module_& module) {
       [](const std::shared_ptr<Robot>& robot, const Problem& problem,
          const std::optional<AnyGuidance>& guidance, std::optional<std::uint64_t> seed,
          const std::string& arm, const std::string& planner, std::uint64_t max_checks,
-         double resolution, std::uint64_t shortcut_checks, int max_goals, double limit_slack) {
+         double clearance, std::optional<double> resolution, std::uint64_t shortcut_checks,
+         int max_goals, double limit_slack) {
         planner::PlanSettings settings;
         settings.max_checks = max_checks;
-        settings.resolution = resolution;
+        settings.clearance_m = resolution ? 0 : clearance;
+        settings.resolution = resolution.value_or(settings.resolution);
         settings.shortcut_checks = shortcut_checks;
         settings.max_goals = max_goals;
         settings.limit_slack = limit_slack;
@@ -239,7 +247,8 @@ void bind_planning(py::module_& module) {
       py::arg("robot"), py::arg("problem"), py::arg("guidance") = py::none(), py::kw_only(),
       py::arg("seed") = py::none(), py::arg("arm") = "", py::arg("planner") = "",
       py::arg("max_checks") = planner::PlanSettings{}.max_checks,
-      py::arg("resolution") = planner::PlanSettings{}.resolution,
+      py::arg("clearance") = planner::PlanSettings{}.clearance_m,
+      py::arg("resolution") = py::none(),
       py::arg("shortcut_checks") = planner::PlanSettings{}.shortcut_checks,
       py::arg("max_goals") = planner::PlanSettings{}.max_goals,
       py::arg("limit_slack") = planner::PlanSettings{}.limit_slack,
@@ -250,7 +259,8 @@ seed             instead of the problem's: equal seed, equal path
 arm              'guided', 'control' or 'uniform'; empty: chosen as the evidence says
 planner          'birrt', 'cbirrt2', 'roadmap' or 'ompl:NAME'; empty: as the problem needs
 max_checks       collision checks after which it gives up
-resolution       between checked configurations, joint units
+clearance        what comes nearer counts as touching, m: every edge of the path is proven
+resolution       instead of a proof: between checked configurations, joint units
 shortcut_checks  spent on shortening the path
 max_goals        goal configurations found for a goal pose
 limit_slack      a start or goal beyond a limit by less is moved onto it, joint units

@@ -9,6 +9,7 @@
 #include "client/python/bindings.hpp"
 #include "proto/types/problem.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/collision/edge_prover.hpp"
 
 namespace kinship::python {
 namespace {
@@ -19,7 +20,7 @@ using AllowedPairs = std::vector<std::pair<std::string, std::string>>;
 class World {
  public:
   World(const std::shared_ptr<Robot>& robot, const collision::Surroundings& surroundings)
-      : robot_(robot), world_(robot->planned()->solids, surroundings) {}
+      : robot_(robot), world_(robot->planned()->solids, surroundings), prover_(world_) {}
 
   const Robot& robot() const noexcept { return *robot_; }
 
@@ -42,10 +43,20 @@ class World {
     return world_.find_contact(q);
   }
 
+  /// \param waypoints  dof x n. \return whether every line between two is proven to be free.
+  bool edges_free(const Eigen::MatrixXd& waypoints, double clearance_m) {
+    const std::scoped_lock lock(mutex_);
+    const Eigen::Index count = waypoints.cols() - 1;
+    return std::ranges::all_of(
+        prover_.prove_all(waypoints.leftCols(count), waypoints.rightCols(count), {clearance_m}),
+        &collision::EdgeProof::is_free);
+  }
+
  private:
   std::shared_ptr<Robot> robot_;
-  std::mutex mutex_;  // guards the world
+  std::mutex mutex_;  // guards the world and what asks it
   collision::CollisionWorld world_;
+  collision::EdgeProver prover_;
 };
 
 py::object free_of(World& world, const Array& q) {
@@ -72,6 +83,32 @@ std::optional<std::pair<std::string, std::string>> contact_of(World& world, cons
     throw std::invalid_argument("contact: takes one configuration");
   const py::gil_scoped_release unlocked;
   return world.contact(configuration.columns);
+}
+
+bool edge_free_of(World& world, const Array& from, const Array& to, double clearance) {
+  const Robot& robot = world.robot();
+  const auto end = [&](const Array& q) {
+    const Configurations end =
+        read_configurations(q, robot.chain().dof(), robot.description().label);
+    if (!end.is_one)
+      throw std::invalid_argument(
+          "edge_free: an edge lies between two configurations, (dof,) each");
+    return end.columns;
+  };
+  Eigen::MatrixXd ends(robot.chain().dof(), 2);
+  ends << end(from), end(to);
+  const py::gil_scoped_release unlocked;
+  return world.edges_free(ends, clearance);
+}
+
+bool path_free_of(World& world, const Array& waypoints, double clearance) {
+  const Robot& robot = world.robot();
+  const Configurations path =
+      read_configurations(waypoints, robot.chain().dof(), robot.description().label);
+  if (path.is_one || path.columns.cols() < 2)
+    throw std::invalid_argument("path_free: a path has at least two waypoints, (n, dof)");
+  const py::gil_scoped_release unlocked;
+  return world.edges_free(path.columns, clearance);
 }
 
 std::unique_ptr<World> world_of_problem(const std::shared_ptr<Robot>& robot,
@@ -114,6 +151,14 @@ Raises InvalidInput if the robot's collision geometry is not known, or a shape i
       .def("free", free_of, py::arg("q"),
            "Whether configurations touch nothing: a bool for (dof,), n of them for (n, dof). "
            "Limits are not checked.")
+      .def("edge_free", edge_free_of, py::arg("from_q"), py::arg("to_q"), py::kw_only(),
+           py::arg("clearance") = collision::EdgeProofOptions{}.clearance_m,
+           "Whether the straight line between two configurations, (dof,) each, is proven to touch "
+           "nothing. What comes nearer than the clearance, m, where it is looked at, counts as "
+           "touching.")
+      .def("path_free", path_free_of, py::arg("waypoints"), py::kw_only(),
+           py::arg("clearance") = collision::EdgeProofOptions{}.clearance_m,
+           "The same of all lines between the waypoints of a path, (n, dof).")
       .def("contact", contact_of, py::arg("q"),
            "Names of two things that touch at q, (dof,); None if none do.");
 }

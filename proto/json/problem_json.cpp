@@ -73,6 +73,10 @@ constexpr std::tuple kEffort{
     Field{"goal_checks", &ProblemResult::goal_checks, {.may_be_missing = true}},
     Field{"shortcut_checks", &ProblemResult::shortcut_checks, {.may_be_missing = true}},
     Field{"projections", &ProblemResult::projections},
+    Field{"proven", &ProblemResult::proven, {.may_be_missing = true}},
+    Field{
+        "least_clearance_m", &ProblemResult::least_clearance_m, {.min = 0, .may_be_missing = true}},
+    Field{"refuted_edges", &ProblemResult::refuted_edges, {.may_be_missing = true}},
     Field{"planning_time_s", &ProblemResult::planning_time_s, {.min = 0}},
     Field{"time_limit_s", &ProblemResult::time_limit_s, {.min = 0}}};
 

@@ -69,6 +69,8 @@ class CollisionWorld {
   std::uint64_t checks() const noexcept { return checks_; }
 
  private:
+  friend class EdgeProver;  // looks at the same pairs, and asks the same lanes
+
   /// How many, from the first on, answer alike before one does not.
   Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, bool colliding);
   /// Whether what the lanes could not decide touches. \param lane  q's, of the last question.

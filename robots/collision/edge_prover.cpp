@@ -11,73 +11,179 @@ namespace kinship::collision {
 namespace {
 
 constexpr double kMotionRounding_m = 1e-9;
+// The lanes' first parts are so long that a body moves by so much in half of one, m, and are cut
+// into so many, so often, where they tell nothing.
+constexpr double kFirstGrowth_m = 0.04;
+constexpr int kCuts = 4, kLevels = 3;
 
 }  // namespace
 
-EdgeProver::EdgeProver(const RobotSolids& robot, const Surroundings& surroundings)
-    : robot_(robot),
-      bodies_(bodies_among(robot, surroundings)),
-      pairs_(moving_pairs(bodies_, robot.parts().unchecked, surroundings)),
-      bounds_(robot.parts().chain, bodies_),
-      motion_m_(robot.parts().chain.dof() + 1, static_cast<Eigen::Index>(bodies_.size())),
-      body_stamps_(bodies_.size(), 0) {
+EdgeProver::EdgeProver(CollisionWorld& world)
+    : world_(world),
+      pairs_(world.pairs_),
+      bounds_(world.robot_.parts().chain, world.bodies_),
+      middles_(world.robot_.parts().chain.dof(), kLanes),
+      body_stamps_(world.bodies_.size(), 0) {
+  for (std::size_t body = 0; body < world.bodies_.size(); ++body) {
+    index_of_moving_.push_back(world.bodies_[body].joint < 0 ? -1
+                                                             : static_cast<int>(moving_.size()));
+    if (world.bodies_[body].joint >= 0)
+      moving_.push_back(body);
+  }
+  motion_m_.setZero(middles_.rows() + 1, static_cast<Eigen::Index>(world.bodies_.size()));
+  grown_m_ = motion_m_;
   for (auto& [first, second] : pairs_)
-    if (bodies_[first].joint > bodies_[second].joint)
+    if (world.bodies_[first].joint > world.bodies_[second].joint)
       std::swap(first, second);
-  for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
-    if (touch(bodies_[pair.first].solid, bodies_[pair.first].T_joint_body,
-              bodies_[pair.second].solid, bodies_[pair.second].T_joint_body)) {
-      standing_contact_ = pair;
-      break;
-    }
+  std::ranges::sort(pairs_);
 }
 
-EdgeProver::EdgeProver(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
-                       const Surroundings& surroundings)
-    : EdgeProver(RobotSolids(chain, shapes), surroundings) {}
-
-void EdgeProver::check(const Eigen::Ref<const Eigen::VectorXd>& from,
-                       const Eigen::Ref<const Eigen::VectorXd>& to,
+void EdgeProver::check(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                        const EdgeProofOptions& options) const {
-  const Eigen::Index dof = robot_.parts().chain.dof();
-  if (from.size() != dof || to.size() != dof)
-    throw std::invalid_argument("EdgeProver: " + std::to_string(from.size()) + " and " +
-                                std::to_string(to.size()) + " values for " + std::to_string(dof) +
-                                " joints");
-  if (!from.allFinite() || !to.allFinite())
+  if (qs.rows() != middles_.rows())
+    throw std::invalid_argument("EdgeProver: " + std::to_string(qs.rows()) + " values for " +
+                                std::to_string(middles_.rows()) + " joints");
+  if (!qs.allFinite())
     throw std::invalid_argument("EdgeProver: q is not finite");
-  if (!(options.clearance_m > 0 && options.clearance_m <= 1))
+  if (!(options.clearance_m > 0 && options.clearance_m <= kLargestRoom_m))
     throw std::invalid_argument("EdgeProver: clearance of " + std::to_string(options.clearance_m) +
-                                " m, must be above 0 and at most 1 m");
+                                " m, must be above 0 and at most " +
+                                std::to_string(kLargestRoom_m) + " m");
 }
 
 EdgeProof EdgeProver::prove(const Eigen::Ref<const Eigen::VectorXd>& from,
                             const Eigen::Ref<const Eigen::VectorXd>& to,
                             const EdgeProofOptions& options) {
-  check(from, to, options);
+  return prove_all(from, to, options).front();
+}
+
+const std::vector<EdgeProof>& EdgeProver::prove_all(const Eigen::Ref<const Eigen::MatrixXd>& from,
+                                                    const Eigen::Ref<const Eigen::MatrixXd>& to,
+                                                    const EdgeProofOptions& options) {
+  check(from, options);
+  check(to, options);
+  if (from.cols() != to.cols())
+    throw std::invalid_argument("EdgeProver: " + std::to_string(from.cols()) + " starts and " +
+                                std::to_string(to.cols()) + " ends");
   from_ = from;
   change_ = to - from;
   clearance_m_ = options.clearance_m;
-  proof_ = {};
-  proof_.least_clearance_m = std::numeric_limits<double>::infinity();
-  if (standing_contact_) {
-    const auto& [first, second] = *standing_contact_;
-    proof_.refutation = {from, 0, bodies_[first].name, bodies_[second].name, 0};
-    proof_.least_clearance_m = 0;
-    return proof_;
+  proofs_.assign(static_cast<std::size_t>(from.cols()), {});
+  for (EdgeProof& proof : proofs_)
+    proof.least_clearance_m = std::numeric_limits<double>::infinity();
+  if (!world_.standing_contacts_.empty()) {
+    const auto [first, second] = world_.names(world_.standing_contacts_.front());
+    for (std::size_t edge = 0; edge < proofs_.size(); ++edge) {
+      proofs_[edge].refutation = {from.col(static_cast<Eigen::Index>(edge)), 0, first, second, 0};
+      proofs_[edge].least_clearance_m = 0;
+    }
+    return proofs_;
   }
   used_places_ = 0;
   pieces_.clear();
-  open_.resize(pairs_.size());
-  for (std::size_t pair = 0; pair < pairs_.size(); ++pair)
-    open_[pair] = pair;
-  const std::size_t start = add_place(0, 0, open_.size());
-  const std::size_t end = add_place(1, 0, open_.size());
-  pieces_.push_back({start, end, 0, open_.size()});
+  open_.clear();
+  ask_lanes();
   // In the order in which they come: the longest pieces first, which find early what is in the way.
-  for (std::size_t next = 0; next < pieces_.size() && !proof_.refutation; ++next)
-    look_at(pieces_[next]);
-  return proof_;
+  for (std::size_t next = 0; next < pieces_.size(); ++next)
+    if (!proofs_[pieces_[next].edge].refutation)
+      look_at(pieces_[next]);
+  return proofs_;
+}
+
+void EdgeProver::ask_lanes() {
+  edge_motions_m_.resize(std::max(edge_motions_m_.size(), proofs_.size()), motion_m_);
+  parts_.clear();
+  for (std::size_t edge = 0; edge < proofs_.size(); ++edge) {
+    const auto column = static_cast<Eigen::Index>(edge);
+    Eigen::MatrixXd& motion_m = edge_motions_m_[edge];
+    bounds_.bound_all(from_.col(column), from_.col(column) + change_.col(column), motion_m);
+    const double farthest_m = motion_m.cols() == 0 ? 0 : motion_m.row(0).maxCoeff();
+    const double count = std::max(1.0, std::ceil(farthest_m / (2 * kFirstGrowth_m)));
+    for (double i = 0; i < count; ++i)
+      parts_.push_back({edge, i / count, (i + 1) / count});
+  }
+  for (int level = 1; level <= kLevels && !parts_.empty(); ++level) {
+    rest_.clear();
+    for (std::size_t first = 0; first < parts_.size(); first += kLanes)
+      ask_parts(
+          std::span(parts_).subspan(first, std::min<std::size_t>(kLanes, parts_.size() - first)),
+          level == kLevels);
+    std::swap(parts_, rest_);
+  }
+}
+
+void EdgeProver::ask_parts(std::span<const Part> parts, bool is_last) {
+  const auto count = static_cast<Eigen::Index>(parts.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Part& part = parts[static_cast<std::size_t>(i)];
+    const auto column = static_cast<Eigen::Index>(part.edge);
+    middles_.col(i) = from_.col(column) + (part.from + part.to) / 2 * change_.col(column);
+    ++proofs_[part.edge].configurations;
+    // One growth for all lanes: what any of the parts' edges moves in half of its part.
+    const Eigen::MatrixXd& motion_m = edge_motions_m_[part.edge];
+    const double half = (part.to - part.from) / 2;
+    if (i == 0)
+      grown_m_ = half * motion_m;
+    else if (const Part& before = parts[static_cast<std::size_t>(i - 1)];
+             before.edge != part.edge || before.to - before.from < part.to - part.from)
+      grown_m_ = grown_m_.cwiseMax(half * motion_m);
+  }
+  const LaneAnswer answer =
+      world_.lanes_.ask_grown(middles_.leftCols(count), grown_m_, clearance_m_, /*is_ahead=*/false);
+  for (int lane = 0; lane < static_cast<int>(count); ++lane)
+    if (const Part& part = parts[static_cast<std::size_t>(lane)];
+        (answer.maybe >> lane & 1U) != 0 && !proofs_[part.edge].refutation)
+      open_part(part, lane, (answer.surely >> lane & 1U) != 0, is_last);
+}
+
+void EdgeProver::open_part(const Part& part, int lane, bool surely, bool is_last) {
+  if (surely && find_contact(part.edge, (part.from + part.to) / 2))
+    return;
+  if (!is_last && !surely) {
+    const double share = (part.to - part.from) / kCuts;
+    for (int i = 0; i < kCuts; ++i)
+      rest_.push_back({part.edge, part.from + i * share, part.from + (i + 1) * share});
+    return;
+  }
+  const std::size_t first = open_.size();
+  if (surely || !open_doubtful(lane))
+    for (std::size_t pair = 0; pair < pairs_.size(); ++pair)
+      open_.push_back(pair);
+  const std::size_t open = open_.size() - first;
+  const bool is_next = used_places_ > 0 && places_[used_places_ - 1].edge == part.edge &&
+                       places_[used_places_ - 1].share == part.from;
+  const std::size_t from = is_next ? used_places_ - 1 : add_place(part.edge, part.from);
+  pieces_.push_back({part.edge, from, add_place(part.edge, part.to), first, open});
+}
+
+bool EdgeProver::find_contact(std::size_t edge, double share) {
+  Place& place = places_[add_place(edge, share)];
+  for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    const auto [a, b] = pairs_[pair];
+    const Solid &first = world_.bodies_[a].solid, &second = world_.bodies_[b].solid;
+    const double apart_m =
+        (pose_at(place, a).translation() - pose_at(place, b).translation()).norm();
+    if (!first.is_hollow() && !second.is_hollow() &&
+        apart_m <= first.radius_m() + second.radius_m() &&
+        !measure(place, pair, std::numeric_limits<double>::infinity()))
+      return true;
+  }
+  return false;
+}
+
+bool EdgeProver::open_doubtful(int lane) {
+  if (!world_.lanes_.doubtful_pairs(lane, doubtful_))
+    return false;
+  for (auto [a, b] : doubtful_) {
+    if (world_.bodies_[a].joint > world_.bodies_[b].joint)
+      std::swap(a, b);
+    for (const BodyPair& pair : {BodyPair(a, b), BodyPair(b, a)}) {  // of one joint: as they are
+      const auto at = std::ranges::lower_bound(pairs_, pair);
+      if (at != pairs_.end() && *at == pair)
+        open_.push_back(static_cast<std::size_t>(at - pairs_.begin()));
+    }
+  }
+  return true;
 }
 
 void EdgeProver::look_at(const Piece piece) {
@@ -86,7 +192,7 @@ void EdgeProver::look_at(const Piece piece) {
   for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
     const std::size_t pair = open_[i];
     const bool apart = is_apart(piece, pair);
-    if (proof_.refutation)
+    if (proofs_[piece.edge].refutation)
       return;
     if (!apart)
       open_.push_back(pair);
@@ -95,63 +201,77 @@ void EdgeProver::look_at(const Piece piece) {
   if (left == 0)
     return;
   const double middle = (places_[piece.from].share + places_[piece.to].share) / 2;
-  const std::size_t place = add_place(middle, first_left, left);
-  pieces_.push_back({piece.from, place, first_left, left});
-  pieces_.push_back({place, piece.to, first_left, left});
+  const std::size_t place = add_place(piece.edge, middle);
+  pieces_.push_back({piece.edge, piece.from, place, first_left, left});
+  pieces_.push_back({piece.edge, place, piece.to, first_left, left});
 }
 
-std::size_t EdgeProver::add_place(double share, std::size_t first, std::size_t count) {
-  ++proof_.configurations;
+std::size_t EdgeProver::add_place(std::size_t edge, double share) {
+  ++proofs_[edge].configurations;
   if (used_places_ == places_.size()) {
     Place& made = places_.emplace_back();
-    made.T_base_bodies = standing_poses(bodies_);
-    made.reach_m.setZero(change_.size(), static_cast<Eigen::Index>(bodies_.size()));
-    made.distances.resize(pairs_.size());
+    made.T_base_bodies.resize(moving_.size());
+    made.reach_m.setZero(change_.rows(), static_cast<Eigen::Index>(moving_.size()));
   }
   Place& place = places_[used_places_];
+  const auto column = static_cast<Eigen::Index>(edge);
+  place.edge = edge;
   place.share = share;
-  place.q = from_ + share * change_;
-  kinematics::joint_poses(robot_.parts().chain, place.q, place.T_base_joints);
-  ++stamp_;
-  for (std::size_t i = first; i < first + count; ++i) {
-    const std::size_t pair = open_[i];
-    const auto [a, b] = pairs_[pair];
-    for (const std::size_t index : {a, b}) {
-      const Body& body = bodies_[index];
-      if (body.joint < 0 || body_stamps_[index] == stamp_)
-        continue;
-      body_stamps_[index] = stamp_;
-      place.T_base_bodies[index] =
-          place.T_base_joints[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
-      bounds_.measure(index, place.T_base_joints,
-                      place.reach_m.col(static_cast<Eigen::Index>(index)));
-    }
-    place.distances[pair] = {cheap_distance_m(bodies_[a].solid, place.T_base_bodies[a],
-                                              bodies_[b].solid, place.T_base_bodies[b]),
-                             false};
-  }
+  place.q = from_.col(column) + share * change_.col(column);
+  place.has_body.assign(moving_.size(), 0);
+  place.distances.assign(pairs_.size(), {});
+  kinematics::joint_poses(world_.robot_.parts().chain, place.q, place.T_base_joints);
   return used_places_++;
 }
 
+const Eigen::Isometry3d& EdgeProver::pose_at(Place& place, std::size_t body) {
+  const int index = index_of_moving_[body];
+  if (index < 0)
+    return world_.T_base_bodies_[body];
+  const auto moving = static_cast<std::size_t>(index);
+  Eigen::Isometry3d& T_base_body = place.T_base_bodies[moving];
+  if (place.has_body[moving] == 0) {
+    place.has_body[moving] = 1;
+    const Body& its = world_.bodies_[body];
+    T_base_body = place.T_base_joints[static_cast<std::size_t>(its.joint)] * its.T_joint_body;
+    bounds_.measure(body, place.T_base_joints, place.reach_m.col(index));
+  }
+  return T_base_body;
+}
+
+EdgeProver::Distance& EdgeProver::distance_at(Place& place, std::size_t pair) {
+  Distance& distance = place.distances[pair];
+  if (distance.m < 0) {
+    const auto [a, b] = pairs_[pair];
+    distance = {cheap_distance_m(world_.bodies_[a].solid, pose_at(place, a),
+                                 world_.bodies_[b].solid, pose_at(place, b)),
+                false};
+  }
+  return distance;
+}
+
 void EdgeProver::bound_motion(const Piece& piece) {
-  const Place &from = places_[piece.from], &to = places_[piece.to];
+  Place &from = places_[piece.from], &to = places_[piece.to];
   ++stamp_;
-  const Eigen::VectorXd change = (to.share - from.share) * change_;
+  const Eigen::VectorXd change =
+      (to.share - from.share) * change_.col(static_cast<Eigen::Index>(piece.edge));
   for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+    distance_at(from, open_[i]);
+    distance_at(to, open_[i]);
     const std::size_t body = pairs_[open_[i]].second;
     if (body_stamps_[body] == stamp_)
       continue;
     body_stamps_[body] = stamp_;
-    const auto column = static_cast<Eigen::Index>(body);
-    bounds_.bound(body, change, from.reach_m.col(column), to.reach_m.col(column),
-                  motion_m_.col(column));
+    const int moving = index_of_moving_[body];
+    bounds_.bound(body, change, from.reach_m.col(moving), to.reach_m.col(moving),
+                  motion_m_.col(static_cast<Eigen::Index>(body)));
   }
 }
 
 bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   const auto [a, b] = pairs_[pair];
   const double motion_m =
-      motion_m_(bodies_[a].joint + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
+      motion_m_(world_.bodies_[a].joint + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
   Place &from = places_[piece.from], &to = places_[piece.to];
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
   for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves
@@ -160,8 +280,8 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
       return false;
   if (are_apart())
     return true;
-  const auto farthest = [a = a, b = b](const Place& place) {  // Clang 14 captures no binding
-    return (place.T_base_bodies[a].translation() - place.T_base_bodies[b].translation()).norm();
+  const auto farthest = [this, a = a, b = b](Place& place) {  // Clang 14 captures no binding
+    return (pose_at(place, a).translation() - pose_at(place, b).translation()).norm();
   };
   if (motion_m > farthest(from) + farthest(to))
     return false;  // hardly helped by measuring, of shapes not at all
@@ -179,17 +299,69 @@ bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
 bool EdgeProver::measure(Place& place, std::size_t pair, double enough_m) {
   const auto [a, b] = pairs_[pair];
   Distance& distance = place.distances[pair];
-  const double close_m = close_distance_m(bodies_[a].solid, place.T_base_bodies[a],
-                                          bodies_[b].solid, place.T_base_bodies[b], enough_m);
+  const double close_m = close_distance_m(world_.bodies_[a].solid, pose_at(place, a),
+                                          world_.bodies_[b].solid, pose_at(place, b), enough_m);
   distance = {std::max(distance.m, close_m), close_m < enough_m};
-  ++proof_.distances;
+  EdgeProof& proof = proofs_[place.edge];
+  ++proof.distances;
   if (!distance.is_close)
     return true;
-  proof_.least_clearance_m = std::min(proof_.least_clearance_m, distance.m);
+  proof.least_clearance_m = std::min(proof.least_clearance_m, distance.m);
   if (distance.m > clearance_m_)
     return true;
-  proof_.refutation = {place.q, place.share, bodies_[a].name, bodies_[b].name, distance.m};
+  proof.refutation = {place.q, place.share, world_.bodies_[a].name, world_.bodies_[b].name,
+                      distance.m};
   return false;
+}
+
+Eigen::Index EdgeProver::clear_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                     const EdgeProofOptions& options) {
+  check(qs, options);
+  return alike_ahead(qs, options.clearance_m, true);
+}
+
+Eigen::Index EdgeProver::near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                    const EdgeProofOptions& options) {
+  check(qs, options);
+  return alike_ahead(qs, options.clearance_m, false);
+}
+
+Eigen::Index EdgeProver::alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                     double clearance_m, bool clear) {
+  if (!world_.standing_contacts_.empty())
+    return clear ? 0 : qs.cols();
+  clearance_m_ = clearance_m;
+  grown_m_.setZero();
+  for (Eigen::Index first = 0; first < qs.cols(); first += kLanes) {
+    const Eigen::Index count = std::min<Eigen::Index>(kLanes, qs.cols() - first);
+    const LaneAnswer answer = world_.lanes_.ask_grown(qs.middleCols(first, count), grown_m_,
+                                                      clearance_m, /*is_ahead=*/clear);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const bool is_near =
+          (answer.surely >> i & 1U) != 0 ||
+          ((answer.maybe >> i & 1U) != 0 && !is_clear(static_cast<int>(i), qs.col(first + i)));
+      if (is_near == clear)
+        return first + i;
+    }
+  }
+  return qs.cols();
+}
+
+bool EdgeProver::is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q) {
+  if (!world_.lanes_.doubtful_pairs(lane, doubtful_))
+    doubtful_ = pairs_;
+  kinematics::joint_poses(world_.robot_.parts().chain, q, world_.T_base_joints_);
+  return std::ranges::all_of(doubtful_, [&](const BodyPair& pair) {
+    for (const std::size_t index : {pair.first, pair.second})
+      if (const Body& body = world_.bodies_[index]; body.joint >= 0)
+        world_.T_base_bodies_[index] =
+            world_.T_base_joints_[static_cast<std::size_t>(body.joint)] * body.T_joint_body;
+    const Solid &a = world_.bodies_[pair.first].solid, &b = world_.bodies_[pair.second].solid;
+    const Eigen::Isometry3d &T_a = world_.T_base_bodies_[pair.first],
+                            &T_b = world_.T_base_bodies_[pair.second];
+    return cheap_distance_m(a, T_a, b, T_b) > clearance_m_ ||
+           close_distance_m(a, T_a, b, T_b, clearance_m_ + kMotionRounding_m) > clearance_m_;
+  });
 }
 
 }  // namespace kinship::collision

@@ -4,14 +4,13 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "robots/collision/body.hpp"
 #include "robots/collision/body_pairs.hpp"
+#include "robots/collision/collision_world.hpp"
 #include "robots/collision/motion_bounds.hpp"
-#include "robots/collision/robot_solids.hpp"
 
 namespace kinship::collision {
 
@@ -43,79 +42,125 @@ struct EdgeProof {
 };
 
 /// Proves that a robot touches nothing on the straight line between two configurations, or finds
-/// where it does. The same pairs as CollisionWorld's of the same arguments. Not shared between
-/// threads; asking again needs no heap but for what an earlier edge did not.
+/// where it does. Not shared between threads, nor with who asks its world at the same time; asking
+/// again needs no heap but for what an earlier edge did not.
 ///
 /// A pair of bodies is apart on a piece of the edge if what they can move relative to each other is
-/// less than the sum of their distances at its ends. Pieces are halved for the pairs that this
-/// leaves open, the longest first, until none is left or a pair is as near as `clearance_m`.
-/// Halving halves the motion, so it ends. Source: Schwarzer, Saha and Latombe, Adaptive Dynamic
-/// Collision Checking for Single and Multiple Articulated Robots in Complex Environments, IEEE
-/// Transactions on Robotics 21 (2005), section III.
+/// less than the sum of their distances at its ends, or than twice their distance at its middle.
+/// The latter is asked of the world's lanes, sixteen middles at a time, of bodies grown by that
+/// motion. Of the pairs that this leaves open pieces are halved, the longest first, until none is
+/// left or a pair is as near as `clearance_m`. Halving halves the motion, so it ends.
+/// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
+/// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section
+/// III.
 class EdgeProver {
  public:
-  /// \throws Failure(InvalidInput) as CollisionWorld's constructor.
-  EdgeProver(const RobotSolids& robot, const Surroundings& surroundings);
-  EdgeProver(const kinematics::Chain& chain, const geometry::RobotShapes& shapes,
-             const Surroundings& surroundings);
+  /// \param world  whose pairs are looked at; must outlive this. Its checks are not counted.
+  explicit EdgeProver(CollisionWorld& world);
 
   /// \param from, to  dof, joint units; limits are not checked, continuous joints turn the way
-  /// their
-  ///                  numbers say.
-  /// \throws std::invalid_argument if a size is wrong, a value not finite, or clearance_m not in
-  ///         (0, 1].
+  ///                  their numbers say.
+  /// \throws std::invalid_argument if a size is wrong, a value not finite, or clearance_m not above
+  ///         0 and at most kLargestRoom_m.
   EdgeProof prove(const Eigen::Ref<const Eigen::VectorXd>& from,
                   const Eigen::Ref<const Eigen::VectorXd>& to,
                   const EdgeProofOptions& options = {});
 
+  /// The same of several edges, which costs less than one after the other.
+  /// \param from, to  dof x n: an edge's ends, a column each
+  /// \return one an edge, until this is asked again
+  const std::vector<EdgeProof>& prove_all(const Eigen::Ref<const Eigen::MatrixXd>& from,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& to,
+                                          const EdgeProofOptions& options = {});
+
+  /// How many configurations, from the first on, are farther than the clearance from touching
+  /// anything, before one is not.
+  /// \param qs  dof x n, joint units
+  /// \throws std::invalid_argument as above.
+  Eigen::Index clear_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                           const EdgeProofOptions& options = {});
+
+  /// The same the other way round: how many are not, before one is.
+  Eigen::Index near_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                          const EdgeProofOptions& options = {});
+
  private:
   /// What is known of a pair at a configuration.
   struct Distance {
-    double m = 0;  // from below
+    double m = -1;  // from below; negative: not looked at
     bool is_close = false;
   };
-  /// A configuration of the edge; of bodies and pairs what is asked for.
+  /// A configuration of the edge; of bodies and pairs what was asked for.
   struct Place {
+    std::size_t edge = 0;
     double share = 0;
     Eigen::VectorXd q;
-    std::vector<Eigen::Isometry3d> T_base_joints, T_base_bodies;
-    Eigen::MatrixXd reach_m;          // dof x bodies
+    std::vector<Eigen::Isometry3d> T_base_joints, T_base_bodies;  // the latter of moving_
+    Eigen::MatrixXd reach_m;                                      // dof x moving_
+    std::vector<char> has_body;       // of moving_: whether it is placed and its reach measured
     std::vector<Distance> distances;  // one a pair
   };
   /// A part of the edge and the pairs that are open on it.
   struct Piece {
+    std::size_t edge = 0;
     std::size_t from = 0, to = 0;      // places
     std::size_t first = 0, count = 0;  // of open_
   };
+  /// A part of an edge, by shares of it.
+  struct Part {
+    std::size_t edge = 0;
+    double from = 0, to = 0;
+  };
 
-  void check(const Eigen::Ref<const Eigen::VectorXd>& from,
-             const Eigen::Ref<const Eigen::VectorXd>& to, const EdgeProofOptions& options) const;
-  /// Adds the configuration at a share of the edge, with cheap distances of the pairs that are
-  /// open. \return its index.
-  std::size_t add_place(double share, std::size_t first, std::size_t count);
+  void check(const Eigen::Ref<const Eigen::MatrixXd>& qs, const EdgeProofOptions& options) const;
+  /// Asks the lanes about the edges, part by part; what they leave open becomes pieces.
+  void ask_lanes();
+  /// Asks about at most kLanes parts. \param is_last  whether they are not cut into smaller ones
+  void ask_parts(std::span<const Part> parts, bool is_last);
+  /// What is to become of a part that the lanes leave open, or where bodies surely touch.
+  void open_part(const Part& part, int lane, bool surely, bool is_last);
+  /// Whether solids are too near where the lanes say that some touch.
+  bool find_contact(std::size_t edge, double share);
+  /// Opens the pairs that the lanes doubt. \return false: all of them.
+  bool open_doubtful(int lane);
+  /// The configuration at a share of an edge. \return its index.
+  std::size_t add_place(std::size_t edge, double share);
+  const Eigen::Isometry3d& pose_at(Place& place, std::size_t body);  ///< in the base frame
+  /// What is known of a pair at a place, a cheap distance at least.
+  Distance& distance_at(Place& place, std::size_t pair);
   /// Bounds the motion of the bodies of a piece's pairs.
   void bound_motion(const Piece& piece);
   /// Whether a pair is apart all along a piece. Sets the refutation if it is too near at an end.
   bool is_apart(const Piece& piece, std::size_t pair);
   /// Measures a pair, closely unless it reaches what is enough. \return whether it is not too near.
   bool measure(Place& place, std::size_t pair, double enough_m);
+  /// How many, from the first on, are clear, or not, before one answers otherwise.
+  Eigen::Index alike_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs, double clearance_m,
+                           bool clear);
+  /// Whether no pair that the lanes doubt is too near. \param lane  q's, of the last question
+  bool is_clear(int lane, const Eigen::Ref<const Eigen::VectorXd>& q);
   void look_at(Piece piece);  ///< by value: the list grows
 
-  RobotSolids robot_;
-  std::vector<Body> bodies_;
-  std::vector<BodyPair> pairs_;  // the first of each is moved by the earlier joint, or stands
-  std::optional<BodyPair> standing_contact_;
+  CollisionWorld& world_;
+  std::vector<BodyPair>
+      pairs_;  // sorted; the first of each is moved by the earlier joint, or stands
   MotionBounds bounds_;
+  std::vector<std::size_t> moving_;   // the bodies that joints move
+  std::vector<int> index_of_moving_;  // one a body: of moving_, or -1
 
-  // Of the edge that is asked about.
-  Eigen::VectorXd from_, change_;
+  // Of the edges that are asked about.
+  Eigen::MatrixXd from_, change_;  // dof x n
   double clearance_m_ = 0;
-  EdgeProof proof_;
+  std::vector<EdgeProof> proofs_;
   std::deque<Place> places_;
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
-  std::vector<std::size_t> open_;  // pairs
-  Eigen::MatrixXd motion_m_;       // dof + 1 x bodies
+  std::vector<std::size_t> open_;                // pairs
+  std::vector<Part> parts_, rest_;               // that the lanes are asked about, now and next
+  std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
+  Eigen::MatrixXd motion_m_, grown_m_;           // dof + 1 x bodies: of a piece, of a part
+  Eigen::MatrixXd middles_;                      // dof x kLanes
+  std::vector<BodyPair> doubtful_;
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;
 };

@@ -197,7 +197,7 @@ class LaneWorldMaker {
 
   /// Pairs of a body and an obstacle that it never gets to.
   void drop_out_of_reach() {
-    constexpr double kSlack_m = 1e-3;
+    constexpr double kSlack_m = kLargestRoom_m + 1e-3;
     std::erase_if(pairs_, [this](const BodyPair& pair) {
       const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
       if (a.joint >= 0 && b.joint >= 0)
@@ -356,8 +356,8 @@ class LaneWorldMaker {
       body.first_other = static_cast<int>(world_.others_.size());
       body.others = static_cast<int>(others[i].size());
       for (const int other : others[i]) {
-        const float reach = body.radius + world_.bodies_[static_cast<std::size_t>(other)].radius;
-        world_.others_.push_back({other, reach * reach});
+        world_.others_.push_back(
+            {other, body.radius + world_.bodies_[static_cast<std::size_t>(other)].radius});
       }
     }
   }
@@ -381,6 +381,8 @@ LaneWorld::LaneWorld(const kinematics::Chain& chain, const std::vector<Body>& bo
     : question_() {
   question_.likely_body = -1;
   LaneWorldMaker(*this, chain, bodies, pairs).make();
+  ungrown_.assign(bodies_.size() + others_.size(), 0);
+  growth_ = ungrown_;
 }
 
 bool LaneWorld::doubtful_pairs(int lane, std::vector<BodyPair>& pairs) const {
@@ -407,6 +409,27 @@ LaneAnswer LaneWorld::ask(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
 
 LaneAnswer LaneWorld::ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs) {
   return answer(qs, fastest(qs.cols()), true);
+}
+
+LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                                const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
+                                bool is_ahead) {
+  constexpr double kOfFloats = 1 + 1e-6;
+  const auto grown = [&](int frame, std::size_t lane_body) {
+    const auto body = static_cast<Eigen::Index>(index_of_body_[lane_body]);
+    return static_cast<float>((motion_m(frame, body) + room_m) * kOfFloats);
+  };
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    growth_[i] = grown(0, i);
+    const LaneBody& body = bodies_[i];
+    for (int k = body.first_other; k < body.first_other + body.others; ++k) {
+      const auto other = static_cast<std::size_t>(others_[static_cast<std::size_t>(k)].body);
+      const int joint = bodies_[other].joint;
+      growth_[bodies_.size() + static_cast<std::size_t>(k)] =
+          joint > body.joint ? grown(body.joint + 1, other) : grown(joint + 1, i);
+    }
+  }
+  return answer(qs, fastest(qs.cols()), is_ahead, true);
 }
 
 bool LaneWorld::write_lane(const double* q, int lane) {
@@ -445,11 +468,14 @@ std::uint32_t LaneWorld::write_question(const Eigen::Ref<const Eigen::MatrixXd>&
 }
 
 LaneAnswer LaneWorld::answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set,
-                             bool is_ahead) {
+                             bool is_ahead, bool is_grown) {
   const std::uint32_t asked = (1U << qs.cols()) - 1U;
   if (!has_room_)
     return {asked, 0};
   const std::uint32_t beyond = beyond_ = write_question(qs);
+  const float* const growth = (is_grown ? growth_ : ungrown_).data();
+  question_.growth = growth;
+  question_.other_growth = growth + bodies_.size();
   question_.is_ahead = is_ahead && beyond == 0;  // else an unknown one might hide what comes behind
   const LaneScene scene{static_cast<int>(joints_.size()),
                         static_cast<int>(bodies_.size()),

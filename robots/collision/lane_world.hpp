@@ -11,6 +11,9 @@
 
 namespace kinship::collision {
 
+/// What pairs may be grown by besides their motion, m: which of them come so near is found once.
+inline constexpr double kLargestRoom_m = 0.1;
+
 /// What is known of some configurations; bit i: the i-th.
 struct LaneAnswer {
   std::uint32_t maybe = 0;   ///< may collide; the others are free for sure
@@ -35,6 +38,16 @@ class LaneWorld {
 
   /// The same, but nothing is known of those behind the first that surely collides.
   LaneAnswer ask_ahead(const Eigen::Ref<const Eigen::MatrixXd>& qs);
+
+  /// The same of bodies that are grown: where they may not collide they have so much room.
+  /// What surely collides does so as it is.
+  /// \param motion_m  dof + 1 x the constructor's bodies, as MotionBounds has it: by how much each
+  ///                  is grown towards what stands still ([0]) and what the k-th joint moves ([k])
+  /// \param room_m    by how much more every pair is
+  /// \param is_ahead  nothing is known of those behind the first that surely collides
+  LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
+                       const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
+                       bool is_ahead);
 
   /// Pairs that may touch at one of the configurations asked about last, not surely colliding.
   /// \param pairs  of the constructor's bodies.
@@ -61,7 +74,8 @@ class LaneWorld {
   /// Writes configurations into the question, idle lanes as the last one.
   /// \return those that the numbers do not hold for.
   std::uint32_t write_question(const Eigen::Ref<const Eigen::MatrixXd>& qs);
-  LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set, bool is_ahead);
+  LaneAnswer answer(const Eigen::Ref<const Eigen::MatrixXd>& qs, const LaneSet& set, bool is_ahead,
+                    bool is_grown = false);
 
   float slack_ = 0;
   Writing writing_{};
@@ -75,6 +89,7 @@ class LaneWorld {
   std::vector<LaneOther> others_;
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
   std::vector<Place> places_;                                   // three a sphere
+  std::vector<float> growth_, ungrown_;                         // one a body, then one an other
   LaneQuestion question_;     // kept, so that asking needs no heap
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
   bool has_room_ = true;      // for all bodies; else everything may collide

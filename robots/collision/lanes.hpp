@@ -13,7 +13,7 @@ inline constexpr int kLanes = 16;        ///< configurations that are asked abou
 inline constexpr int kLaneJoints = 32;   ///< of a chain
 inline constexpr int kLaneBodies = 128;  ///< that joints move
 inline constexpr int kCoverRows = 5;     ///< centres' x, y, z, then outer and inner radii
-inline constexpr int kLaneDoubts = 32;   ///< that are told of
+inline constexpr int kLaneDoubts = 64;   ///< that are told of
 
 /// A joint, seen from a frame whose z axis is the joint's; lengths in m.
 struct LaneJoint {
@@ -62,7 +62,7 @@ struct LaneBody {
 /// One of two bodies that may not touch each other.
 struct LaneOther {
   int body;
-  float reach2;  ///< squared: centres that are farther apart are of bodies that are, m^2
+  float reach;  ///< centres that are farther apart are of bodies that are, m
 };
 
 /// A solid that stands still, in the scene's frame.
@@ -100,6 +100,9 @@ struct alignas(64) LaneQuestion {
   float q[kLaneJoints]
          [kLanes];  ///< the joint's value plus what its frame was turned, rad in [-pi, pi], or m
   int count;        ///< lanes that are asked for, from 0 on
+  /// By how much each body, and each of LaneScene::others as its body sees it, is grown, m: what
+  /// may not collide then has so much room. What surely collides does so as it is.
+  const float *growth, *other_growth;
   /// Whether nothing matters behind the first lane that collides for sure; what is said of those is
   /// `surely`.
   bool is_ahead;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kinship::collision {
 namespace {
@@ -43,12 +44,45 @@ Spanned span_of(const Shape& shape) {
 
 MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies) {
   for (const kinematics::Joint& joint : chain.joints()) {
+    const Eigen::Vector3d origin = joint.T_previous_joint.translation();
+    origins_across_m_.push_back(axes_.empty() ? 0 : origin.cross(axes_.back()).norm());
+    origins_reach_m_.push_back(origin.norm());
     axes_.push_back(joint.axis);
     slides_.push_back(joint.type == kinematics::JointType::Prismatic);
   }
   for (const Body& body : bodies) {
     Spanned span = span_of(body.solid.shape());
-    hulls_.push_back({body.joint, body.T_joint_body * span.corners, span.radius_m});
+    Hull hull{body.joint, body.T_joint_body * span.corners, span.radius_m, 0, 0};
+    if (body.joint >= 0)
+      for (const auto& corner : hull.corners.colwise()) {
+        const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(body.joint)];
+        const Eigen::Vector3d at = corner;
+        hull.across_m = std::max(hull.across_m, at.cross(axis).norm() + span.radius_m);
+        hull.reach_m = std::max(hull.reach_m, at.norm() + span.radius_m);
+      }
+    hulls_.push_back(std::move(hull));
+  }
+}
+
+void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
+                             const Eigen::Ref<const Eigen::VectorXd>& to,
+                             Eigen::Ref<Eigen::MatrixXd> motion_m) const {
+  for (std::size_t body = 0; body < hulls_.size(); ++body) {
+    const Hull& hull = hulls_[body];
+    const auto column = static_cast<Eigen::Index>(body);
+    // Of the body's points, from the axis and from the origin of the joint that is looked at.
+    double across = hull.across_m, reach = hull.reach_m, motion = 0;
+    for (int k = hull.joint; k >= 0; --k) {
+      motion_m(k + 1, column) = motion;
+      const auto joint = static_cast<std::size_t>(k);
+      const double change = std::abs(to[k] - from[k]);
+      motion += change * (slides_[joint] ? 1 : across) * (1 + kReachRounding);
+      // One joint on: by how far it slides, and by where its origin is.
+      const double slide = slides_[joint] ? std::max(std::abs(from[k]), std::abs(to[k])) : 0;
+      across = origins_across_m_[joint] + slide + reach + kReachRounding;
+      reach += origins_reach_m_[joint] + slide + kReachRounding;
+    }
+    motion_m(0, column) = motion;
   }
 }
 

@@ -21,6 +21,14 @@ class MotionBounds {
  public:
   MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
 
+  /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m:
+  /// coarser than bound(), without looking at a configuration. Of a part of the line the same part.
+  /// \param from, to  dof, joint units: the ends of the line
+  /// \param motion_m  out: dof + 1 x bodies, as bound() has it
+  void bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
+                 const Eigen::Ref<const Eigen::VectorXd>& to,
+                 Eigen::Ref<Eigen::MatrixXd> motion_m) const;
+
   /// Largest distances of a body's points from the axes of the joints that move it, at one
   /// configuration, m; 0 for prismatic joints.
   /// \param T_base_joints  poses of the joints' moving frames there, one a joint
@@ -42,12 +50,16 @@ class MotionBounds {
  private:
   struct Hull {
     int joint = -1;
-    Eigen::Matrix3Xd corners;  // 3 x 1, 2 or 8, in the joint's moving frame
-    double radius_m = 0;       // all of the body lies so near to what the corners span
+    Eigen::Matrix3Xd corners;          // 3 x 1, 2 or 8, in the joint's moving frame
+    double radius_m = 0;               // all of the body lies so near to what the corners span
+    double across_m = 0, reach_m = 0;  // from the joint's axis, from its origin
   };
 
   std::vector<Eigen::Vector3d> axes_;  // one a joint, in its frame
   std::vector<bool> slides_;
+  // Of a joint's origin, where it does not slide, in the frame of the joint before: from its axis,
+  // from its origin.
+  std::vector<double> origins_across_m_, origins_reach_m_;
   std::vector<Hull> hulls_;  // one a body
 };
 

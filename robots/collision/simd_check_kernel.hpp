@@ -35,10 +35,12 @@ class Group {
       check_obstacles(index, center);
       for (int i = 0; i < body.others; ++i) {
         const LaneOther& other = scene_.others[body.first_other + i];
+        const float growth = question_.other_growth[body.first_other + i];
+        const float reach = other.reach + growth;
         const unsigned near =
-            below(distance2(center, centers_[other.body]), all(other.reach2)) & ~verdict_.surely;
+            below(distance2(center, centers_[other.body]), all(reach * reach)) & ~verdict_.surely;
         if (near != 0)
-          compare_bodies(index, other.body, near);
+          compare_bodies(index, other.body, near, growth);
       }
     }
     return verdict_;
@@ -79,11 +81,11 @@ class Group {
   /// First the box around where the body is in any lane, against those of many obstacles.
   KINSHIP_SIMD_INLINE void check_obstacles(int index, const WidePoint& center) {
     const LaneBody& body = scene_.body[index];
-    const WidePoint low = {all(least(center.x) - body.radius), all(least(center.y) - body.radius),
-                           all(least(center.z) - body.radius)};
-    const WidePoint high = {all(largest(center.x) + body.radius),
-                            all(largest(center.y) + body.radius),
-                            all(largest(center.z) + body.radius)};
+    const float growth = question_.growth[index], radius = body.radius + growth;
+    const WidePoint low = {all(least(center.x) - radius), all(least(center.y) - radius),
+                           all(least(center.z) - radius)};
+    const WidePoint high = {all(largest(center.x) + radius), all(largest(center.y) + radius),
+                            all(largest(center.z) + radius)};
     for (int block = 0; block < scene_.blocks; ++block) {
       unsigned open = scene_.reach[body.first_reach + block];
       if (open == 0)
@@ -100,7 +102,7 @@ class Group {
       open &= near;
       if (open == 0)
         continue;
-      const WidePoint half = extents(body);
+      const WidePoint half = extents(body, growth);
       for (; open != 0; open &= open - 1) {
         const int lane = __builtin_ctz(open);
         const unsigned within =
@@ -111,13 +113,14 @@ class Group {
     }
   }
 
-  /// How far a body reaches along the scene's axes, to either side of its centre, in each lane.
-  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body) const {
+  /// How far a grown body reaches along the scene's axes, to either side of its centre, in each
+  /// lane.
+  KINSHIP_SIMD_INLINE WidePoint extents(const LaneBody& body, float growth) const {
     const LaneForm& form = body.form;
     const WideFrame& frame = frames_[body.joint];
     const float(&A)[9] = form.axes;
     const WidePoint z = turned(frame, A[2], A[5], A[8]);
-    const float more = 4 * scene_.slack + (is_box(form) ? 0.0F : form.radius);
+    const float more = 4 * scene_.slack + growth + (is_box(form) ? 0.0F : form.radius);
     WidePoint half = {absolute(z.x) * form.half[2] + more, absolute(z.y) * form.half[2] + more,
                       absolute(z.z) * form.half[2] + more};
     if (!is_box(form))
@@ -144,7 +147,8 @@ class Group {
   KINSHIP_SIMD_INLINE void check_obstacle(int index, int which, const WidePoint& center,
                                           unsigned open) {
     const LaneObstacle& obstacle = scene_.obstacle[which];
-    const unsigned near = reach(obstacle.form, center, scene_.body[index].radius) & open;
+    const unsigned near =
+        reach(obstacle.form, center, scene_.body[index].radius + question_.growth[index]) & open;
     if (near == 0)
       return;
     const unsigned before = verdict_.surely;
@@ -233,11 +237,13 @@ class Group {
     const LaneObstacle& obstacle = scene_.obstacle[which];
     const LaneBody& body = scene_.body[index];
     const bool few = __builtin_popcount(near) * (body.room / KINSHIP_SIMD_WIDTH) < body.count;
-    const Verdict found = few && obstacle.is_solid ? compare_lanes(body, obstacle.form, near)
-                                                   : compare_spheres(index, obstacle, near);
+    const float growth = question_.growth[index];
+    const Verdict found = few && obstacle.is_solid
+                              ? compare_lanes(body, obstacle.form, growth, near)
+                              : compare_spheres(index, obstacle, growth, near);
     conclude(found, {0, index, which, -1}, [&](unsigned open) {
       Planes planes = separated(placed(body.form, frames_[body.joint]), body.form,
-                                standing(obstacle.form), obstacle.form, scene_.slack, open);
+                                standing(obstacle.form), obstacle.form, scene_.slack, growth, open);
       if (!body.is_solid || !obstacle.is_solid)
         planes.overlapping = 0;
       return planes;
@@ -245,7 +251,8 @@ class Group {
   }
 
   /// One lane after the other, many spheres at once.
-  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, unsigned near) const {
+  Verdict compare_lanes(const LaneBody& body, const LaneForm& form, float growth,
+                        unsigned near) const {
     const float extra = form.shape == LaneShape::Capsule ? form.radius : 0.0F;
     Verdict found;
     for (; near != 0; near &= near - 1) {
@@ -260,7 +267,7 @@ class Group {
       for (int i = 0; i < body.room; i += KINSHIP_SIMD_WIDTH) {
         const float* const row = scene_.cover + body.first_cover + i;
         const Wide x = load(row), y = load(row + body.room), z = load(row + 2 * body.room);
-        const Wide outer = load(row + 3 * body.room) + extra;
+        const Wide outer = load(row + 3 * body.room) + (extra + growth);
         const Wide inner = load(row + 4 * body.room);
         const WidePoint at = {frame.R[0] * x + frame.R[1] * y + frame.R[2] * z + frame.p[0],
                               frame.R[3] * x + frame.R[4] * y + frame.R[5] * z + frame.p[1],
@@ -277,7 +284,7 @@ class Group {
   }
 
   /// One sphere after the other, all lanes at once.
-  Verdict compare_spheres(int index, const LaneObstacle& obstacle, unsigned near) {
+  Verdict compare_spheres(int index, const LaneObstacle& obstacle, float growth, unsigned near) {
     const LaneBody& body = scene_.body[index];
     place_spheres(index);
     const float extra = obstacle.form.shape == LaneShape::Capsule ? obstacle.form.radius : 0.0F;
@@ -286,12 +293,12 @@ class Group {
       const LaneSphere& its = scene_.spheres[i];
       const WidePoint at = sphere(i);
       const Wide squared = distance2(obstacle.form, at);
-      const float outer = its.outer + extra, inner = its.inner + extra;
+      const float outer = its.outer + extra + growth, inner = its.inner + extra;
       unsigned touched = below(squared, all(outer * outer)) & near;
       if (touched == 0)
         continue;
       if (!obstacle.is_solid)
-        touched &= reach_surface(obstacle, at, its.outer);
+        touched &= reach_surface(obstacle, at, its.outer + growth);
       else if (its.inner > 0)
         found.surely |= below(squared, all(inner * inner)) & near;
       found.maybe |= touched;
@@ -303,7 +310,7 @@ class Group {
   }
 
   /// Two bodies, closely.
-  void compare_bodies(int first, int second, unsigned near) {
+  void compare_bodies(int first, int second, unsigned near, float growth) {
     place_spheres(first);
     place_spheres(second);
     const LaneBody &a = scene_.body[first], &b = scene_.body[second];
@@ -311,21 +318,22 @@ class Group {
     for (int i = a.first; i < a.first + a.count; ++i) {
       const WidePoint at = sphere(i);
       const LaneSphere& its = scene_.spheres[i];
-      const float around = its.outer + b.radius;
+      const float around = its.outer + b.radius + growth;
       if ((below(distance2(at, centers_[second]), all(around * around)) & near) == 0)
         continue;
       for (int j = b.first; j < b.first + b.count; ++j) {
         const LaneSphere& others = scene_.spheres[j];
         const Wide squared = distance2(at, sphere(j));
-        const float outer = its.outer + others.outer, inner = its.inner + others.inner;
+        const float outer = its.outer + others.outer + growth, inner = its.inner + others.inner;
         found.maybe |= below(squared, all(outer * outer)) & near;
         if (its.inner > 0 && others.inner > 0)
           found.surely |= below(squared, all(inner * inner)) & near;
       }
     }
     conclude(found, {0, first, -1, second}, [&](unsigned open) {
-      Planes planes = separated(placed(a.form, frames_[a.joint]), a.form,
-                                placed(b.form, frames_[b.joint]), b.form, scene_.slack, open);
+      Planes planes =
+          separated(placed(a.form, frames_[a.joint]), a.form, placed(b.form, frames_[b.joint]),
+                    b.form, scene_.slack, growth, open);
       if (!a.is_solid || !b.is_solid)
         planes.overlapping = 0;
       return planes;

@@ -74,13 +74,14 @@ struct Planes {
 class Separation {
  public:
   Separation(const WideForm& a, const LaneForm& a_form, const WideForm& b, const LaneForm& b_form,
-             float slack)
+             float slack, float growth)
       : a_(a),
         b_(b),
         a_form_(a_form),
         b_form_(b_form),
         between_(minus(b.center, a.center, all(1))),
         slack_(slack),
+        room_(4 * slack + growth),
         rounding_(1e-6F + 6e-7F * (size(a_form) + size(b_form))) {}
 
   unsigned apart() const { return apart_; }
@@ -93,7 +94,7 @@ class Separation {
     const Wide norm = root(dot(n, n));
     const Wide reached = extent(a_form_, a_, n, norm) + extent(b_form_, b_, n, norm);
     const Wide distance = absolute(dot(n, between_));
-    apart_ |= below(reached + norm * (4 * slack_) + 1e-7F, distance);
+    apart_ |= below(reached + norm * room_ + 1e-7F, distance);
     overlapping_ &= below(distance + norm * (4 * slack_) + rounding_, reached);
     const Wide depth = reached - distance;
     depth_ = depth < depth_ ? depth : depth_;
@@ -106,7 +107,7 @@ class Separation {
     const Wide squared = dot(n, n), norm = root(squared);
     const Wide reached = extent(a_form_, a_, n, norm) + extent(b_form_, b_, n, norm);
     const Wide distance = absolute(dot(n, between_));
-    apart_ |= below(reached + norm * (4 * slack_) + 1e-7F, distance);
+    apart_ |= below(reached + norm * room_ + 1e-7F, distance);
     const unsigned clearly = below(distance + norm * (4 * slack_) + rounding_, reached);
     const unsigned parallel = below(squared, all(kSine * kSine));
     const float moved = 4 * kSine * (size(a_form_) + size(b_form_));
@@ -122,6 +123,7 @@ class Separation {
   const LaneForm &a_form_, &b_form_;
   WidePoint between_;
   float slack_;
+  float room_;      // between what is apart, m
   float rounding_;  // of extents and distances where shapes overlap: it grows with them, m
   unsigned apart_ = 0, overlapping_ = ~0U;
   Wide depth_ = all(1e9F);  // least overlap so far
@@ -138,11 +140,12 @@ KINSHIP_SIMD_INLINE void attempt_others(const WideForm& a, const WideForm& b, Se
 /// Tries planes of the forms' axes, across an axis of each, and, where one is no box, across what
 /// joins their centres, also without its part along either's longest axis. Of two boxes these are
 /// all that matter, so that they say too which overlap; of the others they may miss some.
-/// \param open  lanes that matter; ends as soon as all of these are apart.
+/// \param growth  what is apart has so much between it, m
+/// \param open    lanes that matter; ends as soon as all of these are apart.
 /// Source: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996 (boxes).
 Planes separated(const WideForm& a, const LaneForm& a_form, const WideForm& b,
-                 const LaneForm& b_form, float slack, unsigned open) {
-  Separation planes(a, a_form, b, b_form, slack);
+                 const LaneForm& b_form, float slack, float growth, unsigned open) {
+  Separation planes(a, a_form, b, b_form, slack, growth);
   const bool are_boxes = is_box(a_form) && is_box(b_form);
   const int a_first = is_box(a_form) ? 0 : 2;
   const int b_first = is_box(b_form) ? 0 : 2;

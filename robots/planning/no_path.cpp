@@ -40,6 +40,8 @@ std::string_view describe(NoPath reason) {
       return "nothing to recall";
     case NoPath::RecallCollides:
       return "recalled path collides";
+    case NoPath::EdgesRefuted:
+      return "the paths found are not free between the configurations that were checked";
   }
   return "";
 }

@@ -23,7 +23,8 @@ enum class NoPath {
   TimeLimit,
   GaveUp,  ///< a planner of OMPL, before checks and time were used up
   NothingRecalled,
-  RecallCollides  ///< the path that was recalled
+  RecallCollides,  ///< the path that was recalled
+  EdgesRefuted     ///< what is free where it was asked about is not in between, however closely
 };
 
 /// For people, without what only the query knows: "every goal collides". Empty for None.

@@ -70,6 +70,9 @@ class StraightWay {
     parts_ = count_of_parts((to_ - from_).norm(), step_);
     return true;
   }
+  bool is_proven(const IsFree& is_free) const {
+    return is_free.edges(from_, to_).front().has_value();
+  }
   Eigen::Index parts() const { return parts_; }
   /// \param i  0 to parts()
   void write(Eigen::Index i, Eigen::Ref<Eigen::VectorXd> q) const {
@@ -104,6 +107,14 @@ class SlidingWay {
     }
     way_.push_back(target);
     return true;
+  }
+  bool is_proven(const IsFree& is_free) const {
+    if (!is_free.proves_edges())
+      return true;
+    Eigen::MatrixXd way(way_.front().size(), parts() + 1);
+    for (Eigen::Index i = 0; i < way.cols(); ++i)
+      write(i, way.col(i));
+    return is_free.way_is_free(way);
   }
   Eigen::Index parts() const { return static_cast<Eigen::Index>(way_.size()) - 1; }
   void write(Eigen::Index i, Eigen::Ref<Eigen::VectorXd> q) const {
@@ -158,7 +169,7 @@ ShortcutSummary shorten(Eigen::MatrixXd waypoints, const IsFree& is_free,
       continue;
     const auto needed = static_cast<std::uint64_t>(way.parts() - 1);
     if (summary.collision_checks + needed > options.max_checks ||
-        !way_is_free(way, is_free, asked, summary.collision_checks))
+        !way_is_free(way, is_free, asked, summary.collision_checks) || !way.is_proven(is_free))
       continue;
     path.replace(from, to, way);
     fruitless = 0;

@@ -46,6 +46,8 @@ BENCHES = [
     bench("collision", "collision_bench", "Collision checks, 12 boxes and a held box, one thread"),
     bench("planning", "planning_bench", "Uniform BiRRT in a shelf cell", ["free"], repeats=1),
     bench("planning-upright", "planning_bench", "Uniform CBiRRT2 carrying a container upright", ["upright"], repeats=1),
+    bench("proof", "proof_bench", "Edges proven, beside steps and FCL's continuous collision", ["edges"], repeats=1),
+    bench("proof-planning", "proof_bench", "Plans with proven edges, beside steps of 0.05", ["planning"], repeats=1),
     bench("season", "season_bench", "400 queries of a client that chooses by evidence, checks drawn", repeats=1),
     bench("command", "command_bench", "One-shot commands against a local server"),
     bench("store", "large_store_bench", "A store of 50 000 paths of 10 robots and tasks", ["50000", "10"], repeats=1),

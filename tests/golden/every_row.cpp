@@ -381,6 +381,9 @@ ProblemResult every_problem_result() {
   result.sampling_mode = SamplingMode::Control;
   result.share = next.share() / 2;
   result.gate_fired = true;
+  result.proven = true;
+  result.least_clearance_m = 0.0625;
+  result.refuted_edges = 3;
   result.track_share = 0.25;
   result.experience_revision = 12;
   result.tracks_followed = 3;

@@ -254,7 +254,7 @@ void try_in_scenes(const Robot& robot, int edges, Random& random, std::array<Cou
     test::allow_standing_contacts(bodies, around);
     Surroundings roomy = grown(around, kRoom_m);
     CollisionWorld world(solids, around), roomy_world(roomy_solids, roomy);
-    EdgeProver prover(solids, around);
+    EdgeProver prover(world);
     Counts& counts = robots_counts.at(shapes_only ? 1 : 0);
     for (int edge = 0, tries = 0; edge < edges && tries < 100 * edges; ++tries) {
       const Eigen::VectorXd from = test::random_configuration(robot.chain, random.generator());
@@ -298,8 +298,8 @@ TEST(EdgeProver, NoEdgeOfAGantryCrossesASealedPlate) {
       {"plate", BoxShape{{0.02, 4, 1.2}}, Eigen::Isometry3d(Eigen::Translation3d(0.1, 0, 0.0))});
   around.allowed_collisions = {{"base", "plate"}, {"beam", "plate"}, {"cart", "plate"}};
   const RobotSolids solids(robot.chain, robot.shapes);
-  EdgeProver prover(solids, around);
   CollisionWorld world(solids, around);
+  EdgeProver prover(world);
   Random random;
   int missed_by_steps = 0, beside = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -326,14 +326,17 @@ TEST(EdgeProver, AnEdgeAlongAPlateIsFreeAtTwoMillimetres) {
   around.scene.objects.push_back(
       {"plate", BoxShape{{0.02, 4, 1.2}}, Eigen::Isometry3d(Eigen::Translation3d(0.1, 0, 0.0))});
   around.allowed_collisions = {{"base", "plate"}, {"beam", "plate"}, {"cart", "plate"}};
-  EdgeProver prover(RobotSolids(robot.chain, robot.shapes), around);
+  CollisionWorld world(robot.chain, robot.shapes, around);
+  EdgeProver prover(world);
   for (const double gap_m : {0.0005, 0.002, 0.02}) {
     Eigen::VectorXd from(4), to(4);
     from << -0.015 - gap_m, -1, 0, 0;
     to << -0.015 - gap_m, 1, 0.1, 0;
     const EdgeProof proof = prover.prove(from, to);
     EXPECT_EQ(proof.is_free(), gap_m > 0.001) << gap_m;
-    EXPECT_NEAR(proof.least_clearance_m, gap_m, 0.05 * gap_m + 1e-5) << gap_m;
+    if (gap_m < 0.01) {  // else the lanes tell that it is far enough
+      EXPECT_NEAR(proof.least_clearance_m, gap_m, 0.05 * gap_m + 1e-5) << gap_m;
+    }
   }
 }
 

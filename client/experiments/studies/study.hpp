@@ -37,8 +37,9 @@ struct Study {
   std::string purpose;   ///< for the command line's help
   std::string family{};  ///< name that stands for it and others like it; may be empty
   std::vector<StudyRobot> robots;
-  planner::PlanSettings
-      settings;                 ///< of every query; the overshoot may be chosen on tuning instances
+  /// Of every query; the overshoot may be chosen on tuning instances. By steps, so that a check
+  /// means the same to all planners.
+  planner::PlanSettings settings = {.clearance_m = 0};
   double guided_share = 1;      ///< of samples in guided queries; chosen on tuning instances
   bool is_constrained = false;  ///< its problems keep to a task space region
   std::uint32_t learning_instances = 0;

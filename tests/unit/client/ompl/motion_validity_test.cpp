@@ -33,12 +33,14 @@ struct Space {
     if (together)
       information->setMotionValidator(std::make_shared<StraightMotionValidator>(information));
     information->setStateValidityChecker(std::make_shared<SeveralStatesValidity>(
-        information, one, [is_free](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
+        information, one,
+        [is_free](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
           Eigen::Index free = 0;
           while (free < qs.cols() && is_free(qs.col(free)))
             ++free;
           return free;
-        }));
+        },
+        [](const Eigen::Ref<const Eigen::MatrixXd>&) { return true; }));
     information->setup();
   }
 

@@ -88,7 +88,7 @@ TEST(AttemptRecord, SaysHowWasPlannedAndUnderWhichUuid) {
   const Attempt first = make_attempt(kReporter, {}, solved(), settings);
   const Attempt second = make_attempt(kReporter, {}, solved(), settings);
   EXPECT_EQ(first.record.planner_options,
-            "step=0.1 overshoot=1.5 shortcut_checks=300 max_checks=100000");
+            "step=0.1 clearance_m=0.001 overshoot=1.5 shortcut_checks=300 max_checks=100000");
   EXPECT_NE(first.report_uuid, second.report_uuid);
 }
 

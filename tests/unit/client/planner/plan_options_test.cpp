@@ -30,8 +30,15 @@ TEST(PlanOptions, AModelAndProblemsAreEnoughToPlanUniformly) {
   EXPECT_EQ(options.robot.source, "panda");
   EXPECT_EQ(options.guidance, GuidanceMode::Uniform);
   EXPECT_FALSE(options.report);
+  EXPECT_EQ(options.settings.clearance_m, 0.001);
   EXPECT_EQ(options.settings.resolution, 0.05);
   EXPECT_EQ(options.settings.shortcut_checks, 300U);
+}
+
+TEST(PlanOptions, AResolutionIsInsteadOfAProof) {
+  const PlanOptions options = parsed({"p", "--model", "m", "--resolution", "0.1"}).options();
+  EXPECT_EQ(options.settings.resolution, 0.1);
+  EXPECT_EQ(options.settings.clearance_m, 0);
 }
 
 TEST(PlanOptions, WithATaskGuidanceIsUsedIfPossible) {
@@ -208,6 +215,9 @@ TEST(PlanOptions, WrongUsageIsTwoAndSaysWhy) {
       {"p", "--model", "m", "--task", "a", "--since", "yesterday"},
       {"p", "--model", "m", "--resolution", "0"},
       {"p", "--model", "m", "--resolution", "nan"},
+      {"p", "--model", "m", "--clearance", "0"},
+      {"p", "--model", "m", "--clearance", "0.2"},
+      {"p", "--model", "m", "--clearance", "0.002", "--resolution", "0.05"},
       {"p", "--model", "m", "--overshoot", "nan"},
       {"p", "--model", "m", "--timeout", "nan"},
       {"p", "--model", "m", "--seed", "-1"},

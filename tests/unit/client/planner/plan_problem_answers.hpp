@@ -22,9 +22,11 @@ inline Eigen::Isometry3d placement_of(const Problem& problem) {
   return problem.T_task_base.value_or(Eigen::Isometry3d::Identity());
 }
 
-/// Collisions at the resolution along a path that is straight between its waypoints.
-inline int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem) {
-  const Eigen::MatrixXd path = planning::densified(waypoints, PlanSettings().resolution);
+/// Collisions along a path that is straight between its waypoints.
+/// \param step  between the configurations looked at, joint units
+inline int collisions_along(const Eigen::MatrixXd& waypoints, const Problem& problem,
+                            double step = PlanSettings().resolution) {
+  const Eigen::MatrixXd path = planning::densified(waypoints, step);
   const PlannedRobot robot = planar_robot();
   collision::CollisionWorld world(robot.solids, {placement_of(problem), problem.scene, {}, {}});
   int collisions = 0;

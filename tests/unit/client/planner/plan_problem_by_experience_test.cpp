@@ -53,13 +53,15 @@ Guidance experienced(const Problem& problem, const Eigen::MatrixXd& waypoints) {
 TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
   Problem problem = wall_problem();
   problem.seed += 1;
-  const ProblemResult uniform = planned(problem).result;
+  PlanSettings by_steps;  // a track that comes nearer to the wall than the clearance ends there
+  by_steps.clearance_m = 0;
+  const ProblemResult uniform = planned(problem, by_steps).result;
   ASSERT_TRUE(uniform.solved);
   EXPECT_EQ(uniform.found_by, FoundBy::Search);
   const Guidance guidance = experienced(problem, *uniform.waypoints);
   Problem again = problem;
   again.seed += 5;
-  PlanSettings tracks_first;
+  PlanSettings tracks_first = by_steps;
   tracks_first.tracks.check_fraction = 1;
   const ProblemResult guided =
       planned(again, tracks_first, {&guidance, SamplingMode::Guided}).result;
@@ -72,7 +74,7 @@ TEST(PlanProblemByExperience, AStoredWayOfTheHandIsFollowedAndTheResultSaysSo) {
   EXPECT_EQ(guided.share, guided.track_share);
   EXPECT_FALSE(guided.distribution_id);
   EXPECT_TRUE(is_free_along(*guided.waypoints, again));
-  EXPECT_LT(guided.collision_checks, planned(again).result.collision_checks);
+  EXPECT_LT(guided.collision_checks, planned(again, by_steps).result.collision_checks);
 
   const ProblemResult control = planned(again, {}, {&guidance, SamplingMode::Control}).result;
   EXPECT_EQ(control.collision_checks, planned(again).result.collision_checks);

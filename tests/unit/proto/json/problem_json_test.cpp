@@ -223,7 +223,7 @@ TEST(ProblemJson, ResultWithoutGuidanceWritesNull) {
   EXPECT_EQ(
       to_json(result),
       R"({"name":"shelf 7","solved":false,"collision_checks":0,"goal_checks":0,)"
-      R"("shortcut_checks":0,"projections":0,)"
+      R"("shortcut_checks":0,"projections":0,"proven":false,"least_clearance_m":null,"refuted_edges":0,)"
       R"("planning_time_s":0.0,"time_limit_s":0.0,"start":null,"waypoints":null,"guidance":null,)"
       R"("found_by":"nothing","guidance_reason":"","planner":"","reason":"time limit",)"
       R"("not_planned":null})");
