@@ -122,6 +122,16 @@ max_cartesian_speed: 0.0
   EXPECT_EQ(refusal(scene, request), "converted");
 }
 
+TEST(MoveItSceneForm, AConstraintOfSightHasTheMembersThatMoveItHas) {
+  const auto with = [](const std::string& member) {
+    return refusal("", listed_request("trajectory_constraints: {constraints: "
+                                      "[{visibility_constraints: [{" +
+                                      member + ": 0.1}]}]}"));
+  };
+  EXPECT_EQ(with("max_view_angle"), "converted");
+  EXPECT_NE(with("min_view_angle").find("is no member of VisibilityConstraint"), std::string::npos);
+}
+
 /// A scene as newer versions export it: an object at (1, 0, 0) turned by half a turn about z.
 const std::string kExported = R"((noname)++
 * my box
