@@ -17,18 +17,13 @@ namespace {
 
 constexpr std::string_view kTemporarySuffix = ".tmp";
 
-[[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
-  throw Failure(ErrorCode::Storage,
-                path.string() + ": " + what + ": " + std::generic_category().message(errno));
-}
-
 /// Owner of one file descriptor.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags)
       : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0644)), path_(path) {
     if (descriptor_ < 0)
-      fail(path_, "cannot open");
+      fail_on(path_, "cannot open");
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -40,7 +35,7 @@ class Descriptor {
       if (written < 0 && errno == EINTR)
         continue;
       if (written < 0)
-        fail(path_, "cannot write");
+        fail_on(path_, "cannot write");
       content.remove_prefix(static_cast<std::size_t>(written));
     }
   }
@@ -52,7 +47,7 @@ class Descriptor {
       count = ::read(descriptor_, buffer, size);
     while (count < 0 && errno == EINTR);
     if (count < 0)
-      fail(path_, "cannot read");
+      fail_on(path_, "cannot read");
     return static_cast<std::size_t>(count);
   }
 
@@ -63,12 +58,12 @@ class Descriptor {
     ::clock_gettime(CLOCK_REALTIME, &now);
     const timespec accessed_and_written[] = {{0, UTIME_OMIT}, now};
     if (::futimens(descriptor_, accessed_and_written) != 0)
-      fail(path_, "cannot set its time");
+      fail_on(path_, "cannot set its time");
   }
 
   void sync() const {
     if (::fsync(descriptor_) != 0)
-      fail(path_, "cannot fsync");
+      fail_on(path_, "cannot fsync");
   }
 
  private:
@@ -109,13 +104,23 @@ void write_file(const std::filesystem::path& path, std::string_view content, Syn
       file.sync();
   }
   if (::rename(temporary.path().c_str(), path.c_str()) != 0)
-    fail(path, "cannot rename to");
+    fail_on(path, "cannot rename to");
   temporary.keep();
   if (sync == Sync::Yes)
     Descriptor(path.parent_path(), O_RDONLY | O_DIRECTORY).sync();
 }
 
 }  // namespace
+
+void fail_on(const std::filesystem::path& path, std::string_view what) {
+  const int reason = errno;
+  std::string text =
+      path.string() + ": " + std::string(what) + ": " + std::generic_category().message(reason);
+  if (reason == EROFS || reason == EACCES || reason == EPERM)
+    text += "; name a folder for reports that can be written (" + std::string(kOutboxOptions) +
+            "), or set XDG_STATE_HOME to one";
+  throw Failure(ErrorCode::Storage, std::move(text));
+}
 
 void write_durably(const std::filesystem::path& path, std::string_view content) {
   write_file(path, content, Sync::Yes);
@@ -134,7 +139,7 @@ void make_folder_durably(const std::filesystem::path& folder) {
   if (parent != path)
     make_folder_durably(parent);
   if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST)
-    fail(path, "cannot make the folder");
+    fail_on(path, "cannot make the folder");
   if (!std::filesystem::is_directory(path, error))  // a file, or a link to nothing
     throw Failure(ErrorCode::Storage, path.string() + ": is not a folder");
   Descriptor(parent, O_RDONLY | O_DIRECTORY).sync();

@@ -7,6 +7,15 @@
 /// Files that are whole, and mostly there after a power cut once a function has returned.
 namespace kinship::link {
 
+/// What says where reports wait.
+inline constexpr std::string_view kOutboxOptions =
+    "--outbox FOLDER; in Python Client(outbox=...); in C kinship_client_options.outbox";
+
+/// \param what  could not be done; the reason is that of `errno`.
+/// \throws Failure(Storage), always: the file, the reason, and what to name instead of a place that
+///         cannot be written.
+[[noreturn]] void fail_on(const std::filesystem::path& path, std::string_view what);
+
 /// Writes a whole file: temporary file beside it, fsync, rename, fsync of the folder. Whoever reads
 /// `path` sees the old content, or none, or all of the new one. Files of one process have times of
 /// writing in the order in which they were written.

@@ -203,8 +203,7 @@ std::optional<SenderLock> SenderLock::try_acquire(const fs::path& folder) {
   const fs::path path = folder / "sender.lock";
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0)
-    throw Failure(ErrorCode::Storage,
-                  path.string() + ": cannot open: " + std::generic_category().message(errno));
+    fail_on(path, "cannot open");
   SenderLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
     return std::nullopt;
@@ -236,7 +235,8 @@ fs::path default_outbox_folder(std::uint32_t domain, std::string_view server) {
   }
   throw Failure(ErrorCode::InvalidInput,
                 "outbox: neither XDG_STATE_HOME nor HOME is an absolute path; name a folder for "
-                "reports (--outbox FOLDER; in Python Client(outbox=...))");
+                "reports (" +
+                    std::string(kOutboxOptions) + ")");
 }
 
 }  // namespace kinship::link

@@ -58,8 +58,8 @@ const std::map<std::string, std::vector<Member>, std::less<>>& messages() {
        {{"triangles", "MeshTriangle[]"},
         {"vertices", "Point[]"},
         {"resource"},
-        {"scale", "Point"},
-        {"dimensions", "Point"}}},
+        {"scale", "Vector3"},
+        {"dimensions", "Vector3"}}},
       {"MeshTriangle", {{"vertex_indices"}}},
       {"Plane", {{"coef"}}},
       {"AttachedCollisionObject",
@@ -107,7 +107,7 @@ const std::map<std::string, std::vector<Member>, std::less<>>& messages() {
         {"cartesian_speed_limited_link"},
         {"max_cartesian_speed"}}},
       {"WorkspaceParameters",
-       {{"header", "Header"}, {"min_corner", "Point"}, {"max_corner", "Point"}}},
+       {{"header", "Header"}, {"min_corner", "Vector3"}, {"max_corner", "Vector3"}}},
       {"Constraints",
        {{"name"},
         {"joint_constraints", "JointConstraint[]"},
@@ -120,7 +120,7 @@ const std::map<std::string, std::vector<Member>, std::less<>>& messages() {
       {"PositionConstraint",
        {{"header", "Header"},
         {"link_name"},
-        {"target_point_offset", "Point"},
+        {"target_point_offset", "Vector3"},
         {"constraint_region", "BoundingVolume"},
         {"weight"}}},
       {"BoundingVolume",
@@ -143,21 +143,21 @@ const std::map<std::string, std::vector<Member>, std::less<>>& messages() {
         {"cone_sides"},
         {"sensor_pose"},
         {"max_view_angle"},
-        {"min_view_angle"},
         {"max_range_angle"},
         {"sensor_view_direction"},
         {"weight"}}},
       {"Header", {{"seq"}, {"stamp"}, {"frame_id"}}},
       {"Pose", {{"position", "Point"}, {"orientation", "Quaternion"}}},
-      {"Transform", {{"translation", "Point"}, {"rotation", "Quaternion"}}},
+      {"Transform", {{"translation", "Vector3"}, {"rotation", "Quaternion"}}},
       {"Point", {{"x"}, {"y"}, {"z"}}},
+      {"Vector3", {{"x"}, {"y"}, {"z"}}},
       {"Quaternion", {{"x"}, {"y"}, {"z"}, {"w"}}}};
   return kMessages;
 }
 
 /// Messages that benchmark sets write as lists of their values.
-constexpr std::array<std::string_view, 4> kAlsoLists = {"Point", "Quaternion", "MeshTriangle",
-                                                        "AllowedCollisionEntry"};
+constexpr std::array<std::string_view, 5> kAlsoLists = {"Point", "Vector3", "Quaternion",
+                                                        "MeshTriangle", "AllowedCollisionEntry"};
 
 void check(const YamlValue& value, std::string_view type) {
   if (value.is_missing() || type.empty())

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/types/characters.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::moveit {
@@ -47,7 +48,7 @@ class SceneText {
     throw Failure(ErrorCode::InvalidInput,
                   "'" + file_ + "' line " +
                       std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ": " +
-                      what + (found.empty() ? "" : " '" + std::string(found.substr(0, 40)) + "'"));
+                      what + (found.empty() ? "" : " '" + printable_start(found) + "'"));
   }
 
   /// The rest of the line.

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "client/guided/attempt_record.hpp"
+#include "client/guided/geometry_warnings.hpp"
 #include "client/guided/scene_record.hpp"
-#include "client/planner/geometry_warnings.hpp"
 #include "client/planner/problem_lines.hpp"
 #include "client/planner/progress.hpp"
 #include "client/planner/server_line.hpp"
@@ -130,7 +130,7 @@ class Run {
       const RunStreams& streams)
       : options_(options),
         robot_(robot.chain, robot.shapes),
-        warnings_(robot, streams.messages),
+        warnings_(robot.chain, robot.shapes),
         server_(server),
         streams_(streams),
         reporter_{robot.chain.digest(), options.machine.empty() ? host_name() : options.machine,
@@ -166,11 +166,11 @@ class Run {
     problem.seed += options_.seed_offset;
     if (const auto error = meshes_.read(problem.scene, problem.attached))
       return unread(problem, *error);
-    warnings_.tell_of(problem);
     PlannedProblem planned =
         plan_problem(robot_, problem, server_.choose(problem), options_.settings, stop,
                      streams_.searches != nullptr ? &recorder_ : nullptr);
-    warnings_.tell_of(problem, planned.enclosed);
+    for (const std::string& warning : warnings_.find(problem, planned))
+      streams_.messages << "warning: " << warning << '\n';
     for (const std::string& moved : planned.moved)
       streams_.messages << "warning: problem '" << problem.name << "': " << moved << '\n';
     if (planned.interrupted || !planned.attempted)

@@ -2,10 +2,13 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "client/guided/attempt_record.hpp"
+#include "client/guided/geometry_warnings.hpp"
 #include "client/guided/scene_record.hpp"
 #include "client/python/arrays.hpp"
 #include "client/python/bindings.hpp"
@@ -13,6 +16,7 @@
 #include "client/python/guidance_handle.hpp"
 #include "client/python/waiting.hpp"
 #include "proto/types/enum_text.hpp"
+#include "robots/geometry/geometry_doubts.hpp"
 
 namespace kinship::python {
 namespace {
@@ -68,6 +72,15 @@ planner::QueryGuidance query_of(const SharedGuidance& guidance, const Problem& p
                                        : parse_word<SamplingMode>(arm).value_or_throw()};
 }
 
+/// What kinship-plan warns of: solids of the robot and of the scene that cannot be meant.
+std::vector<std::string> doubts_of(const Robot& robot, const Plan& made) {
+  std::vector<std::string> doubts = geometry::find_doubts(robot.chain(), robot.shapes());
+  for (std::string& sentence :
+       planner::GeometryWarnings(robot.chain(), robot.shapes()).find(made.problem, made.planned))
+    doubts.push_back(std::move(sentence));
+  return doubts;
+}
+
 Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
                 const std::optional<AnyGuidance>& guided_by, std::optional<std::uint64_t> seed,
                 const std::string& arm, const planner::PlanSettings& settings) {
@@ -76,13 +89,17 @@ Plan plan_query(const std::shared_ptr<Robot>& robot, const Problem& problem,
     made.problem.seed = *seed;
   const SharedGuidance guidance = guidance_for(*robot, guided_by);
   const planner::QueryGuidance query = query_of(guidance, made.problem, arm);
+  std::vector<std::string> doubts;
   {
     const py::gil_scoped_release unlocked;
     made.planned = planner::plan_problem(*robot->planned(), made.problem, query, made.settings,
                                          InterruptCheck());
+    doubts = doubts_of(*robot, made);
   }
   if (made.planned.interrupted)
     throw py::error_already_set();
+  for (const std::string& doubt : doubts)
+    warn("GeometryDoubt", doubt);
   for (const std::string& moved : made.planned.moved)
     warn("InputChanged", "problem '" + problem.name + "': " + moved);
   if (!made.planned.attempted)
@@ -266,7 +283,8 @@ max_goals        goal configurations found for a goal pose
 limit_slack      a start or goal beyond a limit by less is moved onto it, joint units
 
 A problem that has no path is an answer with its reason. Raises InvalidInput if the problem does not
-fit the robot, or the guidance is another robot's.)");
+fit the robot, or the guidance is another robot's. Warns with GeometryDoubt of solids that cannot be
+meant: of a robot that has none, a mesh a thousand times too large, an obstacle out of reach.)");
 }
 
 }  // namespace kinship::python

@@ -53,6 +53,9 @@ class Robot {
   /// \throws Failure if its collision geometry is not known.
   std::shared_ptr<const planner::PlannedRobot> planned() const;
 
+  /// Its collision geometry, which must be known, as after planned().
+  const geometry::RobotShapes& shapes() const { return shapes_.value(); }
+
   /// The description with solids around its meshes, if it has any that are known.
   RobotDescription description_for_server() const;
 

@@ -80,17 +80,6 @@ std::vector<CoverSphere> cover_voxels(const geometry::VoxelBlock& block, double 
   return spheres;
 }
 
-Eigen::Vector3d half_extents(const Shape& shape) {
-  if (const auto* box = std::get_if<BoxShape>(&shape))
-    return box->size / 2;
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
-    return {cylinder->radius_m, cylinder->radius_m, cylinder->length_m / 2};
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
-    return Eigen::Vector3d::Constant(sphere->radius_m);
-  const auto& capsule = std::get<CapsuleShape>(shape);
-  return {capsule.radius_m, capsule.radius_m, capsule.length_m / 2 + capsule.radius_m};
-}
-
 /// Solid angle of a triangle seen from the origin, signed by its orientation, steradian.
 double solid_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const double length_a = a.norm(), length_b = b.norm(), length_c = c.norm();
@@ -147,7 +136,7 @@ Solid::Solid(const geometry::VoxelBlock& block, double voxel_m)
 }
 
 void Solid::bound() {
-  half_extents_m_ = half_extents(shape_);
+  half_extents_m_ = geometry::half_extents_m(shape_);
   Eigen::Index axis = 2;
   if (!std::holds_alternative<SphereShape>(shape_))
     half_extents_m_.maxCoeff(&axis);

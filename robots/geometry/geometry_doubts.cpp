@@ -6,7 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <utility>
-#include <variant>
+
+#include "robots/geometry/shape_rules.hpp"
 
 namespace kinship::geometry {
 namespace {
@@ -33,24 +34,8 @@ std::string short_text(double value) {
   return {text.data(), error == std::errc() ? end : text.data()};
 }
 
-Eigen::Vector3d half_size_m(const Shape& shape) {
-  struct Halves {
-    Eigen::Vector3d operator()(const BoxShape& box) const { return box.size / 2; }
-    Eigen::Vector3d operator()(const CylinderShape& cylinder) const {
-      return {cylinder.radius_m, cylinder.radius_m, cylinder.length_m / 2};
-    }
-    Eigen::Vector3d operator()(const SphereShape& sphere) const {
-      return Eigen::Vector3d::Constant(sphere.radius_m);
-    }
-    Eigen::Vector3d operator()(const CapsuleShape& capsule) const {
-      return {capsule.radius_m, capsule.radius_m, capsule.length_m / 2 + capsule.radius_m};
-    }
-  };
-  return std::visit(Halves{}, shape);
-}
-
 Extents box_of(const Shape& shape) {
-  const Eigen::Vector3d half_m = half_size_m(shape);
+  const Eigen::Vector3d half_m = half_extents_m(shape);
   return {-half_m, half_m};
 }
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/failure.hpp"
+#include "robots/geometry/number_words.hpp"
 #include "robots/geometry/stl_file.hpp"
 
 namespace kinship::geometry {
@@ -74,6 +76,11 @@ class Corners {
 
 /// The corners of an OBJ or DAE file.
 Result<Eigen::Matrix3Xd> read_with_assimp(std::string_view bytes, const std::string& ending) {
+  try {
+    ending == "obj" ? require_obj_numbers(bytes) : require_dae_numbers(bytes);
+  } catch (const Failure& failure) {
+    return failure.error();
+  }
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* const scene =

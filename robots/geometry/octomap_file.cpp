@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/characters.hpp"
 #include "proto/types/failure.hpp"
 
 namespace kinship::geometry {
@@ -50,7 +51,7 @@ Header take_header(std::string_view& file) {
       std::from_chars(line.data(), line.data() + line.size(), header.edge_m);
     } else if (line == "data") {
       if (id != "OcTree")
-        refuse_map("header: id must be OcTree, not '" + id.substr(0, 40) + "'");
+        refuse_map("header: id must be OcTree, not '" + printable_start(id) + "'");
       if (!(header.edge_m >= kMinEdge_m && header.edge_m <= kMaxEdge_m))
         refuse_map("header: res must be an edge of 0.0001 to 100 m");
       return header;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,55 +10,21 @@
 #include <utility>
 #include <vector>
 
+#include "proto/types/characters.hpp"
 #include "proto/types/failure.hpp"
+#include "robots/geometry/number_words.hpp"
 #include "robots/geometry/octomap_file.hpp"
 
 namespace kinship::geometry {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
-
 [[noreturn]] void refuse(const std::string& what) { throw Failure(ErrorCode::InvalidInput, what); }
-
-/// Cuts the first line off.
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
-}
-
-/// Cuts the first word off; empty if there is none.
-std::string_view take_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-  line.remove_prefix(word.size());
-  return word;
-}
 
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
     words.emplace_back(word);
   return words;
-}
-
-template <typename Number>
-std::optional<Number> number_of(std::string_view word) {
-  if (word.starts_with('+'))
-    word.remove_prefix(1);
-  Number number{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size())
-    return std::nullopt;
-  return number;
-}
-
-[[noreturn]] void refuse_word(std::size_t line_number, std::string_view word) {
-  const bool has_comma = word.find(',') != std::string_view::npos;
-  refuse("line " + std::to_string(line_number) + ": '" + std::string(word.substr(0, 40)) +
-         "' is no number" +
-         (has_comma ? "; decimal commas are not read, and only blanks and tabs part numbers" : ""));
 }
 
 /// Collects points, but not those that a sensor did not see.
@@ -186,7 +151,7 @@ PcdHeader read_header(std::string_view& text) {
   const std::vector<std::string>& data = members["DATA"];
   if (data != std::vector<std::string>{"ascii"} && data != std::vector<std::string>{"binary"})
     refuse("header: DATA must be ascii or binary, not '" +
-           (data.empty() ? std::string() : data.front()) + "'");
+           (data.empty() ? std::string() : printable_start(data.front())) + "'");
   header.is_binary = data.front() == "binary";
   header.points = count_at(members, "POINTS", 0);
   return header;

@@ -39,8 +39,23 @@ struct Checker {
   }
 };
 
+struct HalfExtents {
+  Eigen::Vector3d operator()(const BoxShape& box) const { return box.size / 2; }
+  Eigen::Vector3d operator()(const CylinderShape& cylinder) const {
+    return {cylinder.radius_m, cylinder.radius_m, cylinder.length_m / 2};
+  }
+  Eigen::Vector3d operator()(const SphereShape& sphere) const {
+    return Eigen::Vector3d::Constant(sphere.radius_m);
+  }
+  Eigen::Vector3d operator()(const CapsuleShape& capsule) const {
+    return {capsule.radius_m, capsule.radius_m, capsule.length_m / 2 + capsule.radius_m};
+  }
+};
+
 }  // namespace
 
 Broken broken_rule(const Shape& shape) { return std::visit(Checker{}, shape); }
+
+Eigen::Vector3d half_extents_m(const Shape& shape) { return std::visit(HalfExtents{}, shape); }
 
 }  // namespace kinship::geometry

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/types/characters.hpp"
 #include "robots/geometry/mesh.hpp"
 
 namespace kinship::geometry {
@@ -61,9 +62,7 @@ class StlText {
 
  private:
   [[noreturn]] void refuse(const std::string& what) {
-    std::string word(peek().substr(0, 40));
-    std::ranges::replace_if(
-        word, [](char byte) { return byte < ' ' || byte > '~'; }, '?');
+    const std::string word = printable_start(peek());
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(at_);
     throw Failure(
         ErrorCode::InvalidInput,

@@ -2,6 +2,8 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
+
 namespace kinship::geometry {
 namespace {
 
@@ -17,7 +19,8 @@ void add_collision(const tinyxml2::XMLElement& visual, tinyxml2::XMLElement& lin
 
 }  // namespace
 
-Result<std::string> with_visual_solids(const std::string& urdf) {
+Result<std::string> with_visual_solids(const std::string& urdf,
+                                       const std::vector<std::string>& except) {
   tinyxml2::XMLDocument document;
   if (document.Parse(urdf.data(), urdf.size()) != tinyxml2::XML_SUCCESS)
     return invalid_input("URDF: line " + std::to_string(document.ErrorLineNum()) +
@@ -27,7 +30,9 @@ Result<std::string> with_visual_solids(const std::string& urdf) {
     return invalid_input("URDF: no <robot> element");
   for (auto* link = robot->FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
-    if (link->FirstChildElement("collision") != nullptr)
+    const char* const name = link->Attribute("name");
+    if (link->FirstChildElement("collision") != nullptr ||
+        (name != nullptr && std::ranges::count(except, name) > 0))
       continue;
     for (const auto* visual = link->FirstChildElement("visual"); visual != nullptr;
          visual = visual->NextSiblingElement("visual"))

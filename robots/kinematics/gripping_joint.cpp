@@ -91,7 +91,8 @@ std::vector<std::string> describe_mobile_base(const std::vector<TreeLink>& tree)
                           "and say in T_task_base (the placement) where the base stands");
   std::vector<std::string> wheels;
   for (std::size_t i = 1; i < tree.size(); ++i)
-    if (tree[i].joint.type == "continuous" && is_leaf(tree, i) && has_twin(tree, i))
+    if (tree[i].joint.type == "continuous" && tree[i].joint.mimics.empty() && is_leaf(tree, i) &&
+        has_twin(tree, i))
       wheels.push_back(tree[i].joint.name);
   if (!wheels.empty())
     sentences.push_back("joints " + listed(wheels) +

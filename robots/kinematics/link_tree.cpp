@@ -17,6 +17,7 @@ constexpr std::size_t kHandBeyond = 5;  // joints of an arm, and more than those
 constexpr std::array<std::string_view, 4> kPlaces = {"world", "map", "odom", "base_footprint"};
 constexpr std::array<std::string_view, 5> kToolNames = {"tool0", "tcp", "tool", "ee_link",
                                                         "flange"};
+constexpr std::array<std::string_view, 3> kSensorNames = {"camera", "optical", "aruco"};
 
 std::string type_of(const urdf::Joint& joint) {
   switch (joint.type) {
@@ -150,13 +151,18 @@ std::size_t before_gripper(const std::vector<TreeLink>& tree, std::size_t end) {
 }
 
 std::size_t rank_of_tool(const std::string& name) {
+  if (std::ranges::any_of(kSensorNames, [&](std::string_view sensor) {
+        return name.find(sensor) != std::string::npos;
+      }))
+    return kToolNames.size() + 1;
   std::size_t rank = 0;
   while (rank < kToolNames.size() && !name.ends_with(kToolNames[rank]))
     ++rank;
   return rank;
 }
 
-/// The links fixed to an arm's last joint, outermost first, but those with a tool's name before.
+/// The links fixed to an arm's last joint, outermost first, but those with a tool's name before,
+/// and those with a sensor's behind.
 std::vector<std::string> tips_at(const std::vector<TreeLink>& tree, const Branches& branches,
                                  std::size_t end) {
   std::vector<std::size_t> fixed = branches.fixed_to(end);

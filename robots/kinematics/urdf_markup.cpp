@@ -140,6 +140,16 @@ class Scanner {
   int links_ = 0;
 };
 
+/// What stands between an attribute's quotes.
+std::string normalized_value(std::string_view value) {
+  std::string text(value);
+  std::ranges::replace_if(text, is_space, ' ');
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin == std::string::npos || text.find_first_not_of("0123456789+-.eE ") != std::string::npos)
+    return text;
+  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
 }  // namespace
 
 std::optional<Error> check_markup(std::string_view text) {
@@ -155,28 +165,31 @@ std::optional<Error> check_markup(std::string_view text) {
   return Scanner(text).scan();
 }
 
-std::string normalize_attributes(std::string text) {
-  const auto end_of = [&text](std::size_t at, std::string_view end) {
-    return std::min(text.find(end, at), text.size());
+std::string normalize_attributes(std::string_view text) {
+  std::string normalized;
+  normalized.reserve(text.size());
+  const auto copy_until = [&](std::size_t& at, std::size_t end) {
+    end = std::min(end, text.size());
+    normalized += text.substr(at, end - at);
+    at = end;
   };
-  for (std::size_t at = text.find('<'); at < text.size(); at = end_of(at, "<")) {
+  std::size_t at = 0;
+  for (copy_until(at, text.find('<')); at < text.size(); copy_until(at, text.find('<', at))) {
     if (text.compare(at, 4, "<!--") == 0) {
-      at = end_of(at, "-->");
+      copy_until(at, text.find("-->", at));
     } else if (text.compare(at, 9, "<![CDATA[") == 0) {
-      at = end_of(at, "]]>");
+      copy_until(at, text.find("]]>", at));
     } else {
-      char quote = 0;
-      for (; at < text.size() && (quote != 0 || text[at] != '>'); ++at) {
-        if (quote != 0 && is_space(text[at]))
-          text[at] = ' ';
-        else if (text[at] == quote)
-          quote = 0;
-        else if (quote == 0 && (text[at] == '"' || text[at] == '\''))
-          quote = text[at];
+      copy_until(at, text.find_first_of("\"'>", at));
+      while (at < text.size() && text[at] != '>') {
+        const std::size_t end = std::min(text.find(text[at], at + 1), text.size());
+        normalized += text[at] + normalized_value(text.substr(at + 1, end - at - 1));
+        at = end;
+        copy_until(at, text.find_first_of("\"'>", at + 1));
       }
     }
   }
-  return text;
+  return normalized;
 }
 
 }  // namespace kinship::kinematics

@@ -17,10 +17,11 @@ inline constexpr int kMaxUrdfLinks = 1024;
 /// declare entities. Says nothing about whether the text is a URDF.
 std::optional<Error> check_markup(std::string_view text);
 
-/// The text with a blank for each tab and line break within an attribute's value: urdfdom parts
-/// numbers at blanks only, while XML says that all three are one. A reference (`&#10;`) stays.
+/// The text with a blank for each tab and line break within an attribute's value, and with none
+/// around numbers: urdfdom parts numbers at blanks only and takes none behind a single one, while
+/// XML says that all three are one. A reference (`&#10;`) stays.
 /// \param text  one that check_markup accepts.
 /// Source: W3C, Extensible Markup Language (XML) 1.0, 3.3.3 Attribute-Value Normalization.
-std::string normalize_attributes(std::string text);
+std::string normalize_attributes(std::string_view text);
 
 }  // namespace kinship::kinematics

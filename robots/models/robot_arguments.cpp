@@ -139,7 +139,8 @@ RobotDescription put_together(const RobotArguments& arguments, std::vector<std::
                                    "; give another one with --label");
   parse_packages(arguments.packages).value_or_throw();
   if (arguments.collision_from_visual)
-    description.urdf = geometry::with_visual_solids(description.urdf).value_or_throw();
+    description.urdf = geometry::with_visual_solids(description.urdf, arguments.without_collision)
+                           .value_or_throw();
   replace_frame_and_axes(arguments, description);
   for (const std::string& held : arguments.held)
     add_held_joint(held, description);

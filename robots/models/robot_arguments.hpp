@@ -24,7 +24,7 @@ struct RobotArguments {
   std::filesystem::path srdf = {};         ///< its disabled pairs are added to the folder's
   std::vector<std::string> packages = {};  ///< "NAME=DIR" each, for meshes named package://NAME/...
   bool collision_from_visual = false;      ///< links without collision elements get their visuals
-  std::vector<std::string> without_collision = {};  ///< links that may be drawn and have no solid
+  std::vector<std::string> without_collision = {};  ///< links that may be drawn and get no solid
 };
 
 /// Reads the files and puts the description together. The URDF is taken as text, unless an SRDF

@@ -13,13 +13,14 @@
 Configurations are rows: (dof,) is one, (n, dof) are many. Angles are in rad, lengths in m, times in s. Poses come back as
 (4, 4) matrices and are taken as these or as x y z qx qy qz qw. What goes wrong is an exception of kinship.errors.
 Credentials that end within 30 days are told by `warnings` (CredentialsExpire), and so is
-what is not taken as it is given (InputChanged).
+what is not taken as it is given (InputChanged), and solids that cannot be meant (GeometryDoubt).
 """
 from .errors import (
     Conflict,
     CredentialsExpire,
     Error,
     FitFailed,
+    GeometryDoubt,
     InputChanged,
     InternalError,
     InvalidInput,
@@ -64,6 +65,7 @@ __all__ = [
     "Events",
     "FitFailed",
     "Follower",
+    "GeometryDoubt",
     "Guidance",
     "InputChanged",
     "InternalError",

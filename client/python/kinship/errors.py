@@ -57,5 +57,9 @@ class InputChanged(UserWarning):
     """Told by `warnings` when not all that was given is taken as it is: pairs of an SRDF with links that the robot does not have, a start or goal moved onto a joint's limit."""
 
 
+class GeometryDoubt(UserWarning):
+    """Told by `warnings` of what was planned with and cannot be meant: links without solids, sizes in mm, obstacles that the robot never reaches or that lie within a mesh."""
+
+
 class CredentialsExpire(UserWarning):
     """Told by `warnings` when a Client is opened: its credentials are valid for less than 30 days."""

@@ -46,10 +46,11 @@ void require_local_filesystem(const std::filesystem::path& file,
 
 std::string explain_file_error(int reason, const std::filesystem::path& directory) {
   if (reason == EROFS)
-    return "lies on a read-only filesystem; mount it with write access, or name a file elsewhere";
+    return "lies on a read-only filesystem; mount it with write access, or name a file elsewhere "
+           "(--store FILE)";
   if (reason == EACCES || reason == EPERM)
     return "user " + std::to_string(geteuid()) + " may not write in '" + directory.string() +
-           "'; give it to that user, or name a file elsewhere";
+           "'; give it to that user, or name a file elsewhere (--store FILE)";
   return std::strerror(reason);
 }
 

@@ -4,9 +4,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <mutex>
 #include <set>
+#include <string>
 
 #include "client/link/durable_file.hpp"
 #include "client/link/outbox.hpp"
@@ -61,6 +63,24 @@ TEST_F(DurableFolder, FoldersThatAreThereAreLeftAlone) {
   make_folder_durably(folder / "a" / "");
   make_folder_durably(folder / "a");
   EXPECT_FALSE(is_synced(folder));
+}
+
+std::string said_of(int reason) {
+  try {
+    errno = reason;
+    fail_on("/home/u/.local", "cannot make the folder");
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+}
+
+TEST_F(DurableFolder, APlaceThatCannotBeWrittenIsToldWithWhatToName) {
+  EXPECT_EQ(said_of(EROFS),
+            "/home/u/.local: cannot make the folder: Read-only file system; name a folder for "
+            "reports that can be written (--outbox FOLDER; in Python Client(outbox=...); in C "
+            "kinship_client_options.outbox), or set XDG_STATE_HOME to one");
+  EXPECT_NE(said_of(EACCES).find("; name a folder"), std::string::npos);
+  EXPECT_EQ(said_of(ENOSPC), "/home/u/.local: cannot make the folder: No space left on device");
 }
 
 TEST_F(DurableFolder, FileInTheWayIsNamed) {

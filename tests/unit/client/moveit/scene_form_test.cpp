@@ -58,7 +58,7 @@ TEST(MoveItSceneForm, AMemberThatNoMessageHasIsRefusedWithTheOneThatMayBeMeant) 
   expect_refused(with("meshes", "mesh"), "'mesh' is no member of CollisionObject");
   expect_refused(with("frame_id", "frame"), "'frame' is no member of Header");
   const std::string echoed = replaced(kEchoedScene, "z: 0.2}", "Z: 0.2}");
-  EXPECT_NE(refusal(echoed, kEchoedRequest).find("'Z' is no member of Point"), std::string::npos);
+  EXPECT_NE(refusal(echoed, kEchoedRequest).find("'Z' is no member of Vector3"), std::string::npos);
   for (const std::string wrong :
        {"path_constraint: {}", "goal_constraint: []", "trajectory_constraints: {constraint: []}"})
     EXPECT_NE(refusal("", listed_request(wrong)).find("did you mean"), std::string::npos) << wrong;
@@ -120,6 +120,16 @@ cartesian_speed_limited_link: ''
 max_cartesian_speed: 0.0
 )");
   EXPECT_EQ(refusal(scene, request), "converted");
+}
+
+TEST(MoveItSceneForm, AConstraintOfSightHasTheMembersThatMoveItHas) {
+  const auto with = [](const std::string& member) {
+    return refusal("", listed_request("trajectory_constraints: {constraints: "
+                                      "[{visibility_constraints: [{" +
+                                      member + ": 0.1}]}]}"));
+  };
+  EXPECT_EQ(with("max_view_angle").find("is no member"), std::string::npos);
+  EXPECT_NE(with("min_view_angle").find("is no member of VisibilityConstraint"), std::string::npos);
 }
 
 /// A scene as newer versions export it: an object at (1, 0, 0) turned by half a turn about z.

@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 
@@ -81,6 +82,20 @@ class Paths(OfAUr10e):
             kinship.Problem("none", START)
         with self.assertRaisesRegex(kinship.InvalidInput, "'nimble' is no planner"):
             kinship.plan(self.robot, self.problem, planner="nimble")
+
+
+class Doubts(OfAUr10e):
+    def test_are_warned_of_when_solids_cannot_be_meant(self):
+        scene = kinship.Scene()
+        scene.add_box("far", [900, 0, 0, 0, 0, 0, 1], [1, 1, 1])
+        with self.assertWarnsRegex(kinship.GeometryDoubt, "problem 'mm': 'far' is 900 m away from the robot's base"):
+            plan = kinship.plan(self.robot, kinship.Problem("mm", START, GOAL, scene=scene))
+        self.assertTrue(plan.solved, plan.reason)
+
+    def test_are_none_of_a_scene_that_is_meant(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertTrue(kinship.plan(self.robot, self.problem).solved)
 
 
 class Guided(OfAUr10e):

@@ -153,6 +153,16 @@ TEST(GeometryDoubts, VisualsBecomeSolidsOfLinksThatHaveNoneWhereTheyAreDrawn) {
   EXPECT_FALSE(with_visual_solids("<robot"));
 }
 
+TEST(GeometryDoubts, VisualsOfLinksThatNeedNoSolidAreLeft) {
+  RobotDescription description = describe("", kDrawn, kDrawn);
+  description.urdf = with_visual_solids(description.urdf, {"upper"}).value_or_throw();
+  const Read robot = read(description);
+  ASSERT_EQ(robot.shapes.shapes.size(), 1U);
+  ASSERT_EQ(robot.shapes.visual_only.size(), 1U);
+  EXPECT_EQ(robot.chain.links()[static_cast<std::size_t>(robot.shapes.visual_only[0])].name,
+            "upper");
+}
+
 TEST(GeometryDoubts, AnObstacleBeyondAllThatTheRobotCanTouchIsNamed) {
   const Read robot = read(describe(kSolid, kSolid, kSolid));
   const auto at = [](const std::string& name, double x_m) {

@@ -35,6 +35,15 @@ Result<RobotShapes> read(const RobotDescription& description) {
   return read_shapes(description, kinematics::read_chain(description).value_or_throw());
 }
 
+TEST(ReadShapes, BlanksTabsAndLineBreaksMayStandAroundANumber) {
+  const auto shapes = read(describe(collision("<cylinder radius=' 0.1\t' length='\n0.5 '/>") +
+                                    collision("<box size='\t1 2\t3\n'/>")));
+  ASSERT_TRUE(shapes) << shapes.error().message;
+  EXPECT_EQ(std::get<CylinderShape>(shapes->shapes[0].shape).radius_m, 0.1);
+  EXPECT_EQ(std::get<CylinderShape>(shapes->shapes[0].shape).length_m, 0.5);
+  EXPECT_EQ(std::get<BoxShape>(shapes->shapes[1].shape).size, Eigen::Vector3d(1, 2, 3));
+}
+
 TEST(ReadShapes, ReadsBoxCylinderAndSphereWithTheirPlaces) {
   const auto shapes = read(describe(
       collision("<box size='1 2 3'/>", "<origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/>") +

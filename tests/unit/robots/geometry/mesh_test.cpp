@@ -123,6 +123,37 @@ TEST(ReadMesh, NamesTheLineOfATextStlThatIsWrong) {
             "line 86: 'facet' is expected, and the file ends here: is it cut off?");
 }
 
+TEST(ReadMesh, NamesTheLineOfAnObjVertexThatIsReadAsAnother) {
+  const auto with = [](const std::string& vertex) {
+    return extents("# a triangle\nv 1 0 0\nv 0 1 0\n" + vertex + "\nf 1 2 3\n", "obj");
+  };
+  for (const std::string vertex : {"v 0 0 1", "v\t0  +0\t1.0e0 \r", "v 0 0 1 # top", "v 0 0 1 1",
+                                   "v 0 0 \\\n1", "v 0 0 1 0.5 0.5 0.5"})
+    EXPECT_EQ(with(vertex), "0 0 0 to 1 1 1") << vertex;
+  for (const std::string word : {"0,5", "1,000.5", "1,2,3", "0.5,"})
+    EXPECT_EQ(with("v " + word + " 0 0"),
+              "line 4: '" + word +
+                  "' is no number; decimal commas are not read, and only blanks and tabs part "
+                  "numbers");
+  for (const std::string word : {"0.5x", "0x10", "1;2", "1.000e"})
+    EXPECT_EQ(with("v 0 0 " + word), "line 4: '" + word + "' is no number");
+}
+
+TEST(ReadMesh, NamesTheLineOfACommaInADaeFile) {
+  const std::string whole = kBox.dae();
+  const auto with = [&](const std::string& what, const std::string& other) {
+    std::string text = whole;
+    return extents(text.replace(text.find(what), what.size(), other), "dae");
+  };
+  const std::string why =
+      "' is no number; decimal commas are not read, and only blanks and tabs part numbers";
+  EXPECT_EQ(with("\"24\">0 ", "\"24\">0,5 "), "line 5: '0,5" + why);
+  EXPECT_EQ(with("\"24\">0 0 0 ", "\"24\">\n0.5,0,0\n"), "line 6: '0.5,0,0" + why);
+  EXPECT_EQ(with("1 0 0 0 0 1", "1 0 0 0,5 0 1"), "line 10: '0,5" + why);
+  EXPECT_EQ(with("meter=\"1\"", "meter=\"0,001\""), "line 3: '0,001" + why);
+  EXPECT_EQ(with("name=\"own\"", "name=\"metre, SI\""), kExtents);
+}
+
 TEST(ReadMesh, RefusesOtherFormats) {
   EXPECT_EQ(extents("ply\n", "ply"), "format 'ply' is not one of stl, obj, dae");
   EXPECT_EQ(extents("", ""), "format '' is not one of stl, obj, dae");

@@ -61,6 +61,14 @@ TEST(PointFile, OnlyBlanksAndTabsPartNumbers) {
             "header: SIZE is missing, too short or no number");
 }
 
+TEST(PointFile, WhatARefusalQuotesIsPrintable) {
+  EXPECT_EQ(why("1 2 \x1b[31m\xff\n", "xyz"), "line 1: '?[31m?' is no number");
+  EXPECT_EQ(why("1 2 " + std::string(1000, 'x'), "xyz"),
+            "line 1: '" + std::string(40, 'x') + "' is no number");
+  EXPECT_EQ(why(kHeader + "DATA \x07\x1b]0;\n", "pcd"),
+            "header: DATA must be ascii or binary, not '??]0;'");
+}
+
 TEST(PointFile, SaysWhatIsWrong) {
   EXPECT_EQ(why("1 2 3\n1 2\n", "xyz"), "line 2: has too few numbers");
   EXPECT_EQ(why("1 2 x3\n", "txt"), "line 1: 'x3' is no number");

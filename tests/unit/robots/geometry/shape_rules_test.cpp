@@ -35,5 +35,12 @@ TEST(BrokenRule, NamesSizeAndValue) {
             "cylinder length of -0.5 m is not between 0 and 1000 m");
 }
 
+TEST(HalfExtents, AreThoseOfTheBoxAroundAShape) {
+  EXPECT_EQ(half_extents_m(BoxShape{{1, 2, 3}}), Eigen::Vector3d(0.5, 1, 1.5));
+  EXPECT_EQ(half_extents_m(CylinderShape{0.25, 3}), Eigen::Vector3d(0.25, 0.25, 1.5));
+  EXPECT_EQ(half_extents_m(SphereShape{0.25}), Eigen::Vector3d(0.25, 0.25, 0.25));
+  EXPECT_EQ(half_extents_m(CapsuleShape{0.25, 3}), Eigen::Vector3d(0.25, 0.25, 1.75));
+}
+
 }  // namespace
 }  // namespace kinship::geometry::shape_rules_test

@@ -199,5 +199,23 @@ TEST(MobileBase, IsToldByWheelsAndByPlanarOrFloatingJoints) {
   EXPECT_TRUE(suggest_ends(urdf.tree()).empty()) << "wheels make no arm";
 }
 
+TEST(LinkTree, ACameraAtTheHandIsNoTip) {
+  const auto ends = suggest_ends(arm(6)
+                                     .joint("link6", "grasp_center", "fixed", "")
+                                     .joint("link6", "camera_link", "fixed", "")
+                                     .joint("camera_link", "infra2_optical_frame", "fixed", "")
+                                     .tree());
+  ASSERT_EQ(ends.size(), 1U);
+  EXPECT_EQ(ends[0].tips, (Names{"grasp_center", "link6", "infra2_optical_frame", "camera_link"}));
+}
+
+TEST(MobileBase, CounterweightsThatFollowAJointAreNoWheels) {
+  Urdf urdf;
+  urdf.link("base").joint("base", "arm", "revolute", limits(-1, 1));
+  for (const std::string side : {"left", "right"})
+    urdf.joint("base", side, "continuous", "<mimic joint=\"to_arm\" multiplier=\"0.2\"/>");
+  EXPECT_TRUE(describe_mobile_base(urdf.tree()).empty());
+}
+
 }  // namespace
 }  // namespace kinship::kinematics::link_tree_test

@@ -80,5 +80,12 @@ TEST(UrdfMarkup, OnlyBlanksWithinQuotesOfTagsAreNormalized) {
             "<![CDATA[<a b='1\t2'/>]]>\n<c d=' '/>");
 }
 
+TEST(UrdfMarkup, AroundNumbersNothingStays) {
+  EXPECT_EQ(normalize_attributes("<a b=' 0.1\t' c=\"\n-1 2e-3\t+3 \" d='1'/>"),
+            "<a b='0.1' c=\"-1 2e-3 +3\" d='1'/>");
+  EXPECT_EQ(normalize_attributes("<a b=' arm ' c=' ' d=''/>text ' 1 '<e/>"),
+            "<a b=' arm ' c=' ' d=''/>text ' 1 '<e/>");
+}
+
 }  // namespace
 }  // namespace kinship::kinematics::urdf_markup_test

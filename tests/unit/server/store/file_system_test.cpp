@@ -38,10 +38,12 @@ TEST(FileSystem, DirectoriesOfThisMachineMayHoldAStore) {
 
 TEST(FileSystem, ErrorsSayWhatToChange) {
   EXPECT_EQ(explain_file_error(EROFS, "/data"),
-            "lies on a read-only filesystem; mount it with write access, or name a file elsewhere");
+            "lies on a read-only filesystem; mount it with write access, or name a file elsewhere "
+            "(--store FILE)");
   EXPECT_EQ(explain_file_error(EACCES, "/data"),
             "user " + std::to_string(geteuid()) +
-                " may not write in '/data'; give it to that user, or name a file elsewhere");
+                " may not write in '/data'; give it to that user, or name a file elsewhere "
+                "(--store FILE)");
   EXPECT_EQ(explain_file_error(EMFILE, "/data"), "Too many open files");
 }
 
