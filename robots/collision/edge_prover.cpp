@@ -12,6 +12,13 @@ namespace {
 
 constexpr double kMotionRounding_m = 1e-9;
 
+/// The last moving joint that moves both of what two joints move; -1: none does.
+int joint_before_both(const kinematics::Chain& chain, int a, int b) {
+  while (a != b)
+    (a > b ? a : b) = chain.joint_before(std::max(a, b));
+  return a;
+}
+
 }  // namespace
 
 EdgeProver::EdgeProver(const RobotSolids& robot, const Surroundings& surroundings)
@@ -19,11 +26,14 @@ EdgeProver::EdgeProver(const RobotSolids& robot, const Surroundings& surrounding
       bodies_(bodies_among(robot, surroundings)),
       pairs_(moving_pairs(bodies_, robot.parts().unchecked, surroundings)),
       bounds_(robot.parts().chain, bodies_),
-      motion_m_(robot.parts().chain.dof() + 1, static_cast<Eigen::Index>(bodies_.size())),
+      motion_m_(robot.parts().chain.moving_joints() + 1, static_cast<Eigen::Index>(bodies_.size())),
       body_stamps_(bodies_.size(), 0) {
-  for (auto& [first, second] : pairs_)
+  for (auto& [first, second] : pairs_) {
     if (bodies_[first].joint > bodies_[second].joint)
       std::swap(first, second);
+    joints_before_both_.push_back(
+        joint_before_both(robot.parts().chain, bodies_[first].joint, bodies_[second].joint));
+  }
   for (const BodyPair& pair : standing_pairs(bodies_, surroundings))
     if (touch(bodies_[pair.first].solid, bodies_[pair.first].T_joint_body,
               bodies_[pair.second].solid, bodies_[pair.second].T_joint_body)) {
@@ -105,7 +115,7 @@ std::size_t EdgeProver::add_place(double share, std::size_t first, std::size_t c
   if (used_places_ == places_.size()) {
     Place& made = places_.emplace_back();
     made.T_base_bodies = standing_poses(bodies_);
-    made.reach_m.setZero(change_.size(), static_cast<Eigen::Index>(bodies_.size()));
+    made.reach_m.setZero(motion_m_.rows() - 1, motion_m_.cols());
     made.distances.resize(pairs_.size());
   }
   Place& place = places_[used_places_];
@@ -138,20 +148,24 @@ void EdgeProver::bound_motion(const Piece& piece) {
   ++stamp_;
   const Eigen::VectorXd change = (to.share - from.share) * change_;
   for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
-    const std::size_t body = pairs_[open_[i]].second;
-    if (body_stamps_[body] == stamp_)
-      continue;
-    body_stamps_[body] = stamp_;
-    const auto column = static_cast<Eigen::Index>(body);
-    bounds_.bound(body, change, from.reach_m.col(column), to.reach_m.col(column),
-                  motion_m_.col(column));
+    const auto [a, b] = pairs_[open_[i]];
+    for (const std::size_t body : {a, b}) {
+      if (bodies_[body].joint == joints_before_both_[open_[i]] || body_stamps_[body] == stamp_)
+        continue;
+      body_stamps_[body] = stamp_;
+      const auto column = static_cast<Eigen::Index>(body);
+      bounds_.bound(body, change, from.reach_m.col(column), to.reach_m.col(column),
+                    motion_m_.col(column));
+    }
   }
 }
 
 bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   const auto [a, b] = pairs_[pair];
-  const double motion_m =
-      motion_m_(bodies_[a].joint + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
+  const int both = joints_before_both_[pair];
+  double motion_m = motion_m_(both + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
+  if (bodies_[a].joint != both)
+    motion_m += motion_m_(both + 1, static_cast<Eigen::Index>(a));
   Place &from = places_[piece.from], &to = places_[piece.to];
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
   for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves

@@ -79,7 +79,7 @@ class EdgeProver {
     double share = 0;
     Eigen::VectorXd q;
     std::vector<Eigen::Isometry3d> T_base_joints, T_base_bodies;
-    Eigen::MatrixXd reach_m;          // dof x bodies
+    Eigen::MatrixXd reach_m;          // moving joints x bodies
     std::vector<Distance> distances;  // one a pair
   };
   /// A part of the edge and the pairs that are open on it.
@@ -104,6 +104,7 @@ class EdgeProver {
   RobotSolids robot_;
   std::vector<Body> bodies_;
   std::vector<BodyPair> pairs_;  // the first of each is moved by the earlier joint, or stands
+  std::vector<int> joints_before_both_;  // of each pair: the last that moves both, or -1
   std::optional<BodyPair> standing_contact_;
   MotionBounds bounds_;
 
@@ -115,7 +116,7 @@ class EdgeProver {
   std::size_t used_places_ = 0;
   std::vector<Piece> pieces_;
   std::vector<std::size_t> open_;  // pairs
-  Eigen::MatrixXd motion_m_;       // dof + 1 x bodies
+  Eigen::MatrixXd motion_m_;       // moving joints + 1 x bodies
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;
 };

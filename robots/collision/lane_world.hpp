@@ -49,6 +49,11 @@ class LaneWorld {
     double offset[kLaneJoints];                     // added to an angle
     double per_turn[kLaneJoints];                   // 1 / 2 pi; 0 of what slides
   };
+  /// A joint that follows one of the chain.
+  struct Mimic {
+    std::size_t source;
+    double multiplier, offset;
+  };
   struct alignas(64) Place {
     float values[kLanes];
   };
@@ -65,7 +70,8 @@ class LaneWorld {
 
   float slack_ = 0;
   Writing writing_{};
-  std::vector<LaneJoint> joints_;
+  std::vector<LaneJoint> joints_;  // of the chain, then the mimic joints
+  std::vector<Mimic> mimics_;
   std::vector<LaneBody> bodies_;
   std::vector<LaneObstacle> obstacles_;
   std::vector<float> bounds_;
@@ -77,7 +83,7 @@ class LaneWorld {
   std::vector<Place> places_;                                   // three a sphere
   LaneQuestion question_;     // kept, so that asking needs no heap
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
-  bool has_room_ = true;      // for all bodies; else everything may collide
+  bool has_room_ = true;      // for all joints and bodies; else everything may collide
 };
 
 }  // namespace kinship::collision

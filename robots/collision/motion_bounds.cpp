@@ -42,9 +42,16 @@ Spanned span_of(const Shape& shape) {
 }  // namespace
 
 MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies) {
-  for (const kinematics::Joint& joint : chain.joints()) {
-    axes_.push_back(joint.axis);
-    slides_.push_back(joint.type == kinematics::JointType::Prismatic);
+  for (int j = 0; j < chain.moving_joints(); ++j) {
+    const kinematics::Joint& joint = chain.moving_joint(j);
+    steps_.push_back(
+        {joint.axis, joint.type == kinematics::JointType::Prismatic, chain.joint_before(j), j, 1});
+  }
+  auto step = steps_.begin() + chain.dof();
+  for (const kinematics::MimicJoint& mimic : chain.mimics()) {
+    step->source = mimic.source;
+    step->multiplier = mimic.multiplier;
+    ++step;
   }
   for (const Body& body : bodies) {
     Spanned span = span_of(body.solid.shape());
@@ -56,12 +63,12 @@ void MotionBounds::measure(std::size_t body, const std::vector<Eigen::Isometry3d
                            Eigen::Ref<Eigen::VectorXd> reach_m) const {
   const Hull& hull = hulls_[body];
   const Eigen::Isometry3d& T_base_body = T_base_joints[static_cast<std::size_t>(hull.joint)];
-  for (int k = 0; k <= hull.joint; ++k) {
+  for (int k = hull.joint; k >= 0; k = steps_[static_cast<std::size_t>(k)].before) {
     const auto joint = static_cast<std::size_t>(k);
     reach_m[k] = 0;
-    if (slides_[joint])
+    if (steps_[joint].slides)
       continue;
-    const Eigen::Vector3d axis = T_base_joints[joint].linear() * axes_[joint];
+    const Eigen::Vector3d axis = T_base_joints[joint].linear() * steps_[joint].axis;
     const Eigen::Vector3d origin = T_base_joints[joint].translation();
     double farthest2 = 0;
     for (Eigen::Index i = 0; i < hull.corners.cols(); ++i) {
@@ -77,14 +84,15 @@ void MotionBounds::bound(std::size_t body, const Eigen::Ref<const Eigen::VectorX
                          const Eigen::Ref<const Eigen::VectorXd>& to_m,
                          Eigen::Ref<Eigen::VectorXd> motion_m) const {
   double motion = 0;
-  for (int k = hulls_[body].joint; k >= 0; --k) {
+  for (int k = hulls_[body].joint; k >= 0;) {
+    const Step& step = steps_[static_cast<std::size_t>(k)];
     motion_m[k + 1] = motion;
     // On the way the body is at most `motion` away from where it is at one end, as the joint's link
     // sees it, so its distance from the axis is at most the mean of both ends' and half of that
     // more.
-    const double reach =
-        slides_[static_cast<std::size_t>(k)] ? 1 : (from_m[k] + to_m[k] + motion) / 2;
-    motion += std::abs(change[k]) * reach * (1 + kReachRounding);
+    const double reach = step.slides ? 1 : (from_m[k] + to_m[k] + motion) / 2;
+    motion += std::abs(step.multiplier * change[step.source]) * reach * (1 + kReachRounding);
+    k = step.before;
   }
   motion_m[0] = motion;
 }

@@ -23,8 +23,8 @@ class MotionBounds {
 
   /// Largest distances of a body's points from the axes of the joints that move it, at one
   /// configuration, m; 0 for prismatic joints.
-  /// \param T_base_joints  poses of the joints' moving frames there, one a joint
-  /// \param reach_m        out: one a joint, those up to the body's own are written
+  /// \param T_base_joints  poses of the joints' moving frames there, one a moving joint
+  /// \param reach_m        out: one a moving joint; the body's own and those before it are written
   void measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,
                Eigen::Ref<Eigen::VectorXd> reach_m) const;
 
@@ -32,8 +32,10 @@ class MotionBounds {
   /// before it, m. Of a part of the way they are the same part at most: it is a speed as well.
   /// \param change    dof, joint units: of the joints from one end to the other
   /// \param from_m, to_m  what measure() says at both ends
-  /// \param motion_m  out: dof + 1; [0]: in the base's frame, [k]: in the moving frame of the k-th
-  ///                  joint, counted from 1; those beyond the body's joint are not written
+  /// \param motion_m  out: one more than moving joints; [0]: in the base's frame, [k]: in the
+  /// moving
+  ///                  frame of the k-th joint, counted from 1; only the body's own joint and those
+  ///                  before it are written
   void bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
              const Eigen::Ref<const Eigen::VectorXd>& from_m,
              const Eigen::Ref<const Eigen::VectorXd>& to_m,
@@ -46,8 +48,16 @@ class MotionBounds {
     double radius_m = 0;       // all of the body lies so near to what the corners span
   };
 
-  std::vector<Eigen::Vector3d> axes_;  // one a joint, in its frame
-  std::vector<bool> slides_;
+  /// A moving joint.
+  struct Step {
+    Eigen::Vector3d axis;  // in its frame
+    bool slides = false;
+    int before = -1;        // the moving joint before it
+    int source = 0;         // of `change`: itself, or what it follows,
+    double multiplier = 1;  // so many times
+  };
+
+  std::vector<Step> steps_;
   std::vector<Hull> hulls_;  // one a body
 };
 
