@@ -1,6 +1,7 @@
 #include "client/cli/robot_commands.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -133,11 +134,26 @@ void print_checked_links(const std::vector<CheckedLink>& links, std::ostream& ou
   table.print(out);
 }
 
-void print_check(const RobotCheck& check, const RobotDescription& description,
+/// What moves with the chain beside it.
+void print_mimics(const kinematics::Chain& chain, std::ostream& out) {
+  if (chain.mimics().empty())
+    return;
+  out << "followed by";
+  for (const kinematics::MimicJoint& mimic : chain.mimics())
+    out << (&mimic == &chain.mimics().front() ? " " : ", ") << mimic.joint.name << " ("
+        << number_text(mimic.multiplier) << " "
+        << chain.joints()[static_cast<std::size_t>(mimic.source)].name
+        << (mimic.offset < 0 ? " - " : " + ") << number_text(std::abs(mimic.offset)) << ")";
+  out << '\n';
+}
+
+void print_check(const RobotCheck& check, const kinematics::Chain& chain,
+                 const RobotDescription& description,
                  const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
   out << "robot       " << check.robot.hex() << '\n'
       << "chain       " << check.base_link << " -> " << check.tip_link << ", "
       << check.joints.size() << " joints\n";
+  print_mimics(chain, out);
   print_transfer(description, out);
   out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
       << "structure   " << check.structure << '\n'
@@ -218,7 +234,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (options.json)
     out << json::to_json(check) << '\n';
   else
-    print_check(check, robot->description, geometry, out);
+    print_check(check, chain, robot->description, geometry, out);
   if (options.json || !geometry)
     return kDone;
   const auto fitted = collision::fit_robot(chain, *geometry);
