@@ -14,6 +14,7 @@
 #include "client/cli/robot_text.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/tables/table.hpp"
+#include "proto/types/number_text.hpp"
 #include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/collision/robot_solids.hpp"
@@ -134,17 +135,22 @@ void print_checked_links(const std::vector<CheckedLink>& links, std::ostream& ou
   table.print(out);
 }
 
+/// "rod (-0.5 joint_2 + 0.1)".
+std::string mimic_text(const kinematics::Chain& chain, const kinematics::MimicJoint& mimic) {
+  std::string text = mimic.joint.name + " (" + kinship::number_text(mimic.multiplier) + " " +
+                     chain.joints()[static_cast<std::size_t>(mimic.source)].name;
+  if (mimic.offset != 0)
+    text += (mimic.offset < 0 ? " - " : " + ") + kinship::number_text(std::abs(mimic.offset));
+  return text + ")";
+}
+
 /// What moves with the chain beside it.
 void print_mimics(const kinematics::Chain& chain, std::ostream& out) {
-  if (chain.mimics().empty())
-    return;
-  out << "followed by";
+  std::string text;
   for (const kinematics::MimicJoint& mimic : chain.mimics())
-    out << (&mimic == &chain.mimics().front() ? " " : ", ") << mimic.joint.name << " ("
-        << number_text(mimic.multiplier) << " "
-        << chain.joints()[static_cast<std::size_t>(mimic.source)].name
-        << (mimic.offset < 0 ? " - " : " + ") << number_text(std::abs(mimic.offset)) << ")";
-  out << '\n';
+    text += (text.empty() ? "" : ", ") + mimic_text(chain, mimic);
+  if (!text.empty())
+    out << "followed by " << text << '\n';
 }
 
 void print_check(const RobotCheck& check, const kinematics::Chain& chain,

@@ -43,7 +43,7 @@ inline constexpr const char* kParallelogramArm = R"(<robot name="parallelogram">
     <limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="weight_joint" multiplier="-0.2" offset="0.05"/></joint>
   <joint name="cap_mount" type="fixed"><parent link="piston"/><child link="cap"/><origin xyz="-0.45 0 0"/></joint>
   <joint name="shutter_joint" type="prismatic"><parent link="base"/><child link="shutter"/><origin xyz="-0.5 0 0"/><axis xyz="0 0 1"/>
-    <limit lower="0" upper="1" effort="1" velocity="1"/><mimic joint="lift" multiplier="0.25" offset="0.4"/></joint>
+    <limit lower="0" upper="1" effort="1" velocity="1"/><mimic joint="lift" multiplier="0.6" offset="0.6"/></joint>
 </robot>)";
 
 inline RobotDescription parallelogram_description() {
@@ -71,7 +71,7 @@ inline std::map<std::string, Eigen::Isometry3d> followers_of_parallelogram(
                     AngleAxisd(0.1, Eigen::Vector3d::UnitX()) * about_y(weight);
   poses["piston"] = poses["weight"] * Translation3d(-0.2 * weight + 0.05, 0, 0.05);
   poses["cap"] = poses["piston"] * Translation3d(-0.45, 0, 0);
-  poses["shutter"] = Eigen::Isometry3d(Translation3d(-0.5, 0, 0.25 * q[1] + 0.4));
+  poses["shutter"] = Eigen::Isometry3d(Translation3d(-0.5, 0, 0.6 * q[1] + 0.6));
   return poses;
 }
 
