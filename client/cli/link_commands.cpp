@@ -82,7 +82,8 @@ RobotLink row_of(const LookedAt& looked_at, std::size_t index,
     }
   if (const auto value = held.find(row.joint); value != held.end())
     row.held = value->second;
-  row.moved_by = static_cast<std::uint64_t>(std::int64_t{chain.links()[index].joint} + 1);
+  const int last = chain.last_source(chain.links()[index].joint);
+  row.moved_by = static_cast<std::uint64_t>(std::int64_t{last} + 1);
   return row;
 }
 

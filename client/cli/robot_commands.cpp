@@ -1,6 +1,7 @@
 #include "client/cli/robot_commands.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -13,6 +14,7 @@
 #include "client/cli/robot_text.hpp"
 #include "proto/json/robot_answers_json.hpp"
 #include "proto/tables/table.hpp"
+#include "proto/types/number_text.hpp"
 #include "robots/collision/always_touching.hpp"
 #include "robots/collision/fitted_links.hpp"
 #include "robots/collision/robot_solids.hpp"
@@ -133,11 +135,31 @@ void print_checked_links(const std::vector<CheckedLink>& links, std::ostream& ou
   table.print(out);
 }
 
-void print_check(const RobotCheck& check, const RobotDescription& description,
+/// "rod (-0.5 joint_2 + 0.1)".
+std::string mimic_text(const kinematics::Chain& chain, const kinematics::MimicJoint& mimic) {
+  std::string text = mimic.joint.name + " (" + kinship::number_text(mimic.multiplier) + " " +
+                     chain.joints()[static_cast<std::size_t>(mimic.source)].name;
+  if (mimic.offset != 0)
+    text += (mimic.offset < 0 ? " - " : " + ") + kinship::number_text(std::abs(mimic.offset));
+  return text + ")";
+}
+
+/// What moves with the chain beside it.
+void print_mimics(const kinematics::Chain& chain, std::ostream& out) {
+  std::string text;
+  for (const kinematics::MimicJoint& mimic : chain.mimics())
+    text += (text.empty() ? "" : ", ") + mimic_text(chain, mimic);
+  if (!text.empty())
+    out << "followed by " << text << '\n';
+}
+
+void print_check(const RobotCheck& check, const kinematics::Chain& chain,
+                 const RobotDescription& description,
                  const std::optional<geometry::RobotShapes>& geometry, std::ostream& out) {
   out << "robot       " << check.robot.hex() << '\n'
       << "chain       " << check.base_link << " -> " << check.tip_link << ", "
       << check.joints.size() << " joints\n";
+  print_mimics(chain, out);
   print_transfer(description, out);
   out << "geometry    " << (geometry ? geometry_text(*geometry) : "not known") << '\n'
       << "structure   " << check.structure << '\n'
@@ -218,7 +240,7 @@ int check_robot(const CheckOptions& options, std::ostream& out, std::ostream& er
   if (options.json)
     out << json::to_json(check) << '\n';
   else
-    print_check(check, robot->description, geometry, out);
+    print_check(check, chain, robot->description, geometry, out);
   if (options.json || !geometry)
     return kDone;
   const auto fitted = collision::fit_robot(chain, *geometry);

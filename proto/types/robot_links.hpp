@@ -21,7 +21,7 @@ struct RobotLink {
   std::string mimics;                  ///< the joint that it follows; empty: none
   std::optional<std::uint64_t> chain_joint;  ///< which joint of the chain it is, from 1
   std::optional<double> held;                ///< where it stands; of what moves off the chain
-  std::uint64_t moved_by = 0;          ///< the joint of the chain that moves the link; 0: none
+  std::uint64_t moved_by = 0;          ///< the last joint of the chain that moves the link; 0: none
   std::vector<std::string> collision;  ///< box, cylinder, sphere or mesh, one a solid
   std::uint64_t approximated = 0;  ///< solids fitted around meshes, where the meshes can be read
   std::string fault = {};          ///< why the joint can be none of a robot; empty: nothing

@@ -28,7 +28,7 @@ struct Body {
   BodyKind kind = BodyKind::Link;
   std::string name;  ///< of the link, attachment or obstacle
   int link = -1;     ///< that it is or hangs on; -1 for obstacles
-  int joint = -1;    ///< of the chain that moves it; -1: stands still in the base frame
+  int joint = -1;    ///< the moving joint that moves it; -1: stands still in the base frame
   Eigen::Isometry3d T_joint_body = Eigen::Isometry3d::Identity();  ///< in the base if joint is -1
   Solid solid;
   std::vector<std::string> touch_links;  ///< of attachments

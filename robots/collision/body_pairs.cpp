@@ -1,7 +1,6 @@
 #include "robots/collision/body_pairs.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <string_view>
 
@@ -61,7 +60,11 @@ class Permissions {
 std::vector<std::pair<int, int>> neighbouring_links(const kinematics::Chain& chain,
                                                     const std::vector<bool>& has_shape) {
   const auto& links = chain.links();
-  const auto joint = [&](int link) { return links[static_cast<std::size_t>(link)].joint; };
+  const auto are_joined = [&](int first, int second) {  // by one moving joint
+    const int a = links[static_cast<std::size_t>(first)].joint;
+    const int b = links[static_cast<std::size_t>(second)].joint;
+    return (a >= 0 && chain.joint_before(a) == b) || (b >= 0 && chain.joint_before(b) == a);
+  };
   const std::vector<std::vector<int>> edges = tree_edges(links);
   std::vector<std::pair<int, int>> pairs;
   for (int first = 0; first < static_cast<int>(links.size()); ++first) {
@@ -77,7 +80,7 @@ std::vector<std::pair<int, int>> neighbouring_links(const kinematics::Chain& cha
           continue;
         if (!has_shape[static_cast<std::size_t>(next)])
           frontier.emplace_back(next, link);
-        else if (first < next && std::abs(joint(first) - joint(next)) == 1)
+        else if (first < next && are_joined(first, next))
           pairs.emplace_back(first, next);
       }
     }

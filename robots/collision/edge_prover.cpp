@@ -24,18 +24,22 @@ EdgeProver::EdgeProver(CollisionWorld& world)
       bounds_(world.robot_.parts().chain, world.bodies_),
       middles_(world.robot_.parts().chain.dof(), kLanes),
       body_stamps_(world.bodies_.size(), 0) {
+  const kinematics::Chain& chain = world.robot_.parts().chain;
   for (std::size_t body = 0; body < world.bodies_.size(); ++body) {
     index_of_moving_.push_back(world.bodies_[body].joint < 0 ? -1
                                                              : static_cast<int>(moving_.size()));
     if (world.bodies_[body].joint >= 0)
       moving_.push_back(body);
   }
-  motion_m_.setZero(middles_.rows() + 1, static_cast<Eigen::Index>(world.bodies_.size()));
+  motion_m_.setZero(chain.moving_joints() + 1, static_cast<Eigen::Index>(world.bodies_.size()));
   grown_m_ = motion_m_;
   for (auto& [first, second] : pairs_)
     if (world.bodies_[first].joint > world.bodies_[second].joint)
       std::swap(first, second);
   std::ranges::sort(pairs_);
+  for (const auto& [first, second] : pairs_)
+    joints_before_both_.push_back(
+        chain.joint_before_both(world.bodies_[first].joint, world.bodies_[second].joint));
 }
 
 void EdgeProver::check(const Eigen::Ref<const Eigen::MatrixXd>& qs,
@@ -211,7 +215,7 @@ std::size_t EdgeProver::add_place(std::size_t edge, double share) {
   if (used_places_ == places_.size()) {
     Place& made = places_.emplace_back();
     made.T_base_bodies.resize(moving_.size());
-    made.reach_m.setZero(change_.rows(), static_cast<Eigen::Index>(moving_.size()));
+    made.reach_m.setZero(motion_m_.rows() - 1, static_cast<Eigen::Index>(moving_.size()));
   }
   Place& place = places_[used_places_];
   const auto column = static_cast<Eigen::Index>(edge);
@@ -258,20 +262,25 @@ void EdgeProver::bound_motion(const Piece& piece) {
   for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
     distance_at(from, open_[i]);
     distance_at(to, open_[i]);
-    const std::size_t body = pairs_[open_[i]].second;
-    if (body_stamps_[body] == stamp_)
-      continue;
-    body_stamps_[body] = stamp_;
-    const int moving = index_of_moving_[body];
-    bounds_.bound(body, change, from.reach_m.col(moving), to.reach_m.col(moving),
-                  motion_m_.col(static_cast<Eigen::Index>(body)));
+    const auto [a, b] = pairs_[open_[i]];
+    for (const std::size_t body : {a, b}) {
+      if (world_.bodies_[body].joint == joints_before_both_[open_[i]] ||
+          body_stamps_[body] == stamp_)
+        continue;
+      body_stamps_[body] = stamp_;
+      const int moving = index_of_moving_[body];
+      bounds_.bound(body, change, from.reach_m.col(moving), to.reach_m.col(moving),
+                    motion_m_.col(static_cast<Eigen::Index>(body)));
+    }
   }
 }
 
 bool EdgeProver::is_apart(const Piece& piece, std::size_t pair) {
   const auto [a, b] = pairs_[pair];
-  const double motion_m =
-      motion_m_(world_.bodies_[a].joint + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
+  const int both = joints_before_both_[pair];
+  double motion_m = motion_m_(both + 1, static_cast<Eigen::Index>(b)) + kMotionRounding_m;
+  if (world_.bodies_[a].joint != both)
+    motion_m += motion_m_(both + 1, static_cast<Eigen::Index>(a));
   Place &from = places_[piece.from], &to = places_[piece.to];
   const auto are_apart = [&] { return motion_m < from.distances[pair].m + to.distances[pair].m; };
   for (Place* place : {&from, &to})  // what may be too near is refused, however little it moves

@@ -96,7 +96,7 @@ class EdgeProver {
     double share = 0;
     Eigen::VectorXd q;
     std::vector<Eigen::Isometry3d> T_base_joints, T_base_bodies;  // the latter of moving_
-    Eigen::MatrixXd reach_m;                                      // dof x moving_
+    Eigen::MatrixXd reach_m;                                      // moving joints x moving_
     std::vector<char> has_body;       // of moving_: whether it is placed and its reach measured
     std::vector<Distance> distances;  // one a pair
   };
@@ -144,6 +144,7 @@ class EdgeProver {
   CollisionWorld& world_;
   std::vector<BodyPair>
       pairs_;  // sorted; the first of each is moved by the earlier joint, or stands
+  std::vector<int> joints_before_both_;  // of each pair: the last that moves both, or -1
   MotionBounds bounds_;
   std::vector<std::size_t> moving_;   // the bodies that joints move
   std::vector<int> index_of_moving_;  // one a body: of moving_, or -1
@@ -158,8 +159,8 @@ class EdgeProver {
   std::vector<std::size_t> open_;                // pairs
   std::vector<Part> parts_, rest_;               // that the lanes are asked about, now and next
   std::vector<Eigen::MatrixXd> edge_motions_m_;  // of each whole edge, by MotionBounds::bound_all
-  Eigen::MatrixXd motion_m_, grown_m_;           // dof + 1 x bodies: of a piece, of a part
-  Eigen::MatrixXd middles_;                      // dof x kLanes
+  Eigen::MatrixXd motion_m_, grown_m_;  // moving joints + 1 x bodies: of a piece, of a part
+  Eigen::MatrixXd middles_;             // dof x kLanes
   std::vector<BodyPair> doubtful_;
   std::vector<std::uint64_t> body_stamps_;
   std::uint64_t stamp_ = 0;

@@ -116,6 +116,9 @@ class LaneWorldMaker {
       : world_(world), chain_(chain), bodies_(bodies), pairs_(pairs) {}
 
   void make() {
+    world_.has_room_ = chain_.moving_joints() <= kLaneJoints;
+    if (!world_.has_room_)
+      return;
     find_axes();
     add_joints();
     drop_out_of_reach();
@@ -143,36 +146,45 @@ class LaneWorldMaker {
     std::ranges::fill(writing.lower, -kFarthest);
     std::ranges::fill(writing.upper, kFarthest);
     std::ranges::fill(writing.per_turn, 1 / kTurn);
-    Eigen::Isometry3d T_turned_moving = T_scene_base_;  // of the joint before
-    double reach_m = 0;
-    for (std::size_t j = 0; j < chain_.joints().size(); ++j) {
-      const kinematics::Joint& joint = chain_.joints()[j];
-      const bool slides = joint.type == kinematics::JointType::Prismatic;
-      const Eigen::Isometry3d T_joint_turned = turned_to(joint.axis);
-      Eigen::Isometry3d T = T_turned_moving * joint.T_previous_joint * T_joint_turned;
-      LaneJoint lane{};
-      lane.slides = slides;
-      // What a rotation turns about the z axes before and after it is added to the joints' angles.
-      lane.is_tilt = j > 0 && !slides && !world_.joints_.back().slides;
-      if (lane.is_tilt)
-        keep_tilt(j, T);
-      if (slides) {
-        writing.lower[j] = joint.lower;
-        writing.upper[j] = joint.upper;
-        writing.per_turn[j] = 0;
-      }
-      write(T.linear(), lane.R);
-      write(T.translation(), lane.p);
-      world_.joints_.push_back(lane);
-      T_turned_moving = T_joint_turned.inverse();
-      T_turned_moving_.push_back(T_turned_moving);
-      if (j > 0)
-        reach_m += joint.T_previous_joint.translation().norm();
-      if (slides)
-        reach_m += std::max(std::abs(joint.lower), std::abs(joint.upper));
-      reaches_m_.push_back(reach_m);
-    }
     first_joint_ = chain_.joints().front().T_previous_joint.translation();
+    for (int j = 0; j < chain_.moving_joints(); ++j)
+      add_joint(j);
+    for (const kinematics::MimicJoint& mimic : chain_.mimics())
+      world_.mimics_.push_back(
+          {static_cast<std::size_t>(mimic.source), mimic.multiplier, mimic.offset});
+  }
+
+  void add_joint(int index) {
+    const auto j = static_cast<std::size_t>(index);
+    const kinematics::Joint& joint = chain_.moving_joint(index);
+    const bool slides = joint.type == kinematics::JointType::Prismatic;
+    LaneJoint lane{};
+    lane.slides = slides;
+    lane.before = chain_.joint_before(index);
+    const auto before = static_cast<std::size_t>(lane.before);
+    const Eigen::Isometry3d T_joint_turned = turned_to(joint.axis);
+    Eigen::Isometry3d T = (lane.before < 0 ? T_scene_base_ : T_turned_moving_[before]) *
+                          joint.T_previous_joint * T_joint_turned;
+    // What a rotation turns about the z axes before and after it is added to the joints' angles; of
+    // a mimic joint not, since the frame before it is that of others too.
+    lane.is_tilt = index > 0 && index < chain_.dof() && !slides && !world_.joints_.back().slides;
+    if (lane.is_tilt)
+      keep_tilt(j, T);
+    if (slides) {
+      LaneWorld::Writing& writing = world_.writing_;
+      writing.lower[j] = joint.lower;
+      writing.upper[j] = joint.upper;
+      writing.per_turn[j] = 0;
+    }
+    write(T.linear(), lane.R);
+    write(T.translation(), lane.p);
+    world_.joints_.push_back(lane);
+    T_turned_moving_.push_back(T_joint_turned.inverse());
+    const Eigen::Vector3d& p = joint.T_previous_joint.translation();
+    double reach_m = lane.before < 0 ? (p - first_joint_).norm() : reaches_m_[before] + p.norm();
+    if (slides)
+      reach_m += std::max(std::abs(joint.lower), std::abs(joint.upper));
+    reaches_m_.push_back(reach_m);
   }
 
   /// Leaves of a joint's pose in the frame before it what turns about the x axis; the rest is moved
@@ -220,7 +232,8 @@ class LaneWorldMaker {
         extent_m = std::max(extent_m, body->joint >= 0 ? first_joint_.norm() + reach_of(*body)
                                                        : body->T_joint_body.translation().norm() +
                                                              body->solid.radius_m());
-    slack_m_ = kAtLeast_m + kOfAJoint * (2.0 + static_cast<double>(chain_.dof())) * extent_m;
+    slack_m_ =
+        kAtLeast_m + kOfAJoint * (2.0 + static_cast<double>(chain_.moving_joints())) * extent_m;
   }
 
   LaneSphere lane_sphere(const Eigen::Isometry3d& T, const CoverSphere& sphere) const {
@@ -356,8 +369,9 @@ class LaneWorldMaker {
       body.first_other = static_cast<int>(world_.others_.size());
       body.others = static_cast<int>(others[i].size());
       for (const int other : others[i]) {
-        world_.others_.push_back(
-            {other, body.radius + world_.bodies_[static_cast<std::size_t>(other)].radius});
+        const LaneBody& its = world_.bodies_[static_cast<std::size_t>(other)];
+        world_.others_.push_back({other, body.radius + its.radius});
+        world_.joints_before_both_.push_back(chain_.joint_before_both(body.joint, its.joint));
       }
     }
   }
@@ -415,18 +429,18 @@ LaneAnswer LaneWorld::ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                 const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
                                 bool is_ahead) {
   constexpr double kOfFloats = 1 + 1e-6;
-  const auto grown = [&](int frame, std::size_t lane_body) {
-    const auto body = static_cast<Eigen::Index>(index_of_body_[lane_body]);
-    return static_cast<float>((motion_m(frame, body) + room_m) * kOfFloats);
+  const auto moves = [&](int joint, std::size_t body) {  // as what the joint moves sees it
+    return motion_m(joint + 1, static_cast<Eigen::Index>(index_of_body_[body]));
   };
+  const auto grown = [&](double by_m) { return static_cast<float>((by_m + room_m) * kOfFloats); };
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    growth_[i] = grown(0, i);
+    growth_[i] = grown(moves(-1, i));
     const LaneBody& body = bodies_[i];
-    for (int k = body.first_other; k < body.first_other + body.others; ++k) {
-      const auto other = static_cast<std::size_t>(others_[static_cast<std::size_t>(k)].body);
-      const int joint = bodies_[other].joint;
-      growth_[bodies_.size() + static_cast<std::size_t>(k)] =
-          joint > body.joint ? grown(body.joint + 1, other) : grown(joint + 1, i);
+    for (int k = 0; k < body.others; ++k) {
+      const auto at = static_cast<std::size_t>(body.first_other + k);
+      const int both = joints_before_both_[at];
+      growth_[bodies_.size() + at] =
+          grown(moves(both, i) + moves(both, static_cast<std::size_t>(others_[at].body)));
     }
   }
   return answer(qs, fastest(qs.cols()), is_ahead, true);
@@ -437,7 +451,7 @@ bool LaneWorld::write_lane(const double* q, int lane) {
   // the library's function is a call on the baseline.
   constexpr double kRounder = 6755399441055744.0;
   PairBits outside{};  // by the sign
-  const std::size_t dof = joints_.size();
+  const std::size_t dof = joints_.size() - mimics_.size();
   for (std::size_t j = 0; j < dof; j += 2) {
     const Pair value = j + 1 < dof ? Pair{q[j], q[j + 1]} : Pair{q[j], 0};
     outside |=
@@ -448,9 +462,17 @@ bool LaneWorld::write_lane(const double* q, int lane) {
     question_.q[j][lane] = static_cast<float>(written[0]);
     question_.q[j + 1][lane] = static_cast<float>(written[1]);
   }
-  if ((outside[0] | outside[1]) >= 0)
+  bool is_outside = (outside[0] | outside[1]) < 0;
+  for (std::size_t i = 0; i < mimics_.size(); ++i) {
+    const std::size_t j = dof + i;
+    const double value = mimics_[i].multiplier * q[mimics_[i].source] + mimics_[i].offset;
+    is_outside |= !(value >= writing_.lower[j] && value <= writing_.upper[j]);
+    question_.q[j][lane] =
+        static_cast<float>(value - kTurn * std::nearbyint(value * writing_.per_turn[j]));
+  }
+  if (!is_outside)
     return true;
-  for (std::size_t j = 0; j < dof; ++j)
+  for (std::size_t j = 0; j < joints_.size(); ++j)
     question_.q[j][lane] = 0;
   return false;
 }

@@ -41,7 +41,8 @@ class LaneWorld {
 
   /// The same of bodies that are grown: where they may not collide they have so much room.
   /// What surely collides does so as it is.
-  /// \param motion_m  dof + 1 x the constructor's bodies, as MotionBounds has it: by how much each
+  /// \param motion_m  moving joints + 1 x the constructor's bodies, as MotionBounds has it: by how
+  /// much each
   ///                  is grown towards what stands still ([0]) and what the k-th joint moves ([k])
   /// \param room_m    by how much more every pair is
   /// \param is_ahead  nothing is known of those behind the first that surely collides
@@ -62,6 +63,11 @@ class LaneWorld {
     double offset[kLaneJoints];                     // added to an angle
     double per_turn[kLaneJoints];                   // 1 / 2 pi; 0 of what slides
   };
+  /// A joint that follows one of the chain.
+  struct Mimic {
+    std::size_t source;
+    double multiplier, offset;
+  };
   struct alignas(64) Place {
     float values[kLanes];
   };
@@ -79,7 +85,8 @@ class LaneWorld {
 
   float slack_ = 0;
   Writing writing_{};
-  std::vector<LaneJoint> joints_;
+  std::vector<LaneJoint> joints_;  // of the chain, then the mimic joints
+  std::vector<Mimic> mimics_;
   std::vector<LaneBody> bodies_;
   std::vector<LaneObstacle> obstacles_;
   std::vector<float> bounds_;
@@ -89,10 +96,11 @@ class LaneWorld {
   std::vector<LaneOther> others_;
   std::vector<std::size_t> index_of_body_, index_of_obstacle_;  // of the constructor's bodies
   std::vector<Place> places_;                                   // three a sphere
+  std::vector<int> joints_before_both_;                         // of each of others_ and its body
   std::vector<float> growth_, ungrown_;                         // one a body, then one an other
   LaneQuestion question_;     // kept, so that asking needs no heap
   std::uint32_t beyond_ = 0;  // lanes that the numbers do not hold for
-  bool has_room_ = true;      // for all bodies; else everything may collide
+  bool has_room_ = true;      // for all joints and bodies; else everything may collide
 };
 
 }  // namespace kinship::collision

@@ -10,7 +10,7 @@
 namespace kinship::collision {
 
 inline constexpr int kLanes = 16;        ///< configurations that are asked about side by side
-inline constexpr int kLaneJoints = 32;   ///< of a chain
+inline constexpr int kLaneJoints = 32;   ///< of a chain, and what follows them
 inline constexpr int kLaneBodies = 128;  ///< that joints move
 inline constexpr int kCoverRows = 5;     ///< centres' x, y, z, then outer and inner radii
 inline constexpr int kLaneDoubts = 64;   ///< that are told of
@@ -18,6 +18,7 @@ inline constexpr int kLaneDoubts = 64;   ///< that are told of
 /// A joint, seen from a frame whose z axis is the joint's; lengths in m.
 struct LaneJoint {
   float R[9], p[3];  ///< in the moving frame of the joint before, row-major
+  int before;        ///< that joint, below its own index; -1: the scene's frame
   bool slides;
   bool is_tilt;  ///< R turns about the x axis alone, by R[7] and R[8], its sine and cosine
 };
@@ -75,7 +76,7 @@ struct LaneObstacle {
 /// A robot and what surrounds it, as plain numbers, in a frame at the base's origin whose axes are
 /// those of the boxes around, if most of these have the same.
 struct LaneScene {
-  int dof, bodies;
+  int moving_joints, bodies;
   float slack;  ///< what rounding may do to a distance, m
   const LaneJoint* joints;
   const LaneBody* body;

@@ -43,19 +43,31 @@ Spanned span_of(const Shape& shape) {
 }  // namespace
 
 MotionBounds::MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies) {
-  for (const kinematics::Joint& joint : chain.joints()) {
+  for (int j = 0; j < chain.moving_joints(); ++j) {
+    const kinematics::Joint& joint = chain.moving_joint(j);
     const Eigen::Vector3d origin = joint.T_previous_joint.translation();
-    origins_across_m_.push_back(axes_.empty() ? 0 : origin.cross(axes_.back()).norm());
-    origins_reach_m_.push_back(origin.norm());
-    axes_.push_back(joint.axis);
-    slides_.push_back(joint.type == kinematics::JointType::Prismatic);
+    const int before = chain.joint_before(j);
+    steps_.push_back(
+        {.axis = joint.axis,
+         .slides = joint.type == kinematics::JointType::Prismatic,
+         .before = before,
+         .source = j,
+         .origin_across_m = before < 0 ? 0 : origin.cross(chain.moving_joint(before).axis).norm(),
+         .origin_reach_m = origin.norm()});
+  }
+  auto step = steps_.begin() + chain.dof();
+  for (const kinematics::MimicJoint& mimic : chain.mimics()) {
+    step->source = mimic.source;
+    step->multiplier = mimic.multiplier;
+    step->offset = mimic.offset;
+    ++step;
   }
   for (const Body& body : bodies) {
     Spanned span = span_of(body.solid.shape());
     Hull hull{body.joint, body.T_joint_body * span.corners, span.radius_m, 0, 0};
     if (body.joint >= 0)
       for (const auto& corner : hull.corners.colwise()) {
-        const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(body.joint)];
+        const Eigen::Vector3d& axis = steps_[static_cast<std::size_t>(body.joint)].axis;
         const Eigen::Vector3d at = corner;
         hull.across_m = std::max(hull.across_m, at.cross(axis).norm() + span.radius_m);
         hull.reach_m = std::max(hull.reach_m, at.norm() + span.radius_m);
@@ -72,15 +84,18 @@ void MotionBounds::bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
     const auto column = static_cast<Eigen::Index>(body);
     // Of the body's points, from the axis and from the origin of the joint that is looked at.
     double across = hull.across_m, reach = hull.reach_m, motion = 0;
-    for (int k = hull.joint; k >= 0; --k) {
+    for (int k = hull.joint; k >= 0;) {
+      const Step& step = steps_[static_cast<std::size_t>(k)];
       motion_m(k + 1, column) = motion;
-      const auto joint = static_cast<std::size_t>(k);
-      const double change = std::abs(to[k] - from[k]);
-      motion += change * (slides_[joint] ? 1 : across) * (1 + kReachRounding);
+      const double change = std::abs(step.multiplier * (to[step.source] - from[step.source]));
+      motion += change * (step.slides ? 1 : across) * (1 + kReachRounding);
       // One joint on: by how far it slides, and by where its origin is.
-      const double slide = slides_[joint] ? std::max(std::abs(from[k]), std::abs(to[k])) : 0;
-      across = origins_across_m_[joint] + slide + reach + kReachRounding;
-      reach += origins_reach_m_[joint] + slide + kReachRounding;
+      const auto slid = [&](double q) { return std::abs(step.multiplier * q + step.offset); };
+      const double slide =
+          step.slides ? std::max(slid(from[step.source]), slid(to[step.source])) : 0;
+      across = step.origin_across_m + slide + reach + kReachRounding;
+      reach += step.origin_reach_m + slide + kReachRounding;
+      k = step.before;
     }
     motion_m(0, column) = motion;
   }
@@ -90,12 +105,12 @@ void MotionBounds::measure(std::size_t body, const std::vector<Eigen::Isometry3d
                            Eigen::Ref<Eigen::VectorXd> reach_m) const {
   const Hull& hull = hulls_[body];
   const Eigen::Isometry3d& T_base_body = T_base_joints[static_cast<std::size_t>(hull.joint)];
-  for (int k = 0; k <= hull.joint; ++k) {
+  for (int k = hull.joint; k >= 0; k = steps_[static_cast<std::size_t>(k)].before) {
     const auto joint = static_cast<std::size_t>(k);
     reach_m[k] = 0;
-    if (slides_[joint])
+    if (steps_[joint].slides)
       continue;
-    const Eigen::Vector3d axis = T_base_joints[joint].linear() * axes_[joint];
+    const Eigen::Vector3d axis = T_base_joints[joint].linear() * steps_[joint].axis;
     const Eigen::Vector3d origin = T_base_joints[joint].translation();
     double farthest2 = 0;
     for (Eigen::Index i = 0; i < hull.corners.cols(); ++i) {
@@ -111,14 +126,15 @@ void MotionBounds::bound(std::size_t body, const Eigen::Ref<const Eigen::VectorX
                          const Eigen::Ref<const Eigen::VectorXd>& to_m,
                          Eigen::Ref<Eigen::VectorXd> motion_m) const {
   double motion = 0;
-  for (int k = hulls_[body].joint; k >= 0; --k) {
+  for (int k = hulls_[body].joint; k >= 0;) {
+    const Step& step = steps_[static_cast<std::size_t>(k)];
     motion_m[k + 1] = motion;
     // On the way the body is at most `motion` away from where it is at one end, as the joint's link
     // sees it, so its distance from the axis is at most the mean of both ends' and half of that
     // more.
-    const double reach =
-        slides_[static_cast<std::size_t>(k)] ? 1 : (from_m[k] + to_m[k] + motion) / 2;
-    motion += std::abs(change[k]) * reach * (1 + kReachRounding);
+    const double reach = step.slides ? 1 : (from_m[k] + to_m[k] + motion) / 2;
+    motion += std::abs(step.multiplier * change[step.source]) * reach * (1 + kReachRounding);
+    k = step.before;
   }
   motion_m[0] = motion;
 }

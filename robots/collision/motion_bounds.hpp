@@ -24,15 +24,15 @@ class MotionBounds {
   /// Bounds of the way of all bodies' points on a line, in the frame of every joint before each, m:
   /// coarser than bound(), without looking at a configuration. Of a part of the line the same part.
   /// \param from, to  dof, joint units: the ends of the line
-  /// \param motion_m  out: dof + 1 x bodies, as bound() has it
+  /// \param motion_m  out: moving joints + 1 x bodies, as bound() has it
   void bound_all(const Eigen::Ref<const Eigen::VectorXd>& from,
                  const Eigen::Ref<const Eigen::VectorXd>& to,
                  Eigen::Ref<Eigen::MatrixXd> motion_m) const;
 
   /// Largest distances of a body's points from the axes of the joints that move it, at one
   /// configuration, m; 0 for prismatic joints.
-  /// \param T_base_joints  poses of the joints' moving frames there, one a joint
-  /// \param reach_m        out: one a joint, those up to the body's own are written
+  /// \param T_base_joints  poses of the joints' moving frames there, one a moving joint
+  /// \param reach_m        out: one a moving joint; the body's own and those before it are written
   void measure(std::size_t body, const std::vector<Eigen::Isometry3d>& T_base_joints,
                Eigen::Ref<Eigen::VectorXd> reach_m) const;
 
@@ -40,8 +40,10 @@ class MotionBounds {
   /// before it, m. Of a part of the way they are the same part at most: it is a speed as well.
   /// \param change    dof, joint units: of the joints from one end to the other
   /// \param from_m, to_m  what measure() says at both ends
-  /// \param motion_m  out: dof + 1; [0]: in the base's frame, [k]: in the moving frame of the k-th
-  ///                  joint, counted from 1; those beyond the body's joint are not written
+  /// \param motion_m  out: one more than moving joints; [0]: in the base's frame, [k]: in the
+  /// moving
+  ///                  frame of the k-th joint, counted from 1; only the body's own joint and those
+  ///                  before it are written
   void bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
              const Eigen::Ref<const Eigen::VectorXd>& from_m,
              const Eigen::Ref<const Eigen::VectorXd>& to_m,
@@ -55,11 +57,19 @@ class MotionBounds {
     double across_m = 0, reach_m = 0;  // from the joint's axis, from its origin
   };
 
-  std::vector<Eigen::Vector3d> axes_;  // one a joint, in its frame
-  std::vector<bool> slides_;
-  // Of a joint's origin, where it does not slide, in the frame of the joint before: from its axis,
-  // from its origin.
-  std::vector<double> origins_across_m_, origins_reach_m_;
+  /// A moving joint.
+  struct Step {
+    Eigen::Vector3d axis;  // in its frame
+    bool slides = false;
+    int before = -1;        // the moving joint before it
+    int source = 0;         // of `change`: itself, or what it follows,
+    double multiplier = 1;  // so many times
+    double offset = 0;      // and so much more, rad or m
+    // Of its origin where it does not slide, from the axis and the origin of the joint before.
+    double origin_across_m = 0, origin_reach_m = 0;
+  };
+
+  std::vector<Step> steps_;
   std::vector<Hull> hulls_;  // one a body
 };
 

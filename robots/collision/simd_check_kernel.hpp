@@ -49,12 +49,17 @@ class Group {
  private:
   void place_joints(const LaneQuestion& question, int first) {
     WideFrame frame = standing(scene_.joints[0].R, scene_.joints[0].p);
-    for (int j = 0; j < scene_.dof; ++j) {
+    for (int j = 0; j < scene_.moving_joints; ++j) {
       const LaneJoint& joint = scene_.joints[j];
-      if (joint.is_tilt)
+      if (joint.is_tilt) {
         tilt(joint.R[7], joint.R[8], joint.p, frame);
-      else if (j > 0)
+      } else if (joint.before >= 0) {
+        if (joint.before != j - 1)
+          frame = frames_[joint.before];
         follow(joint.R, joint.p, frame);
+      } else if (j > 0) {
+        frame = standing(joint.R, joint.p);
+      }
       const Wide q = load(question.q[j] + first);
       if (joint.slides) {
         frame.p[0] += q * frame.R[2];

@@ -55,11 +55,13 @@ double farthest_m(const Extents& box) {
   return box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
 }
 
-/// How far the moving frame of each joint can get from the base link's origin.
+/// How far the moving frame of each moving joint can get from the base link's origin.
 std::vector<double> joint_reaches_m(const kinematics::Chain& chain) {
   std::vector<double> reaches_m;
-  double reach = 0;
-  for (const kinematics::Joint& joint : chain.joints()) {
+  for (int j = 0; j < chain.moving_joints(); ++j) {
+    const kinematics::Joint& joint = chain.moving_joint(j);
+    const int before = chain.joint_before(j);
+    double reach = before < 0 ? 0 : reaches_m[static_cast<std::size_t>(before)];
     reach += joint.T_previous_joint.translation().norm();
     if (joint.type == kinematics::JointType::Prismatic)
       reach += std::max(std::abs(joint.lower), std::abs(joint.upper));
@@ -205,7 +207,7 @@ std::vector<LinkExtent> link_extents(const kinematics::Chain& chain, const Robot
 }
 
 double reach_m(const kinematics::Chain& chain) {
-  return joint_reaches_m(chain).back() +
+  return joint_reaches_m(chain)[chain.joints().size() - 1] +
          (chain.T_last_tip() * chain.T_tip_transfer()).translation().norm();
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/number_text.hpp"
@@ -46,15 +48,50 @@ std::optional<std::string> find_fault(const Joint& joint) {
   return std::nullopt;
 }
 
-std::optional<std::string> find_fault(const std::vector<ChainLink>& links, int dof) {
+/// The least and the largest value of a mimic joint.
+std::pair<double, double> limits_of(const MimicJoint& mimic, const Joint& source) {
+  const bool turns = source.type == JointType::Continuous;
+  const double lower = turns ? -std::numbers::pi : source.lower;
+  const double upper = turns ? std::numbers::pi : source.upper;
+  return std::minmax(
+      {mimic.multiplier * lower + mimic.offset, mimic.multiplier * upper + mimic.offset});
+}
+
+/// \param index  of the moving joint; those of the chain are without fault.
+std::optional<std::string> find_fault(const MimicJoint& mimic, const std::vector<Joint>& joints,
+                                      int index) {
+  const std::string name = "joint '" + mimic.joint.name + "'";
+  if (mimic.source < 0 || mimic.source >= static_cast<int>(joints.size()))
+    return name + ": mimics joint " + std::to_string(mimic.source) + " of " +
+           std::to_string(joints.size());
+  if (mimic.before < -1 || mimic.before >= index)
+    return name + ": joint index " + std::to_string(mimic.before) + " is not below its own, " +
+           std::to_string(index);
+  const Joint& source = joints[static_cast<std::size_t>(mimic.source)];
+  const std::string follows = name + " mimics joint '" + source.name + "'";
+  const auto [lower, upper] = limits_of(mimic, source);
+  for (const double limit : {lower, upper})
+    if (!(std::abs(limit) <= kMaxPlacement_m))
+      return follows + " at " + number_text(limit) + ", more than " + number_text(kMaxPlacement_m);
+  // A configuration is the same after a full turn, so what follows has to be.
+  if (source.type == JointType::Continuous && (mimic.joint.type == JointType::Prismatic ||
+                                               mimic.multiplier != std::round(mimic.multiplier)))
+    return follows + ", which is continuous, times " + number_text(mimic.multiplier) +
+           ": where it stands would depend on full turns, which is not supported; hold it";
+  Joint joint = mimic.joint;
+  joint.type = JointType::Continuous;  // without limits of its own
+  return find_fault(joint);
+}
+
+std::optional<std::string> find_fault(const std::vector<ChainLink>& links, int moving_joints) {
   for (int i = 0; i < static_cast<int>(links.size()); ++i) {
     const ChainLink& link = links[static_cast<std::size_t>(i)];
     const std::string name = "link '" + link.name + "'";
     if (auto fault = find_fault(name, link.T_joint_link))
       return fault;
-    if (link.joint < -1 || link.joint >= dof)
+    if (link.joint < -1 || link.joint >= moving_joints)
       return name + ": joint index " + std::to_string(link.joint) + " is not below " +
-             std::to_string(dof);
+             std::to_string(moving_joints);
     if (link.parent < -1 || link.parent >= i)
       return name + ": parent index " + std::to_string(link.parent) + " is not below its own, " +
              std::to_string(i);
@@ -88,7 +125,11 @@ std::optional<std::string> find_fault(const ChainParts& parts) {
   const auto& matters = parts.task_axes.matters;
   if (std::none_of(matters.begin(), matters.end(), [](bool axis) { return axis; }))
     return "task axes: none matters, need at least one";
-  return find_fault(parts.links, static_cast<int>(parts.joints.size()));
+  int moving_joints = static_cast<int>(parts.joints.size());
+  for (const MimicJoint& mimic : parts.mimics)
+    if (auto fault = find_fault(mimic, parts.joints, moving_joints++))
+      return fault;
+  return find_fault(parts.links, moving_joints);
 }
 
 Chain::Chain(ChainParts parts) : parts_(std::move(parts)) {
@@ -106,6 +147,9 @@ Chain::Chain(ChainParts parts) : parts_(std::move(parts)) {
     upper_[i] = joint.upper;
     ++i;
   }
+  for (MimicJoint& mimic : parts_.mimics)
+    std::tie(mimic.joint.lower, mimic.joint.upper) =
+        limits_of(mimic, parts_.joints[static_cast<std::size_t>(mimic.source)]);
 }
 
 bool Chain::within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance) const {
@@ -121,6 +165,33 @@ bool Chain::within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tol
     }
   }
   return true;
+}
+
+int Chain::moving_joints() const noexcept {
+  return static_cast<int>(parts_.joints.size() + parts_.mimics.size());
+}
+
+const Joint& Chain::moving_joint(int joint) const noexcept {
+  const auto index = static_cast<std::size_t>(joint);
+  const std::size_t on_chain = parts_.joints.size();
+  return index < on_chain ? parts_.joints[index] : parts_.mimics[index - on_chain].joint;
+}
+
+int Chain::joint_before(int joint) const noexcept {
+  return joint < dof() ? joint - 1 : parts_.mimics[static_cast<std::size_t>(joint - dof())].before;
+}
+
+int Chain::joint_before_both(int a, int b) const noexcept {
+  while (a != b)
+    (a > b ? a : b) = joint_before(std::max(a, b));
+  return a;
+}
+
+int Chain::last_source(int joint) const noexcept {
+  int last = -1;
+  for (; joint >= dof(); joint = joint_before(joint))
+    last = std::max(last, parts_.mimics[static_cast<std::size_t>(joint - dof())].source);
+  return std::max(last, joint);
 }
 
 int Chain::find_link(std::string_view name) const noexcept {

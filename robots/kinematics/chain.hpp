@@ -26,10 +26,23 @@ struct Joint {
   double upper = 0;                                 ///< rad or m; +pi for continuous joints
 };
 
-/// A link of the URDF and the joint of the chain that moves it; off-chain joints are held.
+/// A joint beside the chain that follows one of its joints: a parallelogram's, a counterweight's.
+/// Its value is multiplier * q[source] + offset, whatever limits of its own it has.
+struct MimicJoint {
+  /// Its frame in the moving frame of `before`. The limits are what the source's limits make of it,
+  /// set by the Chain.
+  Joint joint;
+  int before = -1;  ///< index of the moving joint before it, below its own; -1: the base link
+  int source = 0;   ///< index of the joint of the chain that it follows
+  double multiplier = 1;
+  double offset = 0;  ///< rad or m
+};
+
+/// A link of the URDF and the joint that moves it; joints off the chain that follow none of its
+/// joints are held.
 struct ChainLink {
   std::string name;
-  int joint = -1;  ///< index of the last joint that moves it; -1: fixed to the base link
+  int joint = -1;  ///< index of the last moving joint before it; -1: fixed to the base link
   Eigen::Isometry3d T_joint_link = Eigen::Isometry3d::Identity();  ///< in that joint's moving frame
   /// Index of the parent link in Chain::links(), below this link's own; -1: the URDF's root link.
   int parent = -1;
@@ -43,7 +56,8 @@ struct ChainParts {
       Eigen::Isometry3d::Identity();  ///< tip link in the last moving frame
   Eigen::Isometry3d T_tip_transfer = Eigen::Isometry3d::Identity();
   TaskAxes task_axes;
-  std::vector<ChainLink> links;  ///< every link of the URDF
+  std::vector<ChainLink> links;         ///< every link of the URDF
+  std::vector<MimicJoint> mimics = {};  ///< each after the one before it
 };
 
 /// The first thing that keeps parts from being a Chain, with its value and the limit, in words.
@@ -51,9 +65,11 @@ std::optional<std::string> find_fault(const ChainParts& parts);
 
 /// A kinematic chain from a base link to a tip link with a transfer frame: what a robot is to us.
 ///
+/// Its moving joints are counted from the base to the tip, and after these its mimic joints.
+///
 /// Invariant: 1 to kMaxDof joints, unit axes, finite limits with lower < upper, rigid transforms,
-/// every coordinate and limit at most kMaxPlacement_m, at least one task axis, links after their
-/// parents.
+/// every coordinate, limit and value of a mimic joint at most kMaxPlacement_m, at least one task
+/// axis, links after their parents; what follows a continuous joint does so by full turns.
 class Chain {
  public:
   /// The limits of continuous joints are set to -pi and pi.
@@ -62,6 +78,7 @@ class Chain {
 
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(parts_.joints.size()); }
   const std::vector<Joint>& joints() const noexcept { return parts_.joints; }
+  const std::vector<MimicJoint>& mimics() const noexcept { return parts_.mimics; }
   const std::vector<ChainLink>& links() const noexcept { return parts_.links; }
   const std::string& base_link() const noexcept { return parts_.base_link; }
   const std::string& tip_link() const noexcept { return parts_.tip_link; }
@@ -75,12 +92,21 @@ class Chain {
   /// \throws std::invalid_argument if q.size() != dof().
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 0) const;
 
+  int moving_joints() const noexcept;  ///< dof() and the mimic joints
+  /// \param joint  of the moving ones, as what follows.
+  const Joint& moving_joint(int joint) const noexcept;
+  int joint_before(int joint) const noexcept;  ///< -1: the base link
+  /// The last moving joint that moves both of what two joints move; -1: none does.
+  int joint_before_both(int a, int b) const noexcept;
+  /// The last joint of the chain whose value moves what this one moves.
+  int last_source(int joint) const noexcept;
+
   /// Index into links(), or -1.
   int find_link(std::string_view name) const noexcept;
 
   /// Identity of the robot: SHA-256 of joint types, axes, origins, limits, transfer frame and
   /// task axes, each number rounded to 1e-9 (m, rad, 1) so that machines whose libraries differ in
-  /// the last bits agree. Names, labels and geometry do not count.
+  /// the last bits agree. Names, labels, geometry and what follows the chain do not count.
   Digest digest() const;
 
  private:

@@ -46,7 +46,7 @@ Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eig
 
 Eigen::Isometry3d T_base_transfer(const Chain& chain,
                                   std::span<const Eigen::Isometry3d> T_base_joints) {
-  Eigen::Isometry3d T = T_base_joints.back();
+  Eigen::Isometry3d T = T_base_joints[chain.joints().size() - 1];
   follow(chain.T_last_tip(), T);
   follow(chain.T_tip_transfer(), T);
   return T;
@@ -62,9 +62,17 @@ std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
 void joint_poses(const Chain& chain, const Eigen::Ref<const Eigen::VectorXd>& q,
                  std::vector<Eigen::Isometry3d>& poses) {
   poses.clear();
-  poses.reserve(chain.joints().size());
+  poses.reserve(static_cast<std::size_t>(chain.moving_joints()));
   visit_joints(chain, q,
                [&](const Eigen::Isometry3d& T_base_joint) { poses.push_back(T_base_joint); });
+  for (const MimicJoint& mimic : chain.mimics()) {
+    Eigen::Isometry3d T_base_joint = Eigen::Isometry3d::Identity();
+    if (mimic.before >= 0)
+      T_base_joint = poses[static_cast<std::size_t>(mimic.before)];
+    follow(mimic.joint.T_previous_joint, T_base_joint);
+    move(mimic.joint, mimic.multiplier * q[mimic.source] + mimic.offset, T_base_joint);
+    poses.push_back(T_base_joint);
+  }
 }
 
 std::vector<Eigen::Isometry3d> link_poses(const Chain& chain,

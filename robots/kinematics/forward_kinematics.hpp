@@ -19,7 +19,8 @@ Eigen::Isometry3d T_base_transfer(const Chain& chain, const Eigen::Ref<const Eig
 Eigen::Isometry3d T_base_transfer(const Chain& chain,
                                   std::span<const Eigen::Isometry3d> T_base_joints);
 
-/// Pose of each joint's moving frame in the base link: dof poses, from base to tip.
+/// Pose of each moving joint's moving frame in the base link: those of the chain, from base to tip,
+/// then those of the mimic joints.
 std::vector<Eigen::Isometry3d> joint_poses(const Chain& chain,
                                            const Eigen::Ref<const Eigen::VectorXd>& q);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -144,7 +145,14 @@ void check_on_chain(const urdf::Joint& joint) {
                   "', which is not supported");
 }
 
-/// Where the joints off the chain stand.
+/// What gives a joint off the chain its value: nothing, or a joint of the chain that it follows.
+struct JointValue {
+  double value = 0;         ///< where it stands; of one that follows, its offset
+  std::string source = {};  ///< the joint that it follows
+  double multiplier = 0;
+};
+
+/// Where the joints off the chain stand, and what they follow.
 class HeldJoints {
  public:
   HeldJoints(const urdf::ModelInterface& model, const std::map<std::string, double>& held,
@@ -164,20 +172,27 @@ class HeldJoints {
     }
   }
 
-  /// Pose of a joint's moving frame in its parent link; floating and planar joints stand at zero.
-  Eigen::Isometry3d T_parent_moving(const urdf::Joint& joint) const {
+  /// Floating and planar joints stand at zero.
+  JointValue value_of(const urdf::Joint& joint) const {
+    std::vector<std::string> followers;
+    return has_one_value(joint) ? value_of(joint, followers) : JointValue{};
+  }
+
+  /// Pose in its parent link of the moving frame of a joint that stands.
+  static Eigen::Isometry3d T_parent_moving(const urdf::Joint& joint, const JointValue& stands) {
     Eigen::Isometry3d T = T_parent_joint(joint);
     if (has_one_value(joint))
-      move(read_joint(joint), value_of(joint, model_.joints_.size()), T);
+      move(read_joint(joint), stands.value, T);
     return T;
   }
 
-  /// Of all joints off the chain that have one value.
+  /// Of all joints off the chain that have one value and do not follow it.
   std::map<std::string, double> values() const {
     std::map<std::string, double> values;
     for (const auto& [name, joint] : model_.joints_)
       if (has_one_value(*joint) && !on_chain_.contains(name))
-        values.emplace(name, value_of(*joint, model_.joints_.size()));
+        if (const JointValue value = value_of(*joint); value.source.empty())
+          values.emplace(name, value.value);
     return values;
   }
 
@@ -192,30 +207,46 @@ class HeldJoints {
                     number_text(limits.upper));
   }
 
-  /// \param followings  how many mimicked joints may still be asked, so that a ring of them ends.
-  double value_of(const urdf::Joint& joint, std::size_t followings) const {
+  /// \param followers  joints that follow this one, from the first that was asked about on.
+  JointValue value_of(const urdf::Joint& joint, std::vector<std::string>& followers) const {
     if (const auto held = held_.find(joint.name); held != held_.end())
-      return held->second;
-    const double value = mimicked_value(joint, followings);
-    if (joint.type == urdf::Joint::CONTINUOUS)
+      return {held->second};
+    JointValue value = mimicked_value(joint, followers);
+    if (joint.type == urdf::Joint::CONTINUOUS || !value.source.empty())
       return value;
     const Limits limits = stricter_limits(joint);
-    return std::clamp(value, limits.lower, limits.upper);
+    value.value = std::clamp(value.value, limits.lower, limits.upper);
+    return value;
   }
 
-  /// Where the joint that it mimics puts a joint; 0 if that one moves, is none, or there is none.
-  double mimicked_value(const urdf::Joint& joint, std::size_t followings) const {
-    if (joint.mimic == nullptr || followings == 0 || on_chain_.contains(joint.mimic->joint_name))
-      return 0;
-    const urdf::JointConstSharedPtr leader = model_.getJoint(joint.mimic->joint_name);
+  /// What the joint that it mimics makes of a joint; 0 if that one is none, or there is none.
+  JointValue mimicked_value(const urdf::Joint& joint, std::vector<std::string>& followers) const {
+    const urdf::JointConstSharedPtr leader =
+        joint.mimic == nullptr ? nullptr : model_.getJoint(joint.mimic->joint_name);
     if (leader == nullptr || !has_one_value(*leader))
-      return 0;
-    const double value =
-        joint.mimic->multiplier * value_of(*leader, followings - 1) + joint.mimic->offset;
-    if (!(std::abs(value) <= kMaxPlacement_m))
+      return {};
+    followers.push_back(joint.name);
+    if (followers.size() > model_.joints_.size())
+      throw refused(loop_text(followers));
+    const urdf::JointMimic& mimic = *joint.mimic;
+    if (on_chain_.contains(leader->name))
+      return {mimic.offset, leader->name, mimic.multiplier};
+    JointValue value = value_of(*leader, followers);
+    value.value = mimic.multiplier * value.value + mimic.offset;
+    value.multiplier *= mimic.multiplier;
+    if (!(std::abs(value.value) <= kMaxPlacement_m))
       throw refused(words(joint) + ": mimics joint '" + leader->name + "' at " +
-                    number_text(value) + ", more than " + number_text(kMaxPlacement_m));
+                    number_text(value.value) + ", more than " + number_text(kMaxPlacement_m));
     return value;
+  }
+
+  /// \param followers  so many that the last one is among those before it.
+  static std::string loop_text(const std::vector<std::string>& followers) {
+    auto at = std::find(std::next(followers.rbegin()), followers.rend(), followers.back()).base();
+    std::string text = "joint '" + followers.back() + "'";
+    for (; at != followers.end(); ++at)
+      text += ", which mimics '" + *at + "'";
+    return cut_text(text + ": a loop of mimic joints", kMaxMessageBytes);
   }
 
   const urdf::ModelInterface& model_;
@@ -227,8 +258,14 @@ class HeldJoints {
 Eigen::Isometry3d T_base_root(const urdf::Link& base, const HeldJoints& held) {
   Eigen::Isometry3d T_root_base = Eigen::Isometry3d::Identity();
   for (const urdf::Link* link = &base; link->parent_joint != nullptr;
-       link = link->getParent().get())
-    T_root_base = held.T_parent_moving(*link->parent_joint) * T_root_base;
+       link = link->getParent().get()) {
+    const urdf::Joint& joint = *link->parent_joint;
+    const JointValue value = held.value_of(joint);
+    if (!value.source.empty())
+      throw refused(words(joint) + " before the base link follows joint '" + value.source +
+                    "' of the chain, which is not supported; hold it");
+    T_root_base = HeldJoints::T_parent_moving(joint, value) * T_root_base;
+  }
   return T_root_base.inverse();
 }
 
@@ -270,9 +307,22 @@ class TreeWalk {
       parts_.joints[static_cast<std::size_t>(link.joint)].T_previous_joint =
           above.T_joint_link * T_parent_joint(joint);
     } else if (link.name != parts_.base_link) {
-      link.T_joint_link = above.T_joint_link * held_.T_parent_moving(joint);
+      const JointValue value = held_.value_of(joint);
+      if (value.source.empty())
+        link.T_joint_link = above.T_joint_link * HeldJoints::T_parent_moving(joint, value);
+      else
+        link.joint = add_mimic(joint, value, above);
     }
     return link;
+  }
+
+  /// \return the index of the moving joint.
+  int add_mimic(const urdf::Joint& joint, const JointValue& value, const ChainLink& above) {
+    MimicJoint mimic{read_joint(joint), above.joint, index_.at(value.source), value.multiplier,
+                     value.value};
+    mimic.joint.T_previous_joint = above.T_joint_link * T_parent_joint(joint);
+    parts_.mimics.push_back(mimic);
+    return static_cast<int>(parts_.joints.size() + parts_.mimics.size()) - 1;
   }
 
   const HeldJoints& held_;

@@ -10,13 +10,14 @@
 namespace kinship::kinematics {
 
 /// The chain of a description: parses its URDF text (untrusted) and follows it from base link to
-/// tip link. Revolute, continuous, prismatic and fixed joints; joints off the chain are held at 0
-/// clamped into their limits, or at `held_joints`; the stricter of hard and soft limits holds.
+/// tip link. Revolute, continuous, prismatic and fixed joints; joints off the chain that mimic none
+/// of its joints are held at 0 clamped into their limits, or at `held_joints`; the stricter of hard
+/// and soft limits holds.
 /// \return the chain, or InvalidInput or TooLarge with the link, joint, value and limit named.
 Result<Chain> read_chain(const RobotDescription& description);
 
-/// Where the joints of a description stand that are not on its chain: those with one value, by
-/// name, joint units. \return what read_chain() says.
+/// Where the joints of a description stand that are not on its chain and do not follow it: those
+/// with one value, by name, joint units. \return what read_chain() says.
 Result<std::map<std::string, double>> held_values(const RobotDescription& description);
 
 }  // namespace kinship::kinematics

@@ -23,8 +23,8 @@ Corners corners(const kinematics::Chain& arm, std::span<const Eigen::Isometry3d>
   Corners points(3, arm.dof() + 1);
   for (Eigen::Index j = 0; j < arm.dof(); ++j)
     points.col(j) = T_base_joints[static_cast<std::size_t>(j)].translation();
-  points.col(arm.dof()) =
-      T_base_joints.back() * (arm.T_last_tip() * arm.T_tip_transfer().translation());
+  points.col(arm.dof()) = T_base_joints[arm.joints().size() - 1] *
+                          (arm.T_last_tip() * arm.T_tip_transfer().translation());
   return points;
 }
 

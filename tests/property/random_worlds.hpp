@@ -14,6 +14,7 @@
 #include "robots/geometry/link_shapes.hpp"
 #include "robots/geometry/point_cloud.hpp"
 #include "tests/support/box_mesh.hpp"
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 
@@ -88,6 +89,20 @@ inline Robot random_robot(int joints, double sliding_share, Random& random) {
   return {"random", kinematics::Chain(parts), std::move(shapes)};
 }
 
+/// The same with joints and links beside the chain that follow it.
+inline Robot followed_robot(int joints, double sliding_share, Random& random) {
+  Robot robot = random_robot(joints, sliding_share, random);
+  kinematics::ChainParts parts = parts_of(robot.chain);
+  parts.mimics = random_mimics(robot.chain, 5, 0.3, random.generator());
+  for (const kinematics::MimicJoint& mimic : parts.mimics) {
+    const auto link = static_cast<int>(parts.links.size());  // the first hangs on no joint
+    parts.links.push_back({mimic.joint.name + "_link", link - 1,
+                           Eigen::Isometry3d(Eigen::Translation3d(0, 0.02, 0)), mimic.before + 1});
+    robot.shapes.shapes.push_back({link, random.shape(0.2), random.pose(0.1)});
+  }
+  return {"followed", kinematics::Chain(parts), std::move(robot.shapes)};
+}
+
 inline std::vector<Robot> robots(Random& random) {
   std::vector<Robot> all;
   for (const char* name :
@@ -98,6 +113,9 @@ inline std::vector<Robot> robots(Random& random) {
   }
   for (const double sliding_share : {0.0, 0.0, 0.4, 0.4})
     all.push_back(random_robot(6, sliding_share, random));
+  Random own;  // so that nothing else changes
+  for (const double sliding_share : {0.0, 0.4})
+    all.push_back(followed_robot(5, sliding_share, own));
   return all;
 }
 

@@ -14,6 +14,7 @@ inline kinematics::ChainParts parts_of(const kinematics::Chain& chain) {
   parts.T_tip_transfer = chain.T_tip_transfer();
   parts.task_axes = chain.task_axes();
   parts.links = chain.links();
+  parts.mimics = chain.mimics();
   return parts;
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "robots/kinematics/chain.hpp"
 
@@ -63,6 +64,29 @@ inline kinematics::Chain random_chain(const RandomChain& wanted, std::mt19937_64
   parts.T_last_tip = random_pose(wanted.length_m, generator);
   parts.T_tip_transfer = random_pose(0.3 * wanted.length_m, generator);
   return kinematics::Chain(parts);
+}
+
+/// Joints beside a chain that follow it: on its base, on its joints and on each other.
+inline std::vector<kinematics::MimicJoint> random_mimics(const kinematics::Chain& chain, int count,
+                                                         double length_m,
+                                                         std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<kinematics::MimicJoint> mimics;
+  for (int i = 0; i < count; ++i) {
+    kinematics::MimicJoint mimic;
+    mimic.joint.name = "mimic" + std::to_string(i);
+    mimic.joint.T_previous_joint = random_pose(length_m, generator);
+    mimic.joint.axis = random_direction(generator);
+    const bool slides = i % 3 == 1;
+    mimic.joint.type = slides ? kinematics::JointType::Prismatic : kinematics::JointType::Revolute;
+    const auto dof = static_cast<int>(chain.dof());
+    mimic.before = std::uniform_int_distribution<int>(-1, dof + i - 1)(generator);
+    mimic.source = std::uniform_int_distribution<int>(0, dof - 1)(generator);
+    mimic.multiplier = (slides ? 0.1 : 1.5) * uniform(generator);
+    mimic.offset = (slides ? 0.1 : 0.5) * uniform(generator);
+    mimics.push_back(mimic);
+  }
+  return mimics;
 }
 
 }  // namespace kinship::test

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/unit/robots/collision/toy_arm.hpp"
@@ -32,6 +33,15 @@ TEST(MotionBounds, AJointAloneMovesABodyByItsFarthestPoint) {
   EXPECT_EQ(motion_m[1], 0) << "in the first link's frame nothing moves";
 }
 
+/// The moving joints before one, from it on, then the base.
+std::vector<int> frames_of(const kinematics::Chain& chain, int joint) {
+  std::vector<int> frames;
+  for (; joint >= 0; joint = chain.joint_before(joint))
+    frames.push_back(joint);
+  frames.push_back(-1);
+  return frames;
+}
+
 /// The corners of a box, one a link, on the way.
 TEST(MotionBounds, NoPointMovesFartherInAnyFrame) {
   std::mt19937_64 generator(kSeed);
@@ -39,10 +49,12 @@ TEST(MotionBounds, NoPointMovesFartherInAnyFrame) {
   const Eigen::Vector3d size(0.1, 0.3, 0.2);
   double tightest = 0;
   for (int round = 0; round < 200; ++round) {
-    const kinematics::Chain bare =
-        test::random_chain({.joints = 5, .length_m = 0.3, .sliding_share = 0.3}, generator);
+    kinematics::ChainParts parts = test::parts_of(
+        test::random_chain({.joints = 5, .length_m = 0.3, .sliding_share = 0.3}, generator));
+    parts.mimics = test::random_mimics(kinematics::Chain(parts), round % 4, 0.3, generator);
+    const kinematics::Chain bare(parts);
     std::vector<Body> bodies;
-    for (int joint = 0; joint < 5; ++joint)
+    for (int joint = 0; joint < bare.moving_joints(); ++joint)
       bodies.push_back({BodyKind::Link,
                         "link",
                         joint,
@@ -57,24 +69,25 @@ TEST(MotionBounds, NoPointMovesFartherInAnyFrame) {
     const auto at_start = kinematics::joint_poses(bare, from);
     const auto at_end = kinematics::joint_poses(bare, from + change);
     for (std::size_t body = 0; body < bodies.size(); ++body) {
-      Eigen::VectorXd from_m = Eigen::VectorXd::Zero(5), to_m = from_m,
-                      motion_m = Eigen::VectorXd::Zero(6);
+      Eigen::VectorXd from_m = Eigen::VectorXd::Zero(bare.moving_joints()), to_m = from_m,
+                      motion_m = Eigen::VectorXd::Zero(bare.moving_joints() + 1);
       bounds.measure(body, at_start, from_m);
       bounds.measure(body, at_end, to_m);
       bounds.bound(body, change, from_m, to_m, motion_m);
       for (int part = 0; part <= kParts; ++part) {
         const double share = static_cast<double>(part) / kParts;
         const auto here = kinematics::joint_poses(bare, from + share * change);
-        for (std::size_t frame = 0; frame <= body; ++frame)
+        for (const int frame : frames_of(bare, static_cast<int>(body)))
           for (int corner = 0; corner < 8; ++corner) {
             const Eigen::Vector3d p =
                 bodies[body].T_joint_body * Eigen::Vector3d((corner & 1 ? 0.5 : -0.5) * size.x(),
                                                             (corner & 2 ? 0.5 : -0.5) * size.y(),
                                                             (corner & 4 ? 0.5 : -0.5) * size.z());
             const auto seen = [&](const std::vector<Eigen::Isometry3d>& T) -> Eigen::Vector3d {
-              return frame == 0 ? T[body] * p : T[frame - 1].inverse() * T[body] * p;
+              return frame < 0 ? T[body] * p
+                               : T[static_cast<std::size_t>(frame)].inverse() * T[body] * p;
             };
-            const double limit_m = motion_m[static_cast<Eigen::Index>(frame)];
+            const double limit_m = motion_m[frame + 1];
             const double moved_m = (seen(here) - seen(at_start)).norm();
             ASSERT_LE(moved_m, share * limit_m + 1e-9) << "body " << body << ", frame " << frame;
             ASSERT_LE((seen(at_end) - seen(here)).norm(), (1 - share) * limit_m + 1e-9);

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "tests/support/chain_parts.hpp"
 #include "tests/support/planar_arm.hpp"
 
 namespace kinship::transfer::arm_shape_test {
@@ -46,6 +47,16 @@ TEST(ArmShape, IsSeenFromAnotherFrame) {
   const auto arm = PlanarArm{.lengths_m = {0.5, 0.5}}.chain();
   const auto turned = moved(planar_pose(0, 0, 0.7), arm_shape(arm, Eigen::Vector2d(0.1, 0.4)));
   EXPECT_LT(shape_distance(turned, arm_shape(arm, Eigen::Vector2d(0.8, 0.4))), 1e-12);
+}
+
+TEST(ArmShape, DoesNotCountWhatFollowsTheArmBesideIt) {
+  const auto arm = PlanarArm{.lengths_m = {0.5, 0.3}}.chain();
+  kinematics::ChainParts parts = test::parts_of(arm);
+  kinematics::MimicJoint rod{parts.joints[0], 0, 1, -1, 0.2};
+  rod.joint.T_previous_joint = planar_pose(0.4, 0.3, 0.5);
+  parts.mimics.push_back(rod);
+  const Eigen::Vector2d q(0.3, -0.8);
+  EXPECT_EQ(shape_distance(arm_shape(kinematics::Chain(parts), q), arm_shape(arm, q)), 0);
 }
 
 TEST(ArmShape, AnArmOfNoLengthIsAPoint) {

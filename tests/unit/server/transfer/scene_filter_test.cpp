@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "robots/kinematics/urdf.hpp"
+#include "tests/support/parallelogram_arm.hpp"
 
 namespace kinship::transfer::scene_filter_test {
 namespace {
@@ -107,6 +108,22 @@ TEST(SceneFilter, WhatAlwaysTouchesDoesNotHideBehindWhatSometimesDoes) {
             (std::vector<std::pair<std::string, std::string>>{{"upper", "hub"}}));
   EXPECT_FALSE(filter.keep(kAhead));
   EXPECT_TRUE(filter.keep(kLeft));
+}
+
+TEST(SceneFilter, LinksBesideTheChainMoveWithIt) {
+  const RobotDescription description = test::parallelogram_description();
+  const kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  const Eigen::Vector4d low(0, 0, 1.2, 0), up(0, 0, -0.8, 0);  // the weight follows the bend alone
+  for (const auto& [there, elsewhere] : {std::pair(up, low), std::pair(low, up)}) {
+    const Eigen::Isometry3d T_task_weight = test::followers_of_parallelogram(there).at("weight");
+    const SceneObject ball{"ball", SphereShape{0.01},
+                           T_task_weight * Eigen::Translation3d(-0.2, 0, 0)};
+    const SceneFilter filter =
+        scene_filter({chain, geometry::read_shapes(description, chain).value_or_throw()},
+                     {{ball}, {}, {}}, Eigen::Isometry3d::Identity());
+    EXPECT_FALSE(filter.keep(there));
+    EXPECT_TRUE(filter.keep(elsewhere));
+  }
 }
 
 TEST(SceneFilter, WithoutShapesOrObjectsThereIsNone) {
