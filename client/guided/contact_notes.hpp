@@ -19,13 +19,17 @@ class ContactNotes {
   /// \param is_free  asked in turn. What is returned borrows both.
   planning::IsFree watched(const planning::IsFree& is_free);
 
-  /// What touches in how many of those noted, the most frequent first: "'l4' touches 'wall' (5 of
-  /// 8), 'l2' touches 'l4' (3 of 8)".
+  /// Notes one that is not free.
+  void note(const Eigen::Ref<const Eigen::VectorXd>& q);
+
+  const std::vector<Eigen::VectorXd>& noted() const noexcept { return colliding_; }
+
+  /// What is touched in how many of those noted, and by what, the most frequent first: "'l4' or
+  /// 'l3' touches 'wall' in 5 of 8 configurations, 'l4' touches 'l2' in 3 of 8"; without counts of
+  /// a single one. Of two links the one farther from the base is what is touched.
   std::string text();
 
  private:
-  void note(const Eigen::Ref<const Eigen::VectorXd>& q);
-
   collision::CollisionWorld& world_;
   std::vector<Eigen::VectorXd> colliding_;
 };

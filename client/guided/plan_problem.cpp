@@ -16,6 +16,7 @@
 #include "client/guided/problem_mismatch.hpp"
 #include "client/ompl/ompl_planner.hpp"
 #include "robots/collision/collision_world.hpp"
+#include "robots/inverse/unreached.hpp"
 #include "robots/planning/birrt.hpp"
 #include "robots/planning/cbirrt2.hpp"
 #include "robots/planning/configuration_sampler.hpp"
@@ -68,6 +69,11 @@ std::string millimetres(double length_m) {
   std::ostringstream text;
   text << std::setprecision(3) << 1e3 * length_m << " mm";
   return text.str();
+}
+
+/// "every goal collides: 'l4' touches 'wall'", or the text alone where nothing more is known.
+std::string with_detail(const std::string& text, const std::string& detail) {
+  return detail.empty() ? text : text + ": " + detail;
 }
 
 /// Empty for a query that is to be guided.
@@ -147,6 +153,7 @@ class Planning {
         T_task_base_(problem.T_task_base.value_or(Eigen::Isometry3d::Identity())),
         world_(robot.solids,
                {T_task_base_, problem.scene, problem.attached, problem.allowed_collisions}),
+        goal_contacts_(world_),
         prover_(world_),
         is_free_(what_is_free(stop)),
         recorder_(recorder),
@@ -239,9 +246,10 @@ class Planning {
     result.goal_checks = found.collision_checks;
     if (!found.q) {
       result.not_planned = not_planned_by(found.reason);
-      result.reason = found.reason == NoPath::StartCollides
-                          ? "every configuration of the start collides: " + contacts.text()
-                          : explain(found.reason);
+      result.reason =
+          found.reason == NoPath::StartCollides
+              ? with_detail("every configuration of the start collides", contacts_text(contacts))
+              : explain(found.reason);
       return false;
     }
     start_ = *std::move(found.q);
@@ -253,34 +261,19 @@ class Planning {
   Eigen::MatrixXd find_goals(ProblemResult& result) {
     if (!problem_.T_task_goal) {
       Eigen::MatrixXd goals = within_bounds(robot_.chain, bounds_, problem_.goal_configurations);
-      if (goals.cols() > 0)
-        first_goal_ = goals.col(0);
-      else
+      if (goals.cols() == 0)
         refuse(NoPath::GoalOutsideBounds, result);
+      for (const auto& goal : goals.colwise())  // as none of them may be free
+        goal_contacts_.note(goal);
       return goals;
     }
-    const auto remember = [this](const Eigen::Ref<const Eigen::VectorXd>& q) {
-      if (!first_goal_)
-        first_goal_ = q;
-    };
-    const planning::IsFree is_free{[&](const Eigen::VectorXd& q) {
-                                     remember(q);
-                                     return is_free_(q);
-                                   },
-                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-                                     remember(qs.col(0));
-                                     return is_free_.ahead(qs);
-                                   },
-                                   [&](const Eigen::Ref<const Eigen::MatrixXd>& qs) {
-                                     remember(qs.col(0));
-                                     return is_free_.blocked_ahead(qs);
-                                   }};
+    const planning::IsFree watched = goal_contacts_.watched(is_free_);
     planning::GoalOptions options;
     options.max_configurations = settings_.max_goals;
     options.seed = problem_.seed;
     planning::GoalConfigurations goals = planning::goal_configurations(
         robot_.chain, robot_.solver, T_task_base_.inverse() * *problem_.T_task_goal, bounds_,
-        is_free, options);
+        watched, options);
     result.goal_checks += goals.collision_checks;
     if (goals.reason != NoPath::None)
       refuse(goals.reason, result);
@@ -356,7 +349,15 @@ class Planning {
       case NoPath::StartCollides:
         return text + contact_text(": ", start_);
       case NoPath::GoalsCollide:
-        return text + (first_goal_ ? contact_text(", at the first one ", *first_goal_) : "");
+        return with_detail(text, contacts_text(goal_contacts_));
+      case NoPath::StartOutOfReach:
+      case NoPath::StartBeyondLimits:
+      case NoPath::StartNotFound:
+        return with_detail(text, unreached_text(*problem_.T_task_start));
+      case NoPath::GoalOutOfReach:
+      case NoPath::GoalBeyondLimits:
+      case NoPath::GoalNotFound:
+        return with_detail(text, unreached_text(*problem_.T_task_goal));
       case NoPath::StartOffConstraint:
         return text + ": " + described(constraint_->excess(start_));
       case NoPath::MaxChecks:
@@ -368,6 +369,21 @@ class Planning {
       default:
         return text;
     }
+  }
+
+  /// What keeps the robot from a pose that it has no configuration for.
+  std::string unreached_text(const Eigen::Isometry3d& T_task_wanted) const {
+    const kinematics::Chain& chain = robot_.chain;
+    const Eigen::Isometry3d T_base_tip =
+        T_task_base_.inverse() * T_task_wanted * chain.T_tip_transfer().inverse(Eigen::Isometry);
+    return describe(inverse::find_unreached(chain, T_base_tip), chain);
+  }
+
+  /// What is touched, or what the first one is too near to, if none touches anything.
+  std::string contacts_text(ContactNotes& contacts) {
+    const std::string text = contacts.text();
+    return text.empty() && !contacts.noted().empty() ? contact_text("", contacts.noted().front())
+                                                     : text;
   }
 
   std::string contact_text(const std::string& before, const Eigen::VectorXd& q) {
@@ -390,12 +406,12 @@ class Planning {
   const PlanSettings& settings_;
   const Eigen::Isometry3d T_task_base_;
   collision::CollisionWorld world_;
+  ContactNotes goal_contacts_;
   collision::EdgeProver prover_;
   planning::IsFree is_free_;
   Eigen::VectorXd start_;    // dof; from find_start on
   Eigen::Matrix2Xd bounds_;  // around it
   std::optional<planning::RegionConstraint> constraint_;
-  std::optional<Eigen::VectorXd> first_goal_;  // that was asked for; for people
   planning::SearchRecorder* recorder_;
   std::mt19937_64 generator_;
   double shortening_s_ = 0;

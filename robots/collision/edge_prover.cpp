@@ -111,7 +111,7 @@ void EdgeProver::ask_lanes() {
     for (std::size_t first = 0; first < parts_.size(); first += kLanes)
       ask_parts(
           std::span(parts_).subspan(first, std::min<std::size_t>(kLanes, parts_.size() - first)),
-          level == kLevels);
+          level == kLevels || !world_.lanes_.has_room());
     std::swap(parts_, rest_);
   }
 }

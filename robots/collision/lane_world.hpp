@@ -50,6 +50,9 @@ class LaneWorld {
                        const Eigen::Ref<const Eigen::MatrixXd>& motion_m, double room_m,
                        bool is_ahead);
 
+  /// Whether it has room for the robot; else everything may collide.
+  bool has_room() const noexcept { return has_room_; }
+
   /// Pairs that may touch at one of the configurations asked about last, not surely colliding.
   /// \param pairs  of the constructor's bodies.
   /// \return whether they are known; else each may.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "proto/types/turn.hpp"
+#include "robots/inverse/task_rank.hpp"
 #include "robots/kinematics/axis_turns.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
 
@@ -69,7 +70,7 @@ Descent::Descent(const kinematics::Chain& chain) : axes_(chain.task_axes()) {
       T_turned_moving * chain.T_last_tip() * chain.T_tip_transfer();
   R_last_transfer_ = T_last_transfer.linear();
   p_last_transfer_ = T_last_transfer.translation();
-  redundant_ = chain.dof() > std::ranges::count(axes_.matters, true);
+  redundant_ = is_redundant(chain);
 }
 
 TaskError Descent::error_and_jacobian(const Eigen::Isometry3d& T_base_transfer,

@@ -20,6 +20,7 @@ constexpr double kPromising[] = {1e-3, 1e-5};  // as often again, below the seco
 constexpr int kPatientIterations = 40;         // for poses that no ordinary start has solved
 constexpr int kPatientStarts = 16;
 constexpr int kHoldingStarts = 32;
+constexpr int kCornerStarts = 512;  // the same where joints do what others do, and end at limits
 constexpr int kFewestStarts = 32;
 constexpr int kStartsPerSolution = 4;
 constexpr int kMaxStarts = 4000;
@@ -64,7 +65,7 @@ Search::Search(const Solver& solver, const Eigen::Isometry3d& T_base_tip,
       apart_(solver.redundant() ? min_distance_ : kSamePoint),
       all_(options.max_solutions == 0),
       exhaustive_(options.exhaustive),
-      pairs_(come_in_pairs(solver.lanes())),
+      pairs_(!solver.redundant() && come_in_pairs(solver.lanes())),
       generator_(options.seed, T_base_tip),
       found_(solver.space().dof()),
       outside_(solver.space().dof()) {
@@ -113,8 +114,9 @@ void Search::find() {
   if (found_.empty()) {
     stationary_ = 0;
     descend({kPatientStarts, kPatientIterations, steer, kPatientStarts});
+    const int holding = solver_.repeats_joints() ? kCornerStarts : kHoldingStarts;
     if (found_.empty() && (outside_limits_ || stationary_ < kPatientStarts))  // at the limits?
-      descend({kHoldingStarts, kPatientIterations, LaneLimits::Hold, kHoldingStarts});
+      descend({holding, kPatientIterations, LaneLimits::Hold, holding});
   }
 }
 

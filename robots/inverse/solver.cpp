@@ -6,6 +6,7 @@
 #include "robots/inverse/descent.hpp"
 #include "robots/inverse/elimination.hpp"
 #include "robots/inverse/search.hpp"
+#include "robots/inverse/task_rank.hpp"
 
 namespace kinship::inverse {
 
@@ -16,6 +17,8 @@ Solver::Solver(const kinematics::Chain& chain, const SimdKernels& kernels, Engin
       lanes_(lane_chain(chain)),
       arm_(lane_arm(chain)),
       space_(chain),
+      redundant_(is_redundant(chain)),
+      repeats_joints_(redundant_ && has_repeated_joints(chain)),
       T_tip_transfer_(chain.T_tip_transfer()),
       reach_m_(inverse::reach_m(chain)),
       wrist_reach_(WristReach::of(chain)),

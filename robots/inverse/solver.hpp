@@ -46,8 +46,10 @@ class Solver {
     return elimination_ ? &*elimination_ : nullptr;
   }
   const Eigen::Isometry3d& T_tip_transfer() const noexcept { return T_tip_transfer_; }
-  /// Whether the chain has more joints than task axes that matter.
-  bool redundant() const noexcept { return lanes_.dof > lanes_.rows; }
+  /// Whether joints can move while the transfer frame stays; see is_redundant.
+  bool redundant() const noexcept { return redundant_; }
+  /// Whether some of them do the same; see has_repeated_joints.
+  bool repeats_joints() const noexcept { return repeats_joints_; }
   /// Whether the pose is too far away for a chain of this length.
   bool beyond_reach(const Eigen::Isometry3d& T_base_transfer) const;
 
@@ -56,6 +58,8 @@ class Solver {
   LaneChain lanes_;
   LaneArm arm_;
   JointSpace space_;
+  bool redundant_;
+  bool repeats_joints_;
   std::optional<ClosedForm> closed_;
   std::optional<LaneElimination> elimination_;
   Eigen::Isometry3d T_tip_transfer_;

@@ -1,20 +1,14 @@
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cstdio>
 #include <string>
 
 #include "robots/inverse/closed_form.hpp"
-#include "robots/inverse/counter_generator.hpp"
 #include "robots/inverse/elimination.hpp"
 #include "robots/inverse/lane_chain.hpp"
-#include "robots/kinematics/forward_kinematics.hpp"
-#include "robots/kinematics/jacobian.hpp"
+#include "robots/inverse/task_rank.hpp"
 
 namespace kinship::inverse {
 namespace {
-
-constexpr int kRankTrials = 8;
-constexpr double kRankTolerance = 1e-6;  // singular value over the largest
 
 std::string lock_text(std::span<const int> locks) {
   std::string text;
@@ -35,31 +29,6 @@ std::string form_text(const ClosedForm& form) {
   return form.structure_name() + deviation_text(form) + "; " + lock_text(form.locks()) +
          (form.exact() ? "closed form, " : "closed form of the nominal chain and polish, ") +
          std::to_string(form.branches()) + " branches" + (form.locks().empty() ? "" : " per lock");
-}
-
-/// In how many independent directions of the task axes that matter the joints move the transfer
-/// frame, at the best of a few configurations.
-Eigen::Index task_rank(const kinematics::Chain& chain) {
-  CounterGenerator generator(1);
-  Eigen::Index rank = 0;
-  for (int trial = 0; trial < kRankTrials; ++trial) {
-    Eigen::VectorXd q(chain.dof());
-    for (Eigen::Index j = 0; j < q.size(); ++j)
-      q[j] = chain.lower()[j] + generator.uniform() * (chain.upper()[j] - chain.lower()[j]);
-    Eigen::MatrixXd J = kinematics::J_base_tip(chain, q);
-    // The transfer frame is fixed to the tip: its velocity is the tip's and the turn's share.
-    const Eigen::Vector3d arm =
-        kinematics::T_base_tip(chain, q).linear() * chain.T_tip_transfer().translation();
-    for (Eigen::Index j = 0; j < J.cols(); ++j)
-      J.col(j).head<3>() += J.col(j).tail<3>().eval().head<3>().cross(arm);
-    for (Eigen::Index row = 0; row < 6; ++row)
-      if (!chain.task_axes().matters[static_cast<std::size_t>(row)])
-        J.row(row).setZero();
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
-    rank = std::max<Eigen::Index>(
-        rank, (values.array() > kRankTolerance * std::max(values[0], kRankTolerance)).count());
-  }
-  return rank;
 }
 
 std::string missing_text(const kinematics::Chain& chain) {
