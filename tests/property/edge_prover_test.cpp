@@ -273,7 +273,7 @@ void try_in_scenes(const Robot& robot, int edges, Random& random, std::array<Cou
 
 TEST(EdgeProver, AFreeEdgeTouchesNothingAndRoomIsNotRefused) {
   Random random;
-  const int edges = test::is_long_run() ? 4000 : 150;
+  const int edges = test::is_long_run() ? 17'000 : 150;
   std::array<Counts, 2> of_scenes;
   for (const Robot& robot : all_robots(random)) {
     try_in_scenes(robot, edges, random, of_scenes);
