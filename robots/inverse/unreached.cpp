@@ -124,10 +124,16 @@ std::vector<JointBeyond> find_beyond(const Chain& chain, const Eigen::Isometry3d
   return best;
 }
 
-/// How near the transfer frame comes to the place within limits, m.
+/// How near the transfer frame comes to the place within limits, m. Descents aim no farther than
+/// the arm is long: a step overshoots where the error is many times that.
 double find_distance_m(const Chain& placed, const Eigen::Isometry3d& T_base_transfer) {
   const Descent descent(placed);
   const JointSpace space(placed);
+  const Eigen::Vector3d p_first = placed.joints().front().T_previous_joint.translation();
+  const Eigen::Vector3d away = T_base_transfer.translation() - p_first;
+  Eigen::Isometry3d T_base_aim = T_base_transfer;
+  T_base_aim.translation() =
+      p_first + away * std::min(1.0, reach_m(placed) / std::max(away.norm(), kPoseTolerance));
   double least = std::numeric_limits<double>::infinity();
   for (std::uint64_t start = 0; start < kNearingStarts; ++start) {
     CounterGenerator generator(start);
@@ -135,9 +141,12 @@ double find_distance_m(const Chain& placed, const Eigen::Isometry3d& T_base_tran
     for (Eigen::Index j = 0; j < q.size(); ++j)
       q[j] =
           std::clamp(space.value_at(j, generator.uniform()), placed.lower()[j], placed.upper()[j]);
-    least = std::min(least, descent.run(T_base_transfer, Descent::Limits::Hold, kNearingSteps, q));
+    descent.run(T_base_aim, Descent::Limits::Hold, kNearingSteps, q);
+    const TaskError error =
+        task_error(T_base_transfer, kinematics::T_base_transfer(placed, q), placed.task_axes());
+    least = std::min(least, error.norm());
   }
-  return std::sqrt(least);
+  return least;
 }
 
 /// Towards the place, and with what that leaves free towards the orientation.
