@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "tests/unit/client/planner/plan_problem_answers.hpp"
+
+namespace kinship::planner::plan_problem_test {
+namespace {
+
+TEST(PlanProblemProven, APathIsProvenUnlessStepsAreAskedFor) {
+  const ProblemResult proven = planned(wall_problem()).result;
+  ASSERT_TRUE(proven.solved);
+  EXPECT_TRUE(proven.proven);
+  PlanSettings by_steps;
+  by_steps.clearance_m = 0;
+  const ProblemResult stepped = planned(wall_problem(), by_steps).result;
+  ASSERT_TRUE(stepped.solved);
+  EXPECT_FALSE(stepped.proven);
+  EXPECT_FALSE(stepped.least_clearance_m);
+  EXPECT_EQ(stepped.refuted_edges, 0U);
+}
+
+/// Between the start and the goal stands a plate that is thinner than a step.
+TEST(PlanProblemProven, NoPathLeadsThroughAThinPlate) {
+  Problem problem = wall_problem();
+  for (SceneObject& wall : problem.scene.objects)
+    wall.shape = BoxShape{std::get<BoxShape>(wall.shape).size.cwiseMin(0.004)};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    problem.seed = seed;
+    const ProblemResult result = planned(problem).result;
+    ASSERT_TRUE(result.solved) << result.reason;
+    EXPECT_EQ(collisions_along(*result.waypoints, problem, 1e-3), 0) << seed;
+  }
+}
+
+TEST(PlanProblemProven, AStartNearerThanTheClearanceIsNamedWithItsDistance) {
+  Problem problem = wall_problem();
+  problem.start = Eigen::Vector4d(0.12, 0, 0, 0);  // some 14 mm beside the wall
+  EXPECT_TRUE(planned(problem).result.solved);
+  PlanSettings wide;
+  wide.clearance_m = 0.05;
+  const ProblemResult result = planned(problem, wide).result;
+  EXPECT_FALSE(result.solved);
+  EXPECT_EQ(result.not_planned, NotPlanned::StartCollides);
+  EXPECT_NE(result.reason.find("nearer than the clearance of 50 mm"), std::string::npos)
+      << result.reason;
+}
+
+}  // namespace
+}  // namespace kinship::planner::plan_problem_test
