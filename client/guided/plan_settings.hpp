@@ -15,7 +15,7 @@ struct PlanSettings {
   double clearance_m = 1e-3;
   double overshoot = 1.5;               ///< see planning::BirrtOptions
   std::uint64_t max_checks = 100'000;   ///< of planning, without goals and shortcutting
-  std::uint64_t shortcut_checks = 300;  ///< at most, after planning; 0: no shortcutting
+  std::uint64_t shortcut_checks = 300;  ///< at most, each time a path is shortened; 0: never
   /// A start or goal beyond a limit by less is moved onto it, joint units; 0: refused.
   double limit_slack = 1e-4;
   int max_goals = 20;  ///< goal configurations found for a goal pose

@@ -14,12 +14,12 @@ namespace kinship::planning {
 class SeveralStatesValidity : public ompl::base::StateValidityChecker {
  public:
   using One = std::function<bool(const ompl::base::State& state)>;
+  /// \param way  dof x n. \return whether the lines between its columns are valid.
+  using Between = std::function<bool(const Eigen::Ref<const Eigen::MatrixXd>& way)>;
   /// \param qs  dof x n. \return how many, from the first on, are valid before one is not; later
   /// ones are not asked for.
-  using Between = std::function<bool(const Eigen::Ref<const Eigen::MatrixXd>& way)>;
   using Ahead = std::function<Eigen::Index(const Eigen::Ref<const Eigen::MatrixXd>& qs)>;
 
-  /// \param between  says whether the lines between the columns of a way are valid: dof x n
   SeveralStatesValidity(const ompl::base::SpaceInformationPtr& information, One one, Ahead ahead,
                         Between between);
 
@@ -28,8 +28,7 @@ class SeveralStatesValidity : public ompl::base::StateValidityChecker {
   /// Whether all are valid; asks for a few at a time. \param qs  dof x n.
   bool are_valid(const Eigen::Ref<const Eigen::MatrixXd>& qs) const;
 
-  /// Whether what lies between the columns of a way is valid, where that is proven. \param way  dof
-  /// x n
+  /// Whether the lines between a way's columns are valid, where that is proven. \param way  dof x n
   bool is_valid_between(const Eigen::Ref<const Eigen::MatrixXd>& way) const {
     return between_(way);
   }

@@ -13,7 +13,7 @@
 #include "proto/types/enum_text.hpp"
 #include "proto/types/exit_code.hpp"
 #include "proto/types/names.hpp"
-#include "robots/collision/lane_world.hpp"
+#include "robots/collision/edge_prover.hpp"
 
 namespace kinship::planner {
 namespace {
@@ -90,7 +90,7 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
       app.add_option("--clearance", settings.clearance_m,
                      "what comes nearer counts as touching, m: every edge of a path is proven to "
                      "touch nothing, by bounds of how far the robot moves")
-          ->check(between(1e-5, collision::kLargestRoom_m))
+          ->check(between(collision::kLeastClearance_m, collision::kLargestRoom_m))
           ->capture_default_str();
   app.add_option("--resolution", raw.resolution,
                  "prove nothing, but check configurations that are at most so far apart, joint "

@@ -16,6 +16,7 @@
 #include "client/python/guidance_handle.hpp"
 #include "client/python/waiting.hpp"
 #include "proto/types/enum_text.hpp"
+#include "robots/collision/edge_prover.hpp"
 #include "robots/geometry/geometry_doubts.hpp"
 
 namespace kinship::python {
@@ -207,8 +208,10 @@ void bind_outcome(py::class_<Plan>& plan) {
                              "Of shortening the path, afterwards.")
       .def_property_readonly("proven", result(&ProblemResult::proven),
                              "Whether nothing touches between the waypoints, surely.")
-      .def_property_readonly("least_clearance", result(&ProblemResult::least_clearance_m),
-                             "That was measured on a proven path, m; None: nothing came near.")
+      .def_property_readonly(
+          "least_clearance", result(&ProblemResult::least_clearance_m),
+          "That was measured on a proven path, m; None: nothing came so near that "
+          "it had to be measured.")
       .def_property_readonly("refuted_edges", result(&ProblemResult::refuted_edges),
                              "Free where they were checked but not in between: planned again.")
       .def_property_readonly("projections", result(&ProblemResult::projections),
@@ -252,6 +255,9 @@ void bind_planning(py::module_& module) {
          int max_goals, double limit_slack) {
         planner::PlanSettings settings;
         settings.max_checks = max_checks;
+        if (!(clearance >= collision::kLeastClearance_m && clearance <= collision::kLargestRoom_m))
+          throw std::invalid_argument("plan: clearance of " + std::to_string(clearance) +
+                                      " m, must be from 1e-5 to 0.1 m");
         settings.clearance_m = resolution ? 0 : clearance;
         settings.resolution = resolution.value_or(settings.resolution);
         settings.shortcut_checks = shortcut_checks;

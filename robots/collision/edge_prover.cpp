@@ -15,6 +15,7 @@ constexpr double kMotionRounding_m = 1e-9;
 // into so many, so often, where they tell nothing.
 constexpr double kFirstGrowth_m = 0.04;
 constexpr int kCuts = 4, kLevels = 3;
+constexpr double kFarthest_m = 1e4;  // on one edge: what is farther is no motion of a robot
 
 }  // namespace
 
@@ -49,9 +50,9 @@ void EdgeProver::check(const Eigen::Ref<const Eigen::MatrixXd>& qs,
                                 std::to_string(middles_.rows()) + " joints");
   if (!qs.allFinite())
     throw std::invalid_argument("EdgeProver: q is not finite");
-  if (!(options.clearance_m > 0 && options.clearance_m <= kLargestRoom_m))
+  if (!(options.clearance_m >= kLeastClearance_m && options.clearance_m <= kLargestRoom_m))
     throw std::invalid_argument("EdgeProver: clearance of " + std::to_string(options.clearance_m) +
-                                " m, must be above 0 and at most " +
+                                " m, must be from " + std::to_string(kLeastClearance_m) + " to " +
                                 std::to_string(kLargestRoom_m) + " m");
 }
 
@@ -102,6 +103,10 @@ void EdgeProver::ask_lanes() {
     Eigen::MatrixXd& motion_m = edge_motions_m_[edge];
     bounds_.bound_all(from_.col(column), from_.col(column) + change_.col(column), motion_m);
     const double farthest_m = motion_m.cols() == 0 ? 0 : motion_m.row(0).maxCoeff();
+    if (!(farthest_m <= kFarthest_m))
+      throw std::invalid_argument("EdgeProver: an edge on which a body may move by " +
+                                  std::to_string(farthest_m) + " m, at most " +
+                                  std::to_string(kFarthest_m) + " m are looked at");
     const double count = std::max(1.0, std::ceil(farthest_m / (2 * kFirstGrowth_m)));
     for (double i = 0; i < count; ++i)
       parts_.push_back({edge, i / count, (i + 1) / count});
@@ -181,11 +186,8 @@ bool EdgeProver::open_doubtful(int lane) {
   for (auto [a, b] : doubtful_) {
     if (world_.bodies_[a].joint > world_.bodies_[b].joint)
       std::swap(a, b);
-    for (const BodyPair& pair : {BodyPair(a, b), BodyPair(b, a)}) {  // of one joint: as they are
-      const auto at = std::ranges::lower_bound(pairs_, pair);
-      if (at != pairs_.end() && *at == pair)
-        open_.push_back(static_cast<std::size_t>(at - pairs_.begin()));
-    }
+    const auto at = std::ranges::lower_bound(pairs_, BodyPair(a, b));
+    open_.push_back(static_cast<std::size_t>(at - pairs_.begin()));
   }
   return true;
 }

@@ -14,6 +14,9 @@
 
 namespace kinship::collision {
 
+/// The smallest clearance that may be asked for, m: far above rounding, so that halving ends.
+inline constexpr double kLeastClearance_m = 1e-5;
+
 struct EdgeProofOptions {
   /// What comes nearer than this may count as touching, m. Halving ends there: the smaller, the
   /// more configurations an edge along a surface costs.
@@ -42,7 +45,7 @@ struct EdgeProof {
 };
 
 /// Proves that a robot touches nothing on the straight line between two configurations, or finds
-/// where it does. Not shared between threads, nor with who asks its world at the same time; asking
+/// where it does. Not shared between threads, and its world is not asked at the same time; asking
 /// again needs no heap but for what an earlier edge did not.
 ///
 /// A pair of bodies is apart on a piece of the edge if what they can move relative to each other is
@@ -60,8 +63,8 @@ class EdgeProver {
 
   /// \param from, to  dof, joint units; limits are not checked, continuous joints turn the way
   ///                  their numbers say.
-  /// \throws std::invalid_argument if a size is wrong, a value not finite, or clearance_m not above
-  ///         0 and at most kLargestRoom_m.
+  /// \throws std::invalid_argument if a size is wrong, a value not finite, or clearance_m not from
+  ///         kLeastClearance_m to kLargestRoom_m, or a body may move by more than 10 km.
   EdgeProof prove(const Eigen::Ref<const Eigen::VectorXd>& from,
                   const Eigen::Ref<const Eigen::VectorXd>& to,
                   const EdgeProofOptions& options = {});

@@ -4,13 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <map>
 
 #include "proto/types/limits.hpp"
 #include "proto/types/turn.hpp"
-#include "robots/collision/lane_layout.hpp"
-#include "robots/kinematics/axis_turns.hpp"
 
 namespace kinship::collision {
 
@@ -115,7 +111,7 @@ bool LaneWorld::write_lane(const double* q, int lane) {
   PairBits outside{};  // by the sign
   const std::size_t dof = joints_.size() - mimics_.size();
   for (std::size_t j = 0; j < dof; j += 2) {
-    const Pair value = j + 1 < dof ? Pair{q[j], q[j + 1]} : Pair{q[j], 0};
+    const Pair value = j + 1 < dof ? Pair{q[j], q[j + 1]} : Pair{q[j], writing_.lower[j + 1]};
     outside |=
         PairBits(value - load(writing_.lower + j)) | PairBits(load(writing_.upper + j) - value);
     const Pair angle = value + load(writing_.offset + j);

@@ -41,9 +41,10 @@ class LaneWorld {
 
   /// The same of bodies that are grown: where they may not collide they have so much room.
   /// What surely collides does so as it is.
-  /// \param motion_m  moving joints + 1 x the constructor's bodies, as MotionBounds has it: by how
-  /// much each
-  ///                  is grown towards what stands still ([0]) and what the k-th joint moves ([k])
+  /// \param motion_m  moving joints + 1 x the constructor's bodies, as MotionBounds has it: how
+  /// much
+  ///                  each grows towards what stands still ([0]) and what the k-th joint moves
+  ///                  ([k])
   /// \param room_m    by how much more every pair is
   /// \param is_ahead  nothing is known of those behind the first that surely collides
   LaneAnswer ask_grown(const Eigen::Ref<const Eigen::MatrixXd>& qs,

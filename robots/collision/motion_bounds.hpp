@@ -11,12 +11,12 @@ namespace kinship::collision {
 /// How far the points of a robot's bodies can move on a straight line between two configurations.
 ///
 /// Joint by joint: a prismatic joint moves a point by what it slides, a revolute one by at most its
-/// turn times the point's distance from the joint's axis. That distance is bounded by what it is at
-/// both ends of the line and by how far the joints between axis and body move the body: no limits,
-/// no lengths of links, so a chain with sliding joints needs nothing of its own.
-/// Source: Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
+/// turn times the point's distance from the joint's axis. That distance is bounded by the lengths
+/// of the links between (bound_all), or closer by what it is at both ends of the line and by how
+/// far the joints between axis and body move the body (bound). Neither needs limits. Source:
+/// Schwarzer, Saha and Latombe, Adaptive Dynamic Collision Checking for Single and Multiple
 /// Articulated Robots in Complex Environments, IEEE Transactions on Robotics 21 (2005), section IV;
-/// the distances at both ends instead of link lengths are ours.
+/// the distances at both ends are ours.
 class MotionBounds {
  public:
   MotionBounds(const kinematics::Chain& chain, const std::vector<Body>& bodies);
@@ -40,10 +40,9 @@ class MotionBounds {
   /// before it, m. Of a part of the way they are the same part at most: it is a speed as well.
   /// \param change    dof, joint units: of the joints from one end to the other
   /// \param from_m, to_m  what measure() says at both ends
-  /// \param motion_m  out: one more than moving joints; [0]: in the base's frame, [k]: in the
-  /// moving
-  ///                  frame of the k-th joint, counted from 1; only the body's own joint and those
-  ///                  before it are written
+  /// \param motion_m  out: moving joints + 1; [0]: in the base's frame, [k]: in the moving frame of
+  ///                  the k-th joint, counted from 1; only those of the body's own joint and of the
+  ///                  ones before it are written
   void bound(std::size_t body, const Eigen::Ref<const Eigen::VectorXd>& change,
              const Eigen::Ref<const Eigen::VectorXd>& from_m,
              const Eigen::Ref<const Eigen::VectorXd>& to_m,

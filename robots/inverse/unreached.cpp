@@ -44,6 +44,7 @@ kinematics::ChainParts parts_of(const Chain& chain) {
   parts.T_tip_transfer = chain.T_tip_transfer();
   parts.task_axes = chain.task_axes();
   parts.links = chain.links();
+  parts.mimics = chain.mimics();
   return parts;
 }
 

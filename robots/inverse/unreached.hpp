@@ -23,8 +23,8 @@ struct JointBeyond {
 struct Unreached {
   /// With these limits wider the pose would be reached: one joint if there is one that does.
   std::vector<JointBeyond> beyond;
-  /// How near the transfer frame came to its place, m; none: it got there, or no place is asked
-  /// for.
+  /// How near the transfer frame came to its place, m; none: a configuration was found, or no
+  /// place is asked for.
   std::optional<double> distance_m;
   /// How near it came to its orientation at its place, rad; none: its place was not reached, or no
   /// orientation is asked for.

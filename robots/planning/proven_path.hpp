@@ -36,8 +36,7 @@ std::optional<Eigen::MatrixXd> detour(const Eigen::VectorXd& from, const Eigen::
 struct ProvenPath {
   Eigen::MatrixXd waypoints;     ///< dof x n, each line between two proven; empty if there is none
   NoPath reason = NoPath::None;  ///< why there is none
-  /// The least that IsFree::edges said of its lines, m; 0 of one that is proven by its parts, and
-  /// comes nearer than what counts as touching.
+  /// The least that IsFree::edges said of its lines, m.
   double least_clearance_m = std::numeric_limits<double>::infinity();
   std::uint64_t refuted_edges = 0;  ///< lines that are not free though their checks were
   std::uint64_t shortcut_checks = 0;

@@ -27,10 +27,10 @@ struct ShortcutSummary {
 
 /// Shortens a free path: tries straight lines between two random places of it, and takes those
 /// that are free and shorter, and proven to be if `is_free` does that, until the budget is used up
-/// or many tries in a row came to nothing. \param waypoints  dof x n, n >= 1, free where
-/// `densified` at the step visits it. \throws std::invalid_argument if there is no waypoint or the
-/// step is not positive. Source: Geraerts and Overmars, Creating High-quality Paths for Motion
-/// Planning (2007), III-B.
+/// or many tries in a row came to nothing.
+/// \param waypoints  dof x n, n >= 1, free where `densified` at the step visits it.
+/// \throws std::invalid_argument if there is no waypoint or the step is not positive.
+/// Source: Geraerts and Overmars, Creating High-quality Paths for Motion Planning (2007), III-B.
 ShortcutSummary shortcut(const Eigen::MatrixXd& waypoints, const IsFree& is_free,
                          const ShortcutOptions& options, std::mt19937_64& generator);
 

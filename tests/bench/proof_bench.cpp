@@ -1,10 +1,11 @@
-// What it costs to prove edges instead of asking about them every 0.05 joint units. One thread, CPU
-// time.
+// What it costs to prove edges instead of asking about them every 0.05 joint units, in CPU time of
+// one thread.
 //
-//   proof_bench edges     random edges in the shelf cell, beside steps and FCL's continuous
-//   collision proof_bench planning  whole plans of the studies' furniture and the quickstart's
-//   tasks, goal
-//                         configurations and shortcuts included, proven and by steps in turn
+//   proof_bench edges | planning
+//
+// edges: random ones in the shelf cell, beside steps and FCL's continuous collision, which knows no
+// arms. planning: plans of the studies' furniture and of the quickstart's tasks, with goal
+// configurations and shortcuts, proven and by steps in turn.
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>

@@ -5,7 +5,9 @@
 #include "robots/inverse/solver.hpp"
 #include "robots/inverse/unreached.hpp"
 #include "robots/kinematics/forward_kinematics.hpp"
+#include "robots/kinematics/urdf.hpp"
 #include "tests/support/chain_parts.hpp"
+#include "tests/support/parallelogram_arm.hpp"
 #include "tests/support/screw_arm.hpp"
 #include "tests/unit/robots/inverse/checked_inverse.hpp"
 
@@ -118,6 +120,15 @@ TEST(Unreached, OfAPlaceThatIsTooFarThereIsNothingToName) {
   // Straight out from joint 2, but for the offset of the hand that the place asks nothing of.
   EXPECT_GT(*unreached.distance_m, 5.5);
   EXPECT_LT(*unreached.distance_m, 6.2);
+}
+
+TEST(Unreached, MimicJointsBesideTheChainChangeNothing) {
+  const Chain chain = kinematics::read_chain(test::parallelogram_description()).value_or_throw();
+  ASSERT_FALSE(chain.mimics().empty());
+  const Unreached unreached =
+      find_unreached(chain, Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0)));
+  ASSERT_TRUE(unreached.distance_m);
+  EXPECT_GT(*unreached.distance_m, 5);
 }
 
 }  // namespace
