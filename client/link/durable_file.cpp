@@ -119,7 +119,7 @@ void fail_on(const std::filesystem::path& path, std::string_view what) {
   if (reason == EROFS || reason == EACCES || reason == EPERM)
     text += "; name a folder for reports that can be written (" + std::string(kOutboxOptions) +
             "), or set XDG_STATE_HOME to one";
-  throw Failure(ErrorCode::Storage, std::move(text));
+  throw Failure(ErrorCode::Storage, text);
 }
 
 void write_durably(const std::filesystem::path& path, std::string_view content) {
