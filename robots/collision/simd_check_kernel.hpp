@@ -247,8 +247,9 @@ class Group {
                               ? compare_lanes(body, obstacle.form, growth, near)
                               : compare_spheres(index, obstacle, growth, near);
     conclude(found, {0, index, which, -1}, [&](unsigned open) {
-      Planes planes = separated(placed(body.form, frames_[body.joint]), body.form,
-                                standing(obstacle.form), obstacle.form, scene_.slack, growth, open);
+      Planes planes =
+          separated(placed(body.form, frames_[body.joint]), body.form, standing(obstacle.form),
+                    obstacle.form, Margin{scene_.slack, growth}, open);
       if (!body.is_solid || !obstacle.is_solid)
         planes.overlapping = 0;
       return planes;
@@ -338,7 +339,7 @@ class Group {
     conclude(found, {0, first, -1, second}, [&](unsigned open) {
       Planes planes =
           separated(placed(a.form, frames_[a.joint]), a.form, placed(b.form, frames_[b.joint]),
-                    b.form, scene_.slack, growth, open);
+                    b.form, Margin{scene_.slack, growth}, open);
       if (!a.is_solid || !b.is_solid)
         planes.overlapping = 0;
       return planes;

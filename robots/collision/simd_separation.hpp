@@ -64,6 +64,11 @@ KINSHIP_SIMD_INLINE Wide extent(const LaneForm& form, const WideForm& at, const 
   return straight + root(dot(across, across)) * form.radius;
 }
 
+/// What rounding may do to a distance, and how much what is apart has between it besides, m.
+struct Margin {
+  float slack, growth;
+};
+
 /// What planes between two forms say of some lanes.
 struct Planes {
   unsigned apart;        ///< one lies between them
@@ -74,14 +79,14 @@ struct Planes {
 class Separation {
  public:
   Separation(const WideForm& a, const LaneForm& a_form, const WideForm& b, const LaneForm& b_form,
-             float slack, float growth)
+             Margin margin)
       : a_(a),
         b_(b),
         a_form_(a_form),
         b_form_(b_form),
         between_(minus(b.center, a.center, all(1))),
-        slack_(slack),
-        room_(4 * slack + growth),
+        slack_(margin.slack),
+        room_(4 * margin.slack + margin.growth),
         rounding_(1e-6F + 6e-7F * (size(a_form) + size(b_form))) {}
 
   unsigned apart() const { return apart_; }
@@ -140,12 +145,11 @@ KINSHIP_SIMD_INLINE void attempt_others(const WideForm& a, const WideForm& b, Se
 /// Tries planes of the forms' axes, across an axis of each, and, where one is no box, across what
 /// joins their centres, also without its part along either's longest axis. Of two boxes these are
 /// all that matter, so that they say too which overlap; of the others they may miss some.
-/// \param growth  what is apart has so much between it, m
 /// \param open    lanes that matter; ends as soon as all of these are apart.
 /// Source: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996 (boxes).
 Planes separated(const WideForm& a, const LaneForm& a_form, const WideForm& b,
-                 const LaneForm& b_form, float slack, float growth, unsigned open) {
-  Separation planes(a, a_form, b, b_form, slack, growth);
+                 const LaneForm& b_form, Margin margin, unsigned open) {
+  Separation planes(a, a_form, b, b_form, margin);
   const bool are_boxes = is_box(a_form) && is_box(b_form);
   const int a_first = is_box(a_form) ? 0 : 2;
   const int b_first = is_box(b_form) ? 0 : 2;
