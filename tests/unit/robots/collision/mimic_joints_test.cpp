@@ -84,7 +84,7 @@ TEST(MimicJoints, ThatAreTooManyForTheLanesAreFoundByFcl) {
 
 TEST(MimicJoints, AreNeighboursOfTheLinkThatTheyHangOn) {
   const Arm robot = arm();
-  const LinkPairs& unchecked = RobotSolids(robot.chain, robot.shapes).parts().unchecked;
+  const LinkPairs unchecked = RobotSolids(robot.chain, robot.shapes).parts().unchecked;
   const auto is_unchecked = [&](const std::string& a, const std::string& b) {
     const std::pair<int, int> links =
         std::minmax(robot.chain.find_link(a), robot.chain.find_link(b));
