@@ -34,22 +34,8 @@ constexpr double kTurnDampingShare = 0.05;  // of the squared error of the orien
 constexpr double kSmallestTurnDamping = 1e-9;
 constexpr double kSameDirection = 1e-6;  // singular values of the place's rows
 
-/// The same chain with other limits or task axes.
-kinematics::ChainParts parts_of(const Chain& chain) {
-  kinematics::ChainParts parts;
-  parts.base_link = chain.base_link();
-  parts.tip_link = chain.tip_link();
-  parts.joints = chain.joints();
-  parts.T_last_tip = chain.T_last_tip();
-  parts.T_tip_transfer = chain.T_tip_transfer();
-  parts.task_axes = chain.task_axes();
-  parts.links = chain.links();
-  parts.mimics = chain.mimics();
-  return parts;
-}
-
 Chain with_axes(const Chain& chain, const TaskAxes& axes) {
-  kinematics::ChainParts parts = parts_of(chain);
+  kinematics::ChainParts parts = chain.parts();
   parts.task_axes = axes;
   return Chain(std::move(parts));
 }
@@ -111,13 +97,13 @@ std::vector<JointBeyond> find_beyond(const Chain& chain, const Eigen::Isometry3d
       take_better(joints_beyond(chain, q), best);
     return found.configurations.cols() > 0;
   };
-  kinematics::ChainParts all = parts_of(chain);
+  kinematics::ChainParts all = chain.parts();
   for (kinematics::Joint& joint : all.joints)
     widen(more_m, joint);
   if (!look(std::move(all)))
     return {};
   for (std::size_t j = 0; j < chain.joints().size(); ++j) {
-    kinematics::ChainParts one = parts_of(chain);
+    kinematics::ChainParts one = chain.parts();
     widen(more_m, one.joints[j]);
     if (has_room_beyond(chain.joints()[j]))
       look(std::move(one));

@@ -76,6 +76,8 @@ class Chain {
   /// \throws std::invalid_argument with find_fault() if the invariant does not hold.
   explicit Chain(ChainParts parts);
 
+  /// What it is made of, to make another one like it.
+  const ChainParts& parts() const noexcept { return parts_; }
   Eigen::Index dof() const noexcept { return static_cast<Eigen::Index>(parts_.joints.size()); }
   const std::vector<Joint>& joints() const noexcept { return parts_.joints; }
   const std::vector<MimicJoint>& mimics() const noexcept { return parts_.mimics; }
