@@ -160,9 +160,9 @@ endfunction()
 # kinship_test(NAME SOURCES a_test.cpp ... DEPENDS kinship::types ... LABEL unit [TIMEOUT 60])
 #
 # One GoogleTest program. Each suite of it is a test of CTest; where a TEST takes seconds (labels property, integration,
-# faults, story) each TEST is, so that they go side by side. LABEL: unit, threads (unit tests that
-# ThreadSanitizer runs too), property, integration, story, faults, golden, architecture. The target
-# tests_LABEL builds all programs of a label. TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
+# untrusted, faults, story) each TEST is, so that they go side by side. LABEL: unit, threads (unit tests that
+# ThreadSanitizer runs too), property, integration, untrusted (integration tests of what strangers send, which
+# AddressSanitizer runs too), story, faults, golden, architecture. The target tests_LABEL builds all programs of a label. TIMEOUT in seconds is meant for an idle machine: sanitizers get five times that.
 function(kinship_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LABEL;TIMEOUT" "SOURCES;DEPENDS")
   if(NOT arg_TIMEOUT)
@@ -187,7 +187,7 @@ function(kinship_test name)
     add_custom_target(tests_${arg_LABEL})
   endif()
   add_dependencies(tests_${arg_LABEL} ${name})
-  if(arg_LABEL MATCHES "^(property|integration|faults|story)$")
+  if(arg_LABEL MATCHES "^(property|integration|untrusted|faults|story)$")
     include(GoogleTest)
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 300 NO_PRETTY_VALUES
       PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL})

@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
     for (const char* robot : {"panda", "iiwa14", "ur10e"})
       ask_edges(robot, kEdges);
   if (argc > 1 && std::string(argv[1]) == "planning") {
-    plan_furniture(kInstances / 4);
+    plan_furniture(kInstances);
     plan_station(kinship::experiments::Station::Shelf, kInstances);
     plan_station(kinship::experiments::Station::Machine, kInstances);
   }
