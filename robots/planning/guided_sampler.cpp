@@ -18,7 +18,7 @@ double trust(const kinematics::Chain& chain, const TrackQuery& query, const Mixt
 }
 
 /// What a guide makes of the guided samples, each 0 to 1, and how often it retreats. Chosen on
-/// tuning instances of the studies (README).
+/// tuning instances of the studies (docs/decisions/planning.md).
 struct Parts {
   std::size_t retreats = 0;
   double tracks = 0;

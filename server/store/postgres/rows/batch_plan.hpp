@@ -74,7 +74,7 @@ struct BatchPlan {
 /// Decides what becomes of each attempt, one after the other, as if each were written before the
 /// next is looked at.
 /// \param max_paths  of a robot and task: those with the smallest content digests are kept (see
-///                   retention in server/store/README.md); 0: no cap.
+///                   retention in docs/decisions/store.md); 0: no cap.
 BatchPlan make_plan(PreparedAttempts attempts, BatchKnowledge known, std::uint64_t max_paths,
                     std::int64_t now_ms);
 
