@@ -100,8 +100,10 @@ void add_planning_options(CLI::App& app, PlanOptions& options, RawOptions& raw) 
   app.add_option("--max-checks", settings.max_checks, "collision checks after which to give up")
       ->check(between(std::uint64_t{1}, kMax))
       ->capture_default_str();
-  app.add_option("--shortcut-checks", settings.shortcut_checks,
-                 "collision checks spent on shortening a path; 0: none")
+  app.add_option(
+         "--shortcut-checks", settings.shortcut_checks,
+         "collision checks spent each time a path is shortened, again where a line of it is "
+         "refuted; 0: none")
       ->check(between(std::uint64_t{0}, kMax))
       ->capture_default_str();
   app.add_option("--overshoot", settings.overshoot,

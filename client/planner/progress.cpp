@@ -55,10 +55,6 @@ void Progress::finish() {
   if (terminal_)
     stream_ << "\r\033[K";
   const std::size_t planned = done_ - unplanned_.size();
-  if (unplanned_.size() > 0) {
-    stream_ << "could not be planned:\n";
-    unplanned_.write_first(stream_);
-  }
   stream_ << "planned " << planned << " of " << total_ << " problems, " << solved_ << " solved";
   if (planned > 0) {
     const auto count = static_cast<double>(planned);
@@ -68,10 +64,14 @@ void Progress::finish() {
             << with_digits(static_cast<double>(checks_) / count, 0) << " checks and "
             << duration_text(planning_time_s_ / count);
   }
-  if (unplanned_.size() > 0)
+  if (unplanned_.size() > 0) {
     stream_ << "; " << unplanned_.size() << " could not be planned (" << unplanned_.reasons()
-            << ")";
-  stream_ << std::endl;
+            << "):\n";
+    unplanned_.write_first(stream_);
+    stream_ << std::flush;
+  } else {
+    stream_ << std::endl;
+  }
 }
 
 std::string result_text(const ProblemResult& result) {

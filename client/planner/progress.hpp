@@ -20,8 +20,8 @@ class Progress {
   /// \param attempted  false: the problem is none of this robot, or could not be read.
   void add(const ProblemResult& result, bool attempted);
 
-  /// Ends the line and writes the first problems that could not be planned, and the sums, of those
-  /// that could, last.
+  /// Ends the line and writes the sums, of the problems that could be planned, and below them the
+  /// first problems that could not.
   void finish();
 
   /// Whether there were problems, and none of them fits the robot.
