@@ -135,6 +135,9 @@ typedef struct kinship_robot_file {
   const char* srdf;            /**< a file whose disabled pairs never collide; NULL: none */
   const char* const* packages; /**< "NAME=FOLDER" each, for meshes named package://NAME/... */
   size_t package_count;
+  int collision_from_visual; /**< not 0: what is drawn of links without solids is solid */
+  const char* const* without_collision; /**< links that are drawn and need no solid; NULL: none */
+  size_t without_collision_count;
 } kinship_robot_file;
 
 /** Reads the files and registers the robot as kinship_register() does. A server has no meshes: it

@@ -57,6 +57,18 @@ RobotDescription read_description(const kinship_robot_description& given) {
   return description;
 }
 
+std::vector<std::string> read_texts(const char* const* texts, std::size_t count,
+                                    const std::string& name) {
+  if (count > 0)
+    require(texts, name.c_str());
+  std::vector<std::string> read;
+  for (std::size_t i = 0; i < count; ++i) {
+    require(texts[i], ("a text in " + name).c_str());
+    read.emplace_back(texts[i]);
+  }
+  return read;
+}
+
 models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   require(given.source, "file->source");
   models::RobotArguments arguments;
@@ -66,12 +78,10 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   arguments.label = text_or_empty(given.label);
   arguments.axes = text_or_empty(given.axes);
   arguments.srdf = text_or_empty(given.srdf);
-  if (given.package_count > 0)
-    require(given.packages, "file->packages");
-  for (std::size_t i = 0; i < given.package_count; ++i) {
-    require(given.packages[i], "a text in file->packages");
-    arguments.packages.emplace_back(given.packages[i]);
-  }
+  arguments.packages = read_texts(given.packages, given.package_count, "file->packages");
+  arguments.collision_from_visual = given.collision_from_visual != 0;
+  arguments.without_collision =
+      read_texts(given.without_collision, given.without_collision_count, "file->without_collision");
   return arguments;
 }
 
