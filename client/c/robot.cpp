@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/c/errors.hpp"
@@ -87,16 +88,10 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
 
 /// The description with solids around its meshes, if it has any.
 RobotDescription read_file(const kinship_robot_file& given) {
-  const models::RobotArguments arguments = read_file_arguments(given);
-  RobotDescription description = models::describe_robot(arguments).value_or_throw();
-  if (given.T_tip_transfer != nullptr)
-    description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
-  for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
-    description.held_joints[joint] = value;
-  const auto chain = kinematics::read_chain(description).value_or_throw();
-  const auto shapes = models::load_shapes(arguments, description, chain).value_or_throw();
-  description.mesh_solids = collision::fit_robot(chain, shapes).value_or_throw().mesh_solids;
-  return description;
+  models::LoadedRobot robot = read_robot_file(given);
+  robot.description.mesh_solids =
+      collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
+  return std::move(robot.description);
 }
 
 kinship_code register_with(link::Client& line, const RobotDescription& description,
@@ -114,6 +109,21 @@ kinship_code register_with(link::Client& line, const RobotDescription& descripti
 }
 
 }  // namespace
+
+models::LoadedRobot read_robot_file(const kinship_robot_file& given) {
+  const models::RobotArguments arguments = read_file_arguments(given);
+  std::vector<std::string> warnings;
+  RobotDescription description = models::describe_robot(arguments, &warnings).value_or_throw();
+  if (given.T_tip_transfer != nullptr)
+    description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
+  for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
+    description.held_joints[joint] = value;
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes =
+      models::load_shapes(arguments, description, chain).value_or_throw();
+  return {std::move(description), std::move(chain), std::move(shapes), std::move(warnings)};
+}
+
 }  // namespace kinship::c_library
 
 using namespace kinship::c_library;

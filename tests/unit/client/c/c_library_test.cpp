@@ -332,6 +332,8 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
   EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);
   EXPECT_EQ(sizeof(kinship_robot), 32U);
+  EXPECT_EQ(offsetof(kinship_surroundings, allowed_collision_pairs), 40U);
+  EXPECT_EQ(offsetof(kinship_proof, least_clearance_m), 56U);
 }
 
 TEST_F(CLibraryOffline, AShorterStructureOfAnOlderCallerIsRead) {
