@@ -28,7 +28,6 @@ link::ClientOptions read_options(const kinship_client_options& given) {
 }
 
 Path read_path(const kinship_attempt& given) {
-  constexpr std::size_t kMaxWaypoints = std::size_t{1} << 24U;  // the contract's limit is lower
   require(given.waypoints, "attempt->waypoints");
   if (given.dof < 1 || given.dof > static_cast<std::size_t>(kMaxDof))
     throw Failure(invalid_input("attempt->dof is " + std::to_string(given.dof) + ", must be 1 to " +
@@ -57,8 +56,8 @@ SamplingMode read_sampling(kinship_sampling given) {
                               std::to_string(KINSHIP_CONTROL)));
 }
 
-SceneObject read_object(const kinship_object& given) {
-  require(given.name, "a name in attempt->objects");
+SceneObject read_object(const kinship_object& given, const std::string& where) {
+  require(given.name, ("a name in " + where).c_str());
   const std::string name = given.name;
   if (given.shape < KINSHIP_BOX || given.shape > KINSHIP_CAPSULE)
     throw Failure(invalid_input("object '" + name + "': its shape is " +
@@ -70,31 +69,6 @@ SceneObject read_object(const kinship_object& given) {
   return {.name = name,
           .shape = to_shape(shape),
           .T_task_object = read_pose(std::begin(given.pose), ("object '" + name + "'").c_str())};
-}
-
-RecordedScene read_scene(const kinship_attempt& given) {
-  RecordedScene scene;
-  // A caller that was compiled with another version has objects of another size.
-  const auto* bytes = reinterpret_cast<const char*>(given.objects);  // NOLINT: steps of that size
-  const std::size_t step = given.object_count > 0 ? given.objects->size : 0;
-  for (std::size_t i = 0; i < given.object_count; ++i) {
-    const kinship_object object =  // NOLINTNEXTLINE: of the array that the caller has
-        read_structure(reinterpret_cast<const kinship_object*>(bytes + i * step), "object");
-    if (object.size != step)
-      throw Failure(invalid_input("object " + std::to_string(i) + ": its size is " +
-                                  std::to_string(object.size) + ", that of the first is " +
-                                  std::to_string(step)));
-    SceneObject read = read_object(object);
-    if (object.is_held == 0)
-      scene.objects.push_back(std::move(read));
-    else
-      scene.held.push_back({.name = std::move(read.name),
-                            .shape = read.shape,
-                            .T_transfer_object = read.T_task_object});
-  }
-  scene.allowed_collisions =
-      read_pairs(given.allowed_collisions, given.allowed_collision_pairs, "allowed_collisions");
-  return scene;
 }
 
 Attempt read_attempt(const kinship_attempt& given) {
@@ -115,10 +89,10 @@ Attempt read_attempt(const kinship_attempt& given) {
   attempt.record.share = given.share;
   if (given.solved != 0)
     attempt.path = read_path(given);
-  if (given.object_count > 0)
-    require(given.objects, "attempt->objects");
-  if (given.objects != nullptr)
-    attempt.scene = read_scene(given);
+  if (given.objects != nullptr || given.object_count > 0)
+    attempt.scene = read_scene({given.objects, given.object_count, given.allowed_collisions,
+                                given.allowed_collision_pairs},
+                               "attempt");
   else if (given.allowed_collision_pairs > 0)
     throw Failure(invalid_input("attempt->allowed_collision_pairs is " +
                                 std::to_string(given.allowed_collision_pairs) +
@@ -151,6 +125,34 @@ std::vector<std::pair<std::string, std::string>> read_pairs(const char* const* n
     read.emplace_back(names[2 * i], names[2 * i + 1]);
   }
   return read;
+}
+
+RecordedScene read_scene(const SceneMembers& given, const std::string& name) {
+  const std::string objects = name + "->objects";
+  if (given.object_count > 0)
+    require(given.objects, objects.c_str());
+  RecordedScene scene;
+  // A caller that was compiled with another version has objects of another size.
+  const auto* bytes = reinterpret_cast<const char*>(given.objects);  // NOLINT: steps of that size
+  const std::size_t step = given.object_count > 0 ? given.objects->size : 0;
+  for (std::size_t i = 0; i < given.object_count; ++i) {
+    const kinship_object object =  // NOLINTNEXTLINE: of the array that the caller has
+        read_structure(reinterpret_cast<const kinship_object*>(bytes + i * step), "object");
+    if (object.size != step)
+      throw Failure(invalid_input("object " + std::to_string(i) + ": its size is " +
+                                  std::to_string(object.size) + ", that of the first is " +
+                                  std::to_string(step)));
+    SceneObject read = read_object(object, objects);
+    if (object.is_held == 0)
+      scene.objects.push_back(std::move(read));
+    else
+      scene.held.push_back({.name = std::move(read.name),
+                            .shape = read.shape,
+                            .T_transfer_object = read.T_task_object});
+  }
+  scene.allowed_collisions = read_pairs(given.allowed_collisions, given.allowed_collision_pairs,
+                                        (name + "->allowed_collisions").c_str());
+  return scene;
 }
 
 Digest read_robot(const kinship_robot* robot, const char* name) {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +12,10 @@
 #include "client/link/client.hpp"
 #include "proto/mixture/distribution_sampler.hpp"
 #include "proto/types/distribution.hpp"
+#include "proto/types/recorded_scene.hpp"
+#include "robots/collision/collision_world.hpp"
+#include "robots/collision/edge_prover.hpp"
+#include "robots/models/loaded_robot.hpp"
 
 /// What the handles of kinship.h are; their names are C's.
 // NOLINTBEGIN(readability-identifier-naming)
@@ -32,9 +38,26 @@ struct kinship_sampler {
   kinship::mixture::DistributionSampler value;
   Eigen::Matrix2Xd limits;
 };
+
+struct kinship_world {
+  kinship_world(const kinship::models::LoadedRobot& robot,
+                const kinship::collision::Surroundings& surroundings, std::string its_warning)
+      : dof(static_cast<std::size_t>(robot.chain.dof())),
+        warning(std::move(its_warning)),
+        world(robot.chain, robot.shapes, surroundings),
+        prover(world) {}
+  const std::size_t dof;
+  const std::string warning;
+  std::mutex mutex;  // guards what follows
+  kinship::collision::CollisionWorld world;
+  kinship::collision::EdgeProver prover;
+  std::set<std::string> names;  // that proofs have told, at most one a body
+};
 // NOLINTEND(readability-identifier-naming)
 
 namespace kinship::c_library {
+
+constexpr std::size_t kMaxWaypoints = std::size_t{1} << 24U;  // the contract's limit is lower
 
 /// \param numbers  x y z qx qy qz qw. \param name  of the argument, for messages.
 /// \throws Failure(InvalidInput) if they are no pose.
@@ -48,5 +71,21 @@ std::string text_or_empty(const char* text);
 /// \param names  2 n, pair by pair. \throws Failure(InvalidInput) if one is NULL.
 std::vector<std::pair<std::string, std::string>> read_pairs(const char* const* names,
                                                             std::size_t pairs, const char* name);
+
+/// A structure's members on a scene.
+struct SceneMembers {
+  const kinship_object* objects;
+  std::size_t object_count;
+  const char* const* allowed_collisions;
+  std::size_t allowed_collision_pairs;
+};
+
+/// \param name  of the structure, for messages.
+/// \throws Failure(InvalidInput) if something is NULL, of another size, or no shape or pose.
+RecordedScene read_scene(const SceneMembers& given, const std::string& name);
+
+/// The robot in files, with its meshes' triangles. Links that move may be without solids.
+/// \throws Failure that names the argument or file.
+models::LoadedRobot read_robot_file(const kinship_robot_file& given);
 
 }  // namespace kinship::c_library

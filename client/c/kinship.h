@@ -1,6 +1,7 @@
 /** \file kinship.h
  * Kinship for C and for whatever calls C: register a robot, report paths, fetch or follow the
- * distribution that the fleet's experience gives it, draw configurations from it.
+ * distribution that the fleet's experience gives it, draw configurations from it; without a server
+ * prove that edges touch nothing.
  *
  * - Functions that can fail return a kinship_code; kinship_error_text() then says in words what
  * went wrong in the last call of this thread, with the thing, its value and the limit. What they
@@ -135,6 +136,9 @@ typedef struct kinship_robot_file {
   const char* srdf;            /**< a file whose disabled pairs never collide; NULL: none */
   const char* const* packages; /**< "NAME=FOLDER" each, for meshes named package://NAME/... */
   size_t package_count;
+  int collision_from_visual; /**< not 0: what is drawn of links without solids is solid */
+  const char* const* without_collision; /**< links that are drawn and need no solid; NULL: none */
+  size_t without_collision_count;
 } kinship_robot_file;
 
 /** Reads the files and registers the robot as kinship_register() does. A server has no meshes: it
@@ -162,7 +166,7 @@ typedef enum kinship_shape {
   KINSHIP_SHAPE_WIDTH = 0x7fffffff
 } kinship_shape;
 
-/** Something that was in the way: `{.size = sizeof(kinship_object), .name = "table", .shape =
+/** Something that is or was in the way: `{.size = sizeof(kinship_object), .name = "table", .shape =
  * KINSHIP_BOX, .sizes = {0.8, 1.2, 0.1}, .pose = {0.6, 0, -0.05, 0, 0, 0, 1}}`. */
 typedef struct kinship_object {
   size_t size; /**< the same in all of an array */
@@ -318,6 +322,79 @@ KINSHIP_API kinship_code kinship_sampler_fill(const kinship_sampler* sampler, do
 KINSHIP_API kinship_code kinship_sampler_fill_float(const kinship_sampler* sampler, float* out,
                                                     size_t count, size_t stride,
                                                     kinship_layout layout, uint64_t seed);
+
+/* ----------------------------------------------------------------------------------------------
+ * worlds */
+
+/** A robot among obstacles, which tells where it touches nothing: needs no server. Threads may
+ * share one and are answered one after the other. */
+typedef struct kinship_world kinship_world;
+
+/** What a robot stands among and holds. */
+typedef struct kinship_surroundings {
+  size_t size;
+  const double* T_task_base; /**< pose of the base in the task's frame; NULL: used as identity */
+  const kinship_object* objects; /**< those that are held hang on the tip link; NULL: none */
+  size_t object_count;
+  const char* const* allowed_collisions; /**< 2 n names of links or objects, pair by pair */
+  size_t allowed_collision_pairs;        /**< n */
+} kinship_surroundings;
+
+/** Reads the robot's files as kinship_register_file() does, by the same rules, but keeps meshes as
+ * their triangles; that may take seconds.
+ * \param surroundings  NULL: nothing, so that the robot can touch only itself.
+ * \param dof  number of joints; may be NULL.
+ * \return KINSHIP_INVALID_INPUT also if a link that moves is drawn and has no solid, an object is
+ * not proper, or an allowed pair names what is not there. */
+KINSHIP_API kinship_code kinship_world_create(const kinship_robot_file* file,
+                                              const kinship_surroundings* surroundings,
+                                              kinship_world** world, size_t* dof);
+KINSHIP_API void kinship_world_free(kinship_world* world);
+
+/** What of the files and obstacles can hardly be meant, a sentence a line: names in an SRDF that
+ * are no links, links without solids or of sizes that no arm has, obstacles out of reach. "" if
+ * nothing, and of NULL. Valid until the world is freed. */
+KINSHIP_API const char* kinship_world_warning(const kinship_world* world);
+
+/** Whether one configuration touches nothing. Limits of joints are not checked.
+ * \param q        dof finite numbers, joint units. \param dof  the world's.
+ * \param is_free  1 or 0. What touches is told by kinship_world_edge_free() from q to q. */
+KINSHIP_API kinship_code kinship_world_is_free(kinship_world* world, const double* q, size_t dof,
+                                               int* is_free);
+
+/** The clearance of edges that Kinship's planners use, m. */
+#define KINSHIP_CLEARANCE_M 0.001
+
+/** What is known of straight lines between configurations. */
+typedef struct kinship_proof {
+  size_t size;
+  int is_free;  /**< 1: no configuration of any edge touches anything; 0: not so, or not proven */
+  size_t edge;  /**< the first that is not free, 0 of the first two waypoints; 0 if all are */
+  double share; /**< of that edge, 0 to 1: where it is not free */
+  const char* first;  /**< name of what touches there, or is too near; NULL if all are free */
+  const char* second; /**< what it touches. Both are valid until the world is freed */
+  double clearance_m; /**< between the two, at most the one asked for; 0 if all are free */
+  /** Least distance between two bodies that was measured, m, to 1 % (of meshes and 0.1 mm), up to
+   * that edge; INFINITY where nothing came so near that it had to be. Between the configurations
+   * that were looked at bodies may come nearer, but do not touch if the edge is free. */
+  double least_clearance_m;
+} kinship_proof;
+
+/** Whether the straight line between two configurations is proven to touch nothing: what bodies
+ * move along it is bounded against their distances, so nothing is stepped over, however thin.
+ * Limits of joints are not checked; continuous joints turn the way their numbers say.
+ * \param from, to     dof finite numbers each, joint units. \param dof  the world's.
+ * \param clearance_m  KINSHIP_CLEARANCE_M, or another one from 1e-5 to 0.1: what comes nearer where
+ * it is looked at counts as touching. The smaller, the longer an edge along a surface takes.
+ * \param proof        set with KINSHIP_OK, whether the edge is free or not. */
+KINSHIP_API kinship_code kinship_world_edge_free(kinship_world* world, const double* from,
+                                                 const double* to, size_t dof, double clearance_m,
+                                                 kinship_proof* proof);
+/** The same of all edges of a path, up to the first that is not free.
+ * \param waypoints  dof numbers each, one waypoint after the other. \param count  at least 2. */
+KINSHIP_API kinship_code kinship_world_path_free(kinship_world* world, const double* waypoints,
+                                                 size_t count, size_t dof, double clearance_m,
+                                                 kinship_proof* proof);
 
 /* NOLINTEND(readability-identifier-naming,readability-function-size) */
 #ifdef __cplusplus

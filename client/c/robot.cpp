@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/c/errors.hpp"
@@ -57,6 +58,18 @@ RobotDescription read_description(const kinship_robot_description& given) {
   return description;
 }
 
+std::vector<std::string> read_texts(const char* const* texts, std::size_t count,
+                                    const std::string& name) {
+  if (count > 0)
+    require(texts, name.c_str());
+  std::vector<std::string> read;
+  for (std::size_t i = 0; i < count; ++i) {
+    require(texts[i], ("a text in " + name).c_str());
+    read.emplace_back(texts[i]);
+  }
+  return read;
+}
+
 models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   require(given.source, "file->source");
   models::RobotArguments arguments;
@@ -66,27 +79,19 @@ models::RobotArguments read_file_arguments(const kinship_robot_file& given) {
   arguments.label = text_or_empty(given.label);
   arguments.axes = text_or_empty(given.axes);
   arguments.srdf = text_or_empty(given.srdf);
-  if (given.package_count > 0)
-    require(given.packages, "file->packages");
-  for (std::size_t i = 0; i < given.package_count; ++i) {
-    require(given.packages[i], "a text in file->packages");
-    arguments.packages.emplace_back(given.packages[i]);
-  }
+  arguments.packages = read_texts(given.packages, given.package_count, "file->packages");
+  arguments.collision_from_visual = given.collision_from_visual != 0;
+  arguments.without_collision =
+      read_texts(given.without_collision, given.without_collision_count, "file->without_collision");
   return arguments;
 }
 
 /// The description with solids around its meshes, if it has any.
 RobotDescription read_file(const kinship_robot_file& given) {
-  const models::RobotArguments arguments = read_file_arguments(given);
-  RobotDescription description = models::describe_robot(arguments).value_or_throw();
-  if (given.T_tip_transfer != nullptr)
-    description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
-  for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
-    description.held_joints[joint] = value;
-  const auto chain = kinematics::read_chain(description).value_or_throw();
-  const auto shapes = models::load_shapes(arguments, description, chain).value_or_throw();
-  description.mesh_solids = collision::fit_robot(chain, shapes).value_or_throw().mesh_solids;
-  return description;
+  models::LoadedRobot robot = read_robot_file(given);
+  robot.description.mesh_solids =
+      collision::fit_robot(robot.chain, robot.shapes).value_or_throw().mesh_solids;
+  return std::move(robot.description);
 }
 
 kinship_code register_with(link::Client& line, const RobotDescription& description,
@@ -104,6 +109,21 @@ kinship_code register_with(link::Client& line, const RobotDescription& descripti
 }
 
 }  // namespace
+
+models::LoadedRobot read_robot_file(const kinship_robot_file& given) {
+  const models::RobotArguments arguments = read_file_arguments(given);
+  std::vector<std::string> warnings;
+  RobotDescription description = models::describe_robot(arguments, &warnings).value_or_throw();
+  if (given.T_tip_transfer != nullptr)
+    description.T_tip_transfer = read_pose(given.T_tip_transfer, "file->T_tip_transfer");
+  for (const auto& [joint, value] : read_held(given.held_joints, given.held_joint_count))
+    description.held_joints[joint] = value;
+  kinematics::Chain chain = kinematics::read_chain(description).value_or_throw();
+  geometry::RobotShapes shapes =
+      models::load_shapes(arguments, description, chain).value_or_throw();
+  return {std::move(description), std::move(chain), std::move(shapes), std::move(warnings)};
+}
+
 }  // namespace kinship::c_library
 
 using namespace kinship::c_library;

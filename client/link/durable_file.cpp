@@ -17,13 +17,26 @@ namespace {
 
 constexpr std::string_view kTemporarySuffix = ".tmp";
 
+/// "FILE: cannot read: Permission denied".
+std::string failure_text(const std::filesystem::path& path, std::string_view what, int reason) {
+  return path.string() + ": " + std::string(what) + ": " + std::generic_category().message(reason);
+}
+
+/// As fail_on(), of a file that is only read: another folder to write to would not help.
+[[noreturn]] void fail_to_read(const std::filesystem::path& path, std::string_view what) {
+  throw Failure(ErrorCode::Storage, failure_text(path, what, errno));
+}
+
 /// Owner of one file descriptor.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags)
       : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0644)), path_(path) {
-    if (descriptor_ < 0)
-      fail_on(path_, "cannot open");
+    if (descriptor_ >= 0)
+      return;
+    if (flags == O_RDONLY)
+      fail_to_read(path_, "cannot open");
+    fail_on(path_, "cannot open");
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -47,7 +60,7 @@ class Descriptor {
       count = ::read(descriptor_, buffer, size);
     while (count < 0 && errno == EINTR);
     if (count < 0)
-      fail_on(path_, "cannot read");
+      fail_to_read(path_, "cannot read");
     return static_cast<std::size_t>(count);
   }
 
@@ -114,8 +127,7 @@ void write_file(const std::filesystem::path& path, std::string_view content, Syn
 
 void fail_on(const std::filesystem::path& path, std::string_view what) {
   const int reason = errno;
-  std::string text =
-      path.string() + ": " + std::string(what) + ": " + std::generic_category().message(reason);
+  std::string text = failure_text(path, what, reason);
   if (reason == EROFS || reason == EACCES || reason == EPERM)
     text += "; name a folder for reports that can be written (" + std::string(kOutboxOptions) +
             "), or set XDG_STATE_HOME to one";

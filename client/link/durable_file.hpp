@@ -11,6 +11,7 @@ namespace kinship::link {
 inline constexpr std::string_view kOutboxOptions =
     "--outbox FOLDER; in Python Client(outbox=...); in C kinship_client_options.outbox";
 
+/// For what writes a file.
 /// \param what  could not be done; the reason is that of `errno`.
 /// \throws Failure(Storage), always: the file, the reason, and what to name instead of a place that
 ///         cannot be written.

@@ -216,6 +216,21 @@ TEST_F(CLibraryOffline, MeshesAreToldAsSolidsAroundThem) {
       << kinship_error_text();
 }
 
+TEST_F(CLibraryOffline, LinksThatNeedNoSolidAreThere) {
+  kinship_robot_file file{};
+  file.size = sizeof file;
+  const std::string folder = test::source_dir() + "/robots/models/ur10e";
+  file.source = folder.c_str();
+  file.collision_from_visual = 1;
+  EXPECT_EQ(kinship_register_file(client_, &file, &robot_, nullptr), KINSHIP_UNAVAILABLE);
+  const char* const links[] = {"elbow"};
+  file.without_collision = links;
+  file.without_collision_count = 1;
+  expect_refused(kinship_register_file(client_, &file, &robot_, nullptr), "'elbow'");
+  file.size = offsetof(kinship_robot_file, collision_from_visual);  // of an older caller
+  EXPECT_EQ(kinship_register_file(client_, &file, &robot_, nullptr), KINSHIP_UNAVAILABLE);
+}
+
 /// A table, and a cup in the hand, which may touch it.
 struct TableAndCup {
   kinship_object objects[2] = {};
@@ -308,6 +323,7 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_robot_description, never_colliding_pairs), 56U);
   EXPECT_EQ(offsetof(kinship_robot_description, held_joint_count), 80U);
   EXPECT_EQ(offsetof(kinship_robot_file, package_count), 88U);
+  EXPECT_EQ(offsetof(kinship_robot_file, without_collision_count), 112U);
   EXPECT_EQ(offsetof(kinship_object, pose), 48U);
   EXPECT_EQ(sizeof(kinship_held_joint), 16U);
   EXPECT_EQ(offsetof(kinship_attempt, share), 112U);
@@ -316,6 +332,8 @@ TEST(CLibrary, MembersStayWhereTheyAre) {
   EXPECT_EQ(offsetof(kinship_request, deadline_ms), 40U);
   EXPECT_EQ(offsetof(kinship_distribution_info, recommended_share), 40U);
   EXPECT_EQ(sizeof(kinship_robot), 32U);
+  EXPECT_EQ(offsetof(kinship_surroundings, allowed_collision_pairs), 40U);
+  EXPECT_EQ(offsetof(kinship_proof, least_clearance_m), 56U);
 }
 
 TEST_F(CLibraryOffline, AShorterStructureOfAnOlderCallerIsRead) {

@@ -1,6 +1,7 @@
 // What is synced to disk, seen at the call of the system: fsync() of this program is the one below.
 
 #include <gtest/gtest.h>
+#include <sys/fsuid.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -81,6 +82,45 @@ TEST_F(DurableFolder, APlaceThatCannotBeWrittenIsToldWithWhatToName) {
             "kinship_client_options.outbox), or set XDG_STATE_HOME to one");
   EXPECT_NE(said_of(EACCES).find("; name a folder"), std::string::npos);
   EXPECT_EQ(said_of(ENOSPC), "/home/u/.local: cannot make the folder: No space left on device");
+}
+
+/// Files of root are another user's to this thread while it lives.
+class AnotherUser {
+ public:
+  AnotherUser() { ::setfsuid(kNobody); }
+  AnotherUser(const AnotherUser&) = delete;
+  AnotherUser& operator=(const AnotherUser&) = delete;
+  ~AnotherUser() { ::setfsuid(::geteuid()); }
+
+  static bool is_root() { return ::setfsuid(static_cast<uid_t>(-1)) == 0; }
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+};
+
+TEST_F(DurableFolder, AFileThatCannotBeReadIsToldWithoutAPlaceToWrite) {
+  write_durably(folder / "file", "text");
+  std::filesystem::permissions(folder / "file", std::filesystem::perms::none);
+  const auto said = [&](const auto& use) {
+    const AnotherUser user;
+    if (AnotherUser::is_root())
+      return std::string("root");
+    try {
+      use();
+    } catch (const Failure& failure) {
+      return std::string(failure.what());
+    }
+    return std::string("nothing");
+  };
+  const std::string of_reading = said([&] { read_file(folder / "file", 100); });
+  if (of_reading == "root")
+    GTEST_SKIP() << "root that must not become another user";
+  EXPECT_EQ(of_reading, (folder / "file").string() + ": cannot open: Permission denied");
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_read);
+  const std::string of_writing = said([&] { write_whole(folder / "other", "text"); });
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+  EXPECT_NE(of_writing.find(": cannot open: Permission denied; name a folder"), std::string::npos)
+      << of_writing;
 }
 
 TEST_F(DurableFolder, FileInTheWayIsNamed) {
