@@ -8,7 +8,7 @@
 namespace kinship::store {
 
 /// The only connection that writes and checkpoints: WAL, synchronous FULL, foreign keys on, no
-/// automatic checkpoint; makes the file (pages of 8 KB) and brings its schema up to date. What a
+/// automatic checkpoint; makes the file (pages of 4 KB) and brings its schema up to date. What a
 /// killed server left in the WAL is made durable before anything is read from it.
 /// \throws Failure(Storage) if the file is no Kinship store or newer than this binary;
 ///         Failure(Unavailable) if it is half moved, or was moved elsewhere.
